@@ -39,6 +39,7 @@ const Variable kVariables[] = {
     {"Ngs", {kLitNormal, kZero, kZero, kZero, kZero, kZero}},
     {"ncomps", {kThree, kZero, kZero, kZero, kZero, kZero}},
     {"time", {AT(time), kZero, kZero, kZero, kZero, kZero}},
+    {"dtime", {AT(dtime), kZero, kZero, kZero, kZero, kZero}},
     {"dPdtime", {AT(dPdtime), kZero, kZero, kZero, kZero, kZero}},
 };
 #undef AT

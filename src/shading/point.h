@@ -187,7 +187,7 @@ struct ShadePoint {
     Vec3 P, N;                        ///< after displacement; N unit only if the surface's is
     Vec3 I, E;                        ///< incident vector with its length, and the ray's origin
     float du = 1, dv = 1;             ///< largest footprint over x and y (design decision 7)
-    float time = 0;
+    float time = 0, dtime = 0;        ///< and the time covered from there on
     float shutter = 0;                ///< 0 to 1: where all that moves stands
     Vec3 dPdtime{0.f};
     Color Ci{0}, Oi{0};               ///< volumes and imagers: on entry

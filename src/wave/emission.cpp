@@ -77,7 +77,7 @@ bool EmissionPlan::findPlace(Engine& e, Light& l) {
         p.Ps = centre + to * radius;
         p.Ns = -to;
         p.N = Vec3();
-        p.time = world_.timeAt(0);
+        world_.tellTime(p);
         q.push_back(p);
     }
     std::vector<LightValue> v(q.size());

@@ -55,7 +55,7 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
     p.Ps = at;
     p.Ns = -s.dir;
     p.shutter = world.shadesAtOpen_ ? 0 : s.drawn.time;
-    p.time = world.timeAt(p.shutter);
+    world.tellTime(p);
     p.viewI = p.I = s.dir;
     if (l.light->kind == LightKind::Area) {
         p.surface = s.surface;

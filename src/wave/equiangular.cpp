@@ -82,7 +82,7 @@ private:
         p.viewI = p.I = p.Ps - r.begin();
         p.E = r.origin;
         p.shutter = w.shadesAtOpen_ ? 0 : r.shutter();
-        p.time = w.timeAt(p.shutter);
+        w.tellTime(p);
         p.P = Vec3(transformPoint(light_.instance->toCurrentAt(p.shutter), {0, 0, 0}));
         p.ray = &r;
         if (!area_) return;

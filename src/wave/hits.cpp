@@ -196,7 +196,7 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
         p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
         p.E = r.camera() ? Vec3(0, 0, 0) : r.begin();
         p.shutter = p.surface.time = world_->shadesAtOpen_ ? 0 : r.shutter();
-        p.time = world_->timeAt(p.shutter);
+        world_->tellTime(p);
         p.dPdtime = world_->moves_ ? world_->pointsVelocity(*p.shape, p.surface) : Vec3(0.f);
         if (r.extra >= 0) fade(c.rays[i], length(p.P - r.origin));
         if (!world_->footprints_) continue;

@@ -86,7 +86,7 @@ void Engine::dim(std::span<const MediumPart> parts, std::span<const ShadowRay> r
             p.Ci = p.Oi = Color(1);
             p.ray = rays[part.ray].ray;
             p.shutter = rays[part.ray].time;
-            p.time = world_->timeAt(p.shutter);
+            world_->tellTime(p);
         }
         if (points.empty()) continue;
         hazes.assign(points.size(), {});

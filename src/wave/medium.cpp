@@ -205,7 +205,7 @@ void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<cons
         p.I = p.P - r.begin();
         p.E = r.origin;
         p.shutter = p.surface.time = e.world().shadesAtOpen_ ? 0 : r.shutter();
-        p.time = e.world().timeAt(p.shutter);
+        e.world().tellTime(p);
         p.ray = &r;
         LobeVertex& l = e.lobes.emplace_back();
         const Vec3 light = besideLight(e, m, r, p.P);

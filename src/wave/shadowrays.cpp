@@ -84,7 +84,7 @@ void Engine::opacities(std::span<const OpacityQuery> met, std::span<Color> out) 
         p.I = p.P - r.origin;
         p.E = r.origin;
         p.shutter = m.ray->time;
-        p.time = world_->timeAt(p.shutter);
+        world_->tellTime(p);
         shading::setFootprint(p, r.footprint, r.dir, length(p.I), 1);
     }
     std::vector<shading::InstanceView> views(met.size(), b.surface->view());

@@ -262,7 +262,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
         p.N = dot(n, x.out) < 0 ? -n : n;
         p.I = -x.out;
         p.shutter = p.surface.time = world.shadesAtOpen_ ? 0 : r.shutter();
-        p.time = world.timeAt(p.shutter);
+        world.tellTime(p);
         p.ray = &r;
         LobeVertex& l = e_.lobes.emplace_back();
         l.kind = kind;

@@ -87,7 +87,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
             p.P = r.origin + r.dir;
             p.N = -r.dir;
             p.shutter = world_->shadesAtOpen_ ? 0 : r.shutter();
-            p.time = world_->timeAt(p.shutter);
+            world_->tellTime(p);
             p.ray = &r;
             of.push_back(t);
             litBy_.push_back(extraOf(r).lit);

@@ -138,6 +138,11 @@ public:
     bool moves_ = false;                       ///< some shape does
     bool shadesAtOpen_ = false;                ///< surfaces are shaded where they are when the shutter opens, and send rays then
     float timeAt(float shutter) const { return float(shutter_.at(double(shutter))); }
+    /// time and dtime of a point at its shutter: the whole shutter where surfaces are shaded as it opens, else an instant.
+    void tellTime(shading::ShadePoint& p) const {
+        p.time = timeAt(p.shutter);
+        p.dtime = shadesAtOpen_ && shutter_.opens() ? float(shutter_.close - shutter_.open) : 0;
+    }
     /// When a ray goes, as part of the time that the shutter is open.
     float shutterOf(const shading::PathRay& r) const { return shadesAtOpen_ && !r.camera() ? 0 : r.shutter(); }
     /// dPdtime of a point of a shape.

@@ -73,6 +73,7 @@ TEST(Motion, AWheelTurnsRound) {
 TEST(Motion, PointsTimesAndSpaces) {
     writeShader("tells", "surface tells(string what = \"P\"; point mark = point \"shader\" (1, 2, 3)) {\n"
                          "  Oi = 1; if (what == \"P\") Ci = color(P); else if (what == \"dPdtime\") Ci = color(dPdtime); else if (what == \"time\") Ci = time;\n"
+                         "  else if (what == \"dtime\") Ci = dtime;\n"
                          "  else if (what == \"mark\") Ci = color(mark); else Ci = color(transform(what, P)); }\n");
     const auto scene = [](const std::string& what, const std::string& before = "") {
         return "Shutter 1 3\n" + before + world("Translate 0 0 5\nMotionBegin [0 4]\nTranslate -2 0 0\nTranslate 6 0 0\nMotionEnd\nSurface \"tells\" \"what\" \"" + what +
@@ -91,6 +92,9 @@ TEST(Motion, PointsTimesAndSpaces) {
         near(value(Hider::Hidden, "P", "Hider \"hidden\" \"int samplemotion\" 1\n"), Color(4 * s + .5f, .25f, 5), "samplemotion");
         near(value(Hider::Path, "time"), Color(1 + 2 * s), "time");
         near(value(Hider::Hidden, "time"), Color(1), "hidden time");
+        near(value(Hider::Hidden, "dtime"), Color(2), "hidden dtime"); // the whole shutter
+        near(value(Hider::Hidden, "dtime", "Hider \"hidden\" \"int samplemotion\" 1\n"), Color(0), "samplemotion dtime");
+        near(value(Hider::Path, "dtime"), Color(0), "dtime"); // an instant
         near(value(Hider::Path, "object"), Color(.5f, .25f, 0), "object");
         near(value(Hider::Path, "shader"), Color(.5f, .25f, 0), "shader");
         near(value(Hider::Path, "mark"), Color(4 * s + 1, 2, 8), "mark");

@@ -97,6 +97,7 @@ void Hemisphere::cover(uint32_t i, float part, float distance, float kept, const
 void Hemisphere::splat(const Vec3& d, float solidAngle, float distance, const Color& light) {
     const Vec3 a(std::fabs(d.x), std::fabs(d.y), std::fabs(d.z));
     const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2, ku = (axis + 1) % 3, kv = (axis + 2) % 3;
+    if (!(a[axis] > 0)) return; // so far away that floats have no direction to it
     const float sign = d[axis] < 0 ? -1.f : 1.f, u = d[ku] / a[axis], v = d[kv] / a[axis];
     const float q = 1 + u * u + v * v, pixel = 4 / (float(side_ * side_) * q * std::sqrt(q));
     const float side = std::clamp(std::sqrt(solidAngle / pixel), 1.f, float(side_));
@@ -134,6 +135,7 @@ void Hemisphere::cluster(const PointOctree::Node& n, const Vec3& to, float dista
 void Hemisphere::point(const PointOctree::Point& p) {
     const Vec3 to = p.P - q_.P;
     const float d2 = dot(to, to), r = p.radius();
+    if (!std::isfinite(d2)) return; // floats have no area of it
     if (d2 > q_.maxDistance * q_.maxDistance || (q_.cone <= 1.5708f && dot(to, q_.N) < -r)) return;
     // Larger than a pixel, or so near that its tilt is seen: as a disk.
     if (p.area > .5f * d2 * (4 / float(side_ * side_)) || d2 < 16 * r * r) return draw(p, to);

@@ -200,6 +200,16 @@ TEST(PointBased, WhatIsNoPoint) {
     const PointOctree left(same, "");
     EXPECT_EQ(left.leftOut(), 2u);
     EXPECT_TRUE(std::isfinite(left.nodes()[0].centre.x) && std::isfinite(left.nodes()[0].area));
+    for (const Vec3& far : {Vec3(1e25f, 1e25f, 1e25f), Vec3(0, 0, 3e38f), Vec3(1e19f, 0, 2e19f)}) { // as one point, and as one of many
+        HemisphereQuery q;
+        q.N = {0, 0, 1};
+        PointCloud one;
+        one.add(far, {0, 0, -1}, .1f, {});
+        EXPECT_EQ(look(one, q).blocked, 0);
+        for (int i = 0; i < 100; ++i) one.add(far, {0, 0, -1}, 1e18f, {});
+        const Seen s = look(one, q);
+        EXPECT_TRUE(s.blocked >= 0 && s.blocked <= 1);
+    }
 }
 
 // ---- scenes ----

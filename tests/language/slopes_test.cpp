@@ -3,6 +3,7 @@
 // called here nor named below with a reason fails.
 #include "points.h"
 #include "slopes.h"
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -126,6 +127,10 @@ const std::map<std::string, std::string>& elsewhere() {
 
 /// Rule Zero: they jump, or cannot be said to have a slope. Du and Dv must be 0 exactly.
 bool flat(const Shadeop& op) { return op.derivative == DerivativeRule::Zero; }
+/// But of a variable that stays as it was where nothing is found: its slope stays, too.
+bool fills(const Signature& s) {
+    return std::any_of(s.parameters.begin(), s.parameters.end(), [](const Parameter& p) { return p.output; });
+}
 
 struct Measured {
     Slope slope;
@@ -141,7 +146,6 @@ std::vector<Measured> table() {
                             op.derivative == DerivativeRule::Gradient;
         if (!passes && !flat(op)) continue;
         if (op.lowering == Lowering::Unavailable || (flat(op) && (op.section == "Arrays" || op.section == "Strings"))) continue;
-        if (op.name == "textureinfo") continue; // without a map its variable stays as it was, with its slope
         for (const Signature& s : op.signatures) {
             if (s.result.base == Base::String) continue;
             std::vector<Special> ways;
@@ -151,7 +155,7 @@ std::vector<Measured> table() {
             std::set<std::string> seen;
             for (const Special& way : ways)
                 for (const Slope& x : slopesOf(op, s, filled(op, s, way.arguments), way.pairs, kU, kV))
-                    if (seen.insert(x.statements).second) all.push_back({x, flat(op), &s});
+                    if (seen.insert(x.statements).second) all.push_back({x, flat(op) && !fills(s), &s});
         }
     }
     const auto extra = [&](const char* what, const char* statements, Base type) {

@@ -90,7 +90,7 @@ void Interpreter::end(BlockKind kind, const Call& call) {
     for (size_t& b : barriers_) b = std::min(b, blocks_.size());
 }
 
-/// Closes blocks down to `depth` because the stream is over; of one that the user stopped before its end nothing is said. keepWorld:
+/// Closes blocks down to `depth` because the stream is over: an error for each, but where the user stopped it. keepWorld:
 /// frames and worlds stay open (an archive may open them).
 void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld) {
     while (blocks_.size() > depth) {

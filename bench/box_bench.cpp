@@ -4,9 +4,9 @@
 #include "bench/box_embree.h"
 #include "bench/box_oracle_runs.h"
 #include "bench/profile.h"
+#include "lobes/sampling.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
-#include "lobes/sampling.h"
 #include "transport/integrator.h"
 #include "world/impl.h"
 #include <algorithm>
@@ -70,7 +70,10 @@ struct Box {
         return world != nullptr;
     }
 
-    struct Result { double cpu = 0, wall = 0, mean = 0; transport::Counters counters; };
+    struct Result {
+        double cpu = 0, wall = 0, mean = 0;
+        transport::Counters counters;
+    };
     Result render(uint32_t spp) {
         Result r;
         render::Progress progress(render::ProgressMode::None);
@@ -136,12 +139,13 @@ double raysPerSecond(size_t n, int repeats, const std::function<void()>& once) {
 const char* partOf(const std::string& s) {
     auto has = [&](const char* what) { return s.find(what) != std::string::npos; };
     if (s == "[kernel code]") return "kernels";
-    if (has("libembree") || has("5accel") || has("exactHits") || has("Quadric5roots") || has("Quadric6accept") || has("solveQuadratic") ||
-        has("hitNormal") || has("vOf"))
+    if (has("libembree") || has("5accel") || has("exactHits") || has("Quadric5roots") || has("Quadric6accept") ||
+        has("solveQuadratic") || has("hitNormal") || has("vOf"))
         return "traversal";
     if (has("libc.so") || has("libm.so") || has("libgcc") || has("libstdc++")) return "C library (memory, sines)";
     if (has("8geometry")) return "points of hits and lights";
-    if (has("7Sampler") || has("13SampleNumbers") || has("nestedS") || has("6render6nested") || has("6sobol") || has("13FilterSampler") || has("6Camera") || has("7pathRay"))
+    if (has("7Sampler") || has("13SampleNumbers") || has("nestedS") || has("6render6nested") || has("6sobol") ||
+        has("13FilterSampler") || has("6Camera") || has("7pathRay"))
         return "sampling, camera";
     if (has("5lobes") || has("lobe") || has("Lobe") || has("4draw") || has("5value")) return "lobes";
     if (has("7shading5Batch") || has("12setFootprint")) return "filling batches";
@@ -175,7 +179,8 @@ int main(int argc, char** argv) {
     if (oursOnly) {
         std::vector<double> t;
         for (int i = 0; i < repeats; ++i) t.push_back(box.render(uint32_t(spp)).cpu);
-        std::printf("%.4f us a sample at the least, %.4f median\n", 1e6 * *std::min_element(t.begin(), t.end()) / samples, 1e6 * median(t) / samples);
+        std::printf("%.4f us a sample at the least, %.4f median\n", 1e6 * *std::min_element(t.begin(), t.end()) / samples,
+                    1e6 * median(t) / samples);
         return 0;
     }
     // The renderer plays roulette from the fourth hit on, by 1.5 sqrt(throughput); the oracle as it is from the sixth, by the
@@ -207,20 +212,24 @@ int main(int argc, char** argv) {
     };
     const transport::Counters& c = last.counters;
     double ourRays = double(render::totalRays(c)) / samples;
-    std::printf("Muttenzer box, %d x %d, %d samples a pixel, %d threads, %d lanes; CPU time, medians of %d\n", width, height, spp, threads, lanes,
-                repeats);
+    std::printf("Muttenzer box, %d x %d, %d samples a pixel, %d threads, %d lanes; CPU time, medians of %d\n", width, height, spp,
+                threads, lanes, repeats);
     auto line = [&](const char* what, const std::vector<double>& t, double rays) {
-        std::printf("  %-44s %7.3f us a sample  %8.0f samples/s  %5.2f rays a sample  %5.0f ns a ray\n", what, 1e6 * median(t) / samples,
-                    samples / median(t), rays, 1e9 * median(t) / samples / rays);
+        std::printf("  %-44s %7.3f us a sample  %8.0f samples/s  %5.2f rays a sample  %5.0f ns a ray\n", what,
+                    1e6 * median(t) / samples, samples / median(t), rays, 1e9 * median(t) / samples / rays);
     };
     line("ours", ours, ourRays);
     line("oracle, our sequences, our roulette", sequences, bench::oracleRays(same));
     line("oracle through Embree, on our sequences", embree, bench::oracleRays(same));
     line("oracle, Mersenne twister, its own roulette", twister, bench::oracleRays(plain));
-    std::printf("  ours / oracle, samples a second: %.3f on the same sequences with the same roulette; %.3f where the oracle meets through "
-                "Embree; %.3f to the oracle as it is\n", ratios(sequences), ratios(embree), ratios(twister));
-    std::printf("  means %.5f, %.5f and through Embree %.5f; wall %.3f s, %.0f rays/ms; %.1f points a batch, %.0f %% of lanes busy\n", mean, oracleMean, embreeMean, median(wall),
-                double(render::totalRays(c)) / median(wall) / 1e3, double(c.points) / double(c.batches), 100.0 * double(c.lanesUsed) / double(c.lanesRun));
+    std::printf("  ours / oracle, samples a second: %.3f on the same sequences with the same roulette; %.3f where the oracle "
+                "meets through "
+                "Embree; %.3f to the oracle as it is\n",
+                ratios(sequences), ratios(embree), ratios(twister));
+    std::printf(
+        "  means %.5f, %.5f and through Embree %.5f; wall %.3f s, %.0f rays/ms; %.1f points a batch, %.0f %% of lanes busy\n",
+        mean, oracleMean, embreeMean, median(wall), double(render::totalRays(c)) / median(wall) / 1e3,
+        double(c.points) / double(c.batches), 100.0 * double(c.lanesUsed) / double(c.lanesRun));
 
     const accel::Accel& accel = *static_cast<const transport::WorldImpl&>(*box.world).accel_;
     bench::BareEmbree bare(accel.shapes());
@@ -232,7 +241,10 @@ int main(int argc, char** argv) {
         double b = raysPerSecond(rays.size(), 9, [&] { bareMet = bare.intersect(rays); });
         for (const accel::Hit& h : hits) met += h.valid();
         std::printf("  %s rays: ours %.2f M/s, bare Embree %.2f M/s, ratio %.2f (%zu and %zu of %zu meet something)\n",
-                    bounces == 0 ? "camera" : bounces == 1 ? "first bounce" : "third bounce", a / 1e6, b / 1e6, a / b, met, bareMet, rays.size());
+                    bounces == 0   ? "camera"
+                    : bounces == 1 ? "first bounce"
+                                   : "third bounce",
+                    a / 1e6, b / 1e6, a / b, met, bareMet, rays.size());
     }
 
     bench::Profile profile;
@@ -251,7 +263,8 @@ int main(int argc, char** argv) {
     std::vector<std::pair<uint64_t, std::string>> order;
     for (const auto& [part, n] : parts) order.emplace_back(n, part);
     std::sort(order.rbegin(), order.rend());
-    for (const auto& [n, part] : order) std::printf(" %s %.1f %%;", part.c_str(), 100.0 * double(n) / double(std::max<uint64_t>(all, 1)));
+    for (const auto& [n, part] : order)
+        std::printf(" %s %.1f %%;", part.c_str(), 100.0 * double(n) / double(std::max<uint64_t>(all, 1)));
     std::printf("\n");
     return 0;
 }

@@ -1,5 +1,5 @@
-// How long 300 average shaders take: about 100 lines each, put together from patterns as people write them, no two alike. Cold (code is
-// generated for each) and from the cache, by another compiler that finds what the first left. CPU time of one thread.
+// How long 300 average shaders take: about 100 lines each, put together from patterns as people write them, no two alike. Cold
+// (code is generated for each) and from the cache, by another compiler that finds what the first left. CPU time of one thread.
 #include "rsl/compiler.h"
 #include <cstdio>
 #include <cstdlib>
@@ -179,7 +179,8 @@ std::string shaderText(unsigned seed, std::string& name) {
     std::string s = "/* " + name + ": layers of patterns, lit */\n\n";
     const int layers = 4;
     for (int k = 0; k < layers; k++) s += filled(kPatterns[pick(std::size(kPatterns))], k) + "\n";
-    s += "surface " + name + "(\n    float Ka = 1;\n    float Kd = 0.7;\n    float Ks = 0.4;\n    float roughness = 0.1;\n"
+    s += "surface " + name +
+         "(\n    float Ka = 1;\n    float Kd = 0.7;\n    float Ks = 0.4;\n    float roughness = 0.1;\n"
          "    color specularcolor = 1;\n    float scale = 2;\n    float bump = 0.02;\n    float edge = 0.3;\n";
     for (int k = 0; k < layers; k++)
         s += filled("    color first@ = color($, $, $);\n    color second@ = color($, $, $);\n    float amount@ = $;\n", k);
@@ -187,9 +188,9 @@ std::string shaderText(unsigned seed, std::string& name) {
          "    float filter = max(sqrt(area(q)), 0.0001);\n    color base = Cs;\n    float height = 0;\n";
     for (int k = 0; k < layers; k++) {
         const std::string n = std::to_string(k);
-        s += "    if (amount" + n + " > 0) {\n        color c" + n + " = layer" + n + "(q * " + std::to_string(k + 1) + ", filter, first" + n +
-             ", second" + n + ");\n        base = mix(base, c" + n + ", amount" + n + ");\n        height += amount" + n + " * comp(c" + n +
-             ", 1);\n    }\n";
+        s += "    if (amount" + n + " > 0) {\n        color c" + n + " = layer" + n + "(q * " + std::to_string(k + 1) +
+             ", filter, first" + n + ", second" + n + ");\n        base = mix(base, c" + n + ", amount" + n +
+             ");\n        height += amount" + n + " * comp(c" + n + ", 1);\n    }\n";
     }
     return s + kEnds[pick(std::size(kEnds))] + "}\n";
 }
@@ -237,8 +238,8 @@ int main(int argc, char** argv) {
             }
         }
         const double seconds = (cpuSeconds() - begin) * 300 / count;
-        std::printf("300 %-16s %7.2f s CPU (reading and checking %.2f), limit %g   %s\n", what, seconds, front * 300 / count, limit,
-                    seconds < limit ? "PASS" : "MISS");
+        std::printf("300 %-16s %7.2f s CPU (reading and checking %.2f), limit %g   %s\n", what, seconds, front * 300 / count,
+                    limit, seconds < limit ? "PASS" : "MISS");
         missed += seconds >= limit;
     }
     fs::remove_all(work);

@@ -4,9 +4,9 @@
 #include "accel/accel.h"
 #include "geometry/build.h"
 #include "geometry/dice.h"
+#include "lobes/sampling.h"
 #include "render/camera.h"
 #include "ri/reader.h"
-#include "lobes/sampling.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // The patterns of the shaders named, through `alpenglow shade --iterations`, against the same mathematics written by hand: scalar
-// C++ with the vectorisers off, and vector types. CPU time, one thread; the contestants take turns. A figure is the best of its turn;
-// a ratio is the median over the turns, because the clock rate of a busy machine changes from one to the next.
+// C++ with the vectorisers off, and vector types. CPU time, one thread; the contestants take turns. A figure is the best of its
+// turn; a ratio is the median over the turns, because the clock rate of a busy machine changes from one to the next.
 //   pattern_bench [--program PATH] [--lanes 16|8] [--turns N] shader.sl...
 // Prints, for every shader, ns a point and two ratios, and compares the pictures. Exit 1 when a ratio misses its limit.
 #include "display/imageio.h"
@@ -32,7 +32,8 @@ double cpuSeconds() {
 }
 
 struct Batch {
-    std::unique_ptr<float, decltype(&std::free)> memory{static_cast<float*>(std::aligned_alloc(64, size_t(10) * kStride * 4)), &std::free};
+    std::unique_ptr<float, decltype(&std::free)> memory{static_cast<float*>(std::aligned_alloc(64, size_t(10) * kStride * 4)),
+                                                        &std::free};
     Points points{};
     Batch() {
         float* row[10];
@@ -108,8 +109,9 @@ Difference compare(const std::string& picture, const Points& p) {
 int main(int argc, char** argv) {
     std::error_code ec;
     std::string program = (std::filesystem::read_symlink("/proc/self/exe", ec).parent_path() / "alpenglow").string();
-    const bool hasAvx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-                           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512cd");
+    const bool hasAvx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+                           __builtin_cpu_supports("avx512cd");
     bool avx512 = hasAvx512;
     int turns = 7, lanes = 0;
     std::vector<std::string> shaders;
@@ -133,10 +135,10 @@ int main(int argc, char** argv) {
     Batch batch;
     const std::string picture =
         (std::filesystem::temp_directory_path() / ("alpenglow_pattern_" + std::to_string(getpid()) + ".exr")).string();
-    std::printf("%d lanes; ns a point of CPU time, medians of %d turns; by hand: the best of %d, %d%s lanes in flight\n", lanes, turns,
-                vector[0].first, vector[1].first, avx512 ? " and 64" : "");
-    std::printf("%-15s %8s %8s %8s %4s  %-20s %-20s %s\n", "pattern", "shade", "scalar", "vector", "at", "scalar / shade", "vector / shade",
-                "|difference| mean, largest");
+    std::printf("%d lanes; ns a point of CPU time, medians of %d turns; by hand: the best of %d, %d%s lanes in flight\n", lanes,
+                turns, vector[0].first, vector[1].first, avx512 ? " and 64" : "");
+    std::printf("%-15s %8s %8s %8s %4s  %-20s %-20s %s\n", "pattern", "shade", "scalar", "vector", "at", "scalar / shade",
+                "vector / shade", "|difference| mean, largest");
     bool good = true;
     for (const auto& file : shaders) {
         const std::string name = std::filesystem::path(file).stem().string();
@@ -161,8 +163,9 @@ int main(int argc, char** argv) {
         const Difference d = compare(picture, batch.points);
         const double s = median(scalarRatio), v = median(vectorRatio);
         good = good && s >= kScalarLimit && v >= kVectorLimit;
-        std::printf("%-15s %8.2f %8.2f %8.2f %4d  %6.2f >= %-3g %-6s  %6.2f >= %-3g %-6s  %.1e %.1e\n", name.c_str(), median(ours), median(plain), median(best), width, s,
-                    kScalarLimit, s >= kScalarLimit ? "PASS" : "MISS", v, kVectorLimit, v >= kVectorLimit ? "PASS" : "MISS", d.mean, d.largest);
+        std::printf("%-15s %8.2f %8.2f %8.2f %4d  %6.2f >= %-3g %-6s  %6.2f >= %-3g %-6s  %.1e %.1e\n", name.c_str(),
+                    median(ours), median(plain), median(best), width, s, kScalarLimit, s >= kScalarLimit ? "PASS" : "MISS", v,
+                    kVectorLimit, v >= kVectorLimit ? "PASS" : "MISS", d.mean, d.largest);
         std::fflush(stdout);
     }
     std::filesystem::remove(picture, ec);

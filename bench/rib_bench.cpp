@@ -1,6 +1,6 @@
-// ASCII floats through the RIB reader against fast_float over the same bytes: rib_bench [MEGABYTES]. CPU time, one thread, the two
-// take turns, the best of all turns counts. The reader tokenises, checks, binds and builds the scene; fast_float only converts.
-// Exit 1 when the reader is slower than the limit.
+// ASCII floats through the RIB reader against fast_float over the same bytes: rib_bench [MEGABYTES]. CPU time, one thread, the
+// two take turns, the best of all turns counts. The reader tokenises, checks, binds and builds the scene; fast_float only
+// converts. Exit 1 when the reader is slower than the limit.
 #include "ri/reader.h"
 #include <algorithm>
 #include <cstdio>
@@ -43,7 +43,8 @@ std::string rib(size_t bytes, const char* format) {
         for (int y = 0; y + 1 < kSide; y++)
             for (int x = 0; x + 1 < kSide; x++) {
                 const int a = y * kSide + x;
-                text.append(buffer, size_t(std::snprintf(buffer, sizeof buffer, "%d %d %d %d ", a, a + 1, a + kSide + 1, a + kSide)));
+                text.append(buffer,
+                            size_t(std::snprintf(buffer, sizeof buffer, "%d %d %d %d ", a, a + 1, a + kSide + 1, a + kSide)));
             }
         text += "]";
         floats("P", 3 * kSide * kSide);
@@ -107,8 +108,10 @@ int main(int argc, char** argv) {
         }
         const double mb = double(text.size()) / 1e6, ratio = plain / reader;
         good = good && ratio >= kLimit;
-        std::printf("%-5s %5.1f MB, %zu numbers, %zu primitives: fast_float %4.0f MB/s, reader %4.0f MB/s, reader / fast_float %.2f >= %g %s%s\n",
-                    format, mb, count, primitives, mb / plain, mb / reader, ratio, kLimit, ratio >= kLimit ? "PASS" : "MISS", sum == 0.5 ? " " : "");
+        std::printf("%-5s %5.1f MB, %zu numbers, %zu primitives: fast_float %4.0f MB/s, reader %4.0f MB/s, reader / fast_float "
+                    "%.2f >= %g %s%s\n",
+                    format, mb, count, primitives, mb / plain, mb / reader, ratio, kLimit, ratio >= kLimit ? "PASS" : "MISS",
+                    sum == 0.5 ? " " : "");
     }
     return good ? 0 : 1;
 }

@@ -105,8 +105,8 @@ typedef RtVoid (*RtArchiveCallback)(RtToken, RI_CHARS*, ...);
 extern RtBasis RiBezierBasis, RiBSplineBasis, RiCatmullRomBasis, RiHermiteBasis, RiPowerBasis;
 
 /* Every call with a parameter list, in both forms. */
-#define RI_BOTH(result, name, ...)                                                                                           \
-    result name(__VA_ARGS__, ...);                                                                                           \
+#define RI_BOTH(result, name, ...)                                                                                               \
+    result name(__VA_ARGS__, ...);                                                                                               \
     result name##V(__VA_ARGS__, RtInt n, RtToken tokens[], RtPointer values[])
 
 /* Blocks, declarations, motion */

@@ -1,4 +1,5 @@
-// An example of an RSL plug-in: a woven cloth, and a few small functions that show each kind of argument. Built by the project, or with
+// An example of an RSL plug-in: a woven cloth, and a few small functions that show each kind of argument. Built by the project,
+// or with
 //   c++ -std=c++17 -O2 -shared -fPIC -I include examples/plugins/weave.cpp -o weave.so
 #include "alpenglow/rslplugin.h"
 #include <algorithm>
@@ -58,5 +59,4 @@ ALPENGLOW_RSL_PLUGIN(perPoint<weave>("float weave(float s, t)", "Height of a pla
                      overLanes(triangle, "float triangle(float x)", "Rises to 1 at 1/2 and falls, with period 1."),
                      perPoint<polynomial>("float polynomial(float x; float c[4])", "c[0] + c[1] x + c[2] x^2 + c[3] x^3."),
                      perPoint<repeated>("string repeated(string text; float n)"),
-                     perPoint<swap>("void swap(output vector a; output vector b)"),
-                     perPoint<trace>("float trace(matrix m)"))
+                     perPoint<swap>("void swap(output vector a; output vector b)"), perPoint<trace>("float trace(matrix m)"))

@@ -9,11 +9,11 @@
 //     ALPENGLOW_RSL_PLUGIN(perPoint<wave>("float wave(float x, phase)", "A sine."),
 //                          perPoint<split>("void split(color c; output float luma; output color rest)"))
 //
-// compiled with `c++ -std=c++17 -O2 -shared -fPIC wave.cpp -o wave.so` is found by `plugin "wave";` in a shader, in the folders of
-// the `rslplugin` search path, and loaded only under --allow-exec. See docs/plugins.md.
+// compiled with `c++ -std=c++17 -O2 -shared -fPIC wave.cpp -o wave.so` is found by `plugin "wave";` in a shader, in the folders
+// of the `rslplugin` search path, and loaded only under --allow-exec. See docs/plugins.md.
 //
-// What every function promises: the same arguments give the same results, whatever was called before and on whatever thread (several
-// call it at once); it does not throw; it writes nothing but its results. Its derivatives are taken as zero.
+// What every function promises: the same arguments give the same results, whatever was called before and on whatever thread
+// (several call it at once); it does not throw; it writes nothing but its results. Its derivatives are taken as zero.
 #ifndef ALPENGLOW_RSLPLUGIN_H
 #define ALPENGLOW_RSLPLUGIN_H
 
@@ -30,25 +30,26 @@
 
 extern "C" {
 
-/// A function over lanes. `lanes` points are worked on at once (up to 64); bit i of `mask` says that point i is wanted, the others may be
-/// left alone. Rows have `lanes` floats. `in`: the arguments one after the other, each component a row: float and string 1, color, point,
-/// vector and normal 3, matrix 16 (row by row), an array element after element. Output arguments stand among them with the values they
-/// had. `out`: first the result, unless it is void, then the output arguments in order, in the same way; a row that is not written is 0.
-/// Strings are numbers, as int32 in place of the float; AlpenglowRslHost says what they mean.
+/// A function over lanes. `lanes` points are worked on at once (up to 64); bit i of `mask` says that point i is wanted, the
+/// others may be left alone. Rows have `lanes` floats. `in`: the arguments one after the other, each component a row: float and
+/// string 1, color, point, vector and normal 3, matrix 16 (row by row), an array element after element. Output arguments stand
+/// among them with the values they had. `out`: first the result, unless it is void, then the output arguments in order, in the
+/// same way; a row that is not written is 0. Strings are numbers, as int32 in place of the float; AlpenglowRslHost says what they
+/// mean.
 typedef void (*AlpenglowRslFunction)(int32_t lanes, uint64_t mask, const float* in, float* out);
 
 /// What the renderer offers to a plug-in. Both are safe on any thread.
 struct AlpenglowRslHost {
-    uint32_t abi;                         ///< ALPENGLOW_RSL_PLUGIN_ABI of the renderer
-    const char* (*text)(int32_t string);  ///< valid until the program ends
-    int32_t (*string)(const char* text);  ///< the number of a text, the same for the same text
+    uint32_t abi;                        ///< ALPENGLOW_RSL_PLUGIN_ABI of the renderer
+    const char* (*text)(int32_t string); ///< valid until the program ends
+    int32_t (*string)(const char* text); ///< the number of a text, the same for the same text
 };
 
 struct AlpenglowRslEntry {
-    const char* signature;     ///< as RSL declares it: "float noise2(point p; float w; output color c)"; arrays have a length
+    const char* signature; ///< as RSL declares it: "float noise2(point p; float w; output color c)"; arrays have a length
     AlpenglowRslFunction call;
-    int32_t rowsIn, rowsOut;   ///< how many rows `call` reads and writes, to be checked against the signature; -1: not said
-    const char* doc;           ///< one line for `alpenglow info`, or null
+    int32_t rowsIn, rowsOut; ///< how many rows `call` reads and writes, to be checked against the signature; -1: not said
+    const char* doc;         ///< one line for `alpenglow info`, or null
 };
 
 struct AlpenglowRslPlugin {
@@ -64,13 +65,25 @@ typedef const AlpenglowRslPlugin* (*AlpenglowRslEntryPoint)(const AlpenglowRslHo
 
 namespace alpenglow::rslplugin {
 
-struct Color { float r, g, b; };
-struct Point { float x, y, z; };
-struct Vector { float x, y, z; };
-struct Normal { float x, y, z; };
+struct Color {
+    float r, g, b;
+};
+struct Point {
+    float x, y, z;
+};
+struct Vector {
+    float x, y, z;
+};
+struct Normal {
+    float x, y, z;
+};
 /// m[row][column], row vectors: p' = p m.
-struct Matrix { float m[4][4]; };
-template <class T, size_t N> struct Array { T e[N]; };
+struct Matrix {
+    float m[4][4];
+};
+template <class T, size_t N> struct Array {
+    T e[N];
+};
 
 inline const AlpenglowRslHost*& host() {
     static const AlpenglowRslHost* h = nullptr;
@@ -181,13 +194,13 @@ constexpr AlpenglowRslEntry overLanes(AlpenglowRslFunction f, const char* signat
 } // namespace alpenglow::rslplugin
 
 /// Once in a plug-in, at file level: its functions.
-#define ALPENGLOW_RSL_PLUGIN(...)                                                                                       \
-    extern "C" __attribute__((visibility("default"))) const AlpenglowRslPlugin* alpenglow_rsl_plugin(                   \
-        const AlpenglowRslHost* offered) {                                                                              \
-        static const AlpenglowRslEntry entries[] = {__VA_ARGS__};                                                       \
-        static const AlpenglowRslPlugin plugin = {ALPENGLOW_RSL_PLUGIN_ABI, sizeof entries / sizeof entries[0], entries}; \
-        alpenglow::rslplugin::host() = offered;                                                                         \
-        return &plugin;                                                                                                 \
+#define ALPENGLOW_RSL_PLUGIN(...)                                                                                                \
+    extern "C" __attribute__((visibility("default"))) const AlpenglowRslPlugin* alpenglow_rsl_plugin(                            \
+        const AlpenglowRslHost* offered) {                                                                                       \
+        static const AlpenglowRslEntry entries[] = {__VA_ARGS__};                                                                \
+        static const AlpenglowRslPlugin plugin = {ALPENGLOW_RSL_PLUGIN_ABI, sizeof entries / sizeof entries[0], entries};        \
+        alpenglow::rslplugin::host() = offered;                                                                                  \
+        return &plugin;                                                                                                          \
     }
 
 #endif

@@ -21,7 +21,8 @@ Accel::Impl::Ball Accel::Impl::ballAround(uint32_t s) const {
         double l = dot(row[0], row[0]);
         bool round = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
         for (int i = 0; i < 3; ++i)
-            round = round && std::fabs(dot(row[i], row[i]) - l) <= 1e-6 * l && std::fabs(dot(row[i], row[(i + 1) % 3])) <= 1e-6 * l;
+            round =
+                round && std::fabs(dot(row[i], row[i]) - l) <= 1e-6 * l && std::fabs(dot(row[i], row[(i + 1) % 3])) <= 1e-6 * l;
         Vec3d own(m[3][0], m[3][1], m[3][2]);
         double r = std::fabs(double(numbers[0])) * std::sqrt(l) * (1 + 1e-5) + 1e-12 * length(own);
         if (round && r < radius) return {s, own, r * r};
@@ -37,7 +38,8 @@ bool Accel::Impl::readyDirect() {
         if (s->exact()) exact += s->exactPrims();
         else count += s->mesh().triangles();
         if (count > DirectTriangles::kMost || exact > kDirectExact || (s->exact() && s->exactPrims() != 1)) return false;
-        if (!s->exact() && std::any_of(s->mesh().P.begin(), s->mesh().P.end(), Tree::reaches)) return false; // a tree leaves them out
+        if (!s->exact() && std::any_of(s->mesh().P.begin(), s->mesh().P.end(), Tree::reaches))
+            return false; // a tree leaves them out
     }
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         const Shape& shape = *shapes[s];
@@ -75,7 +77,8 @@ void Accel::Impl::meetDirect(Query& q) const {
     for (const Ball& b : balls) {
         Vec3d to = b.centre - o;
         double along = dot(to, d), gap = dot(to, to) - b.radius2;
-        if (gap > 0 && (along < 0 || along * along < gap * dd * (1 - 1e-9))) continue; // begins outside, and looks away or passes by
+        if (gap > 0 && (along < 0 || along * along < gap * dd * (1 - 1e-9)))
+            continue; // begins outside, and looks away or passes by
         if (meetExact(q, b.shape, 0) && q.any) return;
     }
 }
@@ -102,9 +105,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
         impl_->tree.build(impl_->shapes);
         impl_->bounds.add(impl_->tree.bounds());
         if (impl_->tree.beyond()) impl_->sayBeyond(impl_->tree, *impl_->shapes[impl_->tree.beyondOf()], diag);
-    } catch (const std::length_error&) {
-        impl_->refuse(diag);
-    }
+    } catch (const std::length_error&) { impl_->refuse(diag); }
 }
 
 void Accel::Impl::refuse(Diagnostics& diag) { // a scene without its tree would be a black picture
@@ -112,7 +113,8 @@ void Accel::Impl::refuse(Diagnostics& diag) { // a scene without its tree would 
     tree = Tree();
     shapes.clear();
     geometryOf.clear();
-    diag.report(Severity::Severe, Rie::Limit, {}, "the frame has more than a thousand million triangles, curve segments and points");
+    diag.report(Severity::Severe, Rie::Limit, {},
+                "the frame has more than a thousand million triangles, curve segments and points");
 }
 
 void Accel::Impl::sayBeyond(const Tree& tree, const Shape& first, Diagnostics& diag) {

@@ -1,12 +1,12 @@
 // Rays against shapes.
 //
-// Results do not depend on threads, ray order or who else is asked, on the processor or on how the tree was built: the tree (tree.h)
-// only proposes candidates and overlooks none, each candidate's t and parameters are computed in double from the shape, and equal
-// distances go to the lower (shape, primitive).
+// Results do not depend on threads, ray order or who else is asked, on the processor or on how the tree was built: the tree
+// (tree.h) only proposes candidates and overlooks none, each candidate's t and parameters are computed in double from the shape,
+// and equal distances go to the lower (shape, primitive).
 //
-// Two levels: a shape that is geometry::Placed is a leaf of the tree of all, and has a tree of its own in the space of its geometry,
-// one for all places of that geometry. A ray that comes to it is taken there in double, by the place at the ray's time; t stays what
-// it is. What deforms has leaves whose triangles stand where they are at the ray's time.
+// Two levels: a shape that is geometry::Placed is a leaf of the tree of all, and has a tree of its own in the space of its
+// geometry, one for all places of that geometry. A ray that comes to it is taken there in double, by the place at the ray's time;
+// t stays what it is. What deforms has leaves whose triangles stand where they are at the ray's time.
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/shape.h"
@@ -21,9 +21,7 @@ namespace alpenglow::accel {
 inline constexpr uint32_t kNone = geometry::kNone;
 
 /// Kinds of rays, for Ray::mask and the shapes' visibility.
-enum Visibility : uint32_t {
-    kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kAll = 0xffffffffu
-};
+enum Visibility : uint32_t { kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kAll = 0xffffffffu };
 
 /// From where a ray meets surfaces with Sides 1; those with two sides it meets from both.
 enum class Sides : uint8_t { Front, Back, Both };
@@ -31,27 +29,28 @@ enum class Sides : uint8_t { Front, Back, Both };
 /// Camera space. dir need not be unit; t counts in its lengths.
 struct Ray {
     Vec3 org, dir;
-    float tnear = 0;                 ///< hits have t > tnear ...
-    float tfar = 1e38f;              ///< ... and t < tfar
-    float time = 0;                  ///< of the shutter, 0 to 1
-    uint32_t mask = kAll;            ///< meets shapes whose visibility shares a bit
+    float tnear = 0;                                    ///< hits have t > tnear ...
+    float tfar = 1e38f;                                 ///< ... and t < tfar
+    float time = 0;                                     ///< of the shutter, 0 to 1
+    uint32_t mask = kAll;                               ///< meets shapes whose visibility shares a bit
     uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to pass through: one primitive; prim kNone: the whole shape
-    /// Hit::distance of the excluded primitive, for a ray that goes on behind it: of what lies at one distance it has met those that come
-    /// first in the order of shapes and primitives, and neighbours in the mesh, whose edge or corner it went through. Negative: it begins.
+    /// Hit::distance of the excluded primitive, for a ray that goes on behind it: of what lies at one distance it has met those
+    /// that come first in the order of shapes and primitives, and neighbours in the mesh, whose edge or corner it went through.
+    /// Negative: it begins.
     double passed = -1;
     Sides sides = Sides::Front;
-    const uint8_t* only = nullptr;   ///< by shape: 0 is passed through; null: all are considered
-    float level = 0.5f;              ///< meets shapes within whose levels it lies: setLevels()
+    const uint8_t* only = nullptr; ///< by shape: 0 is passed through; null: all are considered
+    float level = 0.5f;            ///< meets shapes within whose levels it lies: setLevels()
 };
 
 /// What evaluateHit of the shape needs. shape == kNone: nothing was met.
 struct Hit {
     float t = 0;
-    uint32_t shape = kNone;          ///< index into the vector the Accel was built from: the placement
+    uint32_t shape = kNone; ///< index into the vector the Accel was built from: the placement
     uint32_t prim = 0;
-    float time = 0;                  ///< the ray's
+    float time = 0; ///< the ray's
     double b1 = 0, b2 = 0;
-    double distance = 0;             ///< t before it was rounded
+    double distance = 0; ///< t before it was rounded
     bool valid() const { return shape != kNone; }
 };
 
@@ -66,10 +65,13 @@ public:
     Accel& operator=(const Accel&) = delete;
 
     /// By shape the part of all rays that meet it: those whose level is at least `from` and below `to`. Before any ray is sent.
-    struct Levels { float from = 0, to = 1; };
+    struct Levels {
+        float from = 0, to = 1;
+    };
     void setLevels(std::vector<Levels>);
 
-    /// Of shapes that are parts of solids (scene/solids.h) rays meet from now on only what bounds the whole. Before any ray is sent.
+    /// Of shapes that are parts of solids (scene/solids.h) rays meet from now on only what bounds the whole. Before any ray is
+    /// sent.
     void makeSolids(Diagnostics&);
     bool hasSolids() const;
     /// False: at this point of its surface (camera space) a shape bounds no whole, but lies inside of one or was taken away.
@@ -105,8 +107,8 @@ private:
 
 /// Meeting a triangle in double: false when the line is parallel to it or the triangle has no area. b1, b2 are clamped to the
 /// triangle, for candidates that are known to be hits; `outside` says by how much they had to be.
-inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb, const Vec3d& fc, double& t, double& b1,
-                         double& b2, double& outside) {
+inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb, const Vec3d& fc, double& t,
+                         double& b1, double& b2, double& outside) {
     // Float coordinates subtract exactly or nearly so in double: the plane test keeps the side of an origin one float step away.
     Vec3d a = fa - org, b = fb - org, c = fc - org;
     Vec3d e1 = b - a, e2 = c - a, n = cross(e1, e2);
@@ -128,8 +130,8 @@ inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, cons
     }
     return true;
 }
-inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1, double& b2,
-                         double& outside) {
+inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1,
+                         double& b2, double& outside) {
     return meetTriangle(Vec3d(org), Vec3d(dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside);
 }
 

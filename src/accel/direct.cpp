@@ -8,8 +8,8 @@ namespace alpenglow::accel {
 
 namespace {
 float norm1(const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
-// Of a point that a ray meets: each product and sum rounds by 2^-24 of at most its reach, t by that over n.dir. 64 of them are more
-// than are made.
+// Of a point that a ray meets: each product and sum rounds by 2^-24 of at most its reach, t by that over n.dir. 64 of them are
+// more than are made.
 float slackOf(float extent, const Vec3& origin) { return 64 * 0x1p-24f * (2 * extent + norm1(origin)) + 1e-30f; }
 } // namespace
 
@@ -21,10 +21,12 @@ void DirectTriangles::add(const Triangle& t) {
     for (const Vec3& p : {t.a, t.b, t.c}) extent_ = std::max(extent_, norm1(p));
     Vec3d a(t.a), e1 = Vec3d(t.b) - a, e2 = Vec3d(t.c) - a, c = cross(e1, e2);
     double l = length(c);
-    if (!(l > 0)) return; // without an area: never met
+    if (!(l > 0)) return;                                        // without an area: never met
     Vec3d n = c / l, u = cross(e2, n) / l, v = cross(n, e1) / l; // u.(p - a) is the weight of b, v.(p - a) that of c
     planes_.back() = {n, dot(n, a)};
-    auto put = [&](float to[3][kRoom], const Vec3d& x) { to[0][lane] = float(x.x), to[1][lane] = float(x.y), to[2][lane] = float(x.z); };
+    auto put = [&](float to[3][kRoom], const Vec3d& x) {
+        to[0][lane] = float(x.x), to[1][lane] = float(x.y), to[2][lane] = float(x.z);
+    };
     put(rows_.n, n);
     put(rows_.u, u);
     put(rows_.v, v);

@@ -1,5 +1,5 @@
-// Tiny scenes without a tree: all triangles are looked at, several at a time, in float; those that may be met are then met in double.
-// Up to some two dozen triangles that is faster than walking a hierarchy.
+// Tiny scenes without a tree: all triangles are looked at, several at a time, in float; those that may be met are then met in
+// double. Up to some two dozen triangles that is faster than walking a hierarchy.
 #pragma once
 #include "geometry/shape.h"
 #include <span>
@@ -13,7 +13,10 @@ class DirectTriangles {
 public:
     static constexpr size_t kMost = 24; ///< triangles; beyond them the tree is faster
 
-    struct Triangle { Vec3 a, b, c; uint32_t shape, prim; };
+    struct Triangle {
+        Vec3 a, b, c;
+        uint32_t shape, prim;
+    };
     void add(const Triangle&);
     size_t size() const { return size_; }
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
@@ -21,13 +24,15 @@ public:
     /// Below where the ray meets triangle i, in its lengths of dir; for those in `candidates`.
     static constexpr size_t kWidest = 16, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;
     using Near = float[kRoom];
-    /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are widened
-    /// by more than float arithmetic can be off.
+    /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are
+    /// widened by more than float arithmetic can be off.
     uint32_t candidates(const Ray& r, Near& near) const { return find_(*this, r, near); }
     /// What planeT() takes as `error` of a ray from org.
-    double planeError(const Vec3d& org) const { return 1e-13 * (double(extent_) + std::fabs(org.x) + std::fabs(org.y) + std::fabs(org.z)); }
-    /// The t at which the ray meets the plane of triangle i, in double, and more than it can be off; infinite or not a number in the
-    /// plane itself.
+    double planeError(const Vec3d& org) const {
+        return 1e-13 * (double(extent_) + std::fabs(org.x) + std::fabs(org.y) + std::fabs(org.z));
+    }
+    /// The t at which the ray meets the plane of triangle i, in double, and more than it can be off; infinite or not a number in
+    /// the plane itself.
     double planeT(size_t i, const Vec3d& org, const Vec3d& dir, double error, double& margin) const {
         double inverse = 1 / dot(planes_[i].n, dir), t = (planes_[i].d - dot(planes_[i].n, org)) * inverse;
         margin = std::fabs(inverse) * error + 1e-13 * std::fabs(t);
@@ -35,8 +40,11 @@ public:
     }
 
 private:
-    /// Plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes. By component, then triangle.
-    struct alignas(64) Rows { float n[3][kRoom], d[kRoom], u[3][kRoom], u0[kRoom], v[3][kRoom], v0[kRoom], slope[kRoom]; };
+    /// Plane n.p = d, and the two barycentric weights as linear functions of the point, with their slopes. By component, then
+    /// triangle.
+    struct alignas(64) Rows {
+        float n[3][kRoom], d[kRoom], u[3][kRoom], u0[kRoom], v[3][kRoom], v0[kRoom], slope[kRoom];
+    };
     Rows rows_{};
     /// The same by four, eight and sixteen lanes, where the processor has them. The bits of all that is computed agree.
     using Find = uint32_t (*)(const DirectTriangles&, const Ray&, Near&);
@@ -46,7 +54,10 @@ private:
     static uint32_t findSixteen(const DirectTriangles&, const Ray&, Near&);
     Find find_ = choose();
     static Find choose();
-    struct Plane { Vec3d n; double d; };
+    struct Plane {
+        Vec3d n;
+        double d;
+    };
     std::vector<Triangle> triangles_;
     size_t size_ = 0; ///< of triangles_
     std::vector<Plane> planes_;

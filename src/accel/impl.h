@@ -142,8 +142,10 @@ struct Accel::Impl {
     static double exactFrom(const Ray& r, uint32_t s, uint32_t prim) {
         const double near = r.tnear;
         if (r.passed < 0) return near;
-        if (s == r.excludeShape && prim == r.excludePrim) return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
-        return std::max(near, std::pair(s, prim) < std::pair(r.excludeShape, r.excludePrim) ? r.passed : std::nextafter(r.passed, 0.0));
+        if (s == r.excludeShape && prim == r.excludePrim)
+            return std::max(near, double(std::nextafter(float(r.passed), INFINITY)));
+        return std::max(near,
+                        std::pair(s, prim) < std::pair(r.excludeShape, r.excludePrim) ? r.passed : std::nextafter(r.passed, 0.0));
     }
     Shape::Wanted wantedOf(const Query& q, uint32_t s, const Shape& shape) const {
         return (shape.oneSided() && q.ray->sides != Sides::Both) || ofSolid(s) ? Shape::Wanted::All

@@ -25,7 +25,8 @@ void Accel::Impl::readyPlaced() {
 void Accel::Impl::readyTrimmed() {
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         const Shape* shape = shapes[s].get();
-        if (const geometry::Placed* p = shape->placed()) shape = p->deforming() ? p->deforming()->keys()[0].get() : p->geometry().get();
+        if (const geometry::Placed* p = shape->placed())
+            shape = p->deforming() ? p->deforming()->keys()[0].get() : p->geometry().get();
         if (!shape->trimmed()) continue;
         trimmed.resize(shapes.size());
         trimmed[s] = shape;
@@ -93,9 +94,8 @@ bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim, const Ve
     if (outside > kEdge && outside > edgeRoom(at.org, at.dir, a, b, c)) return false;
     const Vec3d corner[3] = {a, b, c};
     if (sameCrossing(q, at, t, corner)) return false;
-    return take(q, at.shape, prim, t, b1, b2, [&] {
-        return at.place->side() * double(at.geometry->shape->orientation()) * dot(cross(b - a, c - a), at.dir);
-    });
+    return take(q, at.shape, prim, t, b1, b2,
+                [&] { return at.place->side() * double(at.geometry->shape->orientation()) * dot(cross(b - a, c - a), at.dir); });
 }
 
 } // namespace alpenglow::accel

@@ -36,7 +36,8 @@ std::unique_ptr<Solids> Solids::of(const std::vector<geometry::ShapeRef>& shapes
         if (part == kNone) {
             part = uint32_t(all->parts_.size());
             all->parts_.emplace_back();
-            const auto whole = std::find_if(all->wholes_.begin(), all->wholes_.end(), [&](const Whole& w) { return w.root == root; });
+            const auto whole =
+                std::find_if(all->wholes_.begin(), all->wholes_.end(), [&](const Whole& w) { return w.root == root; });
             whole->parts.push_back(part);
             all->wholeOf_.push_back(uint32_t(whole - all->wholes_.begin()));
         }

@@ -1,8 +1,8 @@
 // Solids: which points of their parts' surfaces bound the whole. Not for other rooms.
 //
-// All parts of a solid that a ray goes through are known by where it crosses their surfaces; at a crossing the whole begins or ends where
-// the operations give another answer behind it than before it. Crossings as near to each other as single precision can tell are one, which
-// belongs to the first part, so that parts may share a face.
+// All parts of a solid that a ray goes through are known by where it crosses their surfaces; at a crossing the whole begins or
+// ends where the operations give another answer behind it than before it. Crossings as near to each other as single precision can
+// tell are one, which belongs to the first part, so that parts may share a face.
 #pragma once
 #include "accel/accel.h"
 #include <memory>

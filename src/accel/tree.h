@@ -1,4 +1,5 @@
-// A tree of boxes over all triangles and primitives of exact shapes of a scene, eight children a node, up to six triangles a leaf.
+// A tree of boxes over all triangles and primitives of exact shapes of a scene, eight children a node, up to six triangles a
+// leaf.
 //
 // What a ray meets does not depend on the tree: boxes and the float test of triangles only leave out what cannot be met (their
 // bounds hold whatever float arithmetic does), and what they let pass is met in double by the caller's rule. So the result is the
@@ -21,8 +22,8 @@ public:
     static constexpr int kWide = 8; ///< children of a node
     static constexpr int kLeafTriangles = 6, kLeafVertices = 8;
     static constexpr int kDeepest = 80; ///< nodes above each other
-    /// No triangle reaches farther along an axis: distances to boxes beyond, over the parts of a direction, have no floats, and then
-    /// every ray would have to look at every leaf.
+    /// No triangle reaches farther along an axis: distances to boxes beyond, over the parts of a direction, have no floats, and
+    /// then every ray would have to look at every leaf.
     static constexpr float kFarthest = 1e30f;
     static bool reaches(const Vec3& p) {
         return !(std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest);
@@ -51,12 +52,14 @@ public:
     };
     static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
 
-    /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves. keys, times: of the only shape, what it is
-    /// at several times from 0 to 1; its points go linearly between them.
-    void build(std::span<const geometry::ShapeRef>, std::span<const geometry::ShapeRef> keys = {}, std::span<const float> times = {});
+    /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves. keys, times: of the only shape,
+    /// what it is at several times from 0 to 1; its points go linearly between them.
+    void build(std::span<const geometry::ShapeRef>, std::span<const geometry::ShapeRef> keys = {},
+               std::span<const float> times = {});
 
     // ---- of a shape with keys
-    /// The nodes with their boxes at time 1; those of nodes() are then the ones at time 0, and boxes between lie between. Else null.
+    /// The nodes with their boxes at time 1; those of nodes() are then the ones at time 0, and boxes between lie between. Else
+    /// null.
     const Node* lastNodes() const { return last_.empty() ? nullptr : last_.data(); }
     struct Vertices {
         alignas(32) float p[3][kLeafVertices];
@@ -100,7 +103,7 @@ private:
     std::vector<Leaf> leaves_;
     std::vector<Mesh> meshes_;
     std::vector<uint32_t> first_; ///< by sixteen triangles: into meshes_
-    std::vector<Exact> exact_; ///< in the order of the leaves
+    std::vector<Exact> exact_;    ///< in the order of the leaves
     geometry::Bounds bounds_;
     std::vector<Node> last_;
     std::vector<Vertices> moved_;

@@ -371,7 +371,8 @@ struct Tree::Builder {
                 refs[tree.meshes_[k].first + t] = r;
                 if (!reaches(r)) return;
                 ++beyond;
-                for (uint32_t s = tree.meshes_[k].shape, known = beyondOf; s < known && !beyondOf.compare_exchange_weak(known, s);) {}
+                for (uint32_t s = tree.meshes_[k].shape, known = beyondOf;
+                     s < known && !beyondOf.compare_exchange_weak(known, s);) {}
             });
         });
         tree.exact_.reserve(exact.size());

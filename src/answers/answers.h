@@ -42,7 +42,7 @@ struct AnswerMemo {
     std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<Told>> ofShaders; ///< toldBy()
     std::map<std::tuple<int32_t, int, const scene::Attributes*, const SurfaceBinding*>, std::optional<Told>> attributes;
     std::unordered_map<int32_t, std::optional<Told>> options;
-    std::unordered_map<int32_t, bool> pointAttributes; ///< ofPoint() of a name
+    std::unordered_map<int32_t, bool> pointAttributes;                                ///< ofPoint() of a name
     std::unordered_map<const scene::Attributes*, std::pair<float, float>> shadowBias; ///< Attribute "shadow": bias0, bias1
 };
 
@@ -163,7 +163,10 @@ private:
     /// The turns of a loop over the lights of a binding that are of a category (interned).
     const std::vector<std::pair<int, int>>& turnsOf(const SurfaceBinding&, int32_t category);
     bool isOfCategory(int32_t category, int light);
-    struct TurnsOfList { scene::LightSet lights; std::vector<std::pair<int, int>> turns; };
+    struct TurnsOfList {
+        scene::LightSet lights;
+        std::vector<std::pair<int, int>> turns;
+    };
     std::unordered_map<uint64_t, TurnsOfList> turnsOf_; ///< by category and list of lights
     std::unordered_map<uint64_t, bool> ofCategory_;     ///< by category and light
     std::vector<int> sheetNumbers_;                     ///< by light: of its first sample; -1: it has no sheets
@@ -199,7 +202,7 @@ private:
     std::unordered_map<int32_t, const ptex::Texture*> ptex_; ///< by interned name
     clouds::Hemisphere hemisphere_;
     HalfSpaces halfSpaces_;
-    std::unordered_map<int32_t, texture::Handle> mapsByName_;                          ///< by interned name
+    std::unordered_map<int32_t, texture::Handle> mapsByName_; ///< by interned name
     std::unordered_map<int32_t, std::optional<texture::TextureInfo>> infosByName_;
 };
 
@@ -213,7 +216,7 @@ void answerTextureInfo(Answers&, const ServiceCall&);
 // indirectdiffuse() of a map and a direction.
 void answerIrradiance(Answers&, const ServiceCall&);
 void answerPhotons(Answers&, const ServiceCall&); // photons.cpp
-void answerSky(Answers&, const ServiceCall&); // sky.cpp
+void answerSky(Answers&, const ServiceCall&);     // sky.cpp
 // clouds.cpp: bake() and bake3d(); texture3d().
 void answerBake(Answers&, const ServiceCall&);
 void answerTexture3d(Answers&, const ServiceCall&);

@@ -1,7 +1,7 @@
 // Lights that a shader calls by their handles: getlight, getlights, islightcategory, handle->light(), handle->parameter.
-#include "base/category.h"
 #include "answers/answers.h"
 #include "answers/lightloop.h"
+#include "base/category.h"
 #include "world/lightobjects.h"
 #include <bit>
 #include <charconv>

@@ -131,8 +131,13 @@ void Answers::checkCategory(KernelRun& c, const rsl::ir::Site& site, int32_t cat
     const auto& files = c.bound->kernel->files();
     SourcePlace place{site.place.file < int(files.size()) ? files[size_t(site.place.file)] : "", site.place.line,
                       site.place.column};
-    diagnostics_.reportOnce("category:" + expression, {Severity::Warning, Rie::Syntax, place,
-                            "the category \"" + expression + "\" cannot be read: " + error + "; all lights are taken", {}, {}});
+    diagnostics_.reportOnce("category:" + expression,
+                            {Severity::Warning,
+                             Rie::Syntax,
+                             place,
+                             "the category \"" + expression + "\" cannot be read: " + error + "; all lights are taken",
+                             {},
+                             {}});
 }
 
 uint64_t Answers::lightFetch(KernelRun& c, int index, int first, uint64_t mask, int lanes, float* out) {
@@ -176,7 +181,7 @@ private:
 } // namespace
 
 uint64_t Answers::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet& sheet, const BoundLight& light, int first,
-                               uint64_t mask, int lanes, float* out) {
+                                uint64_t mask, int lanes, float* out) {
     const size_t width = size_t(lanes), size = size_t(sheet.size), from = size_t(first);
     const size_t most = std::min(width, size - std::min(size, from));
     if (const size_t values = size_t(light.valueWidth)) {

@@ -22,45 +22,45 @@ struct LightCall {
     const BoundKernel* kernel = nullptr;                 ///< for the strings that it has sent; of a LightGroup, its own
     std::span<const BoundLight* const> of; ///< by query, lights of one LightGroup, equal ones side by side; empty: all are of one
     const LitSurface* lit = nullptr;
-    const std::vector<char>* inMedium = nullptr;         ///< by query: a medium lies before the emitter, and not its atmosphere
-    std::vector<float>* values = nullptr;                ///< gets BoundLight::values: valueWidth numbers a query
+    const std::vector<char>* inMedium = nullptr; ///< by query: a medium lies before the emitter, and not its atmosphere
+    std::vector<float>* values = nullptr;        ///< gets BoundLight::values: valueWidth numbers a query
 };
 
 /// What the setup before a loop gave.
 struct LightSetup {
-    int setup = -1;                               ///< its call site; -1: none
-    std::vector<float> given;                     ///< its arguments
-    std::vector<uint64_t> givenHash;              ///< by lane, over what lights can see of them
+    int setup = -1;                  ///< its call site; -1: none
+    std::vector<float> given;        ///< its arguments
+    std::vector<uint64_t> givenHash; ///< by lane, over what lights can see of them
 };
 
 /// One loop that runs, and its turn.
 struct LightTurns : LightSetup {
-    std::vector<std::pair<int, int>> lights;      ///< (light, sample) by turn
-    std::vector<float> rows;                      ///< P, axis, angle: seven rows
-    bool refresh = false;                         ///< "lightcache" "refresh"
+    std::vector<std::pair<int, int>> lights; ///< (light, sample) by turn
+    std::vector<float> rows;                 ///< P, axis, angle: seven rows
+    bool refresh = false;                    ///< "lightcache" "refresh"
     // The turn that runs now.
-    int light = -1;                               ///< -1: no loop runs
-    std::vector<float> values;                    ///< by lane, the light's BoundLight::values
-    std::vector<float> distance;                  ///< by lane: KernelRun::lightDistance
+    int light = -1;              ///< -1: no loop runs
+    std::vector<float> values;   ///< by lane, the light's BoundLight::values
+    std::vector<float> distance; ///< by lane: KernelRun::lightDistance
 };
 
 /// State of the loops of one strip: of the innermost that runs. A strip that waits for rays in the middle of its loop keeps it
 /// while others run theirs.
 struct LightLoop : LightTurns {
-    int first = -1;                               ///< the strip's first point; -1: unused
-    int depth = 0;                                ///< how many loops run, one in the block of the other
-    std::deque<LightTurns> around;                ///< of those the outer ones, outermost first; behind them is memory for others
-    LightSetup next;                              ///< of the loop that begins next
+    int first = -1;                ///< the strip's first point; -1: unused
+    int depth = 0;                 ///< how many loops run, one in the block of the other
+    std::deque<LightTurns> around; ///< of those the outer ones, outermost first; behind them is memory for others
+    LightSetup next;               ///< of the loop that begins next
 
     /// Results of one light sample for the points of the strip.
     struct Kept {
-        uint64_t have = 0, lit = 0, ran = 0;      ///< ran: of a light with many samples, where some may be lit
-        std::vector<float> key;                   ///< the seven rows
+        uint64_t have = 0, lit = 0, ran = 0; ///< ran: of a light with many samples, where some may be lit
+        std::vector<float> key;              ///< the seven rows
         std::vector<uint64_t> hash;
-        std::vector<float> out, values;           ///< L, Cl, Ol: nine rows; values by lane
+        std::vector<float> out, values; ///< L, Cl, Ol: nine rows; values by lane
         std::vector<float> distance;
     };
-    std::unordered_map<uint64_t, Kept> kept;      ///< by keptName()
+    std::unordered_map<uint64_t, Kept> kept; ///< by keptName()
 
     void reset(int strip) {
         first = strip;
@@ -74,11 +74,11 @@ struct LightLoop : LightTurns {
 /// One sample of a light for all points of a batch: what loops find whose P is that of the surface, and that send nothing.
 struct LightSheet {
     bool made = false, refused = false;
-    int size = 0;                                 ///< points
-    std::vector<float> out;                       ///< L, Cl, Ol: nine rows of `size`
-    std::vector<float> distance;                  ///< by point: KernelRun::lightDistance
-    std::vector<float> values;                    ///< by point: BoundLight::values
-    std::vector<char> lit;                        ///< by point
+    int size = 0;                ///< points
+    std::vector<float> out;      ///< L, Cl, Ol: nine rows of `size`
+    std::vector<float> distance; ///< by point: KernelRun::lightDistance
+    std::vector<float> values;   ///< by point: BoundLight::values
+    std::vector<char> lit;       ///< by point
 };
 
 /// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the

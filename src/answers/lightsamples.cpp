@@ -1,9 +1,9 @@
 // Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in
 // between.
-#include "base/exact.h"
-#include "world/emitterfootprint.h"
 #include "answers/answers.h"
+#include "base/exact.h"
 #include "lobes/sampling.h"
+#include "world/emitterfootprint.h"
 #include "world/outputs.h"
 #include "world/skytable.h"
 #include <bit>
@@ -41,7 +41,7 @@ LitSurface Answers::litSurface(KernelRun& c, const LightLoop& loop, const std::v
 }
 
 void Answers::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int first, int lanes, std::vector<ShadePoint>& q,
-                             const std::vector<int>& laneOf, std::vector<LightValue>& out, std::vector<float>& values) {
+                              const std::vector<int>& laneOf, std::vector<LightValue>& out, std::vector<float>& values) {
     const BoundLight& light = world_->lights_[size_t(li)];
     out.assign(q.size(), {});
     values.assign(q.size() * size_t(light.valueWidth), 0);
@@ -59,7 +59,10 @@ void Answers::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int f
     const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
     if (!s.sentKey.empty())
         if (auto v = light.variants.find(s.sentKey); v != light.variants.end()) call.kernel = &v->second;
-    struct Sent { std::string parameter; int row, size, at; }; ///< at: where its numbers begin, of an array's element
+    struct Sent {
+        std::string parameter;
+        int row, size, at;
+    }; ///< at: where its numbers begin, of an array's element
     std::vector<Sent> sent;
     for (const SiteInfo::Sent& v : s.sent) {
         const auto have = light.instance->parameters.numbers.find(v.parameter);
@@ -155,7 +158,7 @@ void Answers::chooseSent(const BoundLight& light, float u, const float* values, 
 }
 
 bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn,
-                        int turns, uint32_t nth, ShadePoint& p, float* factor) const {
+                         int turns, uint32_t nth, ShadePoint& p, float* factor) const {
     const BoundLight& light = world_->lights_[size_t(li)];
     const ShadePoint& of = c.points[size_t(point)];
     p = of;

@@ -186,11 +186,14 @@ static texture::ShadowOptions shadowOptions(const TextureSite& t, const ServiceC
 /// A picture does not say from where it was seen.
 static void noteNoShadowMap(texture::Handle map, const ServiceCall& call) {
     if (!map || !map->tiles.empty() || (map->worldToCamera && map->worldToNDC)) return;
-    call.diagnostics.reportOnce("noshadowmap:" + map->path,
-                                {Severity::Warning, Rie::BadFile, call.place(),
-                                 "shadow(): \"" + map->path +
-                                     "\" is no shadow map: it has no matrices of a camera, and gives no shadow",
-                                 "Display of type \"zfile\" or \"deepshad\", or MakeShadow of the former, makes one", {}});
+    call.diagnostics.reportOnce(
+        "noshadowmap:" + map->path,
+        {Severity::Warning,
+         Rie::BadFile,
+         call.place(),
+         "shadow(): \"" + map->path + "\" is no shadow map: it has no matrices of a camera, and gives no shadow",
+         "Display of type \"zfile\" or \"deepshad\", or MakeShadow of the former, makes one",
+         {}});
 }
 
 void answerShadow(Answers& answers, const ServiceCall& call) {
@@ -199,9 +202,12 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     if (call.c.light && world.settings_.hider == Hider::Path) { // what rays tell exactly
         if (t.computed || !t.name.empty())
-            call.diagnostics.reportOnce("shadowmaps", {Severity::Info, Rie::NoError, call.place(),
+            call.diagnostics.reportOnce("shadowmaps", {Severity::Info,
+                                                       Rie::NoError,
+                                                       call.place(),
                                                        "shadow maps of light shaders are not read under the hider path",
-                                                       "lights trace their shadows there", {}});
+                                                       "lights trace their shadows there",
+                                                       {}});
         return call.each([&](int lane, const ShadePoint&) {
             for (int k = 0; k < t.count; ++k) call.put(k, lane, 0);
         });

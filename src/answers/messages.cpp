@@ -50,12 +50,18 @@ const InstanceRef& shaderOf(const SurfaceBinding& b, Asks who, const ShadePoint&
     // A ray that sees the back comes from inside. A light asks about the surface that it lights.
     const bool back = p.lit ? dot(p.lit->n, p.viewI) > 0 : dot(p.surface.n, p.I) > 0;
     switch (who) {
-    case Asks::Surface: return b.surface;
-    case Asks::Displacement: return b.displacement;
-    case Asks::Atmosphere: return b.atmosphere.shader;
-    case Asks::Incident: return back ? b.interior : b.exterior;
-    case Asks::Opposite: return back ? b.exterior : b.interior;
-    default: return none;
+    case Asks::Surface:
+        return b.surface;
+    case Asks::Displacement:
+        return b.displacement;
+    case Asks::Atmosphere:
+        return b.atmosphere.shader;
+    case Asks::Incident:
+        return back ? b.interior : b.exterior;
+    case Asks::Opposite:
+        return back ? b.exterior : b.interior;
+    default:
+        return none;
     }
 }
 
@@ -128,8 +134,7 @@ const LightParameter& lightParameter(Answers& answers, int32_t id, int light) {
         const bool element = written && made->told->elements > 0 && v.name.element >= 0;
         if (written && (v.name.element < 0 || element)) {
             const size_t size = made->told->numbers.size() / size_t(std::max(1, made->told->elements));
-            made->written.push_back(
-                {offset, v.components, element ? size * size_t(v.name.element) : 0});
+            made->written.push_back({offset, v.components, element ? size * size_t(v.name.element) : 0});
         }
         offset += v.components;
     }

@@ -1,6 +1,6 @@
 // What the renderer answers at once: messages, the state of rays and attributes; textures in maps.cpp.
-#include "rsl/services_basic.h"
 #include "answers/answers.h"
+#include "rsl/services_basic.h"
 
 namespace alpenglow::transport {
 
@@ -8,35 +8,61 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
     const ServiceCall call(c, diagnostics_, site, first, mask, lanes, in, out);
     switch (call.s.kind) {
     case SiteKind::Texture:
-    case SiteKind::Environment: return answerTexture(*this, call);
-    case SiteKind::Shadow: return answerShadow(*this, call);
-    case SiteKind::TextureInfo: return answerTextureInfo(*this, call);
-    case SiteKind::Photons: return answerPhotons(*this, call);
-    case SiteKind::SkySamples: return answerSky(*this, call);
+    case SiteKind::Environment:
+        return answerTexture(*this, call);
+    case SiteKind::Shadow:
+        return answerShadow(*this, call);
+    case SiteKind::TextureInfo:
+        return answerTextureInfo(*this, call);
+    case SiteKind::Photons:
+        return answerPhotons(*this, call);
+    case SiteKind::SkySamples:
+        return answerSky(*this, call);
     case SiteKind::Bake:
-    case SiteKind::Bake3d: return answerBake(*this, call);
-    case SiteKind::Texture3d: return answerTexture3d(*this, call);
-    case SiteKind::PointHemisphere: return answerPointHemisphere(*this, call);
-    case SiteKind::PointSubsurface: return answerPointSubsurface(*this, call);
-    case SiteKind::Ptexture: return answerPtexture(*this, call);
-    case SiteKind::Irradiance: return answerIrradiance(*this, call);
-    case SiteKind::GatherTurn: return answerGatherTurn(call);
-    case SiteKind::Ambient: return sumAmbient(call);
-    case SiteKind::LightSource: return answerLightSource(*this, call);
-    case SiteKind::LightSetup: return lightSetup(c, site, first, lanes, in);
-    case SiteKind::LightHandles: return lightHandles(call);
-    case SiteKind::Message: return answerMessage(*this, call);
-    case SiteKind::Attribute: return answerAttribute(*this, call);
-    case SiteKind::ShaderName: return answerShaderName(*this, call);
-    case SiteKind::PrimitiveVariable: return answerPrimitiveVariable(call);
-    case SiteKind::Option: return answerOption(*this, call);
+    case SiteKind::Bake3d:
+        return answerBake(*this, call);
+    case SiteKind::Texture3d:
+        return answerTexture3d(*this, call);
+    case SiteKind::PointHemisphere:
+        return answerPointHemisphere(*this, call);
+    case SiteKind::PointSubsurface:
+        return answerPointSubsurface(*this, call);
+    case SiteKind::Ptexture:
+        return answerPtexture(*this, call);
+    case SiteKind::Irradiance:
+        return answerIrradiance(*this, call);
+    case SiteKind::GatherTurn:
+        return answerGatherTurn(call);
+    case SiteKind::Ambient:
+        return sumAmbient(call);
+    case SiteKind::LightSource:
+        return answerLightSource(*this, call);
+    case SiteKind::LightSetup:
+        return lightSetup(c, site, first, lanes, in);
+    case SiteKind::LightHandles:
+        return lightHandles(call);
+    case SiteKind::Message:
+        return answerMessage(*this, call);
+    case SiteKind::Attribute:
+        return answerAttribute(*this, call);
+    case SiteKind::ShaderName:
+        return answerShaderName(*this, call);
+    case SiteKind::PrimitiveVariable:
+        return answerPrimitiveVariable(call);
+    case SiteKind::Option:
+        return answerOption(*this, call);
     case SiteKind::RendererInfo:
     case SiteKind::RayInfo:
-    case SiteKind::RayLevel: return answerRay(call);
-    case SiteKind::Depth: return answerDepth(call);
-    case SiteKind::Transform: return transformBetween(call);
-    case SiteKind::Random: return drawRandom(call);
-    default: break;
+    case SiteKind::RayLevel:
+        return answerRay(call);
+    case SiteKind::Depth:
+        return answerDepth(call);
+    case SiteKind::Transform:
+        return transformBetween(call);
+    case SiteKind::Random:
+        return drawRandom(call);
+    default:
+        break;
     }
     rsl::basicService(
         call.d, mask, lanes, in, out, diagnostics_, [&](int lane, const std::string& text) { print(call, lane, text); },
@@ -132,7 +158,9 @@ void Answers::transformBetween(const ServiceCall& call) {
         }
         const Matrix m = spaceAt(*world_, space[0], space[1], p, call.binding(*world_, lane));
         float in[32], out[16];
-        const auto flatten = [&](float* to) { for (int k = 0; k < 16; ++k) to[k] = float(m.m[k / 4][k % 4]); };
+        const auto flatten = [&](float* to) {
+            for (int k = 0; k < 16; ++k) to[k] = float(m.m[k / 4][k % 4]);
+        };
         for (int k = 0; k < n; ++k) in[n == 16 ? k : 16 + k] = call.at(row + k, lane);
         flatten(n == 16 ? in + 16 : in);
         rsl::evaluateRuntime(symbol, in, n == 16 ? 32 : 19, out, n);

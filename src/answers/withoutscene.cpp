@@ -45,9 +45,8 @@ bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t fi
     if (site < 0) return false;
     const std::string& op = k.sites()[size_t(site)].op;
     bool asks = false;
-    for (const char* name :
-         {"texture", "environment", "shadow", "texture3d", "textureinfo", "rayinfo", "rendererinfo", "raylevel", "isindirectray",
-          "isshadowray", "__skysample", "__skydensity"})
+    for (const char* name : {"texture", "environment", "shadow", "texture3d", "textureinfo", "rayinfo", "rendererinfo",
+                             "raylevel", "isindirectray", "isshadowray", "__skysample", "__skydensity"})
         asks |= op == name;
     if (!asks) return false;
     State& s = *state_;

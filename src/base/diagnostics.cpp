@@ -29,7 +29,7 @@ std::string excerpt(const Diagnostic& d) {
     std::string shown, below;
     for (size_t i = begin; i < end;) { // below: one place for one character, more for one that is shown by its bytes
         const size_t from = shown.size(), n = appendPrintable(line, i, shown);
-        const bool caret = i <= at && at < i + n, under = i > at && i < at + size_t(std::max(d.length, 0));
+        const bool caret = i <= at && at<i + n, under = i> at && i < at + size_t(std::max(d.length, 0));
         const bool bytes = shown[from] == '\\' && line[i] != '\\';
         below += caret ? '^' : under ? '~' : i < at && line[i] == '\t' ? '\t' : ' ';
         if (bytes) below.append(shown.size() - from - 1, caret || under ? '~' : ' ');
@@ -86,10 +86,22 @@ void Diagnostics::reportOnce(const std::string& key, Diagnostic d) {
     report(std::move(d));
 }
 
-int Diagnostics::errors() const { std::lock_guard lock(mutex_); return errors_; }
-int Diagnostics::warnings() const { std::lock_guard lock(mutex_); return warnings_; }
-std::vector<Diagnostic> Diagnostics::all() const { std::lock_guard lock(mutex_); return all_; }
-void Diagnostics::setHandler(Handler h) { std::lock_guard lock(mutex_); handler_ = std::move(h); }
+int Diagnostics::errors() const {
+    std::lock_guard lock(mutex_);
+    return errors_;
+}
+int Diagnostics::warnings() const {
+    std::lock_guard lock(mutex_);
+    return warnings_;
+}
+std::vector<Diagnostic> Diagnostics::all() const {
+    std::lock_guard lock(mutex_);
+    return all_;
+}
+void Diagnostics::setHandler(Handler h) {
+    std::lock_guard lock(mutex_);
+    handler_ = std::move(h);
+}
 
 std::string nearestName(std::string_view word, const std::vector<std::string>& candidates) {
     std::string best;
@@ -108,7 +120,10 @@ std::string nearestName(std::string_view word, const std::vector<std::string>& c
                 diagonal = up;
             }
         }
-        if (row.back() < bestCost) { bestCost = row.back(); best = c; }
+        if (row.back() < bestCost) {
+            bestCost = row.back();
+            best = c;
+        }
     }
     return best;
 }

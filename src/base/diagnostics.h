@@ -15,10 +15,33 @@ enum class Severity { Info = 0, Warning = 1, Error = 2, Severe = 3 }; ///< RIE_I
 
 /// RIE error codes, ri.md section 12.
 enum class Rie : int {
-    NoError = 0, NoMem = 1, System = 2, NoFile = 3, BadFile = 4, Version = 5, DiskFull = 6, Incapable = 11, Unimplement = 12,
-    Limit = 13, Bug = 14, NotStarted = 23, Nesting = 24, NotOptions = 25, NotAttribs = 26, NotPrims = 27, IllState = 28,
-    BadMotion = 29, BadSolid = 30, BadToken = 41, Range = 42, Consistency = 43, BadHandle = 44, NoShader = 45,
-    MissingData = 46, Syntax = 47, Math = 61
+    NoError = 0,
+    NoMem = 1,
+    System = 2,
+    NoFile = 3,
+    BadFile = 4,
+    Version = 5,
+    DiskFull = 6,
+    Incapable = 11,
+    Unimplement = 12,
+    Limit = 13,
+    Bug = 14,
+    NotStarted = 23,
+    Nesting = 24,
+    NotOptions = 25,
+    NotAttribs = 26,
+    NotPrims = 27,
+    IllState = 28,
+    BadMotion = 29,
+    BadSolid = 30,
+    BadToken = 41,
+    Range = 42,
+    Consistency = 43,
+    BadHandle = 44,
+    NoShader = 45,
+    MissingData = 46,
+    Syntax = 47,
+    Math = 61
 };
 
 /// A place in a text; line and column count from 1, 0 = unknown. Columns count bytes.
@@ -39,10 +62,10 @@ struct Diagnostic {
     Rie code = Rie::NoError;
     SourcePlace place;
     std::string message;
-    std::string hint;       ///< "did you mean ...", or empty
-    std::string sourceLine; ///< the offending line, for the caret; or empty
-    std::string id{};       ///< stable name of this kind of message ("no-matching-call"), whatever its words; or empty
-    int length = 0;         ///< bytes of the line, from the column on, that the message is about; 0 = unknown
+    std::string hint;                 ///< "did you mean ...", or empty
+    std::string sourceLine;           ///< the offending line, for the caret; or empty
+    std::string id{};                 ///< stable name of this kind of message ("no-matching-call"), whatever its words; or empty
+    int length = 0;                   ///< bytes of the line, from the column on, that the message is about; 0 = unknown
     std::vector<std::string> notes{}; ///< candidates and why they were rejected, one a line
     std::vector<FixIt> fixes{};
     bool always = false; ///< a note that users see without asking for notes (-v)
@@ -62,7 +85,7 @@ public:
     void report(Severity s, Rie code, SourcePlace place, std::string message, std::string hint = {});
     /// Reports only the first time this key is seen ("unknown things are reported once each").
     void reportOnce(const std::string& key, Diagnostic d);
-    int errors() const;   ///< Error and Severe
+    int errors() const; ///< Error and Severe
     int warnings() const;
     std::vector<Diagnostic> all() const;
     void setHandler(Handler h);

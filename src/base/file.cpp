@@ -72,12 +72,24 @@ bool hidden(const std::string& s) {
 bool replaceable(const fs::path& p) {
     using namespace std::string_view_literals;
     constexpr std::string_view kKnown[] = {
-        "II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv,    // TIFF, BigTIFF
-        "\x76\x2f\x31\x01"sv, "\x89PNG"sv, "\xff\xd8\xff"sv, "#?"sv, // OpenEXR, PNG, JPEG, Radiance
-        "\x2f\x08\x67\xab"sv, "\xab\x67\x08\x2f"sv,   // zfile
-        "\xfa\xce"sv, "\xce\xfa"sv,                     // Pixar's maps
-        "ALPGPART"sv, "ALPGPHOT"sv,
-        "ALPGCLOU"sv, "ALPGBRIC"sv, "# bake 1"sv, "ALPGBAKE"sv, 
+        "II*\0"sv,
+        "MM\0*"sv,
+        "II+\0"sv,
+        "MM\0+"sv, // TIFF, BigTIFF
+        "\x76\x2f\x31\x01"sv,
+        "\x89PNG"sv,
+        "\xff\xd8\xff"sv,
+        "#?"sv, // OpenEXR, PNG, JPEG, Radiance
+        "\x2f\x08\x67\xab"sv,
+        "\xab\x67\x08\x2f"sv, // zfile
+        "\xfa\xce"sv,
+        "\xce\xfa"sv, // Pixar's maps
+        "ALPGPART"sv,
+        "ALPGPHOT"sv,
+        "ALPGCLOU"sv,
+        "ALPGBRIC"sv,
+        "# bake 1"sv,
+        "ALPGBAKE"sv,
         "ply\nformat binary_little_endian 1.0\ncomment point cloud of Alpenglow\n"sv}; // what shaders bake
     if (!isRegular(p)) return true; // nothing, or what open() has a message for
     int fd = ::open(p.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

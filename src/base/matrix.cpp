@@ -27,7 +27,10 @@ namespace {
 double invert(const Matrix& a, Matrix& out) {
     double w[4][8];
     for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) { w[i][j] = a.m[i][j]; w[i][j + 4] = i == j; }
+        for (int j = 0; j < 4; ++j) {
+            w[i][j] = a.m[i][j];
+            w[i][j + 4] = i == j;
+        }
     double det = 1;
     for (int c = 0; c < 4; ++c) {
         int p = c;
@@ -75,13 +78,17 @@ double determinant3(const Matrix& a) {
 
 Matrix translateMatrix(double x, double y, double z) {
     Matrix r;
-    r.m[3][0] = x; r.m[3][1] = y; r.m[3][2] = z;
+    r.m[3][0] = x;
+    r.m[3][1] = y;
+    r.m[3][2] = z;
     return r;
 }
 
 Matrix scaleMatrix(double x, double y, double z) {
     Matrix r;
-    r.m[0][0] = x; r.m[1][1] = y; r.m[2][2] = z;
+    r.m[0][0] = x;
+    r.m[1][1] = y;
+    r.m[2][2] = z;
     return r;
 }
 
@@ -117,7 +124,10 @@ Matrix skewMatrix(double degrees, Vec3d d1, Vec3d d2) {
 Matrix perspectiveMatrix(double fovDegrees) {
     double t = exact::tan(fovDegrees * kPi / 360);
     Matrix r;
-    r.m[2][2] = t; r.m[2][3] = t; r.m[3][2] = -t; r.m[3][3] = 0;
+    r.m[2][2] = t;
+    r.m[2][3] = t;
+    r.m[3][2] = -t;
+    r.m[3][3] = 0;
     return r;
 }
 

@@ -1,5 +1,5 @@
-// What base/numberlanes.h asks its code in lanes. No standard header beyond <cstdint>: what compiles for newer processors must not leave a
-// copy of a library's inline function behind for others.
+// What base/numberlanes.h asks its code in lanes. No standard header beyond <cstdint>: what compiles for newer processors must
+// not leave a copy of a library's inline function behind for others.
 #pragma once
 #include <cstdint>
 

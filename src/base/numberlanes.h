@@ -1,5 +1,5 @@
-// The numbers of many samples at a time: what SampleNumbers gives one by one, with the same bits, from one call over lanes. Compiled at 4,
-// 8 and 16 lanes and chosen once by the processor.
+// The numbers of many samples at a time: what SampleNumbers gives one by one, with the same bits, from one call over lanes.
+// Compiled at 4, 8 and 16 lanes and chosen once by the processor.
 #pragma once
 #include "base/numberblock.h"
 #include "base/sampler.h"
@@ -7,11 +7,14 @@
 
 namespace alpenglow::render {
 
-/// Requests for numbers. First all are asked for, then draw() makes them, then they are read; clear() begins anew in the same memory.
+/// Requests for numbers. First all are asked for, then draw() makes them, then they are read; clear() begins anew in the same
+/// memory.
 class NumberRows {
 public:
     /// Asks for what s.get2(vertex, site, occurrence) gives: pair(i) for the i-th request since clear().
-    void askPair(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) { ask(s, vertex, site << 1, occurrence); }
+    void askPair(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) {
+        ask(s, vertex, site << 1, occurrence);
+    }
     /// Asks for what s.get1(vertex, site, occurrence) gives: one(i).
     void askOne(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) {
         ask(s, vertex, site << 1 | SampleNumbers::kSingle, occurrence);

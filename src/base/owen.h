@@ -31,8 +31,8 @@ template <class U> constexpr U owenReversed(U v, U seed, U factor) {
     return v ^ v * U(0x53a22864u);
 }
 
-/// A reversed value whose first five digits are flipped by coins of their own: the 1, 2, 4, 8 and 16 nodes of these digits have a bit
-/// of `coins` each (bit 31 is not used). So the first 32 points of a sequence are scrambled exactly.
+/// A reversed value whose first five digits are flipped by coins of their own: the 1, 2, 4, 8 and 16 nodes of these digits have a
+/// bit of `coins` each (bit 31 is not used). So the first 32 points of a sequence are scrambled exactly.
 template <class U> constexpr U coinsReversed(U v, U coins) {
     const U one(1u);
     return v ^ (coins & one) ^ (((coins >> 1) >> (v & U(1u)) & one) << 1) ^ (((coins >> 3) >> (v & U(3u)) & one) << 2) ^
@@ -45,8 +45,8 @@ template <class U> constexpr U scrambleReversed(U v, U coins, U seed, U factor) 
 }
 
 /// Point i of the second Sobol dimension, reversed; of the first it is i itself. Digit j is the sum over the digits k of i of the
-/// binomial coefficient (k over j) mod 2, which is 1 where the bits of j are among those of k (Lucas): a sum over supersets, which
-/// takes one step for each of the five bits of a digit's number.
+/// binomial coefficient (k over j) mod 2, which is 1 where the bits of j are among those of k (Lucas): a sum over supersets,
+/// which takes one step for each of the five bits of a digit's number.
 template <class U> constexpr U sobol1Reversed(U i) {
     i = i ^ ((i >> 16) & U(0x0000ffffu));
     i = i ^ ((i >> 8) & U(0x00ff00ffu));
@@ -55,7 +55,9 @@ template <class U> constexpr U sobol1Reversed(U i) {
     return i ^ ((i >> 1) & U(0x55555555u));
 }
 
-template <class U> struct Words4 { U x, y, z, w; };
+template <class U> struct Words4 {
+    U x, y, z, w;
+};
 
 template <class U> constexpr Words4<U> roundOfWords(Words4<U> v) {
     v.x = v.x + v.y * v.w;
@@ -70,17 +72,17 @@ template <class U> constexpr Words4<U> moreWords(const Words4<U>& v) {
     return roundOfWords<U>({v.x ^ (v.x >> 16), v.y ^ (v.y >> 16), v.z ^ (v.z >> 16), v.w ^ (v.w >> 16)});
 }
 
-/// A one-to-one map of 128 bits each of whose output bits depends on all inputs: pcg4d of Jarzynski and Olano, "Hash Functions for
-/// GPU Rendering" (2020), with one round more. A round carries a bit upward only and the shift behind it 16 places down: after two
-/// rounds the lowest bits do not know the highest of the inputs.
+/// A one-to-one map of 128 bits each of whose output bits depends on all inputs: pcg4d of Jarzynski and Olano, "Hash Functions
+/// for GPU Rendering" (2020), with one round more. A round carries a bit upward only and the shift behind it 16 places down:
+/// after two rounds the lowest bits do not know the highest of the inputs.
 template <class U> constexpr Words4<U> mixWords(Words4<U> v) {
     const U a(1664525u), c(1013904223u);
     v = roundOfWords<U>({v.x * a + c, v.y * a + c, v.z * a + c, v.w * a + c});
     return moreWords<U>(moreWords<U>(v));
 }
 
-/// The words that scramble one stream: key of pixel and replica (two random words), vertex, site, occurrence. For one key distinct
-/// (vertex, site, occurrence) give distinct inputs to mixWords(), so distinct words.
+/// The words that scramble one stream: key of pixel and replica (two random words), vertex, site, occurrence. For one key
+/// distinct (vertex, site, occurrence) give distinct inputs to mixWords(), so distinct words.
 template <class U> constexpr Words4<U> streamWords(U low, U high, U vertex, U site, U occurrence) {
     return mixWords<U>({low + occurrence * U(0x9e3779b9u), high ^ (occurrence * U(0x85ebca6bu)), vertex, site});
 }

@@ -215,15 +215,24 @@ private:
             ++at_;
             return p;
         }
-        case '^': return single({Op::Begin});
-        case '$': return single({Op::End});
-        case '.': return oneOf(bytesThat([](unsigned char) { return true; }));
-        case '[': return set();
-        case '*': case '+': case '?': case '{':
+        case '^':
+            return single({Op::Begin});
+        case '$':
+            return single({Op::End});
+        case '.':
+            return oneOf(bytesThat([](unsigned char) { return true; }));
+        case '[':
+            return set();
+        case '*':
+        case '+':
+        case '?':
+        case '{':
             fail("there is nothing before a sign of repetition");
             return {0, 0};
-        case '\\': return escaped();
-        default: break;
+        case '\\':
+            return escaped();
+        default:
+            break;
         }
         Bytes b;
         b[static_cast<unsigned char>(c)] = true;
@@ -238,14 +247,25 @@ private:
         const auto c = static_cast<unsigned char>(text_[at_++]);
         if (c >= '1' && c <= '9') fail("back-references such as \\1 are not understood");
         switch (c) {
-        case 'b': case 'B': case '<': case '>': return single({Op::Edge, 0, 0, c});
-        case '`': return single({Op::Begin});
-        case '\'': return single({Op::End});
-        case 'w': return oneOf(bytesThat(isWordByte));
-        case 'W': return oneOf(bytesThat([](unsigned char x) { return !isWordByte(x); }));
-        case 's': return oneOf(bytesThat([](unsigned char x) { return std::isspace(x) != 0; }));
-        case 'S': return oneOf(bytesThat([](unsigned char x) { return std::isspace(x) == 0; }));
-        default: break;
+        case 'b':
+        case 'B':
+        case '<':
+        case '>':
+            return single({Op::Edge, 0, 0, c});
+        case '`':
+            return single({Op::Begin});
+        case '\'':
+            return single({Op::End});
+        case 'w':
+            return oneOf(bytesThat(isWordByte));
+        case 'W':
+            return oneOf(bytesThat([](unsigned char x) { return !isWordByte(x); }));
+        case 's':
+            return oneOf(bytesThat([](unsigned char x) { return std::isspace(x) != 0; }));
+        case 'S':
+            return oneOf(bytesThat([](unsigned char x) { return std::isspace(x) == 0; }));
+        default:
+            break;
         }
         Bytes b;
         b[c] = true;
@@ -335,8 +355,12 @@ bool Pattern::occurs(std::string_view text) const {
             seen[s] = round;
             const State& x = states_[s];
             switch (x.op) {
-            case Op::Byte: set.push_back(s); break;
-            case Op::Found: found = true; break;
+            case Op::Byte:
+                set.push_back(s);
+                break;
+            case Op::Found:
+                found = true;
+                break;
             case Op::Split:
                 open.push_back(x.next);
                 if (x.other != x.next) open.push_back(x.other);

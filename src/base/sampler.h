@@ -12,9 +12,9 @@
 // which the spread of dependent samples does not (testing.md rule 7). Two is the least that tells it, and leaves the most
 // stratification: noise.h pools what two say too vaguely in one pixel.
 #pragma once
-#include "base/vec.h"
 #include "base/hash.h"
 #include "base/owen.h"
+#include "base/vec.h"
 
 namespace alpenglow::render {
 
@@ -35,7 +35,8 @@ public:
     /// Raster coordinates may be negative (filter borders); |x|, |y| < 2^29. Distinct pixels have distinct keys.
     Sampler(uint64_t seed, int x, int y) : Sampler(SeedKey(seed), x, y) {}
     Sampler(SeedKey seed, int x, int y)
-        : seed_(seed.key), pixel_(uint64_t(uint32_t(x + (1 << 29)) & 0x3fffffffu) << 34 | uint64_t(uint32_t(y + (1 << 29)) & 0x3fffffffu) << 4) {}
+        : seed_(seed.key),
+          pixel_(uint64_t(uint32_t(x + (1 << 29)) & 0x3fffffffu) << 34 | uint64_t(uint32_t(y + (1 << 29)) & 0x3fffffffu) << 4) {}
 
     /// Two numbers in [0,1). vertex: path vertex, 0 = camera; site: call site, below 2^31; occurrence: how often that site has
     /// asked already at this vertex. sampleIndex counts the samples of the pixel from 0.

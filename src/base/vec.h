@@ -14,11 +14,36 @@ template <class T> struct Vec3T {
     constexpr T& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
     constexpr T operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
     constexpr Vec3T operator-() const { return {-x, -y, -z}; }
-    constexpr Vec3T& operator+=(const Vec3T& o) { x += o.x; y += o.y; z += o.z; return *this; }
-    constexpr Vec3T& operator-=(const Vec3T& o) { x -= o.x; y -= o.y; z -= o.z; return *this; }
-    constexpr Vec3T& operator*=(const Vec3T& o) { x *= o.x; y *= o.y; z *= o.z; return *this; }
-    constexpr Vec3T& operator*=(T s) { x *= s; y *= s; z *= s; return *this; }
-    constexpr Vec3T& operator/=(T s) { x /= s; y /= s; z /= s; return *this; }
+    constexpr Vec3T& operator+=(const Vec3T& o) {
+        x += o.x;
+        y += o.y;
+        z += o.z;
+        return *this;
+    }
+    constexpr Vec3T& operator-=(const Vec3T& o) {
+        x -= o.x;
+        y -= o.y;
+        z -= o.z;
+        return *this;
+    }
+    constexpr Vec3T& operator*=(const Vec3T& o) {
+        x *= o.x;
+        y *= o.y;
+        z *= o.z;
+        return *this;
+    }
+    constexpr Vec3T& operator*=(T s) {
+        x *= s;
+        y *= s;
+        z *= s;
+        return *this;
+    }
+    constexpr Vec3T& operator/=(T s) {
+        x /= s;
+        y /= s;
+        z /= s;
+        return *this;
+    }
     friend constexpr Vec3T operator+(Vec3T a, const Vec3T& b) { return a += b; }
     friend constexpr Vec3T operator-(Vec3T a, const Vec3T& b) { return a -= b; }
     friend constexpr Vec3T operator*(Vec3T a, const Vec3T& b) { return a *= b; }
@@ -38,12 +63,20 @@ template <class T> constexpr Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b
 }
 template <class T> T length(const Vec3T<T>& a) { return std::sqrt(dot(a, a)); }
 /// Unit vector along a; a itself when its length is zero (RSL normalize).
-template <class T> Vec3T<T> normalize(const Vec3T<T>& a) { T l = length(a); return l > 0 ? a / l : a; }
+template <class T> Vec3T<T> normalize(const Vec3T<T>& a) {
+    T l = length(a);
+    return l > 0 ? a / l : a;
+}
 /// Rec. 709 luminance of a linear colour.
 template <class T> constexpr T luminance(const Vec3T<T>& c) { return T(0.2126) * c.x + T(0.7152) * c.y + T(0.0722) * c.z; }
-template <class T> constexpr T maxComponent(const Vec3T<T>& c) { T m = c.x > c.y ? c.x : c.y; return m > c.z ? m : c.z; }
+template <class T> constexpr T maxComponent(const Vec3T<T>& c) {
+    T m = c.x > c.y ? c.x : c.y;
+    return m > c.z ? m : c.z;
+}
 
-struct Vec2 { float x = 0, y = 0; };
+struct Vec2 {
+    float x = 0, y = 0;
+};
 
 inline constexpr double kPi = 3.14159265358979323846;
 

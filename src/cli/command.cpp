@@ -1,8 +1,8 @@
 #include "cli/command.h"
-#include <CLI/CLI.hpp>
 #include "base/file.h"
 #include "base/limits.h"
 #include "display/imageio.h"
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <climits>

@@ -53,7 +53,8 @@ std::vector<std::string> environmentShaders();
 /// --searchpath: ':' separated.
 std::vector<std::string> folders(const std::vector<std::string>& lists);
 
-/// The option --dialect: the name of the renderer whose compiler's macros are predefined goes to `name`, which outlives the parser.
+/// The option --dialect: the name of the renderer whose compiler's macros are predefined goes to `name`, which outlives the
+/// parser.
 void addDialect(CLI::App&, std::string& name);
 
 /// For an option that names a picture: what is wrong with the name, or "". Its extension must be of a format that is written;

@@ -79,7 +79,8 @@ void addCompile(CLI::App& app, int* status) {
         std::vector<std::string> files, searchPaths, defines;
         std::string dialect;
         int lanes = 16;
-        bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false, allowExec = false;
+        bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false,
+             allowExec = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("compile", "Check and compile shaders");
@@ -99,7 +100,8 @@ void addCompile(CLI::App& app, int* status) {
     c->add_flag("-W,--warnings", a->warn, "Warn also about unused, uninitialised and non-linear use under path");
     c->add_flag("--json", a->json, "Diagnostics as JSON on standard output, for editors");
     c->add_flag("-q,--quiet", a->quiet, "Errors only");
-    c->footer("All shaders of a file are compiled. Errors are shown with file:line:column, the line and a caret. Exit status 0 when all shaders compile, else 1.");
+    c->footer("All shaders of a file are compiled. Errors are shown with file:line:column, the line and a caret. Exit status 0 "
+              "when all shaders compile, else 1.");
     c->callback([a, status] {
         Json report = Json::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);

@@ -1,8 +1,8 @@
 // alpenglow eval: RSL at one point.
+#include "answers/withoutscene.h"
 #include "base/printable.h"
 #include "cli/command.h"
 #include "rsl/evaluate.h"
-#include "answers/withoutscene.h"
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <unistd.h>

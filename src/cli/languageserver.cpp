@@ -16,8 +16,7 @@ namespace {
 
 // Of JSON-RPC and of the protocol.
 constexpr int kInvalidRequest = -32600, kMethodNotFound = -32601, kInvalidParams = -32602, kInternalError = -32603,
-              kNotInitialized = -32002,
-              kRequestFailed = -32803;
+              kNotInitialized = -32002, kRequestFailed = -32803;
 
 /// A wrong shape of parameters; becomes an error of the request.
 struct BadParams {};
@@ -203,10 +202,9 @@ void LanguageServer::notification(const std::string& method, const Json& params)
         const std::string language =
             d.contains("languageId") && d["languageId"].is_string() ? d["languageId"].get<std::string>() : "";
         if (!documents_.count(uri) && documents_.size() >= limits::kServerDocuments) {
-            pending_.push_back(notice("window/logMessage",
-                                      {{"type", 1},
-                                       {"message", "more than " + std::to_string(limits::kServerDocuments) +
-                                                       " open texts: " + uri + " is not looked at"}}));
+            pending_.push_back(notice("window/logMessage", {{"type", 1},
+                                                            {"message", "more than " + std::to_string(limits::kServerDocuments) +
+                                                                            " open texts: " + uri + " is not looked at"}}));
             return;
         }
         documents_.erase(uri);
@@ -315,7 +313,9 @@ Json LanguageServer::diagnosticsOf(const std::string&, Document& d) {
         if (!m.hint.empty()) words += "\n" + m.hint;
         for (const std::string& n : m.notes) words += "\n" + n;
         Json j = {{"range", range(d, begin, end)},
-                  {"severity", m.severity >= Severity::Error ? 1 : m.severity == Severity::Warning ? 2 : 3},
+                  {"severity", m.severity >= Severity::Error     ? 1
+                               : m.severity == Severity::Warning ? 2
+                                                                 : 3},
                   {"source", "alpenglow"},
                   {"message", words}};
         if (!m.id.empty()) j["code"] = m.id;

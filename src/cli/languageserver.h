@@ -73,7 +73,9 @@ private:
 };
 
 /// A request that cannot be met, with the reason for the person who asked.
-struct Refused { std::string why; };
+struct Refused {
+    std::string why;
+};
 
 /// Kinds and modifiers of semantic tokens, in the order of their numbers.
 nlohmann::json tokenLegend();

@@ -48,18 +48,27 @@ public:
     }
 
 private:
-    struct Waiting { nlohmann::json message; size_t bytes; };
+    struct Waiting {
+        nlohmann::json message;
+        size_t bytes;
+    };
 
     bool take() {
         std::string body;
         switch (stream_.next(body)) {
-        case MessageStream::Kind::More: return false;
-        case MessageStream::Kind::BadLength: refuse(-32700, "Content-Length is not a number"); return true;
-        case MessageStream::Kind::NoLength: refuse(-32700, "a message without Content-Length"); return true;
+        case MessageStream::Kind::More:
+            return false;
+        case MessageStream::Kind::BadLength:
+            refuse(-32700, "Content-Length is not a number");
+            return true;
+        case MessageStream::Kind::NoLength:
+            refuse(-32700, "a message without Content-Length");
+            return true;
         case MessageStream::Kind::TooLong:
             refuse(-32600, "a message of more than " + std::to_string(limits::kServerMessage) + " bytes");
             return true;
-        case MessageStream::Kind::Message: break;
+        case MessageStream::Kind::Message:
+            break;
         }
         auto message = nlohmann::json::parse(body, nullptr, false);
         if (message.is_discarded()) refuse(-32700, "this is not JSON");
@@ -67,9 +76,7 @@ private:
         return true;
     }
     /// A fault of the stream: its answer waits where the message would.
-    void refuse(int code, const std::string& why) {
-        push({{"refused", LanguageServer::error(nullptr, code, why)}}, 0);
-    }
+    void refuse(int code, const std::string& why) { push({{"refused", LanguageServer::error(nullptr, code, why)}}, 0); }
     void push(nlohmann::json m, size_t bytes) {
         held_ += bytes;
         waiting_.push_back({std::move(m), bytes});
@@ -80,7 +87,8 @@ private:
         const auto p = m.find("params");
         if (p == m.end() || !p->is_object() || !p->contains("id")) return true;
         for (Waiting& w : waiting_)
-            if (w.message.is_object() && w.message.contains("method") && w.message.contains("id") && w.message["id"] == (*p)["id"])
+            if (w.message.is_object() && w.message.contains("method") && w.message.contains("id") &&
+                w.message["id"] == (*p)["id"])
                 w.message = {{"refused", LanguageServer::error((*p)["id"], -32800, "cancelled")}};
         return true;
     }
@@ -147,8 +155,8 @@ void addLsp(CLI::App& app, int* status) {
         options.dialect = a->dialect;
         const auto plugins = std::make_shared<rsl::PluginLibrary>();
         if (a->allowExec)
-            options.plugin = [plugins, paths = options.includePaths](const std::string& name, const std::string& beside, std::string& why,
-                                                                     std::string& hint) {
+            options.plugin = [plugins, paths = options.includePaths](const std::string& name, const std::string& beside,
+                                                                     std::string& why, std::string& hint) {
                 std::vector<std::string> all{beside};
                 all.insert(all.end(), paths.begin(), paths.end());
                 return plugins->load(name, all, why, hint);

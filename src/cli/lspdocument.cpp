@@ -1,8 +1,8 @@
 #include "cli/lspdocument.h"
 #include "rsl/front/inspect.h"
 #include "rsl/front/messages.h"
-#include "rsl/nonlinear.h"
 #include "rsl/front/visit.h"
+#include "rsl/nonlinear.h"
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -154,7 +154,11 @@ Document::Where Document::where(size_t position) const {
 }
 
 std::optional<CallAround> Document::callAround(size_t position) const {
-    struct Open { size_t at; size_t separators; char kind; };
+    struct Open {
+        size_t at;
+        size_t separators;
+        char kind;
+    };
     std::vector<Open> open;
     scan(text_, position, [&](size_t i, Where w) {
         if (w != Where::Code) return true;

@@ -90,7 +90,10 @@ public:
     /// As useAt(), by the name alone: where the text around it cannot be understood, or a statement with an error in it is gone.
     Use named(size_t word) const;
     /// What stands in front of "->" or "." before a name: "this", "ray", "ray->start"; nothing where there is neither.
-    struct Receiver { std::string name; bool arrow = false; };
+    struct Receiver {
+        std::string name;
+        bool arrow = false;
+    };
     std::optional<Receiver> receiver(size_t word) const;
     /// One thing that a receiver has.
     struct Member {

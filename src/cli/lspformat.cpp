@@ -11,8 +11,11 @@ namespace {
 
 /// What the lines above leave open.
 struct Depth {
-    struct Open { char kind; size_t line; };
-    std::vector<Open> open;  ///< '{' and '(' and '[', and the lines in which they are
+    struct Open {
+        char kind;
+        size_t line;
+    };
+    std::vector<Open> open; ///< '{' and '(' and '[', and the lines in which they are
     size_t line = 0;
     bool comment = false;    ///< inside of /* */
     bool unfinished = false; ///< the statement goes on

@@ -13,7 +13,8 @@ bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c ==
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 /// The variable of this name that was declared last before a place; of those behind it the first.
-const rsl::Symbol* nearest(const std::vector<std::unique_ptr<rsl::Symbol>>& symbols, const std::string& name, int line, int column) {
+const rsl::Symbol* nearest(const std::vector<std::unique_ptr<rsl::Symbol>>& symbols, const std::string& name, int line,
+                           int column) {
     const rsl::Symbol* best = nullptr;
     for (const auto& s : symbols) {
         if (s->name != name || s->origin == rsl::Symbol::Origin::Global) continue;
@@ -128,7 +129,9 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
             const size_t deeper = rest.find("->");
             rsl::Symbol member = *s;
             member.name = rest;
-            add({rest.substr(0, deeper), deeper == std::string::npos ? declarationOf(member) : "structure " + rest.substr(0, deeper), r.name, s->place, false});
+            add({rest.substr(0, deeper),
+                 deeper == std::string::npos ? declarationOf(member) : "structure " + rest.substr(0, deeper), r.name, s->place,
+                 false});
         }
     };
     if (a.function) look(a.function->symbols);
@@ -139,9 +142,9 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
     }
     // Of which structure they are: the one with just these members, whose methods follow.
     for (const auto& s : program_->structs) {
-        const bool same = !list.empty() && s.members.size() == list.size() && std::equal(list.begin(), list.end(), s.members.begin(), [](const Member& m, const auto& of) {
-            return m.name == of.name;
-        });
+        const bool same = !list.empty() && s.members.size() == list.size() &&
+                          std::equal(list.begin(), list.end(), s.members.begin(),
+                                     [](const Member& m, const auto& of) { return m.name == of.name; });
         if (!same) continue;
         for (size_t i = 0; i < list.size(); ++i) {
             list[i].of = s.name;

@@ -24,9 +24,8 @@ std::string fenced(const std::string& code) { return "```rsl\n" + code + "\n```\
 
 bool begins(const std::string& name, const std::string& prefix) {
     if (name.size() < prefix.size()) return false;
-    return std::equal(prefix.begin(), prefix.end(), name.begin(), [](unsigned char a, unsigned char b) {
-        return std::tolower(a) == std::tolower(b);
-    });
+    return std::equal(prefix.begin(), prefix.end(), name.begin(),
+                      [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
 }
 
 const rsl::GlobalVariable* globalNamed(const std::string& name, std::optional<rsl::ShaderKind> kind) {
@@ -67,7 +66,8 @@ Document::Use useOf(const Document& d, size_t word) {
     return u.symbol || u.function || u.shader || u.shadeop ? u : d.named(word);
 }
 
-std::optional<Document::Member> memberNamed(const Document& d, const Document::Receiver& r, size_t word, const std::string& name) {
+std::optional<Document::Member> memberNamed(const Document& d, const Document::Receiver& r, size_t word,
+                                            const std::string& name) {
     for (auto& m : d.members(r, word))
         if (m.name == name && d.origin(m.place).line > 0) return m;
     return std::nullopt;
@@ -102,10 +102,10 @@ std::vector<std::pair<size_t, size_t>> parameterRanges(const std::string& signat
 
 const std::vector<std::string>& languageKeywords() {
     static const std::vector<std::string> words = {
-        "float",   "color",   "point",      "vector",     "normal",  "matrix",     "string", "void",      "uniform",  "varying",
-        "output",  "extern",  "if",         "else",       "while",   "for",        "break",  "continue",  "return",   "surface",
-        "light",   "volume",  "displacement", "imager",   "illuminance", "illuminate", "solar", "gather", "struct",   "class",
-        "public",  "constant", "shader"};
+        "float",   "color",   "point",  "vector", "normal",       "matrix", "string",      "void",       "uniform",
+        "varying", "output",  "extern", "if",     "else",         "while",  "for",         "break",      "continue",
+        "return",  "surface", "light",  "volume", "displacement", "imager", "illuminance", "illuminate", "solar",
+        "gather",  "struct",  "class",  "public", "constant",     "shader"};
     return words;
 }
 
@@ -174,8 +174,7 @@ Json LanguageServer::completion(const Json& params) {
     for (const auto& s : rsl::shadeops()) {
         if (s.name.rfind("__", 0) == 0) continue;
         if (a.shader && !(s.contexts & rsl::contextOf(a.shader->kind))) continue;
-        const std::string more =
-            s.signatures.size() > 1 ? "  (+" + std::to_string(s.signatures.size() - 1) + ")" : std::string();
+        const std::string more = s.signatures.size() > 1 ? "  (+" + std::to_string(s.signatures.size() - 1) + ")" : std::string();
         offer(s.name, kFunction, (s.signatures.empty() ? s.name : s.signatures[0].text) + more, markdown(s.doc));
     }
     offer("PI", kConstant, "3.14159265");
@@ -218,7 +217,8 @@ Json LanguageServer::hover(const Json& params) {
             for (const auto& o : op->optional)
                 if (o.name == name)
                     text = fenced(std::string(o.output ? "output " : "") + rsl::toString(o.type) + " \"" + o.name + "\"" +
-                                  (o.defaultText.empty() ? "" : " = " + o.defaultText)) + "\n" + o.doc + "\n";
+                                  (o.defaultText.empty() ? "" : " = " + o.defaultText)) +
+                           "\n" + o.doc + "\n";
     } else if (const auto m = receiver ? memberNamed(*d, *receiver, word->first, name) : std::nullopt) {
         text = fenced(m->detail) + "\n" + (m->method ? "method of " : "member of ") + m->of + "\n";
     } else if (const auto* s = d->structure(name)) {
@@ -227,8 +227,7 @@ Json LanguageServer::hover(const Json& params) {
         const std::string comment = o.file.empty() ? "" : Document::commentAbove(textOf(o.file), size_t(o.line) - 1);
         if (!comment.empty()) text += "\n" + comment + "\n";
     } else if (use.symbol) {
-        const rsl::GlobalVariable* g =
-            use.symbol->origin == rsl::Symbol::Origin::Global ? globalNamed(name, kind()) : nullptr;
+        const rsl::GlobalVariable* g = use.symbol->origin == rsl::Symbol::Origin::Global ? globalNamed(name, kind()) : nullptr;
         if (g) global(*g);
         else {
             text = fenced(variableText(*d, *use.symbol));

@@ -83,10 +83,11 @@ Around aroundOf(const std::string& text, size_t at) {
 
 /// The kind of shader that a request names by its first string; "" for others.
 std::string kindOf(const std::string& request) {
-    static const std::map<std::string, std::string> kinds = {
-        {"Surface", "surface"},       {"Displacement", "displacement"}, {"LightSource", "light"}, {"AreaLightSource", "light"},
-        {"Atmosphere", "volume"},     {"Interior", "volume"},           {"Exterior", "volume"},   {"Imager", "imager"},
-        {"Deformation", "displacement"}, {"Shader", ""}};
+    static const std::map<std::string, std::string> kinds = {{"Surface", "surface"},          {"Displacement", "displacement"},
+                                                             {"LightSource", "light"},        {"AreaLightSource", "light"},
+                                                             {"Atmosphere", "volume"},        {"Interior", "volume"},
+                                                             {"Exterior", "volume"},          {"Imager", "imager"},
+                                                             {"Deformation", "displacement"}, {"Shader", ""}};
     const auto k = kinds.find(request);
     return k == kinds.end() ? "-" : k->second;
 }
@@ -115,8 +116,7 @@ std::vector<std::pair<std::string, std::string>> parametersOf(const std::string&
     for (const auto& s : program->shaders) {
         if (s->name != shader || !list.empty()) continue;
         for (const auto& p : s->parameters)
-            list.emplace_back(p.symbol->name,
-                              declarationOf(*p.symbol) + (p.defaultText.empty() ? "" : " = " + p.defaultText));
+            list.emplace_back(p.symbol->name, declarationOf(*p.symbol) + (p.defaultText.empty() ? "" : " = " + p.defaultText));
     }
     return list;
 }
@@ -230,8 +230,9 @@ Json LanguageServer::ribDefinition(const Document& d, size_t at) {
 }
 
 Json LanguageServer::ribSymbols(const Document& d) const {
-    static const std::set<std::string> shown = {"FrameBegin", "WorldBegin", "ObjectBegin", "ObjectBeginInstance", "ArchiveBegin",
-                                                "LightSource", "AreaLightSource", "Surface", "Display", "SolidBegin"};
+    static const std::set<std::string> shown = {"FrameBegin",   "WorldBegin",  "ObjectBegin",     "ObjectBeginInstance",
+                                                "ArchiveBegin", "LightSource", "AreaLightSource", "Surface",
+                                                "Display",      "SolidBegin"};
     constexpr int kNamespace = 3, kObject = 19;
     Json list = Json::array();
     for (size_t n = 0; n < d.lines() && list.size() < size_t(limits::kServerDiagnostics); ++n) {

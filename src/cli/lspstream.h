@@ -1,5 +1,5 @@
-// Cuts the bytes that a client of the language server sends into messages: headers, an empty line, as many bytes as Content-Length
-// says. What is no message is told once, and the next header is looked for.
+// Cuts the bytes that a client of the language server sends into messages: headers, an empty line, as many bytes as
+// Content-Length says. What is no message is told once, and the next header is looked for.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@ namespace alpenglow::cli {
 class MessageStream {
 public:
     enum class Kind {
-        More,      ///< nothing whole is there yet
+        More, ///< nothing whole is there yet
         Message,
         BadLength, ///< a Content-Length that is no number
         NoLength,  ///< headers without one

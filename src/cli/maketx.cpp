@@ -29,8 +29,9 @@ void addMaketx(CLI::App& app, int* status) {
     kinds->add_flag("--envcube", a->cube, "A cube environment map");
     kinds->add_flag("--shadow", a->shadow, "A shadow map of a depth picture");
     kinds->add_flag("--ptex", a->faces, "A Ptex file of a mesh with colours of its faces or vertices (PLY, in text)");
-    kinds->add_flag("--gradients", a->gradients,
-                    "A volume with the gradients of its opacity, of slices (\"s%03d.png\", \"strip.png*64\") or a grid of OpenVDB");
+    kinds->add_flag(
+        "--gradients", a->gradients,
+        "A volume with the gradients of its opacity, of slices (\"s%03d.png\", \"strip.png*64\") or a grid of OpenVDB");
     kinds->require_option(0, 1);
     c->add_option("--side", a->side, "Of Ptex: pixels along a side of a face whose colour is not one; a power of two")
         ->check(between(1, 4096))
@@ -51,12 +52,15 @@ void addMaketx(CLI::App& app, int* status) {
     auto* srgb = c->add_flag("--srgb", a->srgb, "The pictures are sRGB, whatever they declare: the map holds their light");
     c->add_flag("--linear", a->linear, "The pictures are light or data, whatever they declare: the map is read as it is")
         ->excludes(srgb);
-    c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")
-        ->check(between(1, 179))
-        ->type_name("DEGREES");
-    c->add_option("--radius", a->radius, "--gradients: half the way of a difference, in voxels")->check(between(1, 64))->type_name("N");
-    c->add_option("--smooth", a->smooth, "--gradients: the mean over as many voxels on either side")->check(between(0, 64))->type_name("N");
-    c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -ptex, -mode, -smode, -tmode, -filter, -gradients.");
+    c->add_option("--fov", a->fov, "Field of view of the six pictures, degrees")->check(between(1, 179))->type_name("DEGREES");
+    c->add_option("--radius", a->radius, "--gradients: half the way of a difference, in voxels")
+        ->check(between(1, 64))
+        ->type_name("N");
+    c->add_option("--smooth", a->smooth, "--gradients: the mean over as many voxels on either side")
+        ->check(between(0, 64))
+        ->type_name("N");
+    c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -ptex, -mode, -smode, -tmode, -filter, "
+              "-gradients.");
     c->callback([a, status] {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
@@ -85,12 +89,12 @@ void addMaketx(CLI::App& app, int* status) {
             if (a->number == name) break;
             faces.number = ptex::Number(int(faces.number) + 1);
         }
-        bool ok = a->faces     ? makePtex(in[0], out, faces, diags)
+        bool ok = a->faces       ? makePtex(in[0], out, faces, diags)
                   : a->cube      ? texture::makeCubeFaceEnvironment(in, out, a->fov, o, diags)
-                  : a->latlong ? texture::makeLatLongEnvironment(in[0], out, o, diags)
+                  : a->latlong   ? texture::makeLatLongEnvironment(in[0], out, o, diags)
                   : a->gradients ? texture::makeGradients(in[0], out, a->radius, a->smooth, o, diags)
-                  : a->shadow  ? texture::makeShadow(in[0], out, o, diags)
-                               : texture::makeTexture(in[0], out, o, diags);
+                  : a->shadow    ? texture::makeShadow(in[0], out, o, diags)
+                                 : texture::makeTexture(in[0], out, o, diags);
         *status = ok ? (diags.errors() ? kDoneWithErrors : kDone) : kOutputFailed;
         if (ok) return;
         for (const Diagnostic& d : diags.all())

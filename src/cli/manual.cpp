@@ -11,23 +11,34 @@ namespace {
 
 const char* loweringText(rsl::Lowering l) {
     switch (l) {
-    case rsl::Lowering::Runtime: return "machine code inside the kernel";
-    case rsl::Lowering::Rsl: return "written in RSL, inlined";
-    case rsl::Lowering::Special: return "built into the compiler";
-    case rsl::Lowering::Service: return "answered by the renderer at once";
-    case rsl::Lowering::Request: return "answered by rays or lights";
-    case rsl::Lowering::Unavailable: return "not yet available: it type-checks, a call is reported once";
+    case rsl::Lowering::Runtime:
+        return "machine code inside the kernel";
+    case rsl::Lowering::Rsl:
+        return "written in RSL, inlined";
+    case rsl::Lowering::Special:
+        return "built into the compiler";
+    case rsl::Lowering::Service:
+        return "answered by the renderer at once";
+    case rsl::Lowering::Request:
+        return "answered by rays or lights";
+    case rsl::Lowering::Unavailable:
+        return "not yet available: it type-checks, a call is reported once";
     }
     return "";
 }
 
 const char* derivativeText(rsl::DerivativeRule d) {
     switch (d) {
-    case rsl::DerivativeRule::Jet: return "exact";
-    case rsl::DerivativeRule::Zero: return "zero (constant almost everywhere)";
-    case rsl::DerivativeRule::ZeroWarn: return "taken as zero, with a warning";
-    case rsl::DerivativeRule::Gradient: return "from the slope of the filtered map; second ones those of the coordinates alone";
-    case rsl::DerivativeRule::Inherent: return "exact";
+    case rsl::DerivativeRule::Jet:
+        return "exact";
+    case rsl::DerivativeRule::Zero:
+        return "zero (constant almost everywhere)";
+    case rsl::DerivativeRule::ZeroWarn:
+        return "taken as zero, with a warning";
+    case rsl::DerivativeRule::Gradient:
+        return "from the slope of the filtered map; second ones those of the coordinates alone";
+    case rsl::DerivativeRule::Inherent:
+        return "exact";
     }
     return "";
 }
@@ -110,7 +121,8 @@ std::string manualText(const rsl::Shadeop& s) {
     }
     if (!s.examples.empty()) t += "\nExamples\n";
     for (const auto& e : s.examples)
-        t += "    " + (e.setup.empty() ? "" : e.setup + "  ") + e.expression + "  gives  " + e.value + (e.when.empty() ? "" : "  when " + e.when) + "\n";
+        t += "    " + (e.setup.empty() ? "" : e.setup + "  ") + e.expression + "  gives  " + e.value +
+             (e.when.empty() ? "" : "  when " + e.when) + "\n";
     t += "\nUsable in: " + contextText(s.contexts) + ".\n";
     t += "Evaluation: " + std::string(loweringText(s.lowering)) + ". Derivatives: " + derivativeText(s.derivative) + ".\n";
     t += "Expected value: " + biasText(s) + ".\n";

@@ -22,8 +22,7 @@ std::string quoted(const std::string& s) {
 
 std::string modelScene(const std::string& file) {
     Vec3d lo(INFINITY), hi(-INFINITY);
-    for (const scene::Primitive& p : ri::readModelFile(
-             file, [](auto&&...) {}, nullptr))
+    for (const scene::Primitive& p : ri::readModelFile(file, [](auto&&...) {}, nullptr))
         for (const scene::Param& v : p.params)
             if (v.name == "P")
                 for (size_t i = 0; i + 2 < v.numbers.size(); i += 3)

@@ -1,8 +1,8 @@
 // alpenglow ptc: point clouds and brick maps. What is in them, several as one, thinned and smoothed, as PLY, as pictures.
 #include "base/file.h"
+#include "base/processors.h"
 #include "cli/command.h"
 #include "cli/ranges.h"
-#include "base/processors.h"
 #include "clouds/bounce.h"
 #include "clouds/brickmap.h"
 #include "clouds/brickstream.h"
@@ -192,8 +192,8 @@ int runPtc(const Arguments& a, Diagnostics& d) {
         return kNothingRendered;
     }
     const bool written = a.action == "picture" ? writePicture(out, all, a, d)
-                         : a.action == "toply"   ? clouds::savePly(out, all, kAnywhere, d, {})
-                                                 : clouds::saveCloud(out, all, kAnywhere, d);
+                         : a.action == "toply" ? clouds::savePly(out, all, kAnywhere, d, {})
+                                               : clouds::saveCloud(out, all, kAnywhere, d);
     return written ? kDone : kOutputFailed;
 }
 

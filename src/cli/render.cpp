@@ -96,7 +96,8 @@ void checkLate(Arguments& a, const CLI::App& app) {
         if (added.type == "tev") { // a viewer, no file
             char* end = nullptr;
             const long port = std::strtol(added.mode.c_str(), &end, 10);
-            if (second == d.npos || *end || port < 1 || port > 65535) wrong("--display", "takes tev:HOST:PORT, for example tev:localhost:14158");
+            if (second == d.npos || *end || port < 1 || port > 65535)
+                wrong("--display", "takes tev:HOST:PORT, for example tev:localhost:14158");
             a.tev.emplace_back(added.name, int(port));
             continue;
         }
@@ -169,8 +170,8 @@ view::Watchers watchersOf(const Arguments& a, Diagnostics& diags, view::Terminal
             diags.report(Severity::Warning, Rie::Incapable, {}, "--preview: standard error is no terminal; nothing is shown",
                          "--preview=sixel, kitty or blocks writes it all the same");
         else {
-            auto preview = std::make_unique<view::TerminalPreview>(diags, kind ? *kind : view::terminalKind(), view::terminalSize(),
-                                                                   [](const std::string& text) {
+            auto preview = std::make_unique<view::TerminalPreview>(diags, kind ? *kind : view::terminalKind(),
+                                                                   view::terminalSize(), [](const std::string& text) {
                                                                        std::fwrite(text.data(), 1, text.size(), stderr);
                                                                        std::fflush(stderr);
                                                                    });
@@ -255,8 +256,7 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
 
 int renderAll(const Arguments& a) {
     if (a.settings.output == "-") stdout = stderr; // what shaders print must not come between the bytes of the picture
-    const MemoryLimit limit(a.settings.memoryLimit,
-                            a.settings.threads > 0 ? a.settings.threads : defaultThreads());
+    const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
     if (!a.watch) return renderOnce(a, stop);
     Arguments again = a;
@@ -282,10 +282,10 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     s.software = softwareName();
     s.command = command;
     CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input) or models (.ply, .obj)");
-    c->add_option(
-         "scenes", a->scenes,
-         "RIB files, ASCII, binary or gzipped; - is standard input. A model (.ply, .obj) is shown whole under a sky. Each is a scene of its own, which begins with the defaults; "
-         "a file of options without a world holds for all that follow")
+    c->add_option("scenes", a->scenes,
+                  "RIB files, ASCII, binary or gzipped; - is standard input. A model (.ply, .obj) is shown whole under a sky. "
+                  "Each is a scene of its own, which begins with the defaults; "
+                  "a file of options without a world holds for all that follow")
         ->required();
 
     c->add_option(
@@ -297,13 +297,16 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
              "scene's first display (openexr, tiff, jpeg), frames one after the other")
         ->type_name("FILE")
         ->group("Pictures");
-    c->add_option("--display", a->displays, "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z; tev:HOST:PORT shows the growing pictures in that viewer")
+    c->add_option("--display", a->displays,
+                  "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z; tev:HOST:PORT shows the growing pictures "
+                  "in that viewer")
         ->type_name("TYPE:NAME[:MODE]")
         ->allow_extra_args(false)
         ->group("Pictures");
-    c->add_flag("--preview{auto}", a->preview,
-                "Show the picture in the terminal as it grows, by the graphics of kitty or sixels where it has them, else in half "
-                "blocks; --preview=kitty, sixel or blocks chooses")
+    c->add_flag(
+         "--preview{auto}", a->preview,
+         "Show the picture in the terminal as it grows, by the graphics of kitty or sixels where it has them, else in half "
+         "blocks; --preview=kitty, sixel or blocks chooses")
         ->check(CLI::IsMember({"auto", "kitty", "sixel", "blocks"}))
         ->group("Pictures");
     c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH")->group("Pictures");

@@ -1,15 +1,15 @@
 // alpenglow shade: a shader on a lit ball, or over a unit patch without a scene; also the stopwatch of the kernels.
+#include "answers/withoutscene.h"
 #include "base/limits.h"
 #include "cli/ball.h"
 #include "cli/command.h"
 #include "cli/ranges.h"
 #include "display/imageio.h"
 #include "render/imaging.h"
-#include "rsl/front/protocol.h"
 #include "rsl/compiler.h"
+#include "rsl/front/protocol.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
-#include "answers/withoutscene.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -237,14 +237,15 @@ int shade(const Arguments& a) {
                       float* rowsOut) {
         auto& x = *static_cast<Context*>(c->user);
         if (site < 0 || x.services->answer(*x.kernel, site, first, mask, lanes, rowsIn, rowsOut)) return;
-        rsl::basicService(x.kernel->sites()[size_t(site)], mask, lanes, rowsIn, rowsOut, *x.diagnostics,
-                          [&](int lane, const std::string& text) {
-                              if (!x.print) return;
-                              rsl::PrintKey key;
-                              key.sample = int64_t(x.begun) + first + lane;
-                              x.prints.add(key, text);
-                          },
-                          &x.kernel->files());
+        rsl::basicService(
+            x.kernel->sites()[size_t(site)], mask, lanes, rowsIn, rowsOut, *x.diagnostics,
+            [&](int lane, const std::string& text) {
+                if (!x.print) return;
+                rsl::PrintKey key;
+                key.sample = int64_t(x.begun) + first + lane;
+                x.prints.add(key, text);
+            },
+            &x.kernel->files());
     };
     call.lightBegin = [](rsl::KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
     call.lightFetch = [](rsl::KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };

@@ -1,7 +1,7 @@
 #include "cli/shaderdescription.h"
 #include "cli/lspdocument.h"
-#include "rsl/front/protocol.h"
 #include "rsl/evaluate.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
 #include "rsl/passes/optimize.h"
 #include <algorithm>
@@ -37,15 +37,31 @@ bool known(const rsl::ir::Inst* i, int depth = 0) {
     if (!i || depth > 64) return false;
     switch (i->op) {
     case Op::Const:
-    case Op::ConstString: return true;
+    case Op::ConstString:
+        return true;
     case Op::Result:
-    case Op::Add: case Op::Sub: case Op::Mul: case Op::Div: case Op::Neg:
-    case Op::Splat: case Op::Triple: case Op::Extract: case Op::MatrixOf:
-    case Op::Less: case Op::LessEqual: case Op::Equal: case Op::NotEqual:
-    case Op::And: case Op::Or: case Op::Not: case Op::Select: case Op::ToFloat:
+    case Op::Add:
+    case Op::Sub:
+    case Op::Mul:
+    case Op::Div:
+    case Op::Neg:
+    case Op::Splat:
+    case Op::Triple:
+    case Op::Extract:
+    case Op::MatrixOf:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::Equal:
+    case Op::NotEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Not:
+    case Op::Select:
+    case Op::ToFloat:
     case Op::Runtime:
         return std::all_of(i->args.begin(), i->args.end(), [&](const rsl::ir::Inst* a) { return known(a, depth + 1); });
-    default: return false;
+    default:
+        return false;
     }
 }
 
@@ -77,11 +93,16 @@ std::optional<double> numberOf(const rsl::Expr& e) {
     const auto a = numberOf(*e.args[0]), b = numberOf(*e.args[1]);
     if (!a || !b) return std::nullopt;
     switch (e.op) {
-    case ExprOp::Add: return *a + *b;
-    case ExprOp::Sub: return *a - *b;
-    case ExprOp::Mul: return *a * *b;
-    case ExprOp::Div: return *b == 0 ? 0 : *a / *b;
-    default: return std::nullopt;
+    case ExprOp::Add:
+        return *a + *b;
+    case ExprOp::Sub:
+        return *a - *b;
+    case ExprOp::Mul:
+        return *a * *b;
+    case ExprOp::Div:
+        return *b == 0 ? 0 : *a / *b;
+    default:
+        return std::nullopt;
     }
 }
 
@@ -111,7 +132,8 @@ bool asks(const rsl::Expr& e) {
     return std::any_of(e.args.begin(), e.args.end(), [](const auto& a) { return a && asks(*a); });
 }
 
-DefaultDescription describeDefault(const rsl::ShaderParameter& p, const rsl::ParameterInfo& info, rsl::ParameterValue value, bool computed) {
+DefaultDescription describeDefault(const rsl::ShaderParameter& p, const rsl::ParameterInfo& info, rsl::ParameterValue value,
+                                   bool computed) {
     DefaultDescription d;
     d.there = info.hasDefault;
     if (!d.there) return d;
@@ -121,7 +143,8 @@ DefaultDescription describeDefault(const rsl::ShaderParameter& p, const rsl::Par
     const rsl::Expr* e = p.defaultValue.get();
     d.null = p.symbol->handle && p.symbol->type.array == 0 && d.value.strings == std::vector<std::string>{""};
     d.named = e && !d.written.empty() && asks(*e);
-    if (e && e->kind == rsl::ExprKind::ArrayList && e->text == "{}") d.value.strings.clear(), d.value.numbers.clear(); // {} has no elements
+    if (e && e->kind == rsl::ExprKind::ArrayList && e->text == "{}")
+        d.value.strings.clear(), d.value.numbers.clear(); // {} has no elements
     while (e && !e->space && e->kind == rsl::ExprKind::Cast && !e->args.empty()) e = e->args[0].get();
     if (!e || !e->space || e->space->kind != rsl::ExprKind::String) return d;
     d.space = e->space->text;
@@ -153,9 +176,9 @@ KindDescription describeKind(rsl::ShaderCompiler& compiler, const rsl::CompiledS
 }
 
 bool isEntry(const std::string& name) {
-    static constexpr const char* kNames[] = {"construct", "begin", "displacement", "opacity", "prelighting", "lighting",
-                                             "diffuselighting", "specularlighting", "postlighting", "surface", "volume", "light",
-                                             "imager"};
+    static constexpr const char* kNames[] = {
+        "construct",        "begin",        "displacement", "opacity", "prelighting", "lighting", "diffuselighting",
+        "specularlighting", "postlighting", "surface",      "volume",  "light",       "imager"};
     return std::any_of(std::begin(kNames), std::end(kNames), [&](const char* n) { return name == n; });
 }
 
@@ -182,7 +205,8 @@ std::string defaultText(const ParameterDescription& p) {
     if (!d.there) return "";
     if (d.computed) return " = " + (d.written.empty() ? "" : d.written + "  ") + "(computed)";
     if (!d.space.empty() && d.value.type.base == rsl::Base::Color) // both, as they are different numbers
-        return " = " + (d.written.empty() ? quoted(d.space) + " " + rsl::formatNumbers(d.inSpace) : d.written) + "  (rgb " + valueText(d.value) + ")";
+        return " = " + (d.written.empty() ? quoted(d.space) + " " + rsl::formatNumbers(d.inSpace) : d.written) + "  (rgb " +
+               valueText(d.value) + ")";
     if (d.null) return " = null";
     if (d.named) return " = " + d.written + "  (" + valueText(d.value) + ")";
     if (!d.space.empty()) return " = " + quoted(d.space) + " " + valueText(d.value);
@@ -191,7 +215,8 @@ std::string defaultText(const ParameterDescription& p) {
 
 } // namespace
 
-ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<const rsl::CompiledShader>& shader, Diagnostics& diagnostics) {
+ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<const rsl::CompiledShader>& shader,
+                           Diagnostics& diagnostics) {
     ShaderDescription d;
     const rsl::Shader& s = shader->shader();
     d.name = shader->name();
@@ -246,9 +271,11 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
         if (!s.object || !other->body) continue;
         for (const auto& b : other->body->body)
             for (const auto& v : b->declarators)
-                if (v.symbol && v.symbol->name[0] != '(' && v.symbol->type.base != rsl::Base::Void && members.insert(v.symbol->name).second)
+                if (v.symbol && v.symbol->name[0] != '(' && v.symbol->type.base != rsl::Base::Void &&
+                    members.insert(v.symbol->name).second)
                     d.members.push_back({typeText(v.symbol->type, v.symbol), v.symbol->name, storageText(v.symbol->storage),
-                                         other->publics.count(v.symbol->name.substr(0, v.symbol->name.find("->"))) > 0, v.symbol->isConstant});
+                                         other->publics.count(v.symbol->name.substr(0, v.symbol->name.find("->"))) > 0,
+                                         v.symbol->isConstant});
     }
     return d;
 }
@@ -286,7 +313,8 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
     j["class"] = d.object;
     j["members"] = Json::array();
     for (const auto& m : d.members)
-        j["members"].push_back({{"name", m.name}, {"type", m.type}, {"storage", m.storage}, {"public", m.isPublic}, {"constant", m.constant}});
+        j["members"].push_back(
+            {{"name", m.name}, {"type", m.type}, {"storage", m.storage}, {"public", m.isPublic}, {"constant", m.constant}});
     if (!d.categories.empty()) j["categories"] = d.categories;
     for (const auto& s : d.structs) {
         Json members = Json::array();
@@ -297,7 +325,8 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
     }
     for (const auto& plugin : d.plugins)
         for (const rsl::Shadeop& f : plugin->functions)
-            for (const rsl::Signature& s : f.signatures) j["plugins"][plugin->name].push_back({{"signature", s.text}, {"doc", f.doc}});
+            for (const rsl::Signature& s : f.signatures)
+                j["plugins"][plugin->name].push_back({{"signature", s.text}, {"doc", f.doc}});
     std::map<std::string, size_t> times;
     for (const auto& [key, value] : d.annotations) {
         Json& a = j["annotations"][key];
@@ -339,9 +368,11 @@ std::string descriptionText(const ShaderDescription& d) {
         for (const auto& m : s.methods) t += "    method of " + s.name + ": " + m.name + "()\n";
     }
     for (const auto& m : d.members)
-        t += "member: " + std::string(m.isPublic ? "public " : "") + (m.constant ? "constant " : m.storage + " ") + m.type + " " + m.name + "\n";
+        t += "member: " + std::string(m.isPublic ? "public " : "") + (m.constant ? "constant " : m.storage + " ") + m.type + " " +
+             m.name + "\n";
     for (const auto& m : d.methods)
-        t += "method: " + std::string(m.isPublic ? "public " : "") + m.signature + (m.entry ? "  (run by the renderer)" : "") + "\n";
+        t += "method: " + std::string(m.isPublic ? "public " : "") + m.signature + (m.entry ? "  (run by the renderer)" : "") +
+             "\n";
     if (!d.categories.empty()) {
         t += "categories:";
         for (const std::string& c : d.categories) t += " " + c;

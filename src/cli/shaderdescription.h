@@ -10,11 +10,11 @@ namespace alpenglow::cli {
 /// The default value of a parameter.
 struct DefaultDescription {
     bool there = false;
-    bool null = false;       ///< of a handle: no shader
-    bool named = false;      ///< it is computed from other parameters; the value is that of their defaults
-    bool computed = false;   ///< it depends on what only a scene knows; there is no value then
-    std::string written;     ///< as the shader has it; "" for what stands in no text (members of structures)
-    std::string space;       ///< in which it is written: "hsv", "shader"; or ""
+    bool null = false;          ///< of a handle: no shader
+    bool named = false;         ///< it is computed from other parameters; the value is that of their defaults
+    bool computed = false;      ///< it depends on what only a scene knows; there is no value then
+    std::string written;        ///< as the shader has it; "" for what stands in no text (members of structures)
+    std::string space;          ///< in which it is written: "hsv", "shader"; or ""
     std::vector<float> inSpace; ///< the numbers as written in that space
     rsl::ParameterValue value;  ///< colours in rgb; what is written in a space of points stays in it
 };
@@ -48,7 +48,7 @@ struct MethodDescription {
 
 struct ShaderDescription {
     std::string name, file;
-    bool object = false; ///< a class
+    bool object = false;                 ///< a class
     std::vector<std::string> categories; ///< of __category
     std::vector<ParameterDescription> parameters;
     std::vector<MemberDescription> members;

@@ -1,4 +1,5 @@
 // alpenglow view: a scene in the browser while it renders.
+#include "view/view.h"
 #include "base/limits.h"
 #include "base/memory.h"
 #include "base/processors.h"
@@ -9,7 +10,6 @@
 #include "cli/version.h"
 #include "ri/models/model.h"
 #include "rsl/compiler.h"
-#include "view/view.h"
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <unistd.h>
@@ -40,7 +40,8 @@ void checkLate(Arguments& a) {
     s.srgb = a.gamma == "srgb" || a.gamma == "sRGB";
     if (!a.gamma.empty() && !s.srgb) {
         auto v = parseNumbers(a.gamma, 1);
-        if (!v || !(v->front() >= 0.01 && v->front() <= 100)) wrong("--gamma", "takes a number from 0.01 to 100, or srgb, not " + a.gamma);
+        if (!v || !(v->front() >= 0.01 && v->front() <= 100))
+            wrong("--gamma", "takes a number from 0.01 to 100, or srgb, not " + a.gamma);
         s.gamma = float(v->front());
     }
     s.texturePaths = s.shaderPaths = folders(a.searchPaths);
@@ -81,11 +82,14 @@ int runView(const Arguments& a) {
     const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     o.print = print;
     std::string fault;
-    const view::ViewEnd end = view::view(std::move(o), a.port, stop, [&](const std::string& address) {
-        std::printf("%s\n", address.c_str());
-        std::fflush(stdout);
-        if (!a.quiet) std::fputs("alpenglow: open this address in a browser on this machine; Ctrl-C ends\n", stderr);
-    }, &fault);
+    const view::ViewEnd end = view::view(
+        std::move(o), a.port, stop,
+        [&](const std::string& address) {
+            std::printf("%s\n", address.c_str());
+            std::fflush(stdout);
+            if (!a.quiet) std::fputs("alpenglow: open this address in a browser on this machine; Ctrl-C ends\n", stderr);
+        },
+        &fault);
     if (end == view::ViewEnd::PortTaken) {
         Diagnostic d{Severity::Error, Rie::System, {}, fault, "without --port a free one is taken", {}};
         print(d);
@@ -102,11 +106,16 @@ void addView(CLI::App& app, int* status) {
     s.software = softwareName();
     CLI::App* c = app.add_subcommand("view", "Show a scene in the browser while it renders (docs/view.md)");
     c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj)")->required();
-    c->add_option("--port", a->port, "Port of 127.0.0.1; a free one when not given")->check(wholeBetween(1, 65535))->type_name("N");
+    c->add_option("--port", a->port, "Port of 127.0.0.1; a free one when not given")
+        ->check(wholeBetween(1, 65535))
+        ->type_name("N");
     c->add_flag("--watch", a->watch, "Read the scene again whenever a file changes that it uses; the camera stays");
-    CLI::Option* frame = c->add_option("--frame", a->frame, "Number of the frame; the first with a picture when not given")->type_name("N");
+    CLI::Option* frame =
+        c->add_option("--frame", a->frame, "Number of the frame; the first with a picture when not given")->type_name("N");
     c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH");
-    c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")->check(between(1e-4, 1e4))->type_name("F");
+    c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")
+        ->check(between(1e-4, 1e4))
+        ->type_name("F");
     c->add_option("--hider", s.hider, "hidden, raytrace or path, instead of the scene's Hider")
         ->check(CLI::IsMember({"hidden", "raytrace", "path"}))
         ->type_name("NAME");
@@ -123,7 +132,8 @@ void addView(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("--rib", a->rib, "Requests that are read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false);
     c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins");
-    c->add_flag("--allow-read", s.allowRead, "Let the scene read maps and archives anywhere, not only below its folders and --searchpath");
+    c->add_flag("--allow-read", s.allowRead,
+                "Let the scene read maps and archives anywhere, not only below its folders and --searchpath");
     c->add_flag("-q,--quiet", a->quiet, "Errors only");
     c->add_flag("-v,--verbose", a->verbose, "Notes too");
     c->footer("Prints the address of the page, with a token that nobody else knows, and serves it on 127.0.0.1 until Ctrl-C.");

@@ -24,7 +24,10 @@ size_t rowOf(const BakeLayout& l) { return size_t(l.width) + (l.flat ? 2 : 7); }
 struct Joined {
     PointCloud& cloud;
     std::vector<size_t> counts; ///< of each number: points that have it
-    struct At { size_t point = 0; std::vector<bool> given; };
+    struct At {
+        size_t point = 0;
+        std::vector<bool> given;
+    };
     std::unordered_map<std::string_view, At> places; ///< by the bits of P, N and radius
 
     /// `n`: P, N, radius, and the numbers that go `to` places among those of the channels.
@@ -214,9 +217,8 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
     for (const Channel& c : cloud.channels)
         if (const size_t n = joined.counts[size_t(cloud.offsetOf(c.name))]; n < cloud.size())
             d.report(Severity::Warning, Rie::Consistency, order.front()->place,
-                     "bake3d(): " + std::to_string(cloud.size() - n) + " of " + std::to_string(cloud.size()) +
-                         " points of \"" + name +
-                         "\" have no channel \"" + c.name + "\"; it is 0 there",
+                     "bake3d(): " + std::to_string(cloud.size() - n) + " of " + std::to_string(cloud.size()) + " points of \"" +
+                         name + "\" have no channel \"" + c.name + "\"; it is 0 there",
                      "all calls that bake into a file give the same channels, or others at the same points");
     return saveCloud(name, cloud, policy, d, f.rows.front().layout->place);
 }

@@ -1,7 +1,7 @@
 #include "clouds/brickmap.h"
-#include "clouds/brickparts.h"
 #include "base/file.h"
 #include "base/randomfile.h"
+#include "clouds/brickparts.h"
 #include "clouds/bytes.h"
 #include "clouds/cloudfile.h"
 #include "clouds/limits.h"

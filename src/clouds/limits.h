@@ -5,12 +5,12 @@
 
 namespace alpenglow::limits {
 
-inline constexpr uint64_t kCloudPoints = 200'000'000;   ///< of one point cloud
-inline constexpr size_t kCloudBytes = size_t(16) << 30; ///< of its numbers in memory, and of all that one frame bakes
-inline constexpr uint64_t kOctreePoints = 50'000'000;  ///< of a cloud that point-based shadeops read: about 100 bytes each
+inline constexpr uint64_t kCloudPoints = 200'000'000;      ///< of one point cloud
+inline constexpr size_t kCloudBytes = size_t(16) << 30;    ///< of its numbers in memory, and of all that one frame bakes
+inline constexpr uint64_t kOctreePoints = 50'000'000;      ///< of a cloud that point-based shadeops read: about 100 bytes each
 inline constexpr size_t kCloudFragments = size_t(1) << 20; ///< of clusters that a sorted lookup keeps before some become one
-inline constexpr int kCloudChannels = 256;              ///< numbers beside position, normal and radius, of one point
-inline constexpr size_t kBrickMemory = size_t(256) << 20; ///< of points while a brick map is made of a larger cloud
-inline constexpr int kBakedSide = 8192;                 ///< of the picture that a .bake file becomes
+inline constexpr int kCloudChannels = 256;                 ///< numbers beside position, normal and radius, of one point
+inline constexpr size_t kBrickMemory = size_t(256) << 20;  ///< of points while a brick map is made of a larger cloud
+inline constexpr int kBakedSide = 8192;                    ///< of the picture that a .bake file becomes
 
 } // namespace alpenglow::limits

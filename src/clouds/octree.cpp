@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t kLeaf = 8;
 constexpr double kMostArea = 1e29; ///< of a point: the sum of all is a float
-constexpr int kBits = 21; ///< of each coordinate in a code
+constexpr int kBits = 21;          ///< of each coordinate in a code
 constexpr float kPi = 3.14159265f;
 
 /// Real spherical harmonics of a unit vector, bands 0 to 2.

@@ -23,7 +23,10 @@ struct DeepSamples {
 };
 
 /// A step of one staircase among several.
-struct DeepChange { float z; float before[3], after[3]; };
+struct DeepChange {
+    float z;
+    float before[3], after[3];
+};
 /// Appends the mean of `count` staircases, given by all their steps in any order, as one staircase that lies nowhere more than
 /// `tolerance` (>= 0) above or below it, and ends where it does. `all` is sorted.
 void meanStairs(std::vector<DeepChange>& all, size_t count, float tolerance, std::vector<DeepStep>& out);

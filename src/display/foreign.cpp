@@ -108,7 +108,7 @@ bool readAll(int from, void* to, size_t n) {
 /// What a child has written, looked at as a stranger's file is.
 std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
     ForeignPicture p{};
-    struct stat about {};
+    struct stat about{};
     if (fstat(file, &about) != 0 || !readAll(file, &p, sizeof p) || p.stamp != kForeignStamp || p.width <= 0 || p.height <= 0 ||
         p.channels <= 0)
         return ctx.refuse("the module that reads it was built from other sources than this program");

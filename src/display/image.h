@@ -27,8 +27,8 @@ struct Image {
     int originX = 0, originY = 0;      ///< of the first pixel in the full picture (crop window)
     int fullWidth = 0, fullHeight = 0; ///< of the full picture; 0 = not cropped
     float pixelAspect = 1;
-    int bits = 32;             ///< per channel in the file it came from
-    bool floating = true;      ///< that file held floating point
+    int bits = 32;        ///< per channel in the file it came from
+    bool floating = true; ///< that file held floating point
     /// Of a deep shadow map: what is behind the first surfaces, which `data` holds as "z". Null: a flat picture.
     std::shared_ptr<const DeepSamples> deep;
     std::vector<Image> levels; ///< reduced MIP-map levels 1, 2, ... when the file has them and they were asked for

@@ -41,7 +41,8 @@ bool isIdentifier(const std::string& s) {
 
 /// "[12]", an element of an array.
 bool isElement(const std::string& s) {
-    return s.size() > 2 && s.size() < 7 && s[0] == '[' && s.back() == ']' && std::all_of(s.begin() + 1, s.end() - 1, [](unsigned char c) { return std::isdigit(c); });
+    return s.size() > 2 && s.size() < 7 && s[0] == '[' && s.back() == ']' &&
+           std::all_of(s.begin() + 1, s.end() - 1, [](unsigned char c) { return std::isdigit(c); });
 }
 
 /// Of "list[1]" what stands before the bracket.

@@ -18,10 +18,10 @@ struct ModeVariable {
     std::vector<std::string> channels;
 };
 
-/// Variables of rgb rgba rgbz rgbaz a z az, of a variable's name ("list[1]": an element of an array), of an inline declaration ("varying
-/// color mycolor"), or of a comma separated list of these. Types come from the declaration, else from DisplayChannel (keys are names),
-/// else from RSL's predefined variables. A mode that is not understood is an error, and its parts that are understood remain; an empty
-/// mode means rgba. A variable named twice is kept once, with a warning.
+/// Variables of rgb rgba rgbz rgbaz a z az, of a variable's name ("list[1]": an element of an array), of an inline declaration
+/// ("varying color mycolor"), or of a comma separated list of these. Types come from the declaration, else from DisplayChannel
+/// (keys are names), else from RSL's predefined variables. A mode that is not understood is an error, and its parts that are
+/// understood remain; an empty mode means rgba. A variable named twice is kept once, with a warning.
 std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics&, const SourcePlace& = {},
                                     const std::map<std::string, scene::Param>& displayChannels = {});
 

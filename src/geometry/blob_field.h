@@ -47,17 +47,17 @@ struct BlobLeaf {
     double m[3][4] = {}; ///< from object space to that of the unit sphere, or of the segment over its radius
     Vec3d from, along;   ///< segment: its begin and direction there
     double length = 0;
-    uint32_t number = 0; ///< among all leaves of the request: of its vertex values
-    uint32_t at = 0;     ///< where its floats begin in those of the request
+    uint32_t number = 0;    ///< among all leaves of the request: of its vertex values
+    uint32_t at = 0;        ///< where its floats begin in those of the request
     bool bySegment = false; ///< these are two ends and a radius, then the matrix; else the matrix alone
-    double thin = 0;     ///< its smallest half axis, object space
-    Vec3d lo, hi;        ///< it is 0 outside, object space
+    double thin = 0;        ///< its smallest half axis, object space
+    Vec3d lo, hi;           ///< it is 0 outside, object space
     std::shared_ptr<const BlobGround> ground;
     Vec3d inside(const Vec3d& p) const;
 };
 
-/// Makes of the floats of a leaf its shape, at and number left alone. segment: two ends and a radius, or null. False: the matrix has no
-/// inverse, or there is no radius.
+/// Makes of the floats of a leaf its shape, at and number left alone. segment: two ends and a radius, or null. False: the matrix
+/// has no inverse, or there is no radius.
 bool shapeBlobLeaf(const double matrix[16], const double segment[7], BlobLeaf&);
 /// The shape of a leaf that is 0 everywhere.
 void emptyBlobLeaf(BlobLeaf&);

@@ -161,8 +161,7 @@ Interval BlobMotion::leafBounds(const BlobLeaf& plan, const Vec3d& lo, const Vec
     reach = std::sqrt(reach);
     const double moved = (length(rowTimes(c.originBy, c.inverse) + rowTimes(q, E)) + turn * reach) / (1 - turn) * (1 + 1e-12);
     const auto bump = [](double r) { return r < 1 ? (1 - r * r) * (1 - r * r) * (1 - r * r) : 0.0; };
-    if (!plan.bySegment)
-        return {bump(length(q) + reach + moved), bump(std::max(0.0, length(q) - reach - moved))};
+    if (!plan.bySegment) return {bump(length(q) + reach + moved), bump(std::max(0.0, length(q) - reach - moved))};
     const double least = c.radius - c.radiusBy;
     if (!(least > 0) || c.middle.kind != BlobLeaf::Kind::Segment) return all;
     // What of it moves against the radius. A change of either end counts as much as one of the point, at most.

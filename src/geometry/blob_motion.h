@@ -1,5 +1,5 @@
-// The field of a Blobby whose numbers move: between keys they are linear, so that at each time it is the field that has the numbers of
-// that time. Bounds over a box hold for a span of time as well.
+// The field of a Blobby whose numbers move: between keys they are linear, so that at each time it is the field that has the
+// numbers of that time. Bounds over a box hold for a span of time as well.
 #pragma once
 #include "geometry/blob_field.h"
 #include "geometry/keyed.h"
@@ -20,8 +20,8 @@ public:
     Interval bounds(const BlobTape&, const Vec3d& lo, const Vec3d& hi, float from, float to, std::vector<Interval>& values) const;
     /// What of a tape's leaves matters for the size of boxes and spans of time.
     struct Extent {
-        double way = 0;         ///< the longest way of a leaf between two times, object space
-        double thin = INFINITY; ///< smallest half axis
+        double way = 0;                    ///< the longest way of a leaf between two times, object space
+        double thin = INFINITY;            ///< smallest half axis
         Vec3d lo{INFINITY}, hi{-INFINITY}; ///< all are 0 outside
     };
     Extent extent(const BlobTape&, float from, float to) const;
@@ -29,7 +29,10 @@ public:
     Vec3d carried(const BlobTape&, const Vec3d& p, float from, float to) const;
 
 private:
-    struct Span { size_t key; double w0, w1; };
+    struct Span {
+        size_t key;
+        double w0, w1;
+    };
     Span spanOf(float from, float to) const;
     double numberAt(size_t i, size_t key, double way) const;
     BlobLeaf leafAt(const BlobLeaf& plan, size_t key, double way) const;

@@ -76,9 +76,10 @@ private:
         const Part& at(float time) const;
     };
     const Areas& areas() const;
-    /// A vertex variable of type mpoint: what each blob does to the points of object space, to the variable's place in camera space.
+    /// A vertex variable of type mpoint: what each blob does to the points of object space, to the variable's place in camera
+    /// space.
     struct PlacedPoints {
-        size_t var; ///< among primvars_, where it is a point (or an array of them)
+        size_t var;               ///< among primvars_, where it is a point (or an array of them)
         std::vector<Matrix> maps; ///< of each blob in turn, elements() each
     };
     void takePlacedPoints();
@@ -92,7 +93,7 @@ private:
     const BlobTape& tapeOf(const Box& b) const { return tapes_[b.tape]; }
     struct Found {
         Vec3d p;
-        float time; ///< when it is there
+        float time;           ///< when it is there
         const BlobTape* tape; ///< of the field about it
     };
     Found decoded(uint32_t prim, double b1, double b2, float time) const;

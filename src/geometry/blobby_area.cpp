@@ -129,7 +129,7 @@ SurfacePoint Blobby::sampleFromAt(const Vec3&, double xi1, double xi2, float tim
     const Now now(*this, tapeOf(b), time);
     double roots[kRoots];
     const int n = alongAxis(b, now, axis, p, roots);
-    if (n == 0) return none; // nothing on this line
+    if (n == 0) return none;                                  // nothing on this line
     const double scrambled = x * 4096 - std::floor(x * 4096); // bits of x that the place of the line hardly sees
     p[axis] = roots[std::min(n - 1, int(scrambled * n))];
     double b1, b2;

@@ -15,7 +15,10 @@
 namespace alpenglow::geometry {
 namespace {
 
-struct Entry { const char* kind; ShapeRef (*make)(ShapeSource, Diagnostics&); };
+struct Entry {
+    const char* kind;
+    ShapeRef (*make)(ShapeSource, Diagnostics&);
+};
 constexpr Entry kTable[] = {
     {"Sphere", makeSphere},
     {"Cone", makeCone},
@@ -138,7 +141,7 @@ public:
     FrameBuilder(const scene::Frame& f, Diagnostics& d, const BuildOptions& o)
         : frame_(f), diag_(d), options_(o), shutter_(f.options), camera_(scene::at(f.options.worldToCamera, shutter_.open)),
           // REYES turned them to the eye once; where rays come from everywhere they turn to each.
-          facing_(f.options.hider != "hidden"               ? Facing::Ray
+          facing_(f.options.hider != "hidden"             ? Facing::Ray
                   : f.options.projection == "perspective" ? Facing::Eye
                                                           : Facing::Picture) {}
     std::vector<ShapeRef> run();
@@ -149,12 +152,15 @@ private:
         Matrix from; ///< its space to object space
         std::shared_ptr<SharedBounds> bounds;
     };
-    struct Usage { std::vector<const scene::Instance*> by; };
+    struct Usage {
+        std::vector<const scene::Instance*> by;
+    };
 
     bool full(const SourcePlace&);
     /// place: object to camera, over the shutter.
     void add(const PrimitiveRef&, const scene::AttributesRef&, Transform place, int instance);
-    void addShared(const PrimitiveRef&, const scene::AttributesRef&, const Transform& place, const scene::Instance&, int instance);
+    void addShared(const PrimitiveRef&, const scene::AttributesRef&, const Transform& place, const scene::Instance&,
+                   int instance);
     ShapeRef geometryOf(const PrimitiveRef&, const scene::AttributesRef&, const Matrix& toCamera, int instance);
     scene::AttributesRef coarser(const scene::AttributesRef&, const scene::Primitive&, const Transform& place) const;
     bool shares(const scene::Primitive&, const scene::Attributes*, size_t instances) const;
@@ -168,8 +174,9 @@ private:
     Matrix camera_;
     Facing facing_;
     std::vector<ShapeRef> out_;
-    std::vector<Usage> usage_;                                                     ///< by object
-    std::map<std::tuple<int, const scene::Primitive*, const void*>, Shared> shared_; ///< by object, primitive and what of the attributes it depends on
+    std::vector<Usage> usage_; ///< by object
+    std::map<std::tuple<int, const scene::Primitive*, const void*>, Shared>
+        shared_; ///< by object, primitive and what of the attributes it depends on
     std::map<std::pair<int, const scene::Primitive*>, Matrix> nearest_;
 };
 
@@ -233,7 +240,8 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
     const Matrix open = place.first();
     const bool deforms = scene::keysOverShutter(*p, shutter_).size() > 1;
     if (!place.moves() && !deforms) {
-        if (ShapeRef s = buildShape(scene::primitiveAt(p, shutter_.open), a, open, instance, diag_, facing_)) out_.push_back(std::move(s));
+        if (ShapeRef s = buildShape(scene::primitiveAt(p, shutter_.open), a, open, instance, diag_, facing_))
+            out_.push_back(std::move(s));
         return;
     }
     // The geometry lives where the shutter opens, so that what does not move has the numbers that it has in a still picture.
@@ -250,9 +258,10 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
     out_.push_back(std::make_shared<Placed>(std::move(s), geometry, place));
 }
 
-/// GeometricApproximation "motionfactor": what moves far needs fewer micropolygons. ShadingRate times the factor times a sixteenth of the
-/// pixels that the primitive moves, as 3Delight has it.
-scene::AttributesRef FrameBuilder::coarser(const scene::AttributesRef& a, const scene::Primitive& p, const Transform& place) const {
+/// GeometricApproximation "motionfactor": what moves far needs fewer micropolygons. ShadingRate times the factor times a
+/// sixteenth of the pixels that the primitive moves, as 3Delight has it.
+scene::AttributesRef FrameBuilder::coarser(const scene::AttributesRef& a, const scene::Primitive& p,
+                                           const Transform& place) const {
     const scene::Param* f = a ? a->value("GeometricApproximation:motionfactor") : nullptr;
     if (!f || f->numbers.empty() || !(f->numbers[0] > 0) || !place.moves()) return a;
     const DiceCamera camera = DiceCamera::from(frame_.options);
@@ -266,8 +275,8 @@ scene::AttributesRef FrameBuilder::coarser(const scene::AttributesRef& a, const 
     return out;
 }
 
-/// Whether the instances of a primitive should share it: it is large enough to matter, and what depends on the place (the grid of what
-/// is displaced, the area of an emitter) does not make it different in each.
+/// Whether the instances of a primitive should share it: it is large enough to matter, and what depends on the place (the grid of
+/// what is displaced, the area of an emitter) does not make it different in each.
 bool FrameBuilder::shares(const scene::Primitive& p, const scene::Attributes* a, size_t instances) const {
     if (instances < 2 || !a || a->displacement || a->areaLight >= 0) return false;
     if (facing_ != Facing::Ray && (p.kind == "Curves" || p.kind == "Points")) return false; // each turns to the eye
@@ -292,8 +301,8 @@ const Matrix& FrameBuilder::nearest(const scene::Instance& inst, const scene::Pr
     return at->second;
 }
 
-void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& a, const Transform& place, const scene::Instance& inst,
-                             int instance) {
+void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& a, const Transform& place,
+                             const scene::Instance& inst, int instance) {
     if (full(p->place)) return;
     const bool polygons = p->kind.find("Polygon") != std::string::npos;
     auto [at, fresh] = shared_.try_emplace({inst.object, p.get(), polygons ? nullptr : a.get()});
@@ -338,7 +347,8 @@ std::vector<ShapeRef> FrameBuilder::run() {
                 attributes = instanceAttributes(*p, inst);
             last = p.get();
             Transform place = scene::compose(scene::overShutter(p->toWorld, shutter_), toCamera);
-            if (shares(*p, attributes.get(), usage_[size_t(inst.object)].by.size())) addShared(p, attributes, place, inst, int(i));
+            if (shares(*p, attributes.get(), usage_[size_t(inst.object)].by.size()))
+                addShared(p, attributes, place, inst, int(i));
             else add(p, attributes, std::move(place), int(i));
         }
     }

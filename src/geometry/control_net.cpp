@@ -77,7 +77,8 @@ NetDirection::Cell NetDirection::cell(double x) const {
     const double t = lo_ + x * (hi_ - lo_);
     const int span = spanOf(t);
     const double first = knots_[size_t(span)], length = knots_[size_t(span) + 1] - first;
-    return {span - (order_ - 1), length > 0 ? std::clamp((t - first) / length, 0.0, 1.0) : 0, length > 0 ? (hi_ - lo_) / length : 0};
+    return {span - (order_ - 1), length > 0 ? std::clamp((t - first) / length, 0.0, 1.0) : 0,
+            length > 0 ? (hi_ - lo_) / length : 0};
 }
 
 BasisSpan NetDirection::at(double x) const {
@@ -236,7 +237,10 @@ Vec3d ControlNet::cameraPosition(double u, double v) const {
         for (int i = 0; i < a.count; ++i) {
             const auto& p = points_[size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i])];
             double k = a.w[i] * b.w[j];
-            x += k * p[0]; y += k * p[1]; z += k * p[2]; w += k * p[3];
+            x += k * p[0];
+            y += k * p[1];
+            z += k * p[2];
+            w += k * p[3];
         }
     return rational_ && w != 0 ? Vec3d(x / w, y / w, z / w) : Vec3d(x, y, z);
 }
@@ -254,7 +258,12 @@ void ControlNet::differentiate(double u, double v, LocalPoint& r) const {
         }
     auto v3 = [&](int q) { return Vec3d(f[q][0], f[q][1], f[q][2]); };
     if (!rational_ || f[0][3] == 0) {
-        r.P = v3(0); r.Pu = v3(1); r.Pv = v3(2); r.Puu = v3(3); r.Puv = v3(4); r.Pvv = v3(5);
+        r.P = v3(0);
+        r.Pu = v3(1);
+        r.Pv = v3(2);
+        r.Puu = v3(3);
+        r.Puv = v3(4);
+        r.Pvv = v3(5);
         return;
     }
     double w = f[0][3], wu = f[1][3], wv = f[2][3], wuu = f[3][3], wuv = f[4][3], wvv = f[5][3];
@@ -338,10 +347,14 @@ double ControlNet::sampleDensity(const SurfacePoint& p) const {
 
 size_t ControlNet::classCount(Class c) const {
     switch (c) {
-    case Class::Constant: return 1;
-    case Class::Uniform: return size_t(faces());
-    case Class::Vertex: return points_.size();
-    default: return size_t(u_.varyings()) * size_t(v_.varyings());
+    case Class::Constant:
+        return 1;
+    case Class::Uniform:
+        return size_t(faces());
+    case Class::Vertex:
+        return points_.size();
+    default:
+        return size_t(u_.varyings()) * size_t(v_.varyings());
     }
 }
 

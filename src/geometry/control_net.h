@@ -38,9 +38,13 @@ public:
     /// Whether a knot is there so often that the two sides have no point in common.
     bool torn(double border) const;
     /// Bezier points of a patch of a curve by this basis, between two borders; points: by control index.
-    template <class Points> std::vector<std::array<double, 4>> bezier(int patch, double from, double to, const Points& points) const;
+    template <class Points>
+    std::vector<std::array<double, 4>> bezier(int patch, double from, double to, const Points& points) const;
     /// The patch at x, how far x lies in it (0..1), and how fast that grows. NURBS: between knots.
-    struct Cell { int patch; double at, slope; };
+    struct Cell {
+        int patch;
+        double at, slope;
+    };
     Cell cell(double x) const;
 
 private:

@@ -25,7 +25,9 @@ Jet unit(const Jet& v) {
     return {u, d, (v.dd - d * (2 * ld) - u * ldd) / l};
 }
 
-double CurveSegment::widest() const { return linear ? std::max(h[0], h[1]) : std::max(std::max(h[0], h[1]), std::max(h[2], h[3])); }
+double CurveSegment::widest() const {
+    return linear ? std::max(h[0], h[1]) : std::max(std::max(h[0], h[1]), std::max(h[2], h[3]));
+}
 
 void acrossFrame(const Vec3d& along, Vec3d& a, Vec3d& b) {
     // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
@@ -73,8 +75,8 @@ Jet curveAt(const CurveSegment& g, double f) {
     return {c.f, c.d, c.dd};
 }
 
-/// The side vector of a linear ribbon at an end: mitred with the neighbour, which thus has the same one; ends and turns of more than 120
-/// degrees are cut straight.
+/// The side vector of a linear ribbon at an end: mitred with the neighbour, which thus has the same one; ends and turns of more
+/// than 120 degrees are cut straight.
 static Vec3d mitred(const CurveSegment& g, const CurveFacing& face, bool end) {
     const Vec3d corner = end ? g.p[2] : g.p[1];
     const Vec3d n = face.kind == CurveFacing::Point ? face.at - corner : face.kind == CurveFacing::Given ? g.n[end] : face.at;

@@ -72,7 +72,8 @@ int meetFlatLine(const CurveSegment& g, double from, double to, const CurveFacin
 
 } // namespace
 
-int meetRibbon(const CurveSegment& g, double from, double to, const CurveFacing& face, bool fromRay, const CurveRay& r, CurveHit out[4]) {
+int meetRibbon(const CurveSegment& g, double from, double to, const CurveFacing& face, bool fromRay, const CurveRay& r,
+               CurveHit out[4]) {
     if (g.linear) return meetFlatLine(g, from, to, face, r, out);
     Vec3d p[4];
     for (int i = 0; i < 4; ++i) p[i] = r.placed(g.p[i]);
@@ -133,21 +134,23 @@ int meetRibbon(const CurveSegment& g, double from, double to, const CurveFacing&
         const double s = -(at.x * b.x + at.y * b.y) / (bb * half);
         if (!(std::fabs(s) <= 1 + kEdge)) continue;
         const double clamped = std::clamp(s, -1.0, 1.0);
-        keep(r, out, n, {r.t(at.z + clamped * half * b.z), clamped, from + (to - from) * f, r.e1 * b.x + r.e2 * b.y + r.e3 * b.z});
+        keep(r, out, n,
+             {r.t(at.z + clamped * half * b.z), clamped, from + (to - from) * f, r.e1 * b.x + r.e2 * b.y + r.e3 * b.z});
     }
     return n;
 }
 
 namespace {
 
-/// Where the ray, the z axis, meets the endless cone about p0 to p1; how many z. Where it does not quite (`misses`), two about the nearest
-/// it comes.
+/// Where the ray, the z axis, meets the endless cone about p0 to p1; how many z. Where it does not quite (`misses`), two about
+/// the nearest it comes.
 int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2], bool& misses) {
     misses = false;
     const double l = length(p1 - p0);
     const Vec3d t = (p1 - p0) / l;
     const double k = (h1 - h0) / l, kk = 1 + k * k, at = dot(p0, t);
-    const double a = 1 - kk * t.z * t.z, b = -p0.z + kk * t.z * at - h0 * k * t.z, c = dot(p0, p0) - kk * at * at + 2 * h0 * k * at - h0 * h0;
+    const double a = 1 - kk * t.z * t.z, b = -p0.z + kk * t.z * at - h0 * k * t.z,
+                 c = dot(p0, p0) - kk * at * at + 2 * h0 * k * at - h0 * h0;
     if (const int n = solveQuadratic(a, b, c, z)) return n;
     if (!(a > 0)) return 0;
     const double wide = std::max(h0, h1) / std::sqrt(a), gap = (c - b * b / a) / std::max(h0 * h0, h1 * h1);
@@ -197,7 +200,8 @@ int meetRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]) {
     const int roots = meetCone(a, g.h[0], b, g.h[1], z, misses);
     const Vec3d along = normalize(b - a), before = normalize(a - r.placed(g.p[0])), behind = normalize(r.placed(g.p[3]) - b);
     // Planes that halve the angle with the neighbours; ends and turns of more than 120 degrees are cut straight.
-    const Vec3d first = dot(before, along) > -0.5 ? along + before : along, second = dot(behind, along) > -0.5 ? along + behind : along;
+    const Vec3d first = dot(before, along) > -0.5 ? along + before : along,
+                second = dot(behind, along) > -0.5 ? along + behind : along;
     int n = 0;
     for (int i = 0; i < roots; ++i) {
         const Vec3d at(0, 0, z[i]);
@@ -230,7 +234,8 @@ int meetTube(const CurveSegment& g, double from, double to, const CurveRay& r, C
         const double widest = std::max(std::max(w.tube.h[0], w.tube.h[1]), std::max(w.tube.h[2], w.tube.h[3]));
         if (!(widest > 0) || !passesBy(r, w.tube.p, 4, widest)) continue;
         const Vec3d* p = w.tube.p;
-        const double bent = std::max(length(p[0] - p[1] * 2.0 + p[2]), length(p[1] - p[2] * 2.0 + p[3])), chord = length(p[3] - p[0]);
+        const double bent = std::max(length(p[0] - p[1] * 2.0 + p[2]), length(p[1] - p[2] * 2.0 + p[3])),
+                     chord = length(p[3] - p[0]);
         const double narrowed = std::fabs(w.tube.h[3] - w.tube.h[0]);
         const bool small = w.to - w.from <= 1. / 1024;
         const auto halve = [&] {
@@ -258,7 +263,8 @@ int meetTube(const CurveSegment& g, double from, double to, const CurveRay& r, C
             lost |= !misses && (found ? std::fabs(f - begin) > 0.5 : begin > -1 && begin < 2);
             if (!found || !(f >= -kEdge && f <= 1 + kEdge)) continue;
             const CurveHit h{r.t(at), 0, w.from + (w.to - w.from) * std::clamp(f, 0.0, 1.0), {}};
-            const bool known = std::any_of(out, out + n, [&](const CurveHit& o) { return std::fabs(o.t - h.t) * r.length < 1e-7 * widest; });
+            const bool known =
+                std::any_of(out, out + n, [&](const CurveHit& o) { return std::fabs(o.t - h.t) * r.length < 1e-7 * widest; });
             if (!known) keep(r, out, n, h);
         }
         if (lost && !small) halve(); // what was found is known then

@@ -39,10 +39,14 @@ uint32_t CurveSet::cornerOf(const Row& r, uint32_t local, uint32_t k) const {
 
 size_t CurveSet::classCount(Class c) const {
     switch (c) {
-    case Class::Constant: return 1;
-    case Class::Uniform: return counts_->size();
-    case Class::Vertex: return vertices_;
-    default: return varying_;
+    case Class::Constant:
+        return 1;
+    case Class::Uniform:
+        return counts_->size();
+    case Class::Vertex:
+        return vertices_;
+    default:
+        return varying_;
     }
 }
 
@@ -78,7 +82,8 @@ bool CurveSet::take(const ShapeSource& s, Diagnostics& diag) {
     periodic_ = p.strings.size() > 1 && p.strings[1] == "periodic";
     const scene::Basis& b = s.attributes->vbasis;
     step_ = linear_ ? 1 : uint32_t(std::max(1, b.step));
-    static constexpr double kToBezier[4][4] = {{0, 0, 0, 1}, {0, 0, 1. / 3, 1}, {0, 1. / 3, 2. / 3, 1}, {1, 1, 1, 1}}; // of a Bezier's inverse
+    static constexpr double kToBezier[4][4] = {
+        {0, 0, 0, 1}, {0, 0, 1. / 3, 1}, {0, 1. / 3, 2. / 3, 1}, {1, 1, 1, 1}}; // of a Bezier's inverse
     static constexpr double kBezier[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
     bezier_ = true;
     for (int i = 0; i < 4; ++i)
@@ -104,7 +109,8 @@ bool CurveSet::take(const ShapeSource& s, Diagnostics& diag) {
         }
         P_ = divided_.data();
         if (!alike && !linear_)
-            say(diag, p, Severity::Warning, "\"Pw\" with weights that differ: its points are divided by them, the curves are not rational");
+            say(diag, p, Severity::Warning,
+                "\"Pw\" with weights that differ: its points are divided by them, the curves are not rational");
     }
     if (!points) return fail(Rie::MissingData, "\"P\" is missing");
     if (p.ints.empty()) return fail(Rie::MissingData, "no number of points of any curve is given");
@@ -128,7 +134,8 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
         if (const uint32_t k = segmentsOf(uint32_t(n))) varying_ += corners(k);
     takeWidths(s, diag);
     for (const scene::Param& q : p.params) {
-        if (q.name != "N" || scene::componentCount(q.type) != 3 || q.arrayLength || q.numbers.size() < 3 * classCount(q.cls)) continue;
+        if (q.name != "N" || scene::componentCount(q.type) != 3 || q.arrayLength || q.numbers.size() < 3 * classCount(q.cls))
+            continue;
         normal_ = q.numbers.data(); // takePrimvars() says what is wrong with others
         normalClass_ = q.cls;
     }
@@ -174,7 +181,8 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
             continue;
         }
         if (curveOf_.size() + k > 0x3fffffffu) {
-            diag.report(Severity::Error, Rie::Limit, p.place, p.kind + ": more than a thousand million segments; the rest is not drawn");
+            diag.report(Severity::Error, Rie::Limit, p.place,
+                        p.kind + ": more than a thousand million segments; the rest is not drawn");
             break;
         }
         curveOf_.insert(curveOf_.end(), k, uint32_t(rows_.size()));
@@ -189,7 +197,8 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
 }
 
 uint32_t CurveSet::segmentAt(int face, double v, double& f) const {
-    const auto r = std::lower_bound(rows_.begin(), rows_.end() - 2, uint32_t(std::max(face, 0)), [](const Row& a, uint32_t b) { return a.face < b; });
+    const auto r = std::lower_bound(rows_.begin(), rows_.end() - 2, uint32_t(std::max(face, 0)),
+                                    [](const Row& a, uint32_t b) { return a.face < b; });
     const uint32_t n = (&*r)[1].segment - r->segment;
     const double x = std::clamp(v, 0.0, 1.0) * n;
     const uint32_t i = std::min(uint32_t(x), n - 1);
@@ -235,7 +244,11 @@ void CurveSet::load(uint32_t segment, CurveSegment& g) const {
         else out[1] = a + (b - a) * (1. / 3), out[2] = a + (b - a) * (2. / 3), out[3] = b;
     };
     fill(width_.cls, [&](uint32_t k) { return 0.5 * std::max(0.f, width_.values[k]); }, g.h);
-    if (normal_) fill(normalClass_, [&](uint32_t k) { return Vec3d(normal_[3 * size_t(k)], normal_[3 * size_t(k) + 1], normal_[3 * size_t(k) + 2]); }, g.n);
+    if (normal_)
+        fill(
+            normalClass_,
+            [&](uint32_t k) { return Vec3d(normal_[3 * size_t(k)], normal_[3 * size_t(k) + 1], normal_[3 * size_t(k) + 2]); },
+            g.n);
     const Vec3d chord = point(vertexOf(r, count - 1, linear_ ? 1 : 3)) - point(r.vertex);
     const double x = std::fabs(chord.x), y = std::fabs(chord.y), z = std::fabs(chord.z);
     g.axis = x <= y && x <= z ? Vec3d(1, 0, 0) : y <= z ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);

@@ -1,4 +1,5 @@
-// Curves type nvertices wrap: flat ribbons with "N", ribbons that face the eye or the ray without, or round (Attribute "dice" "roundcurve").
+// Curves type nvertices wrap: flat ribbons with "N", ribbons that face the eye or the ray without, or round (Attribute "dice"
+// "roundcurve").
 #include "geometry/curves.h"
 #include "base/exact.h"
 #include "geometry/dice.h"
@@ -11,7 +12,8 @@
 namespace alpenglow::geometry {
 namespace {
 
-/// Hits of ribbons that face the ray say how the ribbon was turned: ExactHit::u is 2 * turn + u, turn counting these parts of a circle.
+/// Hits of ribbons that face the ray say how the ribbon was turned: ExactHit::u is 2 * turn + u, turn counting these parts of a
+/// circle.
 constexpr double kTurns = 1 << 24;
 
 class Curves final : public KeyedShape {
@@ -67,8 +69,8 @@ private:
     bool fromRay_ = false;
     uint32_t parts_ = 1; ///< primitives of a segment
     Matrix toObject_;
-    double side_ = 1;        ///< +1, -1: of Ng along dPdu ^ dPdv of object space
-    double reach_[3];    ///< half the extent of a unit ball of object space along camera axes
+    double side_ = 1; ///< +1, -1: of Ng along dPdu ^ dPdv of object space
+    double reach_[3]; ///< half the extent of a unit ball of object space along camera axes
     mutable std::once_flag made_;
     mutable std::vector<double> areas_; ///< summed up by segment; of what moves, the mean of its keys
 };
@@ -151,7 +153,8 @@ Bounds Curves::keyBounds(uint32_t prim) const {
     for (int i = 0; i < n; ++i) {
         const Vec3d c = transformPoint(toCamera(), p[i]);
         const double slack = 1e-6 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z)) + 1e-30;
-        const Vec3d r(reach_[0] * wide * 1.000001 + slack, reach_[1] * wide * 1.000001 + slack, reach_[2] * wide * 1.000001 + slack);
+        const Vec3d r(reach_[0] * wide * 1.000001 + slack, reach_[1] * wide * 1.000001 + slack,
+                      reach_[2] * wide * 1.000001 + slack);
         b.add(Vec3(c - r));
         b.add(Vec3(c + r));
     }
@@ -208,7 +211,8 @@ LocalPoint Curves::local(const CurveSegment& g, const CurveFacing& facing, doubl
         tubeFrame(g, f, a, b, r);
         // Outward, and counterclockwise as seen from where the curve goes to.
         const auto [s, k] = exact::sinCos(2 * kPi * u);
-        const Jet out = r * (ScalarJet{k} * a + ScalarJet{s} * b), round = r * (ScalarJet{-2 * kPi * s} * a + ScalarJet{2 * kPi * k} * b);
+        const Jet out = r * (ScalarJet{k} * a + ScalarJet{s} * b),
+                  round = r * (ScalarJet{-2 * kPi * s} * a + ScalarJet{2 * kPi * k} * b);
         p = {c.f + out.f, round.f, c.d + out.d, out.f * (-4 * kPi * kPi), round.d, c.dd + out.dd};
         p.n = a.f * k + b.f * s;
     } else {
@@ -217,7 +221,8 @@ LocalPoint Curves::local(const CurveSegment& g, const CurveFacing& facing, doubl
         p = {c.f + w.f * s, w.f * 2.0, c.d + w.d * s, Vec3d(0.0), w.d * 2.0, c.dd + w.dd * s};
         p.n = facing.kind == CurveFacing::Point ? facing.at - c.f : facing.at; // where the product vanishes
         // Where a bend is narrower than the ribbon its inner side lies folded: what faces the ray goes on doing so.
-        if (facing.kind != CurveFacing::Given && dot(cross(p.Pu, p.Pv), p.n) * facing.side <= 0) p.Pv = c.d, p.Puv = p.Pvv = Vec3d(0.0);
+        if (facing.kind != CurveFacing::Given && dot(cross(p.Pu, p.Pv), p.n) * facing.side <= 0)
+            p.Pv = c.d, p.Puv = p.Pvv = Vec3d(0.0);
     }
     return p;
 }
@@ -298,7 +303,8 @@ const std::vector<double>& Curves::areas() const {
             for (size_t j = 0; j < keys(); ++j)
                 for (int k = 0; k < 4; ++k)
                     for (int a = 0; a < around; ++a) {
-                        const SurfacePoint p = static_cast<const Curves&>(key(j)).pointOf(i, (a + 0.5) / around, x[k], Vec3d(0.0), 0);
+                        const SurfacePoint p =
+                            static_cast<const Curves&>(key(j)).pointOf(i, (a + 0.5) / around, x[k], Vec3d(0.0), 0);
                         sum += w[k] * length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / (n * around);
                     }
             areas_.push_back(sum);

@@ -1,7 +1,8 @@
 // Curves (ri.md 8.4): what their shape, its bounds and its two kinds of surface share. Object space, double.
 //
-// A ribbon is C(v) + (2u - 1) h(v) B(v) with the half width h and B across the curve: along dC/dv ^ N, N being the variable "N" or what the
-// ribbon faces. A tube is swept by circles of radius h across the curve. v runs along a curve, within a segment it is called f.
+// A ribbon is C(v) + (2u - 1) h(v) B(v) with the half width h and B across the curve: along dC/dv ^ N, N being the variable "N"
+// or what the ribbon faces. A tube is swept by circles of radius h across the curve. v runs along a curve, within a segment it is
+// called f.
 #pragma once
 #include "geometry/bernstein.h"
 #include "geometry/shape.h"
@@ -27,20 +28,21 @@ Jet unit(const Jet&);
 /// One segment, ready to be met or evaluated.
 struct CurveSegment {
     bool linear = false;
-    Vec3d p[4];    ///< cubic: Bezier points. Linear: the point before it, its ends, the point behind it (an end again where there is none)
-    double h[4];   ///< half widths: cubic in Bernstein form; linear: at the ends, [0] and [1]. Not negative
-    Vec3d n[4];    ///< the same of the variable "N", where it counts
-    Vec3d axis;    ///< tubes: where u is 0, turned from this axis
+    Vec3d p[4]; ///< cubic: Bezier points. Linear: the point before it, its ends, the point behind it (an end again where there is
+                ///< none)
+    double h[4]; ///< half widths: cubic in Bernstein form; linear: at the ends, [0] and [1]. Not negative
+    Vec3d n[4];  ///< the same of the variable "N", where it counts
+    Vec3d axis;  ///< tubes: where u is 0, turned from this axis
     double widest() const;
 };
 
 /// What the flat side looks to.
 struct CurveFacing {
     enum Kind {
-        Along,  ///< everywhere along `at`
-        Point,  ///< toward `at`
-        Given,  ///< CurveSegment::n
-        Round   ///< a tube
+        Along, ///< everywhere along `at`
+        Point, ///< toward `at`
+        Given, ///< CurveSegment::n
+        Round  ///< a tube
     } kind = Along;
     Vec3d at;
     double side = 1; ///< sign of B along dC/df ^ N
@@ -70,11 +72,11 @@ struct CurveHit {
     double t, s, f; ///< s: ribbons -1..1 across; tubes u
     Vec3d across;   ///< ribbons: B
 };
-/// Hits with lo < t <= hi of the part from..to of a segment, at most 4, in no order. fromRay: the ribbon faces the ray, facing.at is its
-/// direction reversed.
+/// Hits with lo < t <= hi of the part from..to of a segment, at most 4, in no order. fromRay: the ribbon faces the ray, facing.at
+/// is its direction reversed.
 int meetRibbon(const CurveSegment&, double from, double to, const CurveFacing&, bool fromRay, const CurveRay&, CurveHit out[4]);
-/// Tubes have no ends. Subdivided until a cone is within a fiftieth of its radius of the part (or 1/1024 of the segment is left), then
-/// Newton's iteration on the swept circle itself, to the last bits.
+/// Tubes have no ends. Subdivided until a cone is within a fiftieth of its radius of the part (or 1/1024 of the segment is left),
+/// then Newton's iteration on the swept circle itself, to the last bits.
 int meetTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4]);
 
 /// How curves lie in the arrays of their request.
@@ -84,7 +86,7 @@ public:
     bool take(const ShapeSource&, Diagnostics&);
     uint32_t segments() const { return uint32_t(curveOf_.size()); }
     struct Place {
-        uint32_t face; ///< curve of the request
+        uint32_t face;         ///< curve of the request
         uint32_t local, count; ///< segment of its curve, and how many it has
     };
     Place place(uint32_t segment) const {
@@ -100,7 +102,9 @@ public:
     bool linear() const { return linear_; }
     /// Whether the same curves of both are drawn, cut into the same segments.
     bool alike(const CurveSet& o) const {
-        const auto same = [](const Row& a, const Row& b) { return a.vertex == b.vertex && a.corner == b.corner && a.segment == b.segment && a.face == b.face; };
+        const auto same = [](const Row& a, const Row& b) {
+            return a.vertex == b.vertex && a.corner == b.corner && a.segment == b.segment && a.face == b.face;
+        };
         return linear_ == o.linear_ && periodic_ == o.periodic_ && step_ == o.step_ && !normal_ == !o.normal_ &&
                std::equal(rows_.begin(), rows_.end(), o.rows_.begin(), o.rows_.end(), same);
     }
@@ -128,10 +132,10 @@ private:
     Widths width_;
     bool linear_ = false, periodic_ = false, bezier_ = false;
     uint32_t step_ = 1;
-    double basis_[4][4];    ///< value = (t^3 t^2 t 1) basis_ P
+    double basis_[4][4]; ///< value = (t^3 t^2 t 1) basis_ P
     double toBezier_[4][4];
     size_t vertices_ = 0, varying_ = 0;
-    std::vector<Row> rows_; ///< of curves that are drawn; and one behind the last
+    std::vector<Row> rows_;         ///< of curves that are drawn; and one behind the last
     std::vector<uint32_t> curveOf_; ///< row by segment
 };
 

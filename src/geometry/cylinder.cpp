@@ -8,7 +8,9 @@ namespace {
 class Cylinder final : public Quadric {
 public:
     Cylinder(ShapeSource s, double r, double zmin, double zmax, double sweep, Diagnostics& d)
-        : Quadric(std::move(s), sweep, d), r_(r), zmin_(zmin), zmax_(zmax) { finish(d); }
+        : Quadric(std::move(s), sweep, d), r_(r), zmin_(zmin), zmax_(zmax) {
+        finish(d);
+    }
 
 private:
     Profile profile(double v) const override { return {{r_, 0, zmin_ + v * (zmax_ - zmin_)}, {0, 0, zmax_ - zmin_}, {}}; }

@@ -17,9 +17,7 @@ Deforming::Deforming(ShapeSource s, std::vector<ShapeRef> keys, std::vector<floa
     normal_.param = keys_[0]->givesNormals() ? source_.primitive->params.data() : nullptr; // whether; the values are the keys'
 }
 
-size_t Deforming::keyAt(float time, double& way) const {
-    return keyBefore(times_, time, way);
-}
+size_t Deforming::keyAt(float time, double& way) const { return keyBefore(times_, time, way); }
 
 void Deforming::corners(uint32_t prim, float time, Vec3d out[3]) const {
     double way;
@@ -43,8 +41,8 @@ SurfacePoint Deforming::between(const SurfacePoint& a, const SurfacePoint& b, do
     for (auto v : {&SurfacePoint::P, &SurfacePoint::dPdu, &SurfacePoint::dPdv, &SurfacePoint::Puu, &SurfacePoint::Puv,
                    &SurfacePoint::Pvv, &SurfacePoint::dNdu, &SurfacePoint::dNdv, &SurfacePoint::displacedP})
         p.*v = mix(a.*v, b.*v, w);
-    for (auto f : {&SurfacePoint::u, &SurfacePoint::v, &SurfacePoint::s, &SurfacePoint::t, &SurfacePoint::dsdu, &SurfacePoint::dsdv,
-                   &SurfacePoint::dtdu, &SurfacePoint::dtdv})
+    for (auto f : {&SurfacePoint::u, &SurfacePoint::v, &SurfacePoint::s, &SurfacePoint::t, &SurfacePoint::dsdu,
+                   &SurfacePoint::dsdv, &SurfacePoint::dtdu, &SurfacePoint::dtdv})
         p.*f = mix(a.*f, b.*f, w);
     const bool own = a.N == a.n && b.N == b.n;
     const Vec3d g = cross(Vec3d(p.dPdu), Vec3d(p.dPdv)) * double(a.orientation), blend = Vec3d(mix(a.n, b.n, w));
@@ -59,8 +57,8 @@ SurfacePoint Deforming::between(const SurfacePoint& a, const SurfacePoint& b, do
 }
 
 /// What of a facet of a mesh that is its own surface depends on its shape at the time: the normal, and slopes by u and v, which
-/// for polygons are object x and y and so change with it. All of them follow from what the facet's corners have; where u and v are the
-/// same all over it, slopes stay what they are.
+/// for polygons are object x and y and so change with it. All of them follow from what the facet's corners have; where u and v
+/// are the same all over it, slopes stay what they are.
 void Deforming::facet(SurfacePoint& p, uint32_t prim, size_t key, double way, uint32_t needs) const {
     const ShapeRef &first = keys_[key], &last = keys_[std::min(key + 1, keys_.size() - 1)];
     Vec3d P[3];
@@ -80,7 +78,8 @@ void Deforming::facet(SurfacePoint& p, uint32_t prim, size_t key, double way, ui
     static_cast<const PolygonMesh&>(*first).cornerParameters(prim, x);
     static_cast<const PolygonMesh&>(*last).cornerParameters(prim, y);
     for (int i = 0; i < 3; ++i)
-        for (auto f : {&SurfacePoint::u, &SurfacePoint::v, &SurfacePoint::s, &SurfacePoint::t}) c[i].*f = mix(x[i].*f, y[i].*f, way);
+        for (auto f : {&SurfacePoint::u, &SurfacePoint::v, &SurfacePoint::s, &SurfacePoint::t})
+            c[i].*f = mix(x[i].*f, y[i].*f, way);
     const auto step = [&](float SurfacePoint::* f, int i) { return double(c[i].*f) - double(c[0].*f); };
     const double u1 = step(&SurfacePoint::u, 1), u2 = step(&SurfacePoint::u, 2), v1 = step(&SurfacePoint::v, 1),
                  v2 = step(&SurfacePoint::v, 2), det = u1 * v2 - u2 * v1;
@@ -134,7 +133,8 @@ void Deforming::sampleAreaAt(double xi1, double xi2, float time, SurfacePoint& o
     }
     double way;
     const size_t k = keyAt(time, way);
-    out = between(keys_[k]->evaluate(0, chosen.b1, chosen.b2), keys_[std::min(k + 1, keys_.size() - 1)]->evaluate(0, chosen.b1, chosen.b2), way);
+    out = between(keys_[k]->evaluate(0, chosen.b1, chosen.b2),
+                  keys_[std::min(k + 1, keys_.size() - 1)]->evaluate(0, chosen.b1, chosen.b2), way);
     out.time = time;
 }
 
@@ -184,7 +184,8 @@ Vec3 Deforming::velocity(const SurfacePoint& at) const {
 
 void reportUnlike(const Shape& s, Diagnostics& diag) {
     diag.report(Severity::Warning, Rie::Incapable, s.place(),
-                "the keys of this moving " + s.kind() + " are not made of the same pieces: it is drawn where it is at its first time");
+                "the keys of this moving " + s.kind() +
+                    " are not made of the same pieces: it is drawn where it is at its first time");
 }
 
 void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {
@@ -198,7 +199,8 @@ void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {
     }
     const TriMesh& first = keys_[0]->mesh();
     for (const ShapeRef& k : keys_)
-        if (k->exact() || k->mesh().vertices != first.vertices || !std::equal(first.index.begin(), first.index.end(), k->mesh().index.begin(), k->mesh().index.end())) {
+        if (k->exact() || k->mesh().vertices != first.vertices ||
+            !std::equal(first.index.begin(), first.index.end(), k->mesh().index.begin(), k->mesh().index.end())) {
             reportUnlike(*this, diag);
             for (const ShapeRef& other : keys_)
                 if (options.seams && other != keys_[0]) options.seams->drop(other->mesh());

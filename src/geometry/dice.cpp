@@ -25,7 +25,10 @@ DiceCamera DiceCamera::from(const scene::Options& o) {
     double aspect = o.frameAspect ? double(*o.frameAspect) : double(o.xres) * o.pixelAspect / std::max(1, o.yres);
     double left, right, bottom, top;
     if (o.screenWindow && o.screenWindow->size() == 4) {
-        left = (*o.screenWindow)[0]; right = (*o.screenWindow)[1]; bottom = (*o.screenWindow)[2]; top = (*o.screenWindow)[3];
+        left = (*o.screenWindow)[0];
+        right = (*o.screenWindow)[1];
+        bottom = (*o.screenWindow)[2];
+        top = (*o.screenWindow)[3];
     } else {
         right = aspect >= 1 ? aspect : 1;
         top = aspect >= 1 ? 1 : 1 / aspect;
@@ -153,8 +156,14 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
         for (uint32_t i = 0; i < count && i < g.P.size(); ++i) {
             Vec3 p = g.P[i];
             double far = length(Vec3d(p) - Vec3d(g.points[i].P));
-            if (!std::isfinite(far)) { ++notFinite; continue; }
-            if (far > limits::kDisplacementBound) { ++tooFar; continue; }
+            if (!std::isfinite(far)) {
+                ++notFinite;
+                continue;
+            }
+            if (far > limits::kDisplacementBound) {
+                ++tooFar;
+                continue;
+            }
             if (bound.radius >= 0) farthest = std::max(farthest, bound.reach(Vec3d(p) - Vec3d(g.points[i].P)));
             // An unmoved vertex keeps its bits, and with them the closed seams of the mesh.
             if (!(p == g.points[i].P)) mesh.P[begin + i] = p;
@@ -174,7 +183,8 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
                     "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
                         ", beyond its displacementbound of " + std::to_string(bound.radius) + " in \"" + bound.space +
                         "\" space; it is drawn whole",
-                    bound.radius > 0 ? "other renderers need the bound times " + factor(farthest / bound.radius) : "other renderers need a bound that is not 0");
+                    bound.radius > 0 ? "other renderers need the bound times " + factor(farthest / bound.radius)
+                                     : "other renderers need a bound that is not 0");
 }
 
 void closeSeams(const DiceOptions& opt, TriMesh& mesh, std::vector<uint32_t> vertex, std::vector<Vec3> flat) {
@@ -186,8 +196,8 @@ void closeSeams(const DiceOptions& opt, TriMesh& mesh, std::vector<uint32_t> ver
 
 namespace {
 
-/// What must be the same of two shapes for their borders to be one throughout the shutter: nothing for shapes that stand still. To some
-/// 1e-6, as the same motion comes through several products of matrices.
+/// What must be the same of two shapes for their borders to be one throughout the shutter: nothing for shapes that stand still.
+/// To some 1e-6, as the same motion comes through several products of matrices.
 std::vector<double> motionOf(const Placed* p) {
     std::vector<double> out;
     if (!p || !p->placeMoves()) return out;

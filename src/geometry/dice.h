@@ -41,13 +41,13 @@ struct DiceOptions {
         std::string space;
     };
     std::function<DeclaredBound(const Shape&)> declaredBound; ///< null: none says anything
-    /// The shape to be diced and what it is at other times: all of them are diced alike, each finely enough for all, and also those
-    /// that rays could meet exactly. Empty: a still shape.
+    /// The shape to be diced and what it is at other times: all of them are diced alike, each finely enough for all, and also
+    /// those that rays could meet exactly. Empty: a still shape.
     std::span<const ShapeRef> keys;
     /// Where borders of displaced shapes are left, to be closed when all are diced; null: a shape closes its own.
     Seams* seams = nullptr;
-    uint32_t seamOrder = 0;         ///< of this shape among all, one apart for each key
-    std::vector<double> seamWith;   ///< borders are closed among those for which this is the same: how they move
+    uint32_t seamOrder = 0;               ///< of this shape among all, one apart for each key
+    std::vector<double> seamWith;         ///< borders are closed among those for which this is the same: how they move
     const EdgeCorners* corners = nullptr; ///< of all displaced shapes that stand still; null: only a shape's own edges cut it
     /// From a named space to camera space; null, or false: the space is not known.
     std::function<bool(const Shape&, const std::string& space, Matrix& out)> spaceOf;
@@ -55,8 +55,8 @@ struct DiceOptions {
 
 /// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.
 double diceEdge(const scene::Attributes&);
-/// GeometricApproximation "flatness": pixels that facets of what is not displaced may stray from the surface, within limits, whatever
-/// ShadingRate says; 0: it says nothing.
+/// GeometricApproximation "flatness": pixels that facets of what is not displaced may stray from the surface, within limits,
+/// whatever ShadingRate says; 0: it says nothing.
 double diceFlatness(const scene::Attributes&);
 /// Whether dicing must displace this shape.
 bool isDisplaced(const Shape&, const DiceOptions&);

@@ -38,7 +38,8 @@ EdgeCurve EdgeCurve::bezier(std::span<const std::array<double, 4>> points) {
     e.reversed_ = std::lexicographical_compare(e.points_.rbegin(), e.points_.rend(), e.points_.begin(), e.points_.end());
     if (e.reversed_) std::reverse(e.points_.begin(), e.points_.end());
     const auto place = [](const std::array<double, 4>& p) { return single(Vec3d(p[0], p[1], p[2]) / p[3]); };
-    e.collapsed_ = std::all_of(e.points_.begin(), e.points_.end(), [&](const auto& p) { return place(p) == place(e.points_[0]); });
+    e.collapsed_ =
+        std::all_of(e.points_.begin(), e.points_.end(), [&](const auto& p) { return place(p) == place(e.points_[0]); });
     if (place(e.points_.front()) == place(e.points_.back())) e.fewest_ = 4;
     return e;
 }
@@ -101,7 +102,8 @@ template <class Visit> bool EdgeCuts::walk(double t0, double t1, Visit& visit) c
     return walk(t0, middle, visit) && walk(middle, t1, visit);
 }
 
-EdgeCuts::EdgeCuts(std::span<const EdgeCurve> curves, const DiceCamera& camera, double micropolygon, double deviation, bool displaced)
+EdgeCuts::EdgeCuts(std::span<const EdgeCurve> curves, const DiceCamera& camera, double micropolygon, double deviation,
+                   bool displaced)
     : curves_(curves), camera_(camera), edge_(micropolygon), deviation_(deviation), displaced_(displaced) {
     // Of the whole edge, so that it depends on nothing else.
     int n = 0;

@@ -1,5 +1,6 @@
-// Edges of surfaces as data of their own. Where an edge is cut depends on this data, the camera and ShadingRate only, and the cuts are
-// dyadic: surfaces that have an edge in common are cut there at the same points to the bit, in whatever primitives and directions.
+// Edges of surfaces as data of their own. Where an edge is cut depends on this data, the camera and ShadingRate only, and the
+// cuts are dyadic: surfaces that have an edge in common are cut there at the same points to the bit, in whatever primitives and
+// directions.
 #pragma once
 #include "geometry/dice.h"
 #include <array>
@@ -8,8 +9,8 @@
 
 namespace alpenglow::geometry {
 
-/// A curve over 0..1 in camera space. Its data is rounded to single precision, as corners of polygons are, and evaluated from the end that
-/// comes first, so that at(t) of one direction and at(1 - t) of the other are the same to the bit for dyadic t.
+/// A curve over 0..1 in camera space. Its data is rounded to single precision, as corners of polygons are, and evaluated from the
+/// end that comes first, so that at(t) of one direction and at(1 - t) of the other are the same to the bit for dyadic t.
 class EdgeCurve {
 public:
     static EdgeCurve line(const Vec3d& from, const Vec3d& to);
@@ -33,7 +34,7 @@ private:
     enum class Kind { Line, Bezier, Arc } kind_ = Kind::Line;
     bool reversed_ = false, collapsed_ = false, rational_ = false;
     double fewest_ = 1, sweep_ = 0;
-    Vec3d a_, b_, c_;                          ///< ends of a line; centre and axes of an arc
+    Vec3d a_, b_, c_;                           ///< ends of a line; centre and axes of an arc
     std::vector<std::array<double, 4>> points_; ///< of a Bezier curve, in the order in which it is evaluated
 };
 

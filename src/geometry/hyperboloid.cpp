@@ -10,7 +10,9 @@ namespace {
 class Hyperboloid final : public Quadric {
 public:
     Hyperboloid(ShapeSource s, const Vec3d& p1, const Vec3d& p2, double sweep, Diagnostics& diag)
-        : Quadric(std::move(s), sweep, diag), p_(p1), d_(p2 - p1) { finish(diag); }
+        : Quadric(std::move(s), sweep, diag), p_(p1), d_(p2 - p1) {
+        finish(diag);
+    }
 
 private:
     Profile profile(double v) const override { return {p_ + d_ * v, d_, {}}; }

@@ -15,7 +15,8 @@ template <class T> void takeBytes(T& to, const T& inside, const T& before) {
 void takeBasis(scene::Basis& to, const scene::Basis& inside, const scene::Basis& before) {
     if (std::memcmp(inside.m, before.m, sizeof inside.m) != 0 || inside.step != before.step) to = inside;
 }
-void takeShader(scene::ShaderRef& to, const scene::ShaderRef& inside, const scene::ShaderRef& before, const scene::Transform& toWorld) {
+void takeShader(scene::ShaderRef& to, const scene::ShaderRef& inside, const scene::ShaderRef& before,
+                const scene::Transform& toWorld) {
     if (inside == before) return;
     if (!inside) {
         to = nullptr;

@@ -6,7 +6,9 @@ namespace alpenglow::geometry {
 bool KeyedShape::join(std::vector<ShapeRef> later, std::vector<float> times, Diagnostics& diag) {
     for (const ShapeRef& s : later) {
         auto* k = dynamic_cast<KeyedShape*>(s.get());
-        const auto same = [](const PrimVar& a, const PrimVar& b) { return a.cls == b.cls && a.type == b.type && a.outWidth() == b.outWidth(); };
+        const auto same = [](const PrimVar& a, const PrimVar& b) {
+            return a.cls == b.cls && a.type == b.type && a.outWidth() == b.outWidth();
+        };
         if (!k || typeid(*k) != typeid(*this) || !fits(*k)) return false;
         if (!std::equal(primvars_.begin(), primvars_.end(), k->primvars_.begin(), k->primvars_.end(), same)) return false;
         if (!normal_.param != !k->normal_.param || (normal_.param && !same(normal_, k->normal_))) return false;

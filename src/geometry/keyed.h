@@ -1,5 +1,5 @@
-// Shapes that rays meet exactly, one primitive at a time, and that are what they are at each time of the shutter: their numbers are
-// linear between keys. (A mesh at several times is a Deforming, placed.h.)
+// Shapes that rays meet exactly, one primitive at a time, and that are what they are at each time of the shutter: their numbers
+// are linear between keys. (A mesh at several times is a Deforming, placed.h.)
 #pragma once
 #include "geometry/shape.h"
 #include <algorithm>
@@ -23,13 +23,14 @@ inline bool isKey(const ShapeSource& s) { return s.like || !s.primitive->motionK
 class KeyedShape : public Shape {
 public:
     using Shape::Shape;
-    /// Becomes the first key; `later` are shapes of the same class, made of the primitive at later times. times: one more, from 0 to 1.
-    /// False: they are not made of the same pieces, and this stays what it is.
+    /// Becomes the first key; `later` are shapes of the same class, made of the primitive at later times. times: one more, from 0
+    /// to 1. False: they are not made of the same pieces, and this stays what it is.
     bool join(std::vector<ShapeRef> later, std::vector<float> times, Diagnostics&);
     bool joined() const { return !later_.empty(); }
 
     using Shape::exactHits;
-    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted w, ExactHit out[4]) const final {
+    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted w,
+                  ExactHit out[4]) const final {
         return exactHitsAt(prim, org, dir, lo, hi, w, 0, out);
     }
     /// exactHits() at a time of the shutter.
@@ -63,7 +64,8 @@ protected:
     void measure();
     size_t keyAt(float time, double& way) const { return keyBefore(times_, time, way); }
     const KeyedShape& key(size_t i) const { return i == 0 ? *this : static_cast<const KeyedShape&>(*later_[i - 1]); }
-    /// Change over the whole shutter of a place(way) between a key and the next, by a central difference: what turns is not linear there.
+    /// Change over the whole shutter of a place(way) between a key and the next, by a central difference: what turns is not
+    /// linear there.
     template <class Place> Vec3 slopeOf(size_t key, double way, Place place) const {
         const double a = std::max(way - 1e-5, 0.0), b = std::min(way + 1e-5, 1.0);
         return Vec3((place(b) - place(a)) / ((b - a) * (double(times_[key + 1]) - times_[key])));

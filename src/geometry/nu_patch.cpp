@@ -9,7 +9,8 @@ namespace alpenglow::geometry {
 namespace {
 
 /// The part of the patch that trim curves keep: null for all of it. False when that is nothing.
-bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_ptr<const TrimRegion>& region, Diagnostics& diag) {
+bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_ptr<const TrimRegion>& region,
+            Diagnostics& diag) {
     const scene::ParamList& curves = *s.attributes->trimCurve;
     const SourcePlace& place = curves.empty() ? s.primitive->place : curves[0].place;
     const scene::Param* sense = s.attributes->value("trimcurve:sense");
@@ -19,7 +20,8 @@ bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_
         d.severity = Severity::Error;
         d.code = Rie::BadToken;
         d.place = sense->place;
-        d.message = "Attribute \"trimcurve\" \"sense\" is \"inside\" or \"outside\", not \"" + named + "\"; what is inside is cut away";
+        d.message =
+            "Attribute \"trimcurve\" \"sense\" is \"inside\" or \"outside\", not \"" + named + "\"; what is inside is cut away";
         diag.reportOnce("geometry:trimsense:" + named, d);
     }
     std::string why;
@@ -39,7 +41,8 @@ bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_
     d.code = Rie::Consistency;
     d.place = s.primitive->place;
     d.message = "NuPatch: its trim curves leave nothing of it";
-    d.hint = std::string("Attribute \"trimcurve\" \"sense\" \"") + (named == "outside" ? "inside" : "outside") + "\" keeps the other part";
+    d.hint = std::string("Attribute \"trimcurve\" \"sense\" \"") + (named == "outside" ? "inside" : "outside") +
+             "\" keeps the other part";
     diag.report(std::move(d));
     return false;
 }
@@ -61,7 +64,8 @@ ShapeRef makeNuPatch(ShapeSource s, Diagnostics& diag) {
         int order = p.ints[2 * k + 1];
         if (order < 2 || n[k] < order)
             return fail(Rie::Range, "there must be at least as many points as the order, which is at least 2");
-        if (order > limits::kNurbsOrder) return fail(Rie::Limit, "orders above " + std::to_string(limits::kNurbsOrder) + " are not drawn");
+        if (order > limits::kNurbsOrder)
+            return fail(Rie::Limit, "orders above " + std::to_string(limits::kNurbsOrder) + " are not drawn");
         const scene::Param* q = lastParam(p.params, k == 0 ? "uknot" : "vknot");
         size_t need = size_t(n[k]) + size_t(order);
         if (!q || q->numbers.size() < need) return fail(Rie::MissingData, std::to_string(need) + " knots are needed");

@@ -10,7 +10,9 @@ namespace {
 class Paraboloid final : public Quadric {
 public:
     Paraboloid(ShapeSource s, double r, double zmin, double zmax, double zref, double sweep, Diagnostics& d)
-        : Quadric(std::move(s), sweep, d), r_(r), zmin_(zmin), zmax_(zmax), zref_(zref) { finish(d); }
+        : Quadric(std::move(s), sweep, d), r_(r), zmin_(zmin), zmax_(zmax), zref_(zref) {
+        finish(d);
+    }
 
 private:
     Profile profile(double v) const override {

@@ -66,7 +66,8 @@ double Parametric::area() const {
     double sum = 0;
     for (int j = 0; j < nv * sv; ++j)
         for (int i = 0; i < nu * su; ++i) {
-            const double hu = (bu[size_t(i / su) + 1] - bu[size_t(i / su)]) / su, hv = (bv[size_t(j / sv) + 1] - bv[size_t(j / sv)]) / sv;
+            const double hu = (bu[size_t(i / su) + 1] - bu[size_t(i / su)]) / su,
+                         hv = (bv[size_t(j / sv) + 1] - bv[size_t(j / sv)]) / sv;
             const double u0 = bu[size_t(i / su)] + hu * (i % su), v0 = bv[size_t(j / sv)] + hv * (j % sv);
             double cell = 0;
             for (int b = 0; b < 8; ++b)
@@ -83,7 +84,11 @@ double Parametric::area() const {
 int Parametric::bilinearWeights(double u, double v, int nu, int nv, bool wrapU, bool wrapV, Weight w[16]) {
     auto cell = [](double x, int n, bool wrap, int& i0, int& i1, double& f) {
         int cells = wrap ? n : n - 1;
-        if (cells < 1) { i0 = i1 = 0; f = 0; return 0; }
+        if (cells < 1) {
+            i0 = i1 = 0;
+            f = 0;
+            return 0;
+        }
         double s = x * cells;
         i0 = std::clamp(int(std::floor(s)), 0, cells - 1);
         f = s - i0;

@@ -7,7 +7,7 @@ namespace alpenglow::geometry {
 /// A surface point in object space (or camera space, for patches), in double.
 struct LocalPoint {
     Vec3d P, Pu, Pv, Puu, Puv, Pvv;
-    Vec3d n, nu, nv;          ///< unit normal along Pu x Pv and its derivatives; defined where the product vanishes too
+    Vec3d n, nu, nv; ///< unit normal along Pu x Pv and its derivatives; defined where the product vanishes too
 };
 
 class EdgeCurve;
@@ -37,8 +37,8 @@ protected:
     virtual std::vector<double> borders(int direction) const;
     /// Whether the surface is torn at such a border.
     virtual bool torn(int direction, double border) const { return false; }
-    /// The edge of a patch on the border of the surface, in the direction of u or v; side 0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0; cell: which
-    /// patch along it, between `from` and `to`. False: it is no data of its own.
+    /// The edge of a patch on the border of the surface, in the direction of u or v; side 0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0;
+    /// cell: which patch along it, between `from` and `to`. False: it is no data of its own.
     virtual bool edgeCurve(int /*side*/, int /*cell*/, double /*from*/, double /*to*/, EdgeCurve&) const { return false; }
     /// Index of the uniform value at a point.
     virtual int faceAt(double u, double v) const;

@@ -1,7 +1,7 @@
-// Facets of surfaces over a square. The square is cut into blocks that need some dozens of facets each, as many as they look large; a block
-// has an even grid inside and, around it, a ring that meets the points of its four sides. Points of a side are made once for the blocks on
-// both sides of it. On the border of the surface, where its edges are data of their own (edge_curve.h), they are those that every
-// surface with the same edge has.
+// Facets of surfaces over a square. The square is cut into blocks that need some dozens of facets each, as many as they look
+// large; a block has an even grid inside and, around it, a ring that meets the points of its four sides. Points of a side are
+// made once for the blocks on both sides of it. On the border of the surface, where its edges are data of their own
+// (edge_curve.h), they are those that every surface with the same edge has.
 #include "base/limits.h"
 #include "geometry/edge_corners.h"
 #include "geometry/edge_curve.h"
@@ -15,10 +15,10 @@
 namespace alpenglow::geometry {
 
 namespace {
-constexpr double kDeviation = 0.05;       ///< pixels that facets may stray from the surface
-constexpr double kBlock = 48;             ///< facets along a block, beyond which it is cut in two
-constexpr int kDeepest = 12;              ///< halvings of a patch
-constexpr size_t kMostBlocks = 1u << 16;  ///< that patches are cut into, beyond one a patch
+constexpr double kDeviation = 0.05;      ///< pixels that facets may stray from the surface
+constexpr double kBlock = 48;            ///< facets along a block, beyond which it is cut in two
+constexpr int kDeepest = 12;             ///< halvings of a patch
+constexpr size_t kMostBlocks = 1u << 16; ///< that patches are cut into, beyond one a patch
 } // namespace
 
 struct Parametric::Dicing {
@@ -29,18 +29,23 @@ struct Parametric::Dicing {
     };
     /// A line of constant u or v, as far as it is a side of blocks.
     struct Line {
-        struct Side { double from, to, need; };
+        struct Side {
+            double from, to, need;
+        };
         std::vector<Side> sides;
         std::vector<double> at;
         std::vector<uint32_t> vertex;
-        bool given = false;        ///< points come from an edge curve:
+        bool given = false; ///< points come from an edge curve:
         std::vector<Vec3d> points;
         size_t nearest(double x) const;
         bool has(double x) const { return std::binary_search(at.begin(), at.end(), x); }
     };
     using Lines = std::map<double, Line>;
     /// A point of a block's side: where it is along it, and the vertex.
-    struct Point { double at; uint32_t vertex; };
+    struct Point {
+        double at;
+        uint32_t vertex;
+    };
 
     const Parametric& s;
     const DiceOptions& opt;
@@ -82,7 +87,8 @@ struct Parametric::Dicing {
 
 Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool moves) : s(shape), opt(o), displaced(moves) {
     for (const ShapeRef& key : opt.keys)
-        if (const auto* k = dynamic_cast<const Parametric*>(key.get()); k && k->patchesU() == s.patchesU() && k->patchesV() == s.patchesV())
+        if (const auto* k = dynamic_cast<const Parametric*>(key.get());
+            k && k->patchesU() == s.patchesU() && k->patchesV() == s.patchesV())
             keys.push_back(k);
     if (keys.empty()) keys.push_back(&s);
     closed[0] = std::all_of(keys.begin(), keys.end(), [](const Parametric* k) { return k->closedU(); });
@@ -175,7 +181,8 @@ bool Parametric::Dicing::limitFacets() {
     return scale < 1;
 }
 
-/// Cuts a part of a line evenly in halves, until no side of a block begins or ends within one and none is longer than its blocks want.
+/// Cuts a part of a line evenly in halves, until no side of a block begins or ends within one and none is longer than its blocks
+/// want.
 void Parametric::Dicing::cutLine(Line& line, double a, double b, std::span<const Line::Side*> sides) {
     double need = 0;
     bool within = false, any = false;
@@ -272,7 +279,8 @@ size_t Parametric::Dicing::Line::nearest(double x) const {
     return k > 0 && x - at[k - 1] < at[k] - x ? k - 1 : k;
 }
 
-/// Points of lines. Where lines cross there is one vertex; an end that is no point of a given border goes to the nearest one that is.
+/// Points of lines. Where lines cross there is one vertex; an end that is no point of a given border goes to the nearest one that
+/// is.
 void Parametric::Dicing::makeVertices() {
     const auto make = [&](double u, double v) {
         param.push_back({u, v});
@@ -312,7 +320,8 @@ void Parametric::Dicing::makeInside(Block& k) {
     };
     const auto count = [&](double need) { return uint32_t(std::ceil(std::max(1.0, need * scale))); };
     k.cutU = count(k.nu), k.cutV = count(k.nv);
-    const bool plainU = one(0, k.v0, k.u0, k.u1) && one(0, k.v1, k.u0, k.u1), plainV = one(1, k.u0, k.v0, k.v1) && one(1, k.u1, k.v0, k.v1);
+    const bool plainU = one(0, k.v0, k.u0, k.u1) && one(0, k.v1, k.u0, k.u1),
+               plainV = one(1, k.u0, k.v0, k.v1) && one(1, k.u1, k.v0, k.v1);
     if ((k.cutV == 1 && plainV) || (k.cutU == 1 && plainU)) return; // a strip
     k.cutU = std::max(k.cutU, 2u), k.cutV = std::max(k.cutV, 2u);
     k.first = uint32_t(param.size());
@@ -335,7 +344,8 @@ void Parametric::Dicing::placeEdge(int side, const Line& line, std::vector<Vec3>
 }
 
 void Parametric::Dicing::place(std::vector<Vec3>& P) const {
-    tbb::parallel_for(size_t(0), param.size(), [&](size_t i) { P[i] = Vec3(s.cameraPosition(float(param[i][0]), float(param[i][1]))); });
+    tbb::parallel_for(size_t(0), param.size(),
+                      [&](size_t i) { P[i] = Vec3(s.cameraPosition(float(param[i][0]), float(param[i][1]))); });
     // At corners the borders of constant v have the word: they are whole circles, the others may be none.
     if (!closed[0]) placeEdge(3, lines[1].begin()->second, P), placeEdge(1, lines[1].rbegin()->second, P);
     if (!closed[1]) placeEdge(0, lines[0].begin()->second, P), placeEdge(2, lines[0].rbegin()->second, P);
@@ -376,7 +386,10 @@ void Parametric::Dicing::fill(const Block& k, const TriMesh& m) {
     for (const auto* row : {&bottom, &top, &left, &right})
         for (const Point& p : *row) step[p.vertex] = size;
     const auto quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) { // (0,0) (1,0) (0,1) (1,1)
-        const auto far = [&](uint32_t x, uint32_t y) { const Vec3 e = m.P[x] - m.P[y]; return dot(e, e); };
+        const auto far = [&](uint32_t x, uint32_t y) {
+            const Vec3 e = m.P[x] - m.P[y];
+            return dot(e, e);
+        };
         if (!opt.keys.empty() || far(a, d) <= far(b, c)) triangle(a, b, d), triangle(a, d, c);
         else triangle(a, b, c), triangle(b, d, c);
     };
@@ -410,7 +423,8 @@ void Parametric::Dicing::fill(const Block& k, const TriMesh& m) {
 std::vector<uint32_t> Parametric::Dicing::border() const {
     std::vector<uint32_t> out;
     for (const Lines& all : lines)
-        for (const Line* line : {&all.begin()->second, &all.rbegin()->second}) out.insert(out.end(), line->vertex.begin(), line->vertex.end());
+        for (const Line* line : {&all.begin()->second, &all.rbegin()->second})
+            out.insert(out.end(), line->vertex.begin(), line->vertex.end());
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
@@ -424,7 +438,8 @@ void Parametric::borderCorners(std::vector<Vec3>& out) const {
         if (d.closed[1 - direction]) continue;
         const std::vector<double> cells = d.cells(direction);
         for (size_t c = 0; 2 * c + 1 < cells.size(); ++c)
-            if (EdgeCurve e; edgeCurve(side, int(c), cells[2 * c], cells[2 * c + 1], e)) out.insert(out.end(), {Vec3(e.at(0)), Vec3(e.at(1))});
+            if (EdgeCurve e; edgeCurve(side, int(c), cells[2 * c], cells[2 * c + 1], e))
+                out.insert(out.end(), {Vec3(e.at(0)), Vec3(e.at(1))});
     }
 }
 

@@ -20,8 +20,8 @@ Bounds SharedBounds::of(const Shape& s) {
 }
 
 Placed::Placed(ShapeSource s, ShapeRef geometry, const scene::Transform& place, std::shared_ptr<SharedBounds> bounds)
-    : Shape(std::move(s)), geometry_(std::move(geometry)), bounds_(std::move(bounds)), deforming_(dynamic_cast<const Deforming*>(geometry_.get())),
-      keyed_(dynamic_cast<const KeyedShape*>(geometry_.get())) {
+    : Shape(std::move(s)), geometry_(std::move(geometry)), bounds_(std::move(bounds)),
+      deforming_(dynamic_cast<const Deforming*>(geometry_.get())), keyed_(dynamic_cast<const KeyedShape*>(geometry_.get())) {
     variables_ = &geometry_->primvars();
     out_ = Affine(place.first());
     if (!out_.inverse(in_)) in_ = Affine();

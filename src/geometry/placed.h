@@ -1,6 +1,6 @@
-// Geometry that is shared or moves: a Placed shape puts a geometry, a shape in a space of its own, to a place that may move over the
-// shutter; a Deforming geometry is one at several times. Both are shapes, so the rest of the renderer need not know; rays come into
-// the space of the geometry (accel/).
+// Geometry that is shared or moves: a Placed shape puts a geometry, a shape in a space of its own, to a place that may move over
+// the shutter; a Deforming geometry is one at several times. Both are shapes, so the rest of the renderer need not know; rays
+// come into the space of the geometry (accel/).
 //
 // Times are parts of the shutter, 0 to 1. Between keys matrices and points are linear, element by element (ri.md 9.3); ri/ gives
 // rotations keys so close that this is exact enough.
@@ -116,8 +116,14 @@ protected:
     void localPoints(std::span<const HitRef>, uint32_t needs) const override;
 
 private:
-    struct Moving { std::vector<float> times; std::vector<Affine> keys; };
-    struct Pose { Affine out, in; double flip; };
+    struct Moving {
+        std::vector<float> times;
+        std::vector<Affine> keys;
+    };
+    struct Pose {
+        Affine out, in;
+        double flip;
+    };
     Pose poseAt(float time) const;
     void place(SurfacePoint&, const Pose&, float time) const;
     size_t keyAt(float time, double& way) const;

@@ -1,4 +1,5 @@
-// Points: discs that face the ray or the eye, or lie across "N"; by "type" spheres and squares as well (ri.md 8.5, PRMan's names).
+// Points: discs that face the ray or the eye, or lie across "N"; by "type" spheres and squares as well (ri.md 8.5, PRMan's
+// names).
 #include "base/exact.h"
 #include "geometry/curves.h"
 #include "geometry/dice.h"
@@ -14,8 +15,8 @@ namespace {
 
 using scene::Class;
 
-/// A direction toward a ray is kept in ExactHit: u is 2 * x + (u of the point), v 2 * y + (v of the point), x and y counting steps of an
-/// octahedron's unfolded face.
+/// A direction toward a ray is kept in ExactHit: u is 2 * x + (u of the point), v 2 * y + (v of the point), x and y counting
+/// steps of an octahedron's unfolded face.
 constexpr double kSteps = 1 << 24;
 
 double signOf(double x) { return x < 0 ? -1 : 1; }
@@ -57,7 +58,9 @@ public:
     SurfacePoint evaluate(int face, double u, double v) const override {
         return pointFrom(uint32_t(std::clamp(face, 0, int(exactPrims()) - 1)), u, v, Vec3d(0.0), 0);
     }
-    double area() const override { return areas().back() * spread_ * (kind_ == Kind::Disc ? kPi : kind_ == Kind::Ball ? 4 * kPi : 4 * aspect_); }
+    double area() const override {
+        return areas().back() * spread_ * (kind_ == Kind::Disc ? kPi : kind_ == Kind::Ball ? 4 * kPi : 4 * aspect_);
+    }
     SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const override;
     double sampleDensity(const SurfacePoint&) const override;
     Vec3 velocity(const SurfacePoint&) const override;
@@ -172,13 +175,17 @@ bool Points::take(Diagnostics& diag) {
     source_.like = nullptr;
     for (uint32_t i = 0; i < count_; ++i) {
         const float *q = P_ + 3 * size_t(i), w = width_[widthStep_ * i], *n = normal_ ? normal_ + normalStep_ * i : q;
-        if (!std::isfinite(q[0]) || !std::isfinite(q[1]) || !std::isfinite(q[2]) || !std::isfinite(w) || !std::isfinite(n[0] + n[1] + n[2])) ++notFinite;
+        if (!std::isfinite(q[0]) || !std::isfinite(q[1]) || !std::isfinite(q[2]) || !std::isfinite(w) ||
+            !std::isfinite(n[0] + n[1] + n[2]))
+            ++notFinite;
         else if (!key && !(w > 0)) ++thin;
         else kept.push_back(i);
     }
     if (notFinite)
-        diag.report(Severity::Error, Rie::Range, p.place, "Points: " + std::to_string(notFinite) + " with a number that is not finite; not drawn");
-    if (thin) diag.report(Severity::Warning, Rie::Range, p.place, "Points: " + std::to_string(thin) + " without a width; not drawn");
+        diag.report(Severity::Error, Rie::Range, p.place,
+                    "Points: " + std::to_string(notFinite) + " with a number that is not finite; not drawn");
+    if (thin)
+        diag.report(Severity::Warning, Rie::Range, p.place, "Points: " + std::to_string(thin) + " without a width; not drawn");
     if (kept.empty()) return false;
     if (kept.size() < count_) kept_ = std::move(kept);
     measure();
@@ -299,11 +306,20 @@ LocalPoint Points::place(const Now& now, const Vec3d& n, double u, double v) con
 
 SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) const {
     const Now now = nowAt(prim, time);
-    const double x = fromRay() ? std::floor(0.5 * b1) : 0, y = fromRay() ? std::floor(0.5 * b2) : 0, u = b1 - 2 * x, v = b2 - 2 * y;
+    const double x = fromRay() ? std::floor(0.5 * b1) : 0, y = fromRay() ? std::floor(0.5 * b2) : 0, u = b1 - 2 * x,
+                 v = b2 - 2 * y;
     const double side = orientation_;
     const LocalPoint o = place(now, fromRay() ? unpackDirection(x, y) : facing(now, backward_), u, v);
     const Matrix& m = toCamera();
-    LocalPoint q{transformPoint(m, o.P), transformVector(m, o.Pu), transformVector(m, o.Pv), transformVector(m, o.Puu), transformVector(m, o.Puv), transformVector(m, o.Pvv), {}, {}, {}};
+    LocalPoint q{transformPoint(m, o.P),
+                 transformVector(m, o.Pu),
+                 transformVector(m, o.Pv),
+                 transformVector(m, o.Puu),
+                 transformVector(m, o.Puv),
+                 transformVector(m, o.Pvv),
+                 {},
+                 {},
+                 {}};
     const Vec3d across = cross(q.Pu, q.Pv) * side;
     const double l = length(across);
     // At a ball's poles the product is rounding only.
@@ -373,14 +389,16 @@ SurfacePoint Points::sampleFromAt(const Vec3& whence, double xi1, double xi2, fl
     const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
     const double lo = i ? sums[i - 1] : 0, x = std::clamp((target - lo) / (sums[i] - lo), 0.0, 1.0);
     if (kind_ == Kind::Square) return pointFrom(uint32_t(i), x, xi2, from, time);
-    if (kind_ == Kind::Ball) return pointFrom(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from, time);
+    if (kind_ == Kind::Ball)
+        return pointFrom(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from, time);
     const auto [s, c] = exact::sinCos(2 * kPi * xi2);
     const double r = 0.5 * std::sqrt(x);
     return pointFrom(uint32_t(i), 0.5 + r * c, 0.5 + r * s, from, time);
 }
 
 double Points::sampleDensity(const SurfacePoint& p) const {
-    const double r = nowAt(p.prim, p.time).radius, share = meanSquare(p.prim) / areas().back(), l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
+    const double r = nowAt(p.prim, p.time).radius, share = meanSquare(p.prim) / areas().back(),
+                 l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
     if (kind_ == Kind::Ball) { // even over the ball of object space, which the transformation stretches
         const double cosine = exact::cos(kPi * (p.b2 - 0.5));
         return l > 0 ? share * 2 * kPi * kPi * cosine / (4 * kPi * l) : share / (4 * kPi * r * r * spread_);
@@ -406,7 +424,8 @@ ShapeRef makePoints(ShapeSource s, Diagnostics& diag) {
             d.code = t == "blobby" ? Rie::Incapable : Rie::BadToken;
             d.place = type->place;
             d.message = t == "blobby" ? "Points of type \"blobby\" are drawn as spheres, which do not melt together"
-                                      : "Points of type \"" + t + "\" are drawn as particles; known are particle, disk, sphere, patch and blobby";
+                                      : "Points of type \"" + t +
+                                            "\" are drawn as particles; known are particle, disk, sphere, patch and blobby";
             diag.reportOnce("geometry:points:" + t, d);
         }
     }

@@ -1,5 +1,6 @@
-// Facets of displaced polygons. Each edge of a triangle is cut as its data and the camera say (edge_curve.h), so neighbours within the mesh
-// and in others have the same points there; triangles with edges of too many parts are cut into smaller ones first.
+// Facets of displaced polygons. Each edge of a triangle is cut as its data and the camera say (edge_curve.h), so neighbours
+// within the mesh and in others have the same points there; triangles with edges of too many parts are cut into smaller ones
+// first.
 #include "base/limits.h"
 #include "geometry/edge_corners.h"
 #include "geometry/edge_curve.h"
@@ -28,9 +29,9 @@ struct PolygonMesh::Dicing {
     TriMesh mesh;
     std::vector<Vec2> param;
     std::vector<uint32_t> prim;
-    std::vector<float> step;    ///< size of a facet, as a part of the triangle
-    std::vector<uint8_t> rim;   ///< on an open side
-    double facets = 0, most;    ///< when they are only counted: no further than to `most`
+    std::vector<float> step;  ///< size of a facet, as a part of the triangle
+    std::vector<uint8_t> rim; ///< on an open side
+    double facets = 0, most;  ///< when they are only counted: no further than to `most`
 
     /// A side of a part of a triangle: a piece of an edge, `from` at its first corner.
     struct Side {
@@ -43,10 +44,10 @@ struct PolygonMesh::Dicing {
     struct Part {
         uint32_t tri;
         struct Corner {
-            Vec2 b;     ///< b1, b2
-            Vec3d P;    ///< as all parts that meet there have it
+            Vec2 b;  ///< b1, b2
+            Vec3d P; ///< as all parts that meet there have it
         } corner[3];
-        Side side[3];   ///< from corner k to the next
+        Side side[3]; ///< from corner k to the next
         int depth = 0;
     };
 
@@ -124,7 +125,8 @@ void PolygonMesh::Dicing::cut(uint32_t tri, bool count) {
         if (any) return cutMet(tri, m, count);
     }
     for (int k = 0; k < 3; ++k) {
-        for (const PolygonMesh* m : keys) curves[k].push_back(EdgeCurve::line(m->cameraCorner(tri, k), m->cameraCorner(tri, (k + 1) % 3)));
+        for (const PolygonMesh* m : keys)
+            curves[k].push_back(EdgeCurve::line(m->cameraCorner(tri, k), m->cameraCorner(tri, (k + 1) % 3)));
         own[k] = EdgeCurve::line(s.cameraCorner(tri, k), s.cameraCorner(tri, (k + 1) % 3));
         cuts.push_back(cutsOf(curves[k], open[3 * size_t(tri) + size_t(k)] != 0));
     }
@@ -132,7 +134,8 @@ void PolygonMesh::Dicing::cut(uint32_t tri, bool count) {
     cut(p, count);
 }
 
-/// From the middle one of the corners on a side to the corner across. Sides are then edges from corner to corner, as others have them.
+/// From the middle one of the corners on a side to the corner across. Sides are then edges from corner to corner, as others have
+/// them.
 void PolygonMesh::Dicing::cutMet(uint32_t tri, const Met& m, bool count) {
     int k = 0;
     while (k < 3 && m.on[k].empty()) ++k;
@@ -151,8 +154,13 @@ void PolygonMesh::Dicing::cutMet(uint32_t tri, const Met& m, bool count) {
     const int next = (k + 1) % 3, last = (k + 2) % 3;
     const std::vector<Part::Corner>& on = m.on[k];
     const auto middle = on.begin() + std::ptrdiff_t(on.size() / 2);
-    cutMet(tri, {{m.corner[k], *middle, m.corner[last]}, {{on.begin(), middle}, {}, m.on[last]}, {m.open[k], false, m.open[last]}}, count);
-    cutMet(tri, {{*middle, m.corner[next], m.corner[last]}, {{middle + 1, on.end()}, m.on[next], {}}, {m.open[k], m.open[next], false}}, count);
+    cutMet(tri,
+           {{m.corner[k], *middle, m.corner[last]}, {{on.begin(), middle}, {}, m.on[last]}, {m.open[k], false, m.open[last]}},
+           count);
+    cutMet(
+        tri,
+        {{*middle, m.corner[next], m.corner[last]}, {{middle + 1, on.end()}, m.on[next], {}}, {m.open[k], m.open[next], false}},
+        count);
 }
 
 void PolygonMesh::borderCorners(std::vector<Vec3>& out) const {
@@ -206,9 +214,8 @@ void PolygonMesh::Dicing::cutInside(const Part& p, const bool split[3], bool cou
         return Side{&cuts.back(), &own[n], 0, 1, false};
     };
     const auto back = [](Side k) { return std::swap(k.from, k.to), k; };
-    const auto part = [&](const Part::Corner& a, const Part::Corner& b, const Part::Corner& c, const Side& ab, const Side& bc, const Side& ca) {
-        cut(Part{p.tri, {a, b, c}, {ab, bc, ca}, p.depth + 1}, count);
-    };
+    const auto part = [&](const Part::Corner& a, const Part::Corner& b, const Part::Corner& c, const Side& ab, const Side& bc,
+                          const Side& ca) { cut(Part{p.tri, {a, b, c}, {ab, bc, ca}, p.depth + 1}, count); };
     if (sides == 1) {
         const Part::Corner m = mid(0);
         const Side across = inner(0, m, corner(2));
@@ -239,7 +246,8 @@ void PolygonMesh::Dicing::leaf(const Part& p, const int rates[3], bool count) {
         return;
     }
     const uint32_t base = uint32_t(mesh.P.size());
-    const Vec2 o = p.corner[0].b, to1 = p.corner[1].b, to2 = p.corner[2].b, e1{to1.x - o.x, to1.y - o.y}, e2{to2.x - o.x, to2.y - o.y};
+    const Vec2 o = p.corner[0].b, to1 = p.corner[1].b, to2 = p.corner[2].b, e1{to1.x - o.x, to1.y - o.y},
+               e2{to2.x - o.x, to2.y - o.y};
     const float size = std::sqrt(std::fabs(e1.x * e2.y - e1.y * e2.x)) / float(std::max({rates[0], rates[1], rates[2]}));
     int k = 0, i = 0;
     for (size_t n = 0; n < g.param.size(); ++n) {
@@ -260,8 +268,8 @@ void PolygonMesh::Dicing::leaf(const Part& p, const int rates[3], bool count) {
 
 namespace {
 
-/// Points that were one before they were displaced are one after it: in the middle of where their faces, whose normals and variables may
-/// differ there, have moved them. Where one of them lies on the rim all do.
+/// Points that were one before they were displaced are one after it: in the middle of where their faces, whose normals and
+/// variables may differ there, have moved them. Where one of them lies on the rim all do.
 void closeCracks(const std::vector<Vec3>& flat, std::vector<Vec3>& moved, std::vector<uint8_t>& rim) {
     std::vector<uint32_t> order(flat.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -305,17 +313,20 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     meshPrim_ = std::move(d.prim);
     displaced_ = true;
     std::vector<Vec3> flat = d.mesh.P;
-    displaceMesh(*this, opt, diag, [&](uint32_t i) { return evaluateLocal(meshPrim_[i], meshParam_[i].x, meshParam_[i].y); },
-                 [&](uint32_t i) {
-                     // A barycentric step turned to u and v: the extent of one facet.
-                     const uint32_t t = meshPrim_[i];
-                     const Frame f = frame(faceNormal(t));
-                     const Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a, e2 = objectPoint(vertexOf(t, 2)) - a;
-                     const auto extent = [&](const Vec3d& x) {
-                         return float(std::max({std::fabs(dot(e1, x)), std::fabs(dot(e2, x)), 1e-12}));
-                     };
-                     return Vec2{extent(f.a) * d.step[i], extent(f.b) * d.step[i]};
-                 }, d.mesh);
+    displaceMesh(
+        *this, opt, diag, [&](uint32_t i) { return evaluateLocal(meshPrim_[i], meshParam_[i].x, meshParam_[i].y); },
+        [&](uint32_t i) {
+            // A barycentric step turned to u and v: the extent of one facet.
+            const uint32_t t = meshPrim_[i];
+            const Frame f = frame(faceNormal(t));
+            const Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a,
+                        e2 = objectPoint(vertexOf(t, 2)) - a;
+            const auto extent = [&](const Vec3d& x) {
+                return float(std::max({std::fabs(dot(e1, x)), std::fabs(dot(e2, x)), 1e-12}));
+            };
+            return Vec2{extent(f.a) * d.step[i], extent(f.b) * d.step[i]};
+        },
+        d.mesh);
     closeCracks(flat, d.mesh.P, d.rim);
     d.mesh.finish();
     mesh_ = std::move(d.mesh);

@@ -52,8 +52,7 @@ ShapeRef makePolygonMesh(ShapeSource s, PolygonInput in, Diagnostics& diag) {
     return mesh;
 }
 
-PolygonMesh::PolygonMesh(ShapeSource s, PolygonInput&& in, const std::vector<float>& P, Diagnostics& diag)
-    : Shape(std::move(s)) {
+PolygonMesh::PolygonMesh(ShapeSource s, PolygonInput&& in, const std::vector<float>& P, Diagnostics& diag) : Shape(std::move(s)) {
     objectP_ = P.data();
     faceCount_ = int(in.loopsPerFace.size());
     cornerCount_ = uint32_t(in.vertex.size());
@@ -141,7 +140,8 @@ void PolygonMesh::cutAlike(const PolygonMesh& like, const PolygonInput& in) {
         Vec3d n;
         const size_t first = corner;
         for (int l = 0; l < in.loopsPerFace[size_t(f)]; ++l, ++loop) corner += size_t(in.cornersPerLoop[loop]);
-        const size_t outer = in.loopsPerFace[size_t(f)] > 0 ? size_t(in.cornersPerLoop[loop - size_t(in.loopsPerFace[size_t(f)])]) : 0;
+        const size_t outer =
+            in.loopsPerFace[size_t(f)] > 0 ? size_t(in.cornersPerLoop[loop - size_t(in.loopsPerFace[size_t(f)])]) : 0;
         const auto at = [&](size_t c) { return objectPoint(uint32_t(std::max(0, in.vertex[first + c % outer]))); };
         for (size_t c = 0; c < outer; ++c) n += cross(at(c) - at(0), at(c + 1) - at(0));
         faceNormal_[size_t(f)] = dot(n, n) > 0 ? Vec3(normalize(n)) : like.faceNormal_[size_t(f)];
@@ -276,11 +276,15 @@ double PolygonMesh::sampleDensity(const SurfacePoint&) const { return areas().pe
 
 size_t PolygonMesh::classCount(Class c) const {
     switch (c) {
-    case Class::Constant: return 1;
-    case Class::Uniform: return size_t(faceCount_);
+    case Class::Constant:
+        return 1;
+    case Class::Uniform:
+        return size_t(faceCount_);
     case Class::FaceVarying:
-    case Class::FaceVertex: return cornerCount_;
-    default: return vertexCount_;
+    case Class::FaceVertex:
+        return cornerCount_;
+    default:
+        return vertexCount_;
     }
 }
 

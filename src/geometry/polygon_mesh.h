@@ -48,12 +48,22 @@ protected:
     void localPoints(std::span<const HitRef>, uint32_t needs) const override;
 
 private:
-    struct Frame { Vec3d a, b; };  ///< u = P.a, v = P.b (object space)
+    struct Frame {
+        Vec3d a, b;
+    }; ///< u = P.a, v = P.b (object space)
     /// A triangle in object space: its corners, the partials of the point in its plane, and the normal of its face. Slopes of the
     /// weights of the 2nd and 3rd corner by u and v.
-    struct Plane { Vec3d o, e1, e2, Pu, Pv, fn; Frame f; double u1, u2, v1, v2; };
+    struct Plane {
+        Vec3d o, e1, e2, Pu, Pv, fn;
+        Frame f;
+        double u1, u2, v1, v2;
+    };
     /// What does not depend on the place in a triangle, for small meshes.
-    struct Remembered { Plane plane; Vec3d a, e1, e2; SurfacePoint point; };
+    struct Remembered {
+        Plane plane;
+        Vec3d a, e1, e2;
+        SurfacePoint point;
+    };
     /// Triangles by area, for emitters: made when first asked for.
     struct Areas {
         std::once_flag made;
@@ -86,15 +96,15 @@ private:
     uint32_t faceOf(uint32_t tri) const { return face_.empty() ? tri : face_[tri]; }
     Vec3d cameraCorner(uint32_t tri, int k) const { return Vec3d(base().P[vertexOf(tri, k)]); }
 
-    const float* objectP_ = nullptr;          ///< the request's own P
+    const float* objectP_ = nullptr; ///< the request's own P
     uint32_t vertexCount_ = 0, cornerCount_ = 0, triangles_ = 0;
     int faceCount_ = 0;
-    std::vector<uint32_t> corner_;            ///< three per triangle: corners of the request. Empty: they are counted through
-    std::vector<uint32_t> face_;              ///< per triangle. Empty: every face is one triangle
-    std::vector<Vec3> faceNormal_;            ///< per face, object space, unit, by winding. Empty: the triangle's
-    TriMesh undiced_;                         ///< base() once the mesh was displaced
-    bool plain_ = false;                      ///< no variable gives s, t or N
-    std::vector<Remembered> remembered_;      ///< per triangle of small meshes, which are hit often; else empty
+    std::vector<uint32_t> corner_;       ///< three per triangle: corners of the request. Empty: they are counted through
+    std::vector<uint32_t> face_;         ///< per triangle. Empty: every face is one triangle
+    std::vector<Vec3> faceNormal_;       ///< per face, object space, unit, by winding. Empty: the triangle's
+    TriMesh undiced_;                    ///< base() once the mesh was displaced
+    bool plain_ = false;                 ///< no variable gives s, t or N
+    std::vector<Remembered> remembered_; ///< per triangle of small meshes, which are hit often; else empty
     mutable Areas areas_;
 };
 

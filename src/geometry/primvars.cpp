@@ -44,7 +44,8 @@ bool makePrimVar(const scene::Param& p, size_t count, const Matrix& toCamera, co
     out.arrayLength = p.arrayLength;
     out.param = &p;
     if ((p.name == "Cs" || p.name == "Os") && (p.type == Type::String || out.outWidth() != 3)) {
-        diag.report(Severity::Error, Rie::BadToken, p.place, kind + " \"" + p.name + "\" is not declared as a color; the variable is ignored");
+        diag.report(Severity::Error, Rie::BadToken, p.place,
+                    kind + " \"" + p.name + "\" is not declared as a color; the variable is ignored");
         return false;
     }
     size_t have = p.type == Type::String ? p.strings.size() : p.numbers.size();

@@ -15,9 +15,9 @@ struct PrimVar {
     std::string name;
     scene::Class cls = scene::Class::Constant;
     scene::Type type = scene::Type::Float;
-    int arrayLength = 0;                   ///< 0 = not an array
-    const scene::Param* param = nullptr;   ///< the request's own parameter; lives as long as the primitive
-    std::vector<float> cameraValues; ///< points, vectors, normals, hpoints in camera space; empty: param->numbers as they are
+    int arrayLength = 0;                 ///< 0 = not an array
+    const scene::Param* param = nullptr; ///< the request's own parameter; lives as long as the primitive
+    std::vector<float> cameraValues;     ///< points, vectors, normals, hpoints in camera space; empty: param->numbers as they are
     const float* data() const { return cameraValues.empty() ? param->numbers.data() : cameraValues.data(); }
     int elements() const { return arrayLength > 0 ? arrayLength : 1; }
     /// Floats a value takes in data().

@@ -89,7 +89,8 @@ Vec3d Quadric::cameraPosition(double u, double v) const {
 /// Circles, and the straight lines of some.
 bool Quadric::edgeCurve(int side, int, double, double, EdgeCurve& out) const {
     const auto& m = toCamera().m;
-    if (std::fabs(m[0][3]) + std::fabs(m[1][3]) + std::fabs(m[2][3]) + std::fabs(m[3][3] - 1) > 1e-7) return false; // a perspective
+    if (std::fabs(m[0][3]) + std::fabs(m[1][3]) + std::fabs(m[2][3]) + std::fabs(m[3][3] - 1) > 1e-7)
+        return false; // a perspective
     if (side & 1) {
         const Profile p = profile(0.5);
         if (p.dd.x != 0 || p.dd.y != 0 || p.dd.z != 0) return false;
@@ -138,7 +139,8 @@ LocalPoint Quadric::cameraPoint(double u, double v) const {
     auto normalOut = [&](const Vec3d& n) {
         const auto& i = toObject_.m;
         return Vec3d(i[0][0] * n.x + i[0][1] * n.y + i[0][2] * n.z, i[1][0] * n.x + i[1][1] * n.y + i[1][2] * n.z,
-                     i[2][0] * n.x + i[2][1] * n.y + i[2][2] * n.z) * det;
+                     i[2][0] * n.x + i[2][1] * n.y + i[2][2] * n.z) *
+               det;
     };
     Vec3d nc = normalOut(n0), ncu = normalOut(n0u), ncv = normalOut(n0v);
     double l = length(nc);
@@ -182,7 +184,8 @@ bool Quadric::accept(const Vec3d& p, double v, ExactHit& hit) const {
 }
 
 int Quadric::exactHits(uint32_t, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, ExactHit out[4]) const {
-    Vec3d o = affine_ ? turned(toObject_, org) + Vec3d(toObject_.m[3][0], toObject_.m[3][1], toObject_.m[3][2]) : transformPoint(toObject_, org);
+    Vec3d o = affine_ ? turned(toObject_, org) + Vec3d(toObject_.m[3][0], toObject_.m[3][1], toObject_.m[3][2])
+                      : transformPoint(toObject_, org);
     Vec3d d = turned(toObject_, dir);
     double dd = dot(d, d);
     if (!(dd > 0) || !std::isfinite(dd)) return 0;

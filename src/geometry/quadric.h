@@ -7,7 +7,9 @@
 namespace alpenglow::geometry {
 
 /// The profile and its first two derivatives by v.
-struct Profile { Vec3d p, d, dd; };
+struct Profile {
+    Vec3d p, d, dd;
+};
 
 /// x^2 + y^2 + zz z^2 + z1 z + c = 0; or the plane z = height.
 struct Implicit {
@@ -20,7 +22,8 @@ class Quadric : public Parametric {
 public:
     Quadric(ShapeSource, double thetaMaxDegrees, Diagnostics&);
     using Shape::exactHits;
-    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, ExactHit out[4]) const override;
+    int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted,
+                  ExactHit out[4]) const override;
     Bounds bounds() const override;
 
 protected:
@@ -50,11 +53,11 @@ protected:
 private:
     bool accept(const Vec3d& p, double v, ExactHit& hit) const;
     double thetaMax_ = 0;   ///< radians, -2 pi .. 2 pi
-    bool affine_ = true; ///< toObject_ has no perspective
+    bool affine_ = true;    ///< toObject_ has no perspective
     bool mirrored_ = false; ///< toCamera() swaps handedness
     bool fullTurn_ = false;
-    bool whole_ = false;    ///< nothing of implicit() is cut away
-    bool offAxis_ = false;  ///< some b(v) != 0
+    bool whole_ = false;                    ///< nothing of implicit() is cut away
+    bool offAxis_ = false;                  ///< some b(v) != 0
     double radius_ = 0, zLo_ = 0, zHi_ = 0; ///< cylinder around the whole profile
     Matrix toObject_;
 };

@@ -138,8 +138,8 @@ bool RefinedCage::refine() {
         if (smooth[k]) {
             channelOf[k] = int(channels.size());
             const size_t width = values[k].numbers.size() / std::max<size_t>(1, vertex.size());
-            channels.push_back(weld(
-                vertex, cage.vertices, [&](size_t c) { return values[k].numbers.data() + c * width; }, width));
+            channels.push_back(
+                weld(vertex, cage.vertices, [&](size_t c) { return values[k].numbers.data() + c * width; }, width));
         }
     const std::unique_ptr<Osd::Far::TopologyRefiner> refiner = makeRefiner(cage, channels);
     if (!refiner) return false;

@@ -4,7 +4,8 @@
 
 namespace alpenglow::geometry {
 
-void Seams::add(TriMesh& mesh, std::vector<uint32_t> vertex, std::vector<Vec3> flat, uint32_t order, const std::vector<double>& with) {
+void Seams::add(TriMesh& mesh, std::vector<uint32_t> vertex, std::vector<Vec3> flat, uint32_t order,
+                const std::vector<double>& with) {
     const std::lock_guard lock(mutex_);
     borders_.push_back({&mesh, std::move(vertex), std::move(flat), order, with});
 }
@@ -32,7 +33,8 @@ void Seams::closeAmong(std::span<Border> all) {
     };
     std::vector<Point> points;
     for (uint32_t b = 0; b < all.size(); ++b)
-        for (size_t k = 0; k < all[b].vertex.size(); ++k) points.push_back({all[b].flat[k] + Vec3(0.f), b, all[b].vertex[k]}); // -0 is 0
+        for (size_t k = 0; k < all[b].vertex.size(); ++k)
+            points.push_back({all[b].flat[k] + Vec3(0.f), b, all[b].vertex[k]}); // -0 is 0
     std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
         return a.place() != b.place() ? a.place() < b.place() : std::tie(a.border, a.vertex) < std::tie(b.border, b.vertex);
     });

@@ -13,9 +13,7 @@ float orientationSign(const scene::Attributes& a, const Matrix& toCamera) {
     return flip ? -1.f : 1.f;
 }
 
-Shape::Shape(ShapeSource s) : source_(std::move(s)) {
-    orientation_ = orientationSign(*source_.attributes, source_.toCamera);
-}
+Shape::Shape(ShapeSource s) : source_(std::move(s)) { orientation_ = orientationSign(*source_.attributes, source_.toCamera); }
 
 Bounds Shape::bounds() const {
     Bounds b;
@@ -108,14 +106,22 @@ void Shape::finishPoint(SurfacePoint& p, bool parametric) const {
         map(0, p.s, p.dsdu, p.dsdv);
         map(1, p.t, p.dtdu, p.dtdv);
     } else {
-        p.s = p.u; p.t = p.v;
-        p.dsdu = 1; p.dsdv = 0; p.dtdu = 0; p.dtdv = 1;
+        p.s = p.u;
+        p.t = p.v;
+        p.dsdu = 1;
+        p.dsdv = 0;
+        p.dtdu = 0;
+        p.dtdv = 1;
     }
     if (varSt_ >= 0) {
         float v[2], du[2], dv[2];
         interpolate(varSt_, p, v, du, dv);
-        p.s = v[0]; p.dsdu = du[0]; p.dsdv = dv[0];
-        p.t = v[1]; p.dtdu = du[1]; p.dtdv = dv[1];
+        p.s = v[0];
+        p.dsdu = du[0];
+        p.dsdv = dv[0];
+        p.t = v[1];
+        p.dtdu = du[1];
+        p.dtdv = dv[1];
     }
     if (varS_ >= 0) interpolate(varS_, p, &p.s, &p.dsdu, &p.dsdv);
     if (varT_ >= 0) interpolate(varT_, p, &p.t, &p.dtdu, &p.dtdv);
@@ -137,7 +143,9 @@ void Shape::finishPoint(SurfacePoint& p, bool parametric) const {
 Vec3d Shape::localNormal(uint32_t prim, double b1, double b2) const { return Vec3d(evaluateLocal(prim, b1, b2).n); }
 
 namespace {
-struct Facet { Vec3d P, n; };
+struct Facet {
+    Vec3d P, n;
+};
 Facet facetAt(const TriMesh& m, uint32_t prim, double b1, double b2) {
     Vec3d a(m.P[m.index[3 * prim]]), b(m.P[m.index[3 * prim + 1]]), c(m.P[m.index[3 * prim + 2]]);
     return {a + (b - a) * b1 + (c - a) * b2, cross(b - a, c - a)};

@@ -22,33 +22,33 @@ inline constexpr uint32_t kNone = 0xffffffffu;
 /// A point of a surface with all that shading wants to know about it. Camera space.
 struct SurfacePoint {
     Vec3 P;
-    Vec3 dPdu, dPdv;            ///< first partials by the surface's own u and v
-    Vec3 Puu, Puv, Pvv;         ///< second partials
-    Vec3 Ng;                    ///< orientation * (dPdu ^ dPdv), not normalised; n where that product vanishes
-    Vec3 n;                     ///< Ng normalised; defined at poles and collapsed edges too
-    Vec3 N;                     ///< shading normal, unit: the primitive variable "N" (or "Np") if given, else n
-    Vec3 dNdu, dNdv;            ///< derivatives of N
-    float u = 0, v = 0;         ///< 0..1 over the whole primitive; polygons: object x and y (ri.md 7.1)
+    Vec3 dPdu, dPdv;    ///< first partials by the surface's own u and v
+    Vec3 Puu, Puv, Pvv; ///< second partials
+    Vec3 Ng;            ///< orientation * (dPdu ^ dPdv), not normalised; n where that product vanishes
+    Vec3 n;             ///< Ng normalised; defined at poles and collapsed edges too
+    Vec3 N;             ///< shading normal, unit: the primitive variable "N" (or "Np") if given, else n
+    Vec3 dNdu, dNdv;    ///< derivatives of N
+    float u = 0, v = 0; ///< 0..1 over the whole primitive; polygons: object x and y (ri.md 7.1)
     float s = 0, t = 0, dsdu = 1, dsdv = 0, dtdu = 0, dtdv = 1;
-    float pError = 0;           ///< bound on the distance from P to the surface that rays meet: rounding plus facets
-    float orientation = 1;      ///< +1 or -1: the sign in Ng above
-    int face = 0;               ///< index of the uniform value: patch of a mesh, polygon of a polyhedron
-    bool displaced = false;     ///< the surface was displaced when it was diced; then all above is the undisplaced surface and:
+    float pError = 0;            ///< bound on the distance from P to the surface that rays meet: rounding plus facets
+    float orientation = 1;       ///< +1 or -1: the sign in Ng above
+    int face = 0;                ///< index of the uniform value: patch of a mesh, polygon of a polyhedron
+    bool displaced = false;      ///< the surface was displaced when it was diced; then all above is the undisplaced surface and:
     Vec3 displacedP, displacedN; ///< the facet that was hit: point, and unit normal on the side of n
-    uint32_t prim = 0;          ///< with b1, b2: where interpolate() finds the point again. Triangle of the polygon; else 0
-    float time = 0;             ///< of the shutter, 0 to 1: when the surface is there
-    double b1 = 0, b2 = 0;      ///< barycentric weights of the triangle's 2nd and 3rd corner; parametric surfaces: u and v
+    uint32_t prim = 0;           ///< with b1, b2: where interpolate() finds the point again. Triangle of the polygon; else 0
+    float time = 0;              ///< of the shutter, 0 to 1: when the surface is there
+    double b1 = 0, b2 = 0;       ///< barycentric weights of the triangle's 2nd and 3rd corner; parametric surfaces: u and v
 };
 
-/// What of a SurfacePoint is asked for, as bits. P, n, pError, face, prim, b1, b2, `displaced` and what it brings always come; of the rest
-/// what is not asked for may be zero. A shape may give more than it is asked for.
+/// What of a SurfacePoint is asked for, as bits. P, n, pError, face, prim, b1, b2, `displaced` and what it brings always come; of
+/// the rest what is not asked for may be zero. A shape may give more than it is asked for.
 enum PointNeed : uint32_t {
-    kNeedN = 1,                 ///< N
-    kNeedPartials = 2,          ///< dPdu, dPdv, Puu, Puv, Pvv, Ng, orientation
-    kNeedNormalSlopes = 4,      ///< dNdu, dNdv
-    kNeedUV = 8,                ///< u, v
-    kNeedST = 16,               ///< s, t
-    kNeedSTSlopes = 32,         ///< dsdu, dsdv, dtdu, dtdv
+    kNeedN = 1,            ///< N
+    kNeedPartials = 2,     ///< dPdu, dPdv, Puu, Puv, Pvv, Ng, orientation
+    kNeedNormalSlopes = 4, ///< dNdu, dNdv
+    kNeedUV = 8,           ///< u, v
+    kNeedST = 16,          ///< s, t
+    kNeedSTSlopes = 32,    ///< dsdu, dsdv, dtdu, dtdv
     kNeedAll = 63
 };
 
@@ -78,14 +78,16 @@ struct TriMesh {
 };
 
 /// A point where a ray meets an exactly intersected shape.
-struct ExactHit { double t, u, v; };
+struct ExactHit {
+    double t, u, v;
+};
 
 struct DiceOptions;
 struct DiceGrid;
 class Placed;
 
-/// What shapes without a side of their own (curves and points without "N") turn to: whatever ray comes, the eye in the origin, or the
-/// plane of the picture, when the eye is far.
+/// What shapes without a side of their own (curves and points without "N") turn to: whatever ray comes, the eye in the origin, or
+/// the plane of the picture, when the eye is far.
 enum class Facing { Ray, Eye, Picture };
 
 /// From where a shape came.
@@ -95,7 +97,8 @@ struct ShapeSource {
     Matrix toCamera;                 ///< object to camera
     int instance = -1;               ///< index into Frame::instances
     Facing facing = Facing::Ray;
-    const class Shape* like = nullptr; ///< while it is made: the same shape at an earlier time, which is cut into the same triangles
+    const class Shape* like =
+        nullptr; ///< while it is made: the same shape at an earlier time, which is cut into the same triangles
 };
 
 /// Sign of Ng relative to dPdu ^ dPdv (ri.md 4.1). "outside" follows the handedness of the transform, so that what a primitive
@@ -129,12 +132,16 @@ public:
     /// Encloses all that a ray can hit of one of them.
     virtual Bounds exactBounds(uint32_t /*prim*/) const { return bounds(); }
     /// All points of the line org + t dir on the first primitive, by increasing t, at most 4; any sign of t. Thread safe.
-    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const { return exactHits(0, org, dir, -INFINITY, INFINITY, Wanted::All, out); }
+    int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const {
+        return exactHits(0, org, dir, -INFINITY, INFINITY, Wanted::All, out);
+    }
     enum class Wanted { All, Nearest, Any };
-    /// Those of one primitive with lo < t <= hi only, which is cheaper. Nearest: one is enough; Any: whether there is one, u and v may stay
-    /// unset.
+    /// Those of one primitive with lo < t <= hi only, which is cheaper. Nearest: one is enough; Any: whether there is one, u and
+    /// v may stay unset.
     virtual int exactHits(uint32_t /*prim*/, const Vec3d& /*org*/, const Vec3d& /*dir*/, double /*lo*/, double /*hi*/, Wanted,
-                          ExactHit[4]) const { return 0; }
+                          ExactHit[4]) const {
+        return 0;
+    }
     /// Of some triangles a part is cut away: keepsHit() says which points are there. Thread safe.
     bool trimmed() const { return trimmed_; }
     virtual bool keepsHit(uint32_t /*prim*/, double /*b1*/, double /*b2*/) const { return true; }
@@ -175,7 +182,9 @@ public:
     /// A point for two numbers of [0,1): parametric surfaces uniform over (u, v), polygons uniform over area.
     virtual SurfacePoint sampleArea(double xi1, double xi2) const = 0;
     /// The same, written in place.
-    virtual void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const { out = sampleArea(xi1, xi2); }
+    virtual void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
+        out = sampleArea(xi1, xi2);
+    }
     /// The same for a point that is lit: what faces rays is where rays from there would meet it.
     virtual void sampleFrom(const Vec3& /*from*/, double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
         sampleArea(xi1, xi2, out, needs);
@@ -213,7 +222,9 @@ protected:
     /// evaluate() by (prim, b1, b2) of the undiced surface.
     virtual SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const = 0;
     /// The same, written in place. needs: PointNeed.
-    virtual void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs) const { out = evaluateLocal(prim, b1, b2); }
+    virtual void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs) const {
+        out = evaluateLocal(prim, b1, b2);
+    }
     /// The same for many hits of an undiced surface.
     virtual void localPoints(std::span<const HitRef>, uint32_t needs) const;
     /// hitNormal() of exact shapes.
@@ -226,13 +237,13 @@ protected:
     std::vector<PrimVar> primvars_;
     const std::vector<PrimVar>* variables_ = &primvars_; ///< those of primvars()
     int varN_ = -1, varS_ = -1, varT_ = -1, varSt_ = -1;
-    PrimVar normal_;                       ///< "N" or "Np", camera space
+    PrimVar normal_; ///< "N" or "Np", camera space
     TriMesh mesh_;
-    std::vector<Vec2> meshParam_;          ///< diced: (b1, b2) of each vertex on its undiced surface; empty: mesh is the surface
-    uint32_t trianglesPerPrim_ = 0;        ///< diced polygons: triangles made from each triangle; 0: all of prim 0
-    std::vector<uint32_t> meshPrim_;       ///< diced, and not empty: prim of each vertex; a triangle's vertices are of one
+    std::vector<Vec2> meshParam_;    ///< diced: (b1, b2) of each vertex on its undiced surface; empty: mesh is the surface
+    uint32_t trianglesPerPrim_ = 0;  ///< diced polygons: triangles made from each triangle; 0: all of prim 0
+    std::vector<uint32_t> meshPrim_; ///< diced, and not empty: prim of each vertex; a triangle's vertices are of one
     bool displaced_ = false, trimmed_ = false;
-    int mostWeights_ = 16;                 ///< room that weights() gets
+    int mostWeights_ = 16; ///< room that weights() gets
 };
 using ShapeRef = std::shared_ptr<Shape>;
 
@@ -250,8 +261,8 @@ inline Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0
     float d = 2 * (p.pError + extra);
     Vec3 off = p.n * (dot(dir, p.n) >= 0 ? d : -d);
     Vec3 o = p.P + off;
-    // Round away from the surface: one float up or down, as std::nextafter, whose call costs more than the rest. All signs are as likely as
-    // their opposites here, so there is no branch.
+    // Round away from the surface: one float up or down, as std::nextafter, whose call costs more than the rest. All signs are as
+    // likely as their opposites here, so there is no branch.
     auto step = [](float x, float by) {
         const int32_t bits = std::bit_cast<int32_t>(x), direction = std::bit_cast<int32_t>(by);
         int32_t moved = bits + (((bits ^ direction) >> 31) | 1); // signs agree: one away from 0

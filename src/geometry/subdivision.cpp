@@ -56,8 +56,8 @@ void Subdivision::makeChannels(std::vector<LimitSurface::Channel>& out) {
         if (!smooth || !var.param || var.type == scene::Type::String || input_.cage.scheme == SubdivisionScheme::Bilinear) return;
         const size_t width = size_t(var.width());
         const float* data = var.param->numbers.data();
-        LimitSurface::Channel channel = weld(
-            input_.cage.vertex, input_.cage.vertices, [&](size_t k) { return data + requestCorner(k) * width; }, width);
+        LimitSurface::Channel channel =
+            weld(input_.cage.vertex, input_.cage.vertices, [&](size_t k) { return data + requestCorner(k) * width; }, width);
         smooth_.push_back(var.param);
         out.push_back(std::move(channel));
     };

@@ -12,7 +12,9 @@ namespace {
 class Torus final : public Quadric {
 public:
     Torus(ShapeSource s, double R, double r, double phi0, double phi1, double sweep, Diagnostics& d)
-        : Quadric(std::move(s), sweep, d), R_(R), r_(r), phi0_(phi0), phi1_(phi1) { finish(d); }
+        : Quadric(std::move(s), sweep, d), R_(R), r_(r), phi0_(phi0), phi1_(phi1) {
+        finish(d);
+    }
 
 private:
     Profile profile(double v) const override {

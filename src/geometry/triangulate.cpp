@@ -8,7 +8,9 @@
 namespace alpenglow::geometry {
 namespace {
 
-struct P2 { double x, y; };
+struct P2 {
+    double x, y;
+};
 
 double turn(const P2& a, const P2& b, const P2& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
@@ -108,7 +110,10 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
                 const P2& q = at(r);
                 // Bridges double their ends: a corner that coincides with one of the ear's does not lie in it.
                 if (same(q, at(a)) || same(q, at(i)) || same(q, at(b))) continue;
-                if (inside(at(a), at(i), at(b), q)) { ear = false; break; }
+                if (inside(at(a), at(i), at(b), q)) {
+                    ear = false;
+                    break;
+                }
             }
         }
         // A flat corner goes without a triangle only when no ear is left, or where a loop turns back on itself: a neighbour

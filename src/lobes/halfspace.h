@@ -26,7 +26,9 @@ public:
 
 private:
     double solve(double albedo) const;
-    struct Node { double cosine, weight, inside, entering; }; ///< inside: fresnelInside(); entering: radiance for a flux of 1
+    struct Node {
+        double cosine, weight, inside, entering;
+    }; ///< inside: fresnelInside(); entering: radiance for a flux of 1
     std::vector<Node> nodes_;
     std::vector<double> table_; ///< by sqrt(1 - albedo), evenly
     double index_ = 1, first_ = 0, second_ = 0;

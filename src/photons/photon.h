@@ -31,11 +31,11 @@ inline Vec3 unpackUnit(uint32_t u) {
 /// One of them, in 36 bytes. Camera space in memory, world space in files.
 struct Photon {
     Vec3 P;
-    Color power;          ///< of the light's power, its share: all that were emitted together carry what the lights send
-    uint32_t from = 0;    ///< packUnit(): unit, toward where it came from
-    uint32_t normal = 0;  ///< packUnit(): of the surface, on the side on which it arrived
+    Color power;         ///< of the light's power, its share: all that were emitted together carry what the lights send
+    uint32_t from = 0;   ///< packUnit(): unit, toward where it came from
+    uint32_t normal = 0; ///< packUnit(): of the surface, on the side on which it arrived
     uint8_t reflected[3] = {0, 0, 0}; ///< 255: the surface gives back all that arrives, as diffuse light; by channel
-    uint8_t bounces = 0;  ///< since the light; 255: that, or more
+    uint8_t bounces = 0;              ///< since the light; 255: that, or more
     Vec3 direction() const { return unpackUnit(from); }
 };
 static_assert(sizeof(Photon) == 36);

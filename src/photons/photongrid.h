@@ -41,7 +41,7 @@ private:
     int bucketsAbout(const Vec3& at, std::array<uint32_t, 8>& out) const;
     uint32_t bucketOf(int64_t x, int64_t y, int64_t z) const;
     std::vector<Photon> photons_;
-    std::vector<float> times_;    ///< by photon; empty: all count at all times
+    std::vector<float> times_; ///< by photon; empty: all count at all times
     float halfWindow_ = 1;
     std::vector<uint32_t> first_; ///< by bucket; one more at the end
     float radius_ = 0;
@@ -56,7 +56,9 @@ float radiusOfPass(float first, uint32_t pass);
 /// How a progressive estimate of what moves begins: `radius` and `window` in the place of `radius`, about which as many photons
 /// are found. travel: how far things move while the shutter is open. What is smeared over the window is about as wide as the
 /// radius where that is so for a window of kLeastWindow or more.
-struct MovingStart { float radius, window; };
+struct MovingStart {
+    float radius, window;
+};
 MovingStart movingStart(float radius, float travel);
 inline constexpr float kLeastWindow = .125f;
 

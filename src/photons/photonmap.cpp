@@ -56,7 +56,10 @@ void PhotonMap::nearest(const Lookup& l, std::vector<Found>& heap) const {
     const auto nearer = [](const Found& a, const Found& b) {
         return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && a.at < b.at);
     };
-    struct Part { size_t begin, end; float beyond2; }; // squared distance of the plane that must be crossed
+    struct Part {
+        size_t begin, end;
+        float beyond2;
+    }; // squared distance of the plane that must be crossed
     Part waiting[64];
     int depth = 0;
     waiting[depth++] = {0, photons_.size(), 0};

@@ -33,8 +33,14 @@ public:
     Color radiance(const Lookup&) const;
 
 private:
-    struct Found { float distance2; uint32_t at; };
-    struct Estimate { Color power, given; float area = 0; };
+    struct Found {
+        float distance2;
+        uint32_t at;
+    };
+    struct Estimate {
+        Color power, given;
+        float area = 0;
+    };
     Estimate estimate(const Lookup&) const;
     void build(std::vector<Photon>& from, std::vector<uint32_t>& order, size_t begin, size_t end);
     void nearest(const Lookup&, std::vector<Found>& heap) const;

@@ -34,8 +34,8 @@ struct Grid {
     }
 };
 
-constexpr double kUnit = 0x1p-24;  ///< of squared relative errors, and of what is wanted
-constexpr double kMost = 0x1p10;   ///< of both: 2^28 pixels fit 64 bits
+constexpr double kUnit = 0x1p-24; ///< of squared relative errors, and of what is wanted
+constexpr double kMost = 0x1p10;  ///< of both: 2^28 pixels fit 64 bits
 int64_t fixedNumber(double v) { return int64_t(std::min(v, kMost) / kUnit + 0.5); }
 
 /// r^2 of each pixel; at most kMost, which is more noise than any picture has.

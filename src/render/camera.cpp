@@ -188,13 +188,13 @@ LensGrid lensGridOf(const scene::Options& o) {
 
 /// SLProject's lens: it takes the place of DepthOfField's.
 void Camera::setHiderLens(const scene::Options& o, Diagnostics& diags) {
-    const scene::Param *diameter = scene::find(o.hiderParams, "lensDiameter"), *samples = scene::find(o.hiderParams, "lensSamples"),
-                       *distance = scene::find(o.hiderParams, "focalDist");
+    const scene::Param *diameter = scene::find(o.hiderParams, "lensDiameter"),
+                       *samples = scene::find(o.hiderParams, "lensSamples"), *distance = scene::find(o.hiderParams, "focalDist");
     const scene::Param* first = diameter ? diameter : samples ? samples : distance;
     if (!first) return;
     if (o.hider != "raytrace") {
-        diags.report(Severity::Warning, Rie::Incapable, first->place, "\"" + first->name + "\" is for the hider raytrace; it is ignored",
-                     "DepthOfField is for all hiders");
+        diags.report(Severity::Warning, Rie::Incapable, first->place,
+                     "\"" + first->name + "\" is for the hider raytrace; it is ignored", "DepthOfField is for all hiders");
         return;
     }
     const auto bad = [&](const scene::Param& p, const char* rule) {
@@ -228,8 +228,8 @@ void Camera::setLens(const scene::Options& o, Diagnostics& diags) {
     if (!a || a->numbers.empty()) return;
     double n[4] = {};
     for (size_t i = 0; i < std::min<size_t>(4, a->numbers.size()); ++i) n[i] = a->numbers[i];
-    const bool good = std::isfinite(n[0] + n[1] + n[2] + n[3]) && n[0] >= 0 && n[0] <= 1000 && n[2] >= 0 && n[2] <= 1 &&
-                      std::fabs(n[3]) <= 1;
+    const bool good =
+        std::isfinite(n[0] + n[1] + n[2] + n[3]) && n[0] >= 0 && n[0] <= 1000 && n[2] >= 0 && n[2] <= 1 && std::fabs(n[3]) <= 1;
     if (!good) return bad("Hider \"aperture\": sides 0 to 1000, degrees, roundness 0 to 1, density -1 to 1; the lens is round");
     aperture_ = Aperture(int(n[0]), n[1], n[2], n[3]);
 }
@@ -237,9 +237,12 @@ void Camera::setLens(const scene::Options& o, Diagnostics& diags) {
 double Camera::eyeOf(double& rx, double& ry) const {
     const double half = 0.5 * eyes_;
     switch (stereo_) {
-    case Stereo::None: return 0;
-    case Stereo::Left: return -half;
-    case Stereo::Right: return half;
+    case Stereo::None:
+        return 0;
+    case Stereo::Left:
+        return -half;
+    case Stereo::Right:
+        return half;
     case Stereo::SideBySide: {
         const bool right = 2 * rx >= width_;
         rx = 2 * rx - (right ? width_ : 0);

@@ -29,8 +29,8 @@ private:
     std::vector<double> cumulative_; ///< of the area from the middle of a side to a corner, even steps of the angle
 };
 
-/// Hider "raytrace" "lensSamples", as SLProject's ray tracer has it: x by y rays through the middle of every pixel, from places that are
-/// spread evenly over the lens, the same in all pixels. 1 by 1: a pinhole.
+/// Hider "raytrace" "lensSamples", as SLProject's ray tracer has it: x by y rays through the middle of every pixel, from places
+/// that are spread evenly over the lens, the same in all pixels. 1 by 1: a pinhole.
 struct LensGrid {
     int x = 0, y = 0; ///< 0: PixelSamples says how many rays there are, each from a place of its own
     bool on() const { return x > 0; }
@@ -80,7 +80,7 @@ private:
     Window window_;
     bool perspective_ = false;
     double left_ = -1, right_ = 1, bottom_ = -1, top_ = 1;
-    double pixel_ = 1; ///< the larger side of a pixel on the screen
+    double pixel_ = 1;              ///< the larger side of a pixel on the screen
     double fov_ = 90, tangent_ = 1; ///< degrees; tan(fov / 2)
     double near_ = 0;
     double lensRadius_ = 0, focus_ = 1;

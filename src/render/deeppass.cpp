@@ -99,8 +99,9 @@ std::shared_ptr<const display::DeepSamples> seeDepths(Job& job, int nx, int ny, 
     job.progress.clear();
     if (steps > limits::kDeepSteps) {
         job.diagnostics.report(Severity::Error, Rie::Limit, {},
-                               "a deep shadow map has more than " + std::to_string(limits::kDeepSteps) + " steps; it is not "
-                               "written",
+                               "a deep shadow map has more than " + std::to_string(limits::kDeepSteps) +
+                                   " steps; it is not "
+                                   "written",
                                "a larger Option \"limits\" \"float deepshadowerror\" or fewer pixels need fewer");
         if (!job.interrupted) job.halt = 0;
         return {};

@@ -12,8 +12,7 @@ namespace alpenglow::render {
 class Tracer {
 public:
     virtual ~Tracer() = default;
-    virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>,
-                       const StopFlag* stop) = 0;
+    virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>, const StopFlag* stop) = 0;
     virtual const transport::Counters& counters() const = 0;
     /// See transport::Integrator.
     virtual bool unfinished() const { return false; }

@@ -24,11 +24,9 @@ Int128 emptyValue(ChannelRule r) {
 void tally(uint64_t& counter) { std::atomic_ref<uint64_t>(counter).fetch_add(1, std::memory_order_relaxed); }
 
 bool insertRange(std::vector<SampleRange>& ranges, SampleRange r) {
-    if (r.begin >= r.end)
-        return false;
+    if (r.begin >= r.end) return false;
     auto at = std::lower_bound(ranges.begin(), ranges.end(), r, [](auto a, auto b) { return a.begin < b.begin; });
-    if ((at != ranges.end() && at->begin < r.end) || (at != ranges.begin() && std::prev(at)->end > r.begin))
-        return false;
+    if ((at != ranges.end() && at->begin < r.end) || (at != ranges.begin() && std::prev(at)->end > r.begin)) return false;
     at = ranges.insert(at, r);
     if (std::next(at) != ranges.end() && std::next(at)->begin == at->end) {
         at->end = std::next(at)->end;
@@ -43,8 +41,7 @@ bool insertRange(std::vector<SampleRange>& ranges, SampleRange r) {
 
 uint64_t total(const std::vector<SampleRange>& ranges) {
     uint64_t n = 0;
-    for (auto r : ranges)
-        n += r.end - r.begin;
+    for (auto r : ranges) n += r.end - r.begin;
     return n;
 }
 
@@ -71,8 +68,7 @@ Film::Film(FilmDescription d) : description_(std::move(d)) {
     pixels_.resize(window().pixels());
     size_t n = description_.channels.size();
     aovs_.resize(pixels_.size() * n);
-    for (size_t i = 0; i < aovs_.size(); ++i)
-        aovs_[i] = emptyValue(description_.channels[i % n].rule);
+    for (size_t i = 0; i < aovs_.size(); ++i) aovs_[i] = emptyValue(description_.channels[i % n].rule);
     for (size_t i = 0; i < n; ++i)
         if (const int c = int(description_.channels[i].rule) - int(ChannelRule::PartOfRed); c >= 0 && c < 3)
             parts_[c].push_back(int(i));
@@ -132,25 +128,19 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
         Int128& sum = aovs_[at * n + i];
         ChannelRule rule = description_.channels[i].rule;
         if (rule >= ChannelRule::PartOfRed) continue;
-        if (std::isnan(v) || (rule == ChannelRule::Average && std::isinf(v)))
-            tally(nonFiniteAovs_);
-        else if (rule == ChannelRule::Average)
-            sum += toFixed(v, &saturated);
-        else if (rule == ChannelRule::Min)
-            sum = std::min<Int128>(sum, orderKey(v));
-        else
-            sum = std::max<Int128>(sum, orderKey(v));
+        if (std::isnan(v) || (rule == ChannelRule::Average && std::isinf(v))) tally(nonFiniteAovs_);
+        else if (rule == ChannelRule::Average) sum += toFixed(v, &saturated);
+        else if (rule == ChannelRule::Min) sum = std::min<Int128>(sum, orderKey(v));
+        else sum = std::max<Int128>(sum, orderKey(v));
     }
     addParts(at, s, rgb, &saturated);
-    if (saturated)
-        tally(saturated_);
+    if (saturated) tally(saturated_);
     return true;
 }
 
 bool Film::addRange(SampleRange r) {
     auto next = ranges_;
-    if (spread_ || !insertRange(next, r) || total(next) > limits::kSamplesPerPixel)
-        return false;
+    if (spread_ || !insertRange(next, r) || total(next) > limits::kSamplesPerPixel) return false;
     ranges_ = std::move(next);
     return true;
 }
@@ -201,13 +191,11 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     const auto &a = description_, &b = o.description_;
     if (a.width != b.width || a.height != b.height || a.window != b.window)
         return bad(Rie::Consistency, "the parts have different sizes or crop windows");
-    if (a.channels != b.channels)
-        return bad(Rie::Consistency, "the parts have different channels");
+    if (a.channels != b.channels) return bad(Rie::Consistency, "the parts have different channels");
     if (a.seed != b.seed)
         return bad(Rie::Consistency,
                    "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
-    if (a.scene != b.scene)
-        return bad(Rie::Consistency, "the parts come from different scenes or options");
+    if (a.scene != b.scene) return bad(Rie::Consistency, "the parts come from different scenes or options");
     if (spread_ || o.spread_)
         return bad(Rie::Consistency, "pixels have different numbers of samples (--noise); such a render is no part of another");
     auto next = ranges_;
@@ -221,8 +209,7 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     for (size_t i = 0; i < pixels_.size(); ++i) {
         Pixel& p = pixels_[i];
         const Pixel& q = o.pixels_[i];
-        for (int k = 0; k < 3; ++k)
-            p.rgb[k] += q.rgb[k];
+        for (int k = 0; k < 3; ++k) p.rgb[k] += q.rgb[k];
         p.alpha += q.alpha;
         p.y2 += q.y2;
         p.surfaceY += q.surfaceY;
@@ -235,10 +222,8 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     size_t n = a.channels.size();
     for (size_t i = 0; i < aovs_.size(); ++i) {
         ChannelRule rule = a.channels[i % n].rule;
-        if (isSum(rule))
-            aovs_[i] += o.aovs_[i];
-        else
-            aovs_[i] = rule == ChannelRule::Min ? std::min(aovs_[i], o.aovs_[i]) : std::max(aovs_[i], o.aovs_[i]);
+        if (isSum(rule)) aovs_[i] += o.aovs_[i];
+        else aovs_[i] = rule == ChannelRule::Min ? std::min(aovs_[i], o.aovs_[i]) : std::max(aovs_[i], o.aovs_[i]);
     }
     nonFinite_ += o.nonFinite_;
     nonFiniteAovs_ += o.nonFiniteAovs_;
@@ -251,8 +236,7 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
 
 uint32_t Film::count(int x, int y) const {
     uint32_t n = 0;
-    for (uint32_t c : pixel(x, y).replicaCount)
-        n += c;
+    for (uint32_t c : pixel(x, y).replicaCount) n += c;
     return n;
 }
 
@@ -269,8 +253,7 @@ float Film::alpha(int x, int y) const {
 
 float Film::aov(int x, int y, int channel) const {
     const Int128& v = aovs_[index(x, y) * description_.channels.size() + size_t(channel)];
-    if (!isSum(description_.channels[size_t(channel)].rule))
-        return fromKey(int32_t(v));
+    if (!isSum(description_.channels[size_t(channel)].rule)) return fromKey(int32_t(v));
     uint32_t n = count(x, y);
     return n ? float(fromFixed(v) / n) : 0;
 }
@@ -287,12 +270,10 @@ Moments Film::moments(int x, int y) const {
     Moments m;
     m.n = count(x, y);
     Int128 sum = 0;
-    for (Int128 v : p.replicaY)
-        sum += v;
+    for (Int128 v : p.replicaY) sum += v;
     m.s1 = fromFixed(sum);
     m.s2 = p.y2.toDouble() * 0x1p-80;
-    if (m.n < 2)
-        return m;
+    if (m.n < 2) return m;
     // n * S2 - S1^2 is never negative (Cauchy-Schwarz on integers) and fits: 27 + 227 bits.
     UInt256 d = p.y2;
     d *= m.n;
@@ -316,8 +297,7 @@ SurfaceSums Film::surface(int x, int y) const {
 }
 
 std::optional<DroppedSample> Film::firstDropped() const {
-    if (firstDropped_[0] == ~0ull)
-        return {};
+    if (firstDropped_[0] == ~0ull) return {};
     return DroppedSample{uint32_t(firstDropped_[0] >> 32), int(firstDropped_[1]), int(uint32_t(firstDropped_[0]))};
 }
 
@@ -329,25 +309,17 @@ uint64_t Film::digest() const {
         mix(uint64_t(v >> 64));
     };
     for (const Pixel& p : pixels_) {
-        for (Int128 v : p.rgb)
-            mix128(v);
+        for (Int128 v : p.rgb) mix128(v);
         mix128(p.alpha);
-        for (Int128 v : p.replicaY)
-            mix128(v);
-        for (uint64_t v : p.y2.limb)
-            mix(v);
-        for (uint32_t v : p.replicaCount)
-            mix(v);
+        for (Int128 v : p.replicaY) mix128(v);
+        for (uint64_t v : p.y2.limb) mix(v);
+        for (uint32_t v : p.replicaCount) mix(v);
         mix128(p.surfaceY);
-        for (uint32_t v : p.surfaceCount)
-            mix(v);
+        for (uint32_t v : p.surfaceCount) mix(v);
     }
-    for (Int128 v : aovs_)
-        mix128(v);
-    for (auto r : ranges_)
-        mix(uint64_t(r.begin) << 32 | r.end);
-    for (uint64_t v : {nonFinite_, nonFiniteAovs_, saturated_})
-        mix(v);
+    for (Int128 v : aovs_) mix128(v);
+    for (auto r : ranges_) mix(uint64_t(r.begin) << 32 | r.end);
+    for (uint64_t v : {nonFinite_, nonFiniteAovs_, saturated_}) mix(v);
     if (spread_) {
         mix(uint64_t(spread_->base) << 32 | spread_->steps);
         for (uint16_t v : spread_->rates) mix(v);

@@ -26,9 +26,9 @@ struct Window {
 
 /// How the samples of an AOV channel become a pixel.
 enum class ChannelRule : uint8_t {
-    Average, ///< mean over the samples, like Ci
-    Min,     ///< least value (depth filter "min"); +infinity when no sample gave a finite one
-    Max,     ///< greatest value; -infinity likewise
+    Average,     ///< mean over the samples, like Ci
+    Min,         ///< least value (depth filter "min"); +infinity when no sample gave a finite one
+    Max,         ///< greatest value; -infinity likewise
     PartOfRed,   ///< mean, like Ci, of which it is a part: those of a component add up to it exactly, sample by sample. What
     PartOfGreen, ///< rounding leaves goes to the largest
     PartOfBlue
@@ -48,9 +48,9 @@ struct SampleRange {
     friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 
-/// How many samples pixels have where they differ (adaptive sampling, adaptive.h). One whose rate is 1 has n = base / 8 + kReplicas
-/// steps of them, and others n times their rate, in whole multiples of kReplicas; but each at least `base`. Which ones follows from
-/// this alone, so it is all that a render needs to go on. At first only pixels of the greatest rate get more.
+/// How many samples pixels have where they differ (adaptive sampling, adaptive.h). One whose rate is 1 has n = base / 8 +
+/// kReplicas steps of them, and others n times their rate, in whole multiples of kReplicas; but each at least `base`. Which ones
+/// follows from this alone, so it is all that a render needs to go on. At first only pixels of the greatest rate get more.
 struct Spread {
     static constexpr uint16_t kOne = 256, kMost = 8 * kOne;
     uint32_t base = 0, steps = 0;
@@ -68,7 +68,7 @@ struct FilmDescription {
     int width = 0, height = 0; ///< of the whole picture, pixels
     Window window;             ///< the crop window; must lie inside the picture
     uint64_t seed = 0;
-    std::string scene;         ///< a digest of the scene and of every option that changes the picture; chosen by the caller
+    std::string scene;             ///< a digest of the scene and of every option that changes the picture; chosen by the caller
     std::vector<Channel> channels; ///< AOVs
     friend bool operator==(const FilmDescription&, const FilmDescription&) = default;
 };
@@ -82,13 +82,16 @@ struct FilmSample {
 };
 
 /// The first (least sample index, then y, then x) sample that was dropped: its reproducer.
-struct DroppedSample { uint32_t sample = 0; int x = 0, y = 0; };
+struct DroppedSample {
+    uint32_t sample = 0;
+    int x = 0, y = 0;
+};
 
 /// The moments of a pixel's sample luminance Y (Rec. 709 weights), from exact sums.
 struct Moments {
-    uint32_t n = 0;      ///< samples counted
+    uint32_t n = 0;        ///< samples counted
     double s1 = 0, s2 = 0; ///< sum Y, sum Y^2
-    double variance = 0; ///< (s2 - s1^2 / n) / (n - 1), the difference taken exactly; 0 for n < 2
+    double variance = 0;   ///< (s2 - s1^2 / n) / (n - 1), the difference taken exactly; 0 for n < 2
 };
 
 /// The samples of a pixel that met a surface.
@@ -124,8 +127,8 @@ public:
     const std::vector<SampleRange>& ranges() const { return ranges_; }
     /// Samples per pixel: the sum of the ranges' lengths, which all pixels have.
     uint32_t samplesPerPixel() const;
-    /// From here on pixels get samples by these rates, one for each, beyond samplesPerPixel(). False unless the film holds samples
-    /// 0 to n - 1 of every pixel and no rate is above Spread::kMost.
+    /// From here on pixels get samples by these rates, one for each, beyond samplesPerPixel(). False unless the film holds
+    /// samples 0 to n - 1 of every pixel and no rate is above Spread::kMost.
     bool spread(std::vector<uint16_t> rates);
     /// Null: all pixels have the same samples.
     const Spread* spread() const { return spread_ ? &*spread_ : nullptr; }
@@ -134,12 +137,16 @@ public:
     /// Which samples of a pixel so many further steps bring.
     SampleRange samplesOfSteps(int x, int y, uint32_t steps) const;
     /// Samples a pixel, of all on average, and of those with the fewest and the most.
-    struct Samples { double mean = 0; uint64_t least = 0, most = 0; };
+    struct Samples {
+        double mean = 0;
+        uint64_t least = 0, most = 0;
+    };
     Samples samples() const { return samplesAfter(0); }
     /// The same, after so many further steps.
     Samples samplesAfter(uint32_t steps) const;
 
-    /// Adds the other film's integers. False with an error when the descriptions differ, sample ranges overlap, or either is spread.
+    /// Adds the other film's integers. False with an error when the descriptions differ, sample ranges overlap, or either is
+    /// spread.
     bool merge(const Film& other, Diagnostics&, const SourcePlace& = {});
 
     uint32_t count(int x, int y) const;
@@ -159,9 +166,9 @@ public:
 
     SurfaceSums surface(int x, int y) const;
 
-    uint64_t nonFinite() const { return nonFinite_; }        ///< samples dropped
+    uint64_t nonFinite() const { return nonFinite_; }         ///< samples dropped
     uint64_t nonFiniteAovs() const { return nonFiniteAovs_; } ///< AOV values not counted
-    uint64_t saturated() const { return saturated_; }        ///< values clamped at 2^60
+    uint64_t saturated() const { return saturated_; }         ///< values clamped at 2^60
     std::optional<DroppedSample> firstDropped() const;
 
     /// A 64-bit digest of all sums: equal films have equal digests.
@@ -188,8 +195,8 @@ private:
 
     FilmDescription description_;
     std::vector<Pixel> pixels_;
-    std::vector<int> parts_[3];     ///< channels that are parts, by component
-    std::vector<Int128> aovs_;      ///< pixels x channels; Min and Max hold the key of the value (film.cpp)
+    std::vector<int> parts_[3]; ///< channels that are parts, by component
+    std::vector<Int128> aovs_;  ///< pixels x channels; Min and Max hold the key of the value (film.cpp)
     std::vector<SampleRange> ranges_;
     std::optional<Spread> spread_;
     uint64_t nonFinite_ = 0, nonFiniteAovs_ = 0, saturated_ = 0;

@@ -17,8 +17,7 @@ constexpr double kGaussW[4] = {0.17392742256872693, 0.32607257743127307, 0.32607
 // Position in [0,1] of mass fraction u under the straight density from a to b; stable for a == b.
 double invertLinear(double a, double b, double u) {
     double s = a + b;
-    if (!(s > 0))
-        return u;
+    if (!(s > 0)) return u;
     a /= s, b /= s; // now the mass is 1/2
     return std::clamp(u / (a + std::sqrt(std::max(0.0, a * a + (b * b - a * a) * u))), 0.0, 1.0);
 }
@@ -43,19 +42,16 @@ void FilterSampler::Axis::build(const PixelFilter& f, double w) {
                 double m = (lo + hi) / 2;
                 (f.axis(m, w) * fa > 0 ? lo : hi) = m;
             }
-            if (lo > a && hi < b)
-                node.push_back((lo + hi) / 2);
+            if (lo > a && hi < b) node.push_back((lo + hi) / 2);
         }
         node.push_back(b);
     }
     value.resize(node.size());
     mass.assign(node.size(), 0);
-    for (size_t i = 0; i < node.size(); ++i)
-        value[i] = std::fabs(f.axis(std::clamp(node[i], -half, half), w));
+    for (size_t i = 0; i < node.size(); ++i) value[i] = std::fabs(f.axis(std::clamp(node[i], -half, half), w));
     for (size_t i = 0; i + 1 < node.size(); ++i) {
         double len = node[i + 1] - node[i], sum = 0;
-        for (int k = 0; k < 4; ++k)
-            sum += kGaussW[k] * f.axis(node[i] + len * kGaussX[k], w);
+        for (int k = 0; k < 4; ++k) sum += kGaussW[k] * f.axis(node[i] + len * kGaussX[k], w);
         sum *= len;
         total += sum;
         absolute += mass[i] = std::fabs(sum);
@@ -64,17 +60,14 @@ void FilterSampler::Axis::build(const PixelFilter& f, double w) {
         p.piece.push_back(int(i));
         p.cdf.push_back(p.mass);
     }
-    for (double& m : mass)
-        m /= absolute;
+    for (double& m : mass) m /= absolute;
     for (Part& p : part) {
-        for (double& c : p.cdf)
-            c /= p.mass > 0 ? p.mass : 1;
+        for (double& c : p.cdf) c /= p.mass > 0 ? p.mass : 1;
         p.mass /= absolute;
         for (int k = 0; k < kPieces && !p.piece.empty(); ++k)
             p.guide.push_back(find(p.cdf, 0, p.cdf.size(), double(k) / kPieces));
     }
-    if (part[1].piece.empty())
-        part[0].mass = 1; // exactly
+    if (part[1].piece.empty()) part[0].mass = 1; // exactly
 }
 
 double FilterSampler::Axis::invert(double u, const Part& p) const {
@@ -86,8 +79,7 @@ double FilterSampler::Axis::invert(double u, const Part& p) const {
 }
 
 double FilterSampler::Axis::density(double t) const {
-    if (!(t >= node.front() && t <= node.back()))
-        return 0;
+    if (!(t >= node.front() && t <= node.back())) return 0;
     int i = find(node, 0, node.size(), t);
     double len = node[i + 1] - node[i], k = (t - node[i]) / len, s = value[i] + value[i + 1];
     double shape = s > 0 ? 2 * (value[i] + (value[i + 1] - value[i]) * k) / s : 1;
@@ -122,15 +114,12 @@ void FilterSampler::buildGrids() {
             }
             grid.rowCdf[r + 1] = grid.rowCdf[r] + cdf[kCells];
             double row = grid.rowCdf[r + 1] - grid.rowCdf[r];
-            for (int c = 0; c <= kCells; ++c)
-                cdf[c] = row > 0 ? cdf[c] / row : double(c) / kCells;
+            for (int c = 0; c <= kCells; ++c) cdf[c] = row > 0 ? cdf[c] / row : double(c) / kCells;
         }
         grid.share = grid.rowCdf.back();
-        for (double& c : grid.rowCdf)
-            c /= grid.share > 0 ? grid.share : 1;
+        for (double& c : grid.rowCdf) c /= grid.share > 0 ? grid.share : 1;
     }
-    if (grid_[1].share == 0)
-        grid_[0].share = 1; // exactly
+    if (grid_[1].share == 0) grid_[0].share = 1; // exactly
 }
 
 FilterSampler::FilterSampler(const PixelFilter& f) : filter_(f) {
@@ -168,13 +157,11 @@ FilterSample FilterSampler::sample(Vec2 u) const {
         int k = 0;
         for (; k < 3; ++k) {
             double share = x_.part[order[k][0]].mass * y_.part[order[k][1]].mass;
-            if (ux < share)
-                break;
+            if (ux < share) break;
             ux -= share;
         }
         // Rounding may leave the first number beyond the last stratum that has any mass: it belongs to that one's end.
-        while (k > 0 && x_.part[order[k][0]].mass * y_.part[order[k][1]].mass == 0)
-            --k;
+        while (k > 0 && x_.part[order[k][0]].mass * y_.part[order[k][1]].mass == 0) --k;
         const Part &px = x_.part[order[k][0]], &py = y_.part[order[k][1]];
         x = x_.invert(std::clamp(ux / (px.mass * py.mass), 0.0, kBelowOne), px);
         y = y_.invert(u.y, py);
@@ -201,12 +188,9 @@ FilterSample FilterSampler::sample(Vec2 u) const {
 }
 
 double FilterSampler::density(double x, double y) const {
-    if (!(std::fabs(x) <= filter_.xw / 2 && std::fabs(y) <= filter_.yw / 2))
-        return 0;
-    if (filter_.kind == FilterKind::Box || filter_.kind == FilterKind::Disk)
-        return filter_(x, y) / total_;
-    if (filter_.separable())
-        return x_.density(x) * y_.density(y);
+    if (!(std::fabs(x) <= filter_.xw / 2 && std::fabs(y) <= filter_.yw / 2)) return 0;
+    if (filter_.kind == FilterKind::Box || filter_.kind == FilterKind::Disk) return filter_(x, y) / total_;
+    if (filter_.separable()) return x_.density(x) * y_.density(y);
     int c = std::clamp(int((x / filter_.xw + 0.5) * kCells), 0, kCells - 1);
     int r = std::clamp(int((y / filter_.yw + 0.5) * kCells), 0, kCells - 1);
     size_t i = size_t(r) * kCells + size_t(c);

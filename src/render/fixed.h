@@ -47,8 +47,7 @@ struct UInt256 {
     /// Rounded to within 2^-52 of the value.
     double toDouble() const {
         double v = 0;
-        for (int i = 3; i >= 0; --i)
-            v = v * 0x1p64 + double(limb[i]);
+        for (int i = 3; i >= 0; --i) v = v * 0x1p64 + double(limb[i]);
         return v;
     }
 };

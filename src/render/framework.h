@@ -21,8 +21,8 @@ struct Renderer::FrameWork {
     Hider hider;
     bool path;
     Camera camera;
-    uint32_t spp = 0;       ///< samples of a pixel
-    int nx = 1, ny = 1;     ///< the same as a grid; not under path
+    uint32_t spp = 0;   ///< samples of a pixel
+    int nx = 1, ny = 1; ///< the same as a grid; not under path
     std::optional<SampleRange> part;
     SampleRange wanted{};
     OutputPlan plan;
@@ -36,7 +36,8 @@ struct Renderer::FrameWork {
     uint64_t nonFinite = 0; ///< samples that were left out
 
     FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& stats, Diagnostics& d)
-        : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d), made(frame) {}
+        : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d),
+          made(frame) {}
 };
 
 /// Notes how many procedurals of a frame waited, and how many were made. procedurals.cpp

@@ -67,7 +67,8 @@ Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnosti
     const scene::Param* first = samples ? samples : threshold;
     if (!first || (samples && samples->numbers.empty())) return r;
     if (o.hider != "raytrace") {
-        diags.report(Severity::Warning, Rie::Incapable, first->place, "\"" + first->name + "\" is for the hider raytrace; it is ignored");
+        diags.report(Severity::Warning, Rie::Incapable, first->place,
+                     "\"" + first->name + "\" is for the hider raytrace; it is ignored");
         return r;
     }
     r.side = !samples ? 3 : std::isnan(samples->numbers[0]) ? 0 : int(std::clamp(samples->numbers[0], 0.f, 100.f));
@@ -92,7 +93,9 @@ Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnosti
 
 namespace {
 
-struct Wanted { int x, y, k; };
+struct Wanted {
+    int x, y, k;
+};
 
 /// What the bands of a picture have in common.
 class ImageLoop {
@@ -125,7 +128,8 @@ private:
     Reconstructions& result_;
     const Window window_;
     std::vector<Channel> aovs_;
-    std::vector<const OutputSpec*> filtered_; ///< displays that share a reconstruction stand for each other: a frame may have hundreds
+    std::vector<const OutputSpec*>
+        filtered_; ///< displays that share a reconstruction stand for each other: a frame may have hundreds
     double xw_ = 1, yw_ = 1;
     int rows_ = 0, bands_ = 0;
     double reached_ = 0;
@@ -134,8 +138,8 @@ private:
     std::vector<uint8_t> there_;   ///< by pixel of the window: it is in the images. Only where somebody looks on
 };
 
-ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed, DroppedSamples& dropped,
-                     Reconstructions& result)
+ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed,
+                     DroppedSamples& dropped, Reconstructions& result)
     : job_(job), nx_(nx), ny_(ny), jitter_(jitter), refinement_(refinement), seed_(seed), dropped_(dropped), result_(result),
       window_(job.camera.window()) {
     if (refinement.on()) {
@@ -279,8 +283,8 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
         done);
 }
 
-/// The depths of the second surfaces, which a sample has by itself only where the first lets light through: rays that begin behind
-/// the first. False: interrupted.
+/// The depths of the second surfaces, which a sample has by itself only where the first lets light through: rays that begin
+/// behind the first. False: interrupted.
 bool ImageLoop::traceBehind(int worker, std::span<const transport::CameraRay> rays,
                             std::span<transport::SampleResult> results) const {
     constexpr float kBehind = 1 + 1e-5f; // of the depth: beyond its rounding, before what lies behind it
@@ -309,7 +313,8 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
         rays.push_back(imageRay(job_.camera, buffer.position(w.x, w.y, w.k), seed_, w.x, w.y, uint32_t(w.k)));
     std::vector<transport::SampleResult> results(rays.size());
     if (!job_.trace(worker, rays, results)) return false;
-    if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, rays, results)) return false;
+    if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, rays, results))
+        return false;
     if (job_.unfinished(worker)) return true; // these are traced again
     for (size_t k = 0; k < rays.size(); ++k) {
         transport::SampleResult& r = results[k];
@@ -330,7 +335,7 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
 
 void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     const std::vector<Wanted> pixels = differing(buffer, part);
-    constexpr size_t kPixels = 64; // a task
+    constexpr size_t kPixels = 64;                                                      // a task
     if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // what is there is not traced again
     if (growth_) { // all that is there so far, while nobody works at it
         reconstruct(buffer, part);
@@ -351,8 +356,8 @@ void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     result_.refined.rays += pixels.size() * size_t(nx_ * ny_ - 1);
 }
 
-/// The pixels that differ from a neighbour, in reading order, with their samples that are there. The buffer has one more pixel on all
-/// sides, so that neither bands nor crop windows show.
+/// The pixels that differ from a neighbour, in reading order, with their samples that are there. The buffer has one more pixel on
+/// all sides, so that neither bands nor crop windows show.
 std::vector<Wanted> ImageLoop::differing(const SampleBuffer& buffer, const Window& part) const {
     const int middle = nx_ * ny_ / 2;
     const auto colour = [&](int x, int y) {

@@ -53,8 +53,8 @@ void fromJson(const Json& j, scene::Transform& t) {
 }
 
 Json toJson(const Param& p) {
-    return {{"name", p.name}, {"class", int(p.cls)}, {"type", int(p.type)}, {"array", p.arrayLength}, {"declared", p.declared},
-            {"numbers", p.numbers}, {"strings", p.strings}, {"place", toJson(p.place)}};
+    return {{"name", p.name},         {"class", int(p.cls)},  {"type", int(p.type)},  {"array", p.arrayLength},
+            {"declared", p.declared}, {"numbers", p.numbers}, {"strings", p.strings}, {"place", toJson(p.place)}};
 }
 void fromJson(const Json& j, Param& p) {
     p.name = j.at("name").get<std::string>();

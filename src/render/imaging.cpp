@@ -8,8 +8,7 @@ namespace alpenglow::render {
 
 float expose(float v, float gain, float gamma) {
     v *= gain;
-    if (gamma == 1 || !(gamma > 0))
-        return v;
+    if (gamma == 1 || !(gamma > 0)) return v;
     return std::copysign(float(exact::pow(double(std::fabs(v)), 1.0 / double(gamma))), v);
 }
 
@@ -23,12 +22,10 @@ double ditherValue(uint64_t seed, int x, int y, int channel) {
 }
 
 double quantize(double v, const QuantizeRule& q, uint64_t seed, int x, int y, int channel) {
-    if (q.floating())
-        return v;
+    if (q.floating()) return v;
     double d = q.dither != 0 ? q.dither * ditherValue(seed, x, y, channel) : 0;
     double r = std::nearbyint(q.zero + v * (q.one - q.zero) + d);
-    if (!(r >= q.min))
-        return q.min;
+    if (!(r >= q.min)) return q.min;
     return std::min(r, q.max);
 }
 

@@ -12,7 +12,9 @@ namespace {
 constexpr float kUnlimited = 1e38f; // RI_INFINITY and what is written for it
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-struct Point { double x, y; };
+struct Point {
+    double x, y;
+};
 double turn(Point a, Point b, Point c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
 /// Area of the convex hull (monotone chain).

@@ -40,8 +40,9 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
     const auto only = [&](Source s) { // under path alone, and as wide as it is
         if (!plan.basis.path)
             diags.report(Severity::Error, Rie::Incapable, place,
-                         "\"" + v.name + "\": outputs by light path, albedo, normal, variance and samples need Hider \"path\"; "
-                         "it is 0");
+                         "\"" + v.name +
+                             "\": outputs by light path, albedo, normal, variance and samples need Hider \"path\"; "
+                             "it is 0");
         if (v.channels.size() == widthOf(s)) return true;
         if (v.typed)
             diags.report(Severity::Error, Rie::Consistency, place,
@@ -117,11 +118,16 @@ size_t lightFloats(const OutputPlan& plan) { return plan.lightParts.size() * 3 +
 size_t lightFloat(const OutputPlan& plan, const OutputVariable& v) {
     const size_t behind = plan.lightParts.size() * 3;
     switch (v.source) {
-    case Source::Light: return size_t(v.light) * 3;
-    case Source::Albedo: return behind;
-    case Source::Normal: return behind + 3;
-    case Source::Variance: return behind + 6;
-    default: return behind + 7;
+    case Source::Light:
+        return size_t(v.light) * 3;
+    case Source::Albedo:
+        return behind;
+    case Source::Normal:
+        return behind + 3;
+    case Source::Variance:
+        return behind + 6;
+    default:
+        return behind + 7;
     }
 }
 

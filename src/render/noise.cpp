@@ -33,31 +33,25 @@ double studentWithin(double t, int dof) {
 // c4 by its recurrence from Gamma(1/2) and Gamma(1): exact, and needs no library function whose last bit may differ.
 double c4(int r) {
     double ratio = r % 2 ? std::sqrt(kPi) / 2 : 1 / std::sqrt(kPi); // Gamma(r/2)/Gamma((r-1)/2) for r = 3 and r = 2
-    for (int k = r % 2 ? 3 : 2; k < r; k += 2)
-        ratio *= (k / 2.0) / ((k - 1) / 2.0);
+    for (int k = r % 2 ? 3 : 2; k < r; k += 2) ratio *= (k / 2.0) / ((k - 1) / 2.0);
     return std::sqrt(2.0 / (r - 1)) * ratio;
 }
 
 } // namespace
 
 double relativeStandardError(double s1, double s2, uint64_t n) {
-    if (n < 2)
-        return 0;
+    if (n < 2) return 0;
     double variance = std::max(0.0, (s2 - s1 * s1 / double(n)) / double(n - 1));
     return relative(std::sqrt(variance / double(n)), s1 / double(n));
 }
 
-double relativeStandardError(const Moments& m) {
-    return m.n < 2 ? 0 : relative(std::sqrt(m.variance / m.n), m.s1 / m.n);
-}
+double relativeStandardError(const Moments& m) { return m.n < 2 ? 0 : relative(std::sqrt(m.variance / m.n), m.s1 / m.n); }
 
 void summarise(std::vector<double>& rse, double* noiseRSE, double* noiseRSE999) {
     *noiseRSE = *noiseRSE999 = 0;
-    if (rse.empty())
-        return;
+    if (rse.empty()) return;
     double sum = 0;
-    for (double v : rse)
-        sum += v;
+    for (double v : rse) sum += v;
     *noiseRSE = sum / double(rse.size());
     size_t k = std::min(size_t(std::floor(0.999 * double(rse.size()))), rse.size() - 1);
     std::nth_element(rse.begin(), rse.begin() + long(k), rse.end());
@@ -72,11 +66,9 @@ ReplicaError replicaError(std::span<const double> sums, std::span<const uint32_t
         n += counts[r];
         e.replicas += counts[r] > 0;
     }
-    if (n == 0)
-        return e;
+    if (n == 0) return e;
     e.mean = sum / n;
-    if (e.replicas < 2)
-        return e;
+    if (e.replicas < 2) return e;
     double s = 0;
     for (size_t r = 0; r < sums.size(); ++r) {
         double d = (sums[r] - counts[r] * e.mean) / n; // (n_r / n) (m_r - m)
@@ -89,8 +81,7 @@ ReplicaError replicaError(std::span<const double> sums, std::span<const uint32_t
 ReplicaError replicaError(const Film& film, int x, int y) {
     std::array<double, kReplicas> sums;
     std::array<uint32_t, kReplicas> counts;
-    for (uint32_t r = 0; r < kReplicas; ++r)
-        film.replica(x, y, r, &sums[r], &counts[r]);
+    for (uint32_t r = 0; r < kReplicas; ++r) film.replica(x, y, r, &sums[r], &counts[r]);
     return replicaError(sums, counts);
 }
 
@@ -181,8 +172,7 @@ PooledError pixelError(const Film& film, int x, int y, int radius) {
 namespace {
 double studentOfWhole(double level, int dof) {
     double hi = 1;
-    while (studentWithin(hi, dof) < level && hi < 1e12)
-        hi *= 2;
+    while (studentWithin(hi, dof) < level && hi < 1e12) hi *= 2;
     double lo = 0;
     for (int i = 0; i < 100; ++i) {
         double m = (lo + hi) / 2;
@@ -228,8 +218,7 @@ NoiseFigures noiseFigures(const Film& film) {
             surfaceSum += a;
             surfaceSquare += a * a;
         }
-    if (most >= 2)
-        summarise(rse, &f.noiseRSE, &f.noiseRSE999);
+    if (most >= 2) summarise(rse, &f.noiseRSE, &f.noiseRSE999);
     f.noiseQMC = relativeSum / double(w.pixels());
     f.imageError = std::sqrt(square / double(w.pixels()));
     f.coverage = area / double(w.pixels());

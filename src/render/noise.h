@@ -23,8 +23,8 @@ struct NoiseFigures {
                       ///< not known
     double noiseAtMost = 0; ///< the true error is with 95 % certainty not above this: what --noise compares. Near `noise` where
                             ///< many pixels show a surface, far above it where few do (noiseBound()). 0 when not known
-    bool known = false;  ///< some pixel's surface was met in two replicas
-    double coverage = 0; ///< share of the samples that met a surface, 0..1
+    bool known = false;     ///< some pixel's surface was met in two replicas
+    double coverage = 0;    ///< share of the samples that met a surface, 0..1
     /// Nothing is left that more samples would improve: no surface is in the picture, or the figure is small enough.
     bool reached(double wanted) const { return known ? noiseAtMost <= wanted : coverage == 0; }
 };
@@ -90,7 +90,9 @@ PooledError pixelError(const Film&, int x, int y, int radius);
 
 /// Mean and half width of an interval that covers the true value with the given probability: m +- t SE, t of Student's
 /// distribution. Half width infinite when the error is not known (fewer than 2 replicas). 0 < level < 1.
-struct Interval { double mean = 0, halfWidth = 0; };
+struct Interval {
+    double mean = 0, halfWidth = 0;
+};
 Interval confidenceInterval(const PooledError&, double level = 0.95);
 /// t with P(|T| <= t) = level for Student's distribution with dof >= 1 degrees of freedom; between whole numbers its logarithm is
 /// taken as linear in 1 / dof (2.5 % too large at 1.5, 0.5 % at 2.5).

@@ -335,8 +335,8 @@ size_t floatOf(const OutputPlan& plan, const OutputVariable& v, const std::vecto
 }
 } // namespace
 
-std::optional<display::Image> finishedPicture(const OutputPlan& plan, const OutputSpec& s, const PictureFacts& facts, const Image& in,
-                                              const Imager& imager) {
+std::optional<display::Image> finishedPicture(const OutputPlan& plan, const OutputSpec& s, const PictureFacts& facts,
+                                              const Image& in, const Imager& imager) {
     std::vector<int> firstFloat(plan.engineOutputs.size());
     for (size_t i = 0, n = 0; i < firstFloat.size(); n += size_t(plan.engineWidths[i++])) firstFloat[i] = int(n);
     const int w = facts.window.width(), h = facts.window.height();
@@ -368,8 +368,12 @@ std::optional<display::Image> finishedPicture(const OutputPlan& plan, const Outp
                 case Source::Ci:
                     for (size_t k = 0; k < n; ++k) *q++ = k == 0 ? r[x] : k == 1 ? g[x] : b[x];
                     break;
-                case Source::Alpha: *q++ = a[x]; break;
-                case Source::Z: *q++ = std::isfinite(p[7]) ? p[7] : kFarAway; break;
+                case Source::Alpha:
+                    *q++ = a[x];
+                    break;
+                case Source::Z:
+                    *q++ = std::isfinite(p[7]) ? p[7] : kFarAway;
+                    break;
                 case Source::Oi:
                     for (size_t k = 0; k < n; ++k) *q++ = p[4 + std::min(k, size_t(2))];
                     break;

@@ -69,10 +69,10 @@ struct OutputPlan {
     std::vector<OutputSpec> pictures;
     std::vector<std::string> engineOutputs; ///< transport::Settings::outputs
     std::vector<int> engineWidths; ///< floats of each: what displays declare (0: nothing), then by resolve() what shaders have
-    std::vector<scene::LightPaths::Source> lights; ///< light path expressions
+    std::vector<scene::LightPaths::Source> lights;       ///< light path expressions
     std::shared_ptr<const scene::LightPaths> lightPaths; ///< of these; null: none. Not in part files
-    std::vector<std::vector<int>> lightParts; ///< by expression, the parts of Ci's light that it shows
-    int parts = 0;                            ///< how many there are
+    std::vector<std::vector<int>> lightParts;            ///< by expression, the parts of Ci's light that it shows
+    int parts = 0;                                       ///< how many there are
     int engineFloats() const;
     /// Whether SampleResult::albedo and normal are asked for, or may be.
     bool needsFirstSeen() const;
@@ -118,7 +118,7 @@ struct PictureFacts {
     float pixelAspect = 1;
     Matrix worldToCamera, worldToNDC;
     std::map<std::string, std::string> metadata;
-    bool imager = false; ///< the frame has an imager shader
+    bool imager = false;                              ///< the frame has an imager shader
     std::shared_ptr<const display::DeepSamples> deep; ///< of deep shadow maps; null: none was made
 };
 
@@ -127,7 +127,8 @@ struct PictureFacts {
 using Imager = std::function<bool(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
 
 /// A picture of the plan as its driver gets it: `in` is what was reconstructed for it. Nothing: the imager was stopped.
-std::optional<display::Image> finishedPicture(const OutputPlan&, const OutputSpec&, const PictureFacts&, const Image& in, const Imager&);
+std::optional<display::Image> finishedPicture(const OutputPlan&, const OutputSpec&, const PictureFacts&, const Image& in,
+                                              const Imager&);
 /// Writes all pictures of the plan. pixels(spec) gives what was reconstructed for it. False when any could not be written (an
 /// error was reported); the others are written all the same. What the imager was stopped in and what comes behind it is not.
 bool writeOutputs(const OutputPlan&, const PictureFacts&, const std::function<const Image&(const OutputSpec&)>& pixels,

@@ -42,7 +42,6 @@ DepthFilter depth(const Json& j) {
 Json place(const SourcePlace& p) { return {p.file, p.line, p.column}; }
 SourcePlace place(const Json& j) { return {j.at(0).get<std::string>(), j.at(1).get<int>(), j.at(2).get<int>()}; }
 
-
 bool soundLight(const OutputVariable& v, const OutputPlan& plan) {
     return v.source != OutputVariable::Source::Light || (v.light >= 0 && size_t(v.light) < plan.lightParts.size());
 }

@@ -9,17 +9,16 @@ namespace alpenglow::render {
 namespace {
 
 constexpr char kMagic[8] = {'A', 'L', 'P', 'G', 'P', 'A', 'R', 'T'};
-constexpr uint32_t kVersion = 3;             // 1 had no sums of the samples that met a surface, 2 had eight replicas a pixel
-constexpr uint32_t kSpreadVersion = 4;       // of a film that is spread; others stay what older programs read
-constexpr size_t kPrefix = 20;               // magic, version, header size, header CRC
+constexpr uint32_t kVersion = 3;       // 1 had no sums of the samples that met a surface, 2 had eight replicas a pixel
+constexpr uint32_t kSpreadVersion = 4; // of a film that is spread; others stay what older programs read
+constexpr size_t kPrefix = 20;         // magic, version, header size, header CRC
 constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas + 16 + 4 * kReplicas;
-constexpr size_t kDeflateRatio = 1040;       // deflate cannot pack better than 1032 : 1
+constexpr size_t kDeflateRatio = 1040; // deflate cannot pack better than 1032 : 1
 
 struct Writer {
     std::vector<uint8_t> bytes;
     template <class T> void number(T v) {
-        for (size_t i = 0; i < sizeof(T); ++i)
-            bytes.push_back(uint8_t(v >> (8 * i)));
+        for (size_t i = 0; i < sizeof(T); ++i) bytes.push_back(uint8_t(v >> (8 * i)));
     }
     void text(const std::string& s) {
         number(uint32_t(s.size()));
@@ -37,8 +36,7 @@ struct Reader {
             ok = false;
             return v;
         }
-        for (size_t i = 0; i < sizeof(T); ++i)
-            v |= T(bytes[at + i]) << (8 * i);
+        for (size_t i = 0; i < sizeof(T); ++i) v |= T(bytes[at + i]) << (8 * i);
         at += sizeof(T);
         return v;
     }
@@ -68,10 +66,11 @@ uint32_t crc(std::span<const uint8_t> b) {
 class Packer {
 public:
     explicit Packer(OutputFile& f) : file_(f) { ready_ = deflateInit(&z_, 1) == Z_OK; }
-    ~Packer() { if (ready_) deflateEnd(&z_); }
+    ~Packer() {
+        if (ready_) deflateEnd(&z_);
+    }
     bool put(const std::vector<uint8_t>& in, bool last) {
-        if (!ready_)
-            return false;
+        if (!ready_) return false;
         uint8_t out[65536];
         for (size_t at = 0;;) {
             uInt n = uInt(std::min<size_t>(in.size() - at, 1u << 30));
@@ -85,11 +84,9 @@ public:
                 deflate(&z_, flush);
                 size_t got = sizeof out - z_.avail_out;
                 crc_ = crc32(crc_, out, uInt(got));
-                if (!file_.write(out, got))
-                    return false;
+                if (!file_.write(out, got)) return false;
             } while (z_.avail_out == 0);
-            if (at == in.size())
-                return true;
+            if (at == in.size()) return true;
         }
     }
     uint32_t checksum() const { return uint32_t(crc_); }
@@ -104,14 +101,14 @@ private:
 class Unpacker {
 public:
     explicit Unpacker(std::span<const uint8_t> in) : in_(in) { ready_ = inflateInit(&z_) == Z_OK; }
-    ~Unpacker() { if (ready_) inflateEnd(&z_); }
+    ~Unpacker() {
+        if (ready_) inflateEnd(&z_);
+    }
     /// Fills the buffer; false when the stream is damaged or ends early.
     bool get(std::vector<uint8_t>& out) {
-        if (!ready_)
-            return false;
+        if (!ready_) return false;
         for (size_t at = 0; at < out.size();) {
-            if (!step(out.data() + at, std::min<size_t>(out.size() - at, 1u << 30), &at))
-                return false;
+            if (!step(out.data() + at, std::min<size_t>(out.size() - at, 1u << 30), &at)) return false;
         }
         return true;
     }
@@ -125,8 +122,7 @@ public:
 
 private:
     bool step(uint8_t* to, size_t room, size_t* at) {
-        if (ended_)
-            return false;
+        if (ended_) return false;
         if (z_.avail_in == 0) {
             uInt n = uInt(std::min<size_t>(in_.size() - used_, 1u << 30));
             z_.next_in = const_cast<uint8_t*>(in_.data() + used_);
@@ -155,8 +151,7 @@ struct FilmIo {
     static std::vector<uint8_t> header(const Film& f) {
         const FilmDescription& d = f.description_;
         Writer w;
-        for (int v : {d.width, d.height, d.window.x0, d.window.y0, d.window.x1, d.window.y1})
-            w.number(uint32_t(v));
+        for (int v : {d.width, d.height, d.window.x0, d.window.y0, d.window.x1, d.window.y1}) w.number(uint32_t(v));
         w.number(d.seed);
         w.text(d.scene);
         w.number(uint32_t(d.channels.size()));
@@ -169,8 +164,7 @@ struct FilmIo {
             w.number(r.begin);
             w.number(r.end);
         }
-        for (uint64_t v : {f.nonFinite_, f.nonFiniteAovs_, f.saturated_, f.firstDropped_[0], f.firstDropped_[1]})
-            w.number(v);
+        for (uint64_t v : {f.nonFinite_, f.nonFiniteAovs_, f.saturated_, f.firstDropped_[0], f.firstDropped_[1]}) w.number(v);
         w.number(uint32_t(f.metadata.size()));
         for (const auto& [k, v] : f.metadata) {
             w.text(k);
@@ -184,19 +178,14 @@ struct FilmIo {
         size_t n = f.description_.channels.size(), first = f.index(f.window().x0, y);
         for (size_t i = first; i < first + size_t(f.window().width()); ++i) {
             const Film::Pixel& p = f.pixels_[i];
-            for (Int128 v : p.rgb)
-                w.number(UInt128(v));
+            for (Int128 v : p.rgb) w.number(UInt128(v));
             w.number(UInt128(p.alpha));
-            for (Int128 v : p.replicaY)
-                w.number(UInt128(v));
-            for (uint64_t v : p.y2.limb)
-                w.number(v);
-            for (uint32_t v : p.replicaCount)
-                w.number(v);
+            for (Int128 v : p.replicaY) w.number(UInt128(v));
+            for (uint64_t v : p.y2.limb) w.number(v);
+            for (uint32_t v : p.replicaCount) w.number(v);
             w.number(UInt128(p.surfaceY));
             for (uint32_t v : p.surfaceCount) w.number(v);
-            for (size_t c = 0; c < n; ++c)
-                w.number(UInt128(f.aovs_[i * n + c]));
+            for (size_t c = 0; c < n; ++c) w.number(UInt128(f.aovs_[i * n + c]));
             if (f.spread_) w.number(f.spread_->rates[i]);
         }
     }
@@ -210,44 +199,35 @@ struct FilmIo {
         size_t n = f.description_.channels.size(), first = f.index(f.window().x0, y);
         for (size_t i = first; i < first + size_t(f.window().width()); ++i) {
             Film::Pixel& p = f.pixels_[i];
-            for (Int128& v : p.rgb)
-                v = Int128(r.number<UInt128>());
+            for (Int128& v : p.rgb) v = Int128(r.number<UInt128>());
             p.alpha = Int128(r.number<UInt128>());
-            for (Int128& v : p.replicaY)
-                v = Int128(r.number<UInt128>());
-            for (uint64_t& v : p.y2.limb)
-                v = r.number<uint64_t>();
-            for (uint32_t& v : p.replicaCount)
-                v = r.number<uint32_t>();
+            for (Int128& v : p.replicaY) v = Int128(r.number<UInt128>());
+            for (uint64_t& v : p.y2.limb) v = r.number<uint64_t>();
+            for (uint32_t& v : p.replicaCount) v = r.number<uint32_t>();
             p.surfaceY = Int128(r.number<UInt128>());
             for (uint32_t& v : p.surfaceCount) v = r.number<uint32_t>();
-            for (size_t c = 0; c < n; ++c)
-                f.aovs_[i * n + c] = Int128(r.number<UInt128>());
+            for (size_t c = 0; c < n; ++c) f.aovs_[i * n + c] = Int128(r.number<UInt128>());
             if (f.spread_) f.spread_->rates[i] = r.number<uint16_t>();
             uint64_t samples = 0;
-            for (uint32_t v : p.replicaCount)
-                samples += v;
-            if (f.spread_ && f.spread_->rates[i] > Spread::kMost)
-                return false;
-            if (samples > limits::kSamplesPerPixel || (f.spread_ && f.spread_->held(i) > limits::kSamplesPerPixel))
-                return false;
+            for (uint32_t v : p.replicaCount) samples += v;
+            if (f.spread_ && f.spread_->rates[i] > Spread::kMost) return false;
+            if (samples > limits::kSamplesPerPixel || (f.spread_ && f.spread_->held(i) > limits::kSamplesPerPixel)) return false;
             Int128 most = Int128(samples) << (60 + kFixedBits);
             auto fits = [&](Int128 v) { return v <= most && v >= -most; };
             bool ok = fits(p.rgb[0]) && fits(p.rgb[1]) && fits(p.rgb[2]) && fits(p.alpha);
             for (uint32_t k = 0; k < kReplicas; ++k) ok = ok && fits(p.replicaY[k]) && p.surfaceCount[k] <= p.replicaCount[k];
             ok = ok && fits(p.surfaceY);
             for (size_t c = 0; c < n; ++c)
-                ok = ok && (isSum(f.description_.channels[c].rule)
-                                ? fits(f.aovs_[i * n + c])
-                                : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
-            if (!ok)
-                return false;
+                ok = ok && (isSum(f.description_.channels[c].rule) ? fits(f.aovs_[i * n + c])
+                                                                   : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
+            if (!ok) return false;
         }
         return r.ok;
     }
 
     /// The film without its sums; null when the header is not sound. packed = bytes of packed sums in the file.
-    static std::unique_ptr<Film> parseHeader(Reader& r, uint32_t version, size_t packed, const std::string& name, Diagnostics& diag) {
+    static std::unique_ptr<Film> parseHeader(Reader& r, uint32_t version, size_t packed, const std::string& name,
+                                             Diagnostics& diag) {
         FilmDescription d;
         for (int* v : {&d.width, &d.height, &d.window.x0, &d.window.y0, &d.window.x1, &d.window.y1})
             *v = int(r.number<uint32_t>());
@@ -268,8 +248,7 @@ struct FilmIo {
             ranges.push_back(s);
         }
         uint64_t counters[5];
-        for (uint64_t& c : counters)
-            c = r.number<uint64_t>();
+        for (uint64_t& c : counters) c = r.number<uint64_t>();
         std::map<std::string, std::string> metadata;
         count = r.number<uint32_t>();
         for (uint32_t i = 0; r.ok && i < count; ++i) {
@@ -282,8 +261,7 @@ struct FilmIo {
             diag.report(Severity::Error, Rie::BadFile, place, "the header of the part file is damaged");
             return nullptr;
         }
-        if (!Film::check(d, diag, place))
-            return nullptr;
+        if (!Film::check(d, diag, place)) return nullptr;
         size_t raw = d.window.pixels() * (kPixelBytes + 16 * d.channels.size());
         if (raw / kDeflateRatio > packed) {
             diag.report(Severity::Error, Rie::BadFile, place, "the part file is too short for a picture of its size");
@@ -314,8 +292,7 @@ struct FilmIo {
 bool savePart(const Film& film, const std::string& path, const OutputPolicy& policy, Diagnostics& diag,
               const SourcePlace& place) {
     auto file = OutputFile::open(path, policy, diag, place);
-    if (!file)
-        return false;
+    if (!file) return false;
     std::vector<uint8_t> header = FilmIo::header(film);
     if (header.size() > limits::kPartHeaderBytes) {
         diag.report(Severity::Error, Rie::Limit, place,
@@ -323,8 +300,7 @@ bool savePart(const Film& film, const std::string& path, const OutputPolicy& pol
         return false;
     }
     Writer prefix;
-    for (char c : kMagic)
-        prefix.number(uint8_t(c));
+    for (char c : kMagic) prefix.number(uint8_t(c));
     prefix.number(film.spread() ? kSpreadVersion : kVersion);
     prefix.number(uint32_t(header.size()));
     prefix.number(crc(header));
@@ -358,8 +334,7 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
         return bad(Rie::BadFile, "not a part file");
     Reader prefix{bytes.subspan(0, std::min(bytes.size(), kPrefix)), sizeof kMagic};
     uint32_t version = prefix.number<uint32_t>(), size = prefix.number<uint32_t>(), sum = prefix.number<uint32_t>();
-    if (!prefix.ok)
-        return bad(Rie::BadFile, "the part file is truncated");
+    if (!prefix.ok) return bad(Rie::BadFile, "the part file is truncated");
     if (version != kVersion && version != kSpreadVersion)
         return bad(Rie::Version, version < kVersion
                                      ? "a part file of an older version of this program, which kept other sums of each "
@@ -369,27 +344,21 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
         return bad(Rie::BadFile, "the part file is truncated");
     std::span<const uint8_t> header = bytes.subspan(kPrefix, size), rest = bytes.subspan(kPrefix + size);
     std::span<const uint8_t> packed = rest.first(rest.size() - 4);
-    if (crc(header) != sum)
-        return bad(Rie::BadFile, "the header of the part file is damaged");
+    if (crc(header) != sum) return bad(Rie::BadFile, "the header of the part file is damaged");
     Reader trailer{rest.last(4)};
-    if (trailer.number<uint32_t>() != crc(packed))
-        return bad(Rie::BadFile, "the part file is damaged or truncated");
+    if (trailer.number<uint32_t>() != crc(packed)) return bad(Rie::BadFile, "the part file is damaged or truncated");
     Reader h{header};
     auto film = FilmIo::parseHeader(h, version, packed.size(), name, diag);
-    if (!film)
-        return nullptr;
+    if (!film) return nullptr;
     Unpacker unpacker(packed);
     const Window& w = film->window();
     std::vector<uint8_t> row(size_t(w.width()) * FilmIo::pixelBytes(*film));
     for (int y = w.y0; y < w.y1; ++y) {
-        if (!unpacker.get(row))
-            return bad(Rie::BadFile, "the sums of the part file are damaged");
+        if (!unpacker.get(row)) return bad(Rie::BadFile, "the sums of the part file are damaged");
         Reader r{row};
-        if (!FilmIo::readRow(*film, y, r))
-            return bad(Rie::BadFile, "the sums of the part file contradict their counts");
+        if (!FilmIo::readRow(*film, y, r)) return bad(Rie::BadFile, "the sums of the part file contradict their counts");
     }
-    if (!unpacker.atEnd())
-        return bad(Rie::BadFile, "the part file holds more than its picture");
+    if (!unpacker.atEnd()) return bad(Rie::BadFile, "the part file holds more than its picture");
     return film;
 }
 
@@ -402,13 +371,10 @@ std::unique_ptr<Film> mergeParts(const std::vector<std::string>& paths, Diagnost
     std::unique_ptr<Film> whole;
     for (const std::string& path : paths) {
         auto part = loadPart(path, diag);
-        if (!part || (whole && !whole->merge(*part, diag, SourcePlace{path, 0, 0})))
-            return nullptr;
-        if (!whole)
-            whole = std::move(part);
+        if (!part || (whole && !whole->merge(*part, diag, SourcePlace{path, 0, 0}))) return nullptr;
+        if (!whole) whole = std::move(part);
     }
-    if (!whole)
-        diag.report(Severity::Error, Rie::MissingData, {}, "no parts to merge");
+    if (!whole) diag.report(Severity::Error, Rie::MissingData, {}, "no parts to merge");
     return whole;
 }
 

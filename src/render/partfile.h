@@ -3,9 +3,9 @@
 // Layout, little-endian: "ALPGPART", version (u32), size of the header (u32), CRC-32 of the header (u32), header, packed sums
 // (zlib), CRC-32 of the packed sums (u32). Header: picture size, window, seed, scene digest, channels, ranges, counters,
 // metadata. Sums: per pixel, in rows, the integers of film.h, then its AOVs (version 2; version 1 had no
-// sums of the samples that met a surface and is refused, as a guess would not be the figure of the whole). A film whose pixels have
-// different numbers of samples is version 4: its header ends with the steps (u32), each pixel with its rate (u16). A changed byte
-// anywhere is noticed.
+// sums of the samples that met a surface and is refused, as a guess would not be the figure of the whole). A film whose pixels
+// have different numbers of samples is version 4: its header ends with the steps (u32), each pixel with its rate (u16). A changed
+// byte anywhere is noticed.
 #pragma once
 #include "base/file.h"
 #include "render/film.h"

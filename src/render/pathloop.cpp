@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t kRaysPerCall =
     8192; // of one trace(): enough to fill the lanes of rare shaders too, and few ends of calls, when lanes run empty
-constexpr int kPathTile = 32;         // pixels a side: eight samples of each are one call
+constexpr int kPathTile = 32; // pixels a side: eight samples of each are one call
 constexpr uint32_t kPass = 8; // samples a pixel; a multiple of kReplicas, so that noise is judged on replicas of equal size
 static_assert(kPass % kReplicas == 0 && kPilotSamples % kPass == 0);
 constexpr uint32_t kMostOfPass = 32; // samples a pixel, of passes that bring some pixels few
@@ -109,15 +109,15 @@ private:
     const uint64_t seed_;
     const FilterSampler filter_;
     const std::vector<Channel>& channels_;
-    const size_t stride_;         ///< floats of a sample that is held: colour, alpha, whether a surface was met, the rest
+    const size_t stride_; ///< floats of a sample that is held: colour, alpha, whether a surface was met, the rest
     std::vector<Window> tiles_;
     std::vector<std::vector<float>> held_; ///< by tile: the samples of the pass
-    uint32_t next_;               ///< the first sample that no pixel has
-    const bool adapts_;           ///< pixels get samples by their noise once there are kPilotSamples
-    bool any_;                    ///< some pass is whole
-    double samples_;              ///< a pixel, on average
+    uint32_t next_;                        ///< the first sample that no pixel has
+    const bool adapts_;                    ///< pixels get samples by their noise once there are kPilotSamples
+    bool any_;                             ///< some pass is whole
+    double samples_;                       ///< a pixel, on average
     NoiseFigures noise_;
-    uint32_t nextNoise_;          ///< samples a pixel at which noise is judged again
+    uint32_t nextNoise_; ///< samples a pixel at which noise is judged again
     bool judged_ = false;
     double secondsPerSample_ = 0; ///< of the last pass
     CausticPasses caustics_;
@@ -137,8 +137,8 @@ uint32_t behind(const Film& film, SampleRange wanted) {
 
 PathLoop::PathLoop(Job& job, Film& film, SampleRange wanted, uint64_t seed)
     : job_(job), film_(film), settings_(job.settings), wanted_(wanted), seed_(seed), filter_(job.plan.basis.filter),
-      channels_(film.description().channels), stride_(5 + channels_.size()), next_(behind(film, wanted)),
-      adapts_(mayAdapt()), any_(film.samplesPerPixel() > 0), samples_(film.samples().mean), caustics_(job) {
+      channels_(film.description().channels), stride_(5 + channels_.size()), next_(behind(film, wanted)), adapts_(mayAdapt()),
+      any_(film.samplesPerPixel() > 0), samples_(film.samples().mean), caustics_(job) {
     if (filter_.degenerate())
         job.diagnostics.report(Severity::Error, Rie::Range, {},
                                "PixelFilter: its integral is not positive; a box of its widths is used");
@@ -178,8 +178,8 @@ void PathLoop::show(bool grown) {
     settings_.watcher->look(g);
 }
 
-/// Only where a render is one by itself: parts have the samples they are asked for. Photons of caustics belong to one sample of all
-/// pixels.
+/// Only where a render is one by itself: parts have the samples they are asked for. Photons of caustics belong to one sample of
+/// all pixels.
 bool PathLoop::mayAdapt() const {
     const scene::Options& o = job_.world->frame().options;
     const scene::Param* asked = scene::find(o.hiderParams, "adaptive");
@@ -281,14 +281,15 @@ void PathLoop::traceTile(int worker, size_t tile, const Pass& pass) {
 bool PathLoop::tracePass(const Pass& pass) {
     bool whole = false;
     try {
-        whole = (pass.steps || caustics_.ready(pass.first, pass.count)) && job_.run(
-            tiles_.size(), [&](int worker, size_t i) { traceTile(worker, i, pass); },
-            [&](size_t done) {
-                job_.pollStop();
-                if (settings_.seconds > 0 && any_ && job_.elapsed() > settings_.seconds) job_.halt = 1;
-                tell(double(pass.samples()) * double(done) / double(tiles_.size()), false);
-                show(false);
-            });
+        whole = (pass.steps || caustics_.ready(pass.first, pass.count)) &&
+                job_.run(
+                    tiles_.size(), [&](int worker, size_t i) { traceTile(worker, i, pass); },
+                    [&](size_t done) {
+                        job_.pollStop();
+                        if (settings_.seconds > 0 && any_ && job_.elapsed() > settings_.seconds) job_.halt = 1;
+                        tell(double(pass.samples()) * double(done) / double(tiles_.size()), false);
+                        show(false);
+                    });
     } catch (const std::bad_alloc&) { job_.outOfMemory = std::current_exception(); } // the film has whole passes only
     if (job_.world) job_.world->flushPrints(whole);
     return whole;

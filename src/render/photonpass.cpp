@@ -9,10 +9,10 @@ namespace alpenglow::render {
 
 namespace {
 
-constexpr uint32_t kBlock = 8192;        ///< photons of a task
-constexpr uint64_t kBlocksAtOnce = 16;   ///< of an emission, before what came to rest is counted
-constexpr size_t kBlocksOfPasses = 32;   ///< of passes for samples, before what came to rest is counted
-constexpr float kWidth = .1f;            ///< radians: lobes that spread less are followed
+constexpr uint32_t kBlock = 8192;      ///< photons of a task
+constexpr uint64_t kBlocksAtOnce = 16; ///< of an emission, before what came to rest is counted
+constexpr size_t kBlocksOfPasses = 32; ///< of passes for samples, before what came to rest is counted
+constexpr float kWidth = .1f;          ///< radians: lobes that spread less are followed
 constexpr float kMostWidth = .5f;
 constexpr uint64_t kDefaultEmit = 200000;
 constexpr uint32_t kPilot = 0xffffffffu; ///< pass by which caustics are found
@@ -43,7 +43,8 @@ uint64_t photonsToEmit(const scene::Options& o, Diagnostics& d) {
     if (!p || !(p->numbers[0] != 0)) return kDefaultEmit;
     const double n = p->numbers[0];
     if (!(n >= 1)) {
-        d.report(Severity::Error, Rie::Range, p->place, "\"emit\" is a number of photons, 1 or more; " + std::to_string(kDefaultEmit) + " are emitted");
+        d.report(Severity::Error, Rie::Range, p->place,
+                 "\"emit\" is a number of photons, 1 or more; " + std::to_string(kDefaultEmit) + " are emitted");
         return kDefaultEmit;
     }
     if (n > double(limits::kPhotonsEmitted)) {
@@ -82,7 +83,8 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<transport::St
             now, &job_.halt,
             [&](int worker, size_t i) {
                 const uint64_t first = (done + i) * kBlock;
-                thread(worker).emit(pass, uint32_t(first), uint32_t(std::min<uint64_t>(kBlock, count - first)), 1, of[i], &job_.halt);
+                thread(worker).emit(pass, uint32_t(first), uint32_t(std::min<uint64_t>(kBlock, count - first)), 1, of[i],
+                                    &job_.halt);
             },
             [&](size_t finished) {
                 job_.pollStop();
@@ -93,8 +95,9 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<transport::St
         for (const auto& o : of) more += o.size();
         if (more > limits::kPhotons) {
             job_.diagnostics.report(Severity::Error, Rie::Limit, {},
-                                    "photon maps hold no more than " + std::to_string(limits::kPhotons) + " photons: emission ends after " +
-                                        std::to_string(done * kBlock) + " of " + std::to_string(count),
+                                    "photon maps hold no more than " + std::to_string(limits::kPhotons) +
+                                        " photons: emission ends after " + std::to_string(done * kBlock) + " of " +
+                                        std::to_string(count),
                                     "they share the light of all lights, so maps are right, and coarser");
             break;
         }
@@ -125,8 +128,8 @@ bool PhotonPasses::emitBlocks(uint32_t first, uint32_t count, size_t begin, size
 bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
                         const std::function<void(uint32_t, std::vector<transport::StoredPhoton>)>& take) {
     const size_t blocks = (count + kBlock - 1) / kBlock;
-    // Small passes together, for all threads to have something to do; of large ones a part at a time. Where they are parted depends
-    // on nothing else, so that a pass is the same whatever comes with it.
+    // Small passes together, for all threads to have something to do; of large ones a part at a time. Where they are parted
+    // depends on nothing else, so that a pass is the same whatever comes with it.
     const size_t together = std::max<size_t>(1, kBlocksOfPasses / blocks);
     std::vector<std::vector<transport::StoredPhoton>> of;
     for (uint32_t pass = 0; pass < passes; pass += uint32_t(together)) {
@@ -148,10 +151,13 @@ bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t 
             const uint32_t emitted = uint32_t(done) * kBlock;
             for (transport::StoredPhoton& s : stored) s.photon.power *= float(count) / float(emitted);
             job_.diagnostics.reportOnce("photonsatrest",
-                                        {Severity::Warning, Rie::Limit, {},
+                                        {Severity::Warning,
+                                         Rie::Limit,
+                                         {},
                                          "more than " + std::to_string(most) + " photons of a pass came to rest: it ends after " +
                                              std::to_string(emitted) + " of " + std::to_string(count),
-                                         "they share the light of all lights, so caustics are right, and coarser", {}});
+                                         "they share the light of all lights, so caustics are right, and coarser",
+                                         {}});
             thin(stored, most, first + pass);
             take(pass, std::exchange(stored, {}));
             break;

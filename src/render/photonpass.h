@@ -13,7 +13,8 @@ public:
     transport::PhotonEmission& emission() { return emission_; }
     /// All photons that come to rest of `count` of a pass. False: stopped, or more than limits::kPhotons came to rest, which was
     /// reported; then *emitted is how many were emitted of which these are.
-    bool emit(uint32_t pass, uint64_t count, std::vector<transport::StoredPhoton>& stored, const std::string& what, uint64_t* emitted);
+    bool emit(uint32_t pass, uint64_t count, std::vector<transport::StoredPhoton>& stored, const std::string& what,
+              uint64_t* emitted);
     /// Of passes first to first + passes - 1 each by itself: take(pass, stored) has what came to rest of `count` photons, pass by
     /// pass. Once more than `most` did, no more are emitted of that pass, which is reported once; these then carry the light of
     /// all. False: stopped.
@@ -23,7 +24,8 @@ public:
     float travel() const;
 
 private:
-    bool emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end, std::vector<std::vector<transport::StoredPhoton>>& of);
+    bool emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end,
+                    std::vector<std::vector<transport::StoredPhoton>>& of);
     transport::PhotonEmission::Thread& thread(int worker);
     Job& job_;
     transport::PhotonEmission emission_;

@@ -9,16 +9,15 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr const char* kNames[kFilterKinds] = {"box", "triangle", "catmull-rom", "separable-catmull-rom", "b-spline", "gaussian",
-                                              "sinc", "bessel", "disk", "mitchell", "blackman-harris", "lanczos"};
+constexpr const char* kNames[kFilterKinds] = {
+    "box",    "triangle", "catmull-rom", "separable-catmull-rom", "b-spline", "gaussian", "sinc",
+    "bessel", "disk",     "mitchell",    "blackman-harris",       "lanczos"};
 
 // The cubic family of Mitchell and Netravali, "Reconstruction filters in computer graphics" (1988); support |t| < 2.
 double cubicBC(double t, double B, double C) {
     t = std::fabs(t);
-    if (t < 1)
-        return ((12 - 9 * B - 6 * C) * t * t * t + (-18 + 12 * B + 6 * C) * t * t + (6 - 2 * B)) / 6;
-    if (t < 2)
-        return ((-B - 6 * C) * t * t * t + (6 * B + 30 * C) * t * t + (-12 * B - 48 * C) * t + (8 * B + 24 * C)) / 6;
+    if (t < 1) return ((12 - 9 * B - 6 * C) * t * t * t + (-18 + 12 * B + 6 * C) * t * t + (6 - 2 * B)) / 6;
+    if (t < 2) return ((-B - 6 * C) * t * t * t + (6 * B + 30 * C) * t * t + (-12 * B - 48 * C) * t + (8 * B + 24 * C)) / 6;
     return 0;
 }
 
@@ -47,8 +46,7 @@ const char* filterName(FilterKind k) { return kNames[int(k)]; }
 
 std::optional<FilterKind> filterByName(std::string_view name) {
     for (int i = 0; i < kFilterKinds; ++i)
-        if (name == kNames[i])
-            return FilterKind(i);
+        if (name == kNames[i]) return FilterKind(i);
     return {};
 }
 
@@ -58,51 +56,52 @@ bool PixelFilter::separable() const {
 
 double PixelFilter::axis(double t, double w) const {
     t = std::fabs(t);
-    if (!(t <= w / 2))
-        return 0;
+    if (!(t <= w / 2)) return 0;
     switch (kind) {
-    case FilterKind::Triangle: return 1 - t / (w / 2);
-    case FilterKind::SeparableCatmullRom: return cubicBC(t, 0, 0.5);
-    case FilterKind::BSpline: return cubicBC(4 * t / w, 1, 0); // support 2 mapped to the half width, as for mitchell
-    case FilterKind::Gaussian: return exact::exp(-8 * t * t / (w * w));
-    case FilterKind::Sinc: return sinc(t) * exact::cos(kPi * t / (2 * w));
-    case FilterKind::Mitchell: return cubicBC(4 * t / w, 1.0 / 3, 1.0 / 3);
+    case FilterKind::Triangle:
+        return 1 - t / (w / 2);
+    case FilterKind::SeparableCatmullRom:
+        return cubicBC(t, 0, 0.5);
+    case FilterKind::BSpline:
+        return cubicBC(4 * t / w, 1, 0); // support 2 mapped to the half width, as for mitchell
+    case FilterKind::Gaussian:
+        return exact::exp(-8 * t * t / (w * w));
+    case FilterKind::Sinc:
+        return sinc(t) * exact::cos(kPi * t / (2 * w));
+    case FilterKind::Mitchell:
+        return cubicBC(4 * t / w, 1.0 / 3, 1.0 / 3);
     case FilterKind::BlackmanHarris: {
         double a = 2 * kPi * (t / w + 0.5);
         return 0.35875 - 0.48829 * exact::cos(a) + 0.14128 * exact::cos(2 * a) - 0.01168 * exact::cos(3 * a);
     }
-    case FilterKind::Lanczos: return sinc(t) * sinc(2 * t / w);
-    default: return 1;
+    case FilterKind::Lanczos:
+        return sinc(t) * sinc(2 * t / w);
+    default:
+        return 1;
     }
 }
 
 double PixelFilter::operator()(double x, double y) const {
-    if (!(std::fabs(x) <= xw / 2 && std::fabs(y) <= yw / 2))
-        return 0;
-    if (separable())
-        return axis(x, xw) * axis(y, yw);
+    if (!(std::fabs(x) <= xw / 2 && std::fabs(y) <= yw / 2)) return 0;
+    if (separable()) return axis(x, xw) * axis(y, yw);
     double r = std::sqrt(x * x + y * y), q = (2 * x / xw) * (2 * x / xw) + (2 * y / yw) * (2 * y / yw);
     if (kind == FilterKind::CatmullRom)
         return 2 * cubicBC(r, 0, 0.5); // RISpec gives twice the usual kernel; the factor drops out
-    if (q >= 1)
-        return 0;
-    if (kind == FilterKind::Disk)
-        return 1;
+    if (q >= 1) return 0;
+    if (kind == FilterKind::Disk) return 1;
     return r < 1e-8 ? kPi : exact::cos(kPi / 2 * std::sqrt(q)) * 2 * besselJ1(kPi * r) / r;
 }
 
 PixelFilter makePixelFilter(std::string_view name, double xw, double yw, const SourcePlace& place, Diagnostics& diag) {
     PixelFilter f;
-    if (auto k = filterByName(name))
-        f.kind = *k;
+    if (auto k = filterByName(name)) f.kind = *k;
     else {
         std::string near = nearestName(name, std::vector<std::string>(kNames, kNames + kFilterKinds));
         diag.report(Severity::Error, Rie::BadToken, place, "unknown pixel filter \"" + std::string(name) + "\"; gaussian is used",
                     near.empty() ? "" : "did you mean \"" + near + "\"?");
     }
     auto width = [&](double w, const char* which) {
-        if (w > 0 && w <= limits::kFilterWidth)
-            return w;
+        if (w > 0 && w <= limits::kFilterWidth) return w;
         double use = w > 0 ? limits::kFilterWidth : 1;
         diag.report(Severity::Error, Rie::Range, place,
                     std::string("pixel filter ") + which + " width " + std::to_string(w) + " is outside (0, " +

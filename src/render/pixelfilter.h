@@ -7,7 +7,18 @@
 namespace alpenglow::render {
 
 enum class FilterKind {
-    Box, Triangle, CatmullRom, SeparableCatmullRom, BSpline, Gaussian, Sinc, Bessel, Disk, Mitchell, BlackmanHarris, Lanczos
+    Box,
+    Triangle,
+    CatmullRom,
+    SeparableCatmullRom,
+    BSpline,
+    Gaussian,
+    Sinc,
+    Bessel,
+    Disk,
+    Mitchell,
+    BlackmanHarris,
+    Lanczos
 };
 inline constexpr int kFilterKinds = 12;
 

@@ -15,21 +15,21 @@ std::optional<ProgressMode> progressModeByName(std::string_view);
 
 /// What a reporter is told.
 struct ProgressState {
-    double fraction = 0;      ///< of the work, 0..1; below 0 when nobody knows
-    double samplesDone = 0;   ///< samples per pixel so far (a fraction inside a pass)
+    double fraction = 0;       ///< of the work, 0..1; below 0 when nobody knows
+    double samplesDone = 0;    ///< samples per pixel so far (a fraction inside a pass)
     uint64_t samplesTotal = 0; ///< per pixel; 0 when it is not known (--noise, --time)
-    double noise = -1;        ///< relative noise so far; < 0: not known yet
+    double noise = -1;         ///< relative noise so far; < 0: not known yet
     double raysPerMS = 0;
 };
 
 class Progress {
 public:
     using Sink = std::function<void(std::string_view)>;
-    using Clock = std::function<double()>; ///< seconds, any origin, never backwards
-    static constexpr double kBarSeconds = 0.5;   ///< a bar is redrawn at most twice a second
-    static constexpr double kPlainSeconds = 5;   ///< a line after this time, if there is progress to tell,
+    using Clock = std::function<double()>;        ///< seconds, any origin, never backwards
+    static constexpr double kBarSeconds = 0.5;    ///< a bar is redrawn at most twice a second
+    static constexpr double kPlainSeconds = 5;    ///< a line after this time, if there is progress to tell,
     static constexpr double kPlainFraction = 0.1; ///< or after this much of the work, but not more often than
-    static constexpr double kPlainLeast = 1;     ///< this many seconds
+    static constexpr double kPlainLeast = 1;      ///< this many seconds
 
     /// For use: Auto is Bar when the file is a terminal, else Plain. The file is not closed.
     explicit Progress(ProgressMode, std::FILE* = stderr);

@@ -11,8 +11,8 @@
 #include "render/lacks.h"
 #include "render/levels.h"
 #include "render/partfile.h"
-#include "render/provenance.h"
 #include "render/photonpass.h"
+#include "render/provenance.h"
 #include "render/rendering.h"
 #include "texture/maketexture.h"
 #include <cmath>

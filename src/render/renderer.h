@@ -107,10 +107,10 @@ private:
     MakeProcedurals makeProcedurals_;
     std::set<std::string> read_; ///< fileIdentity() of setScene()'s pictures
     Outcome outcome_;
-    RenderStats stats_;                 ///< of the frame being rendered
-    RenderStats all_;                   ///< of the frames before
-    std::vector<FrameStats> frames_;    ///< those that were rendered
-    double parseMark_ = 0; ///< since when the reader is at work
+    RenderStats stats_;              ///< of the frame being rendered
+    RenderStats all_;                ///< of the frames before
+    std::vector<FrameStats> frames_; ///< those that were rendered
+    double parseMark_ = 0;           ///< since when the reader is at work
     OutputNames names_;
     int pictures_ = 0, maps_ = 0; ///< frames of either kind
     int checkpoints_ = 0;         ///< worlds outside of frames that had one

@@ -6,13 +6,13 @@
 #include "render/deeppass.h"
 #include "render/digest.h"
 #include "render/filmpicture.h"
+#include "render/framework.h"
 #include "render/imagertext.h"
 #include "render/imaging.h"
 #include "render/lacks.h"
 #include "render/levels.h"
 #include "render/partfile.h"
 #include "render/provenance.h"
-#include "render/framework.h"
 #include "render/rendering.h"
 #include "render/watcher.h"
 #include "transport/bakes.h"
@@ -76,9 +76,13 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (settings_.seedByFrame) settings_.seed = uint64_t(std::max(0, frame->options.frameNumber));
     const int team = Team::startable(settings_.threads);
     if (team < settings_.threads)
-        diagnostics_.reportOnce("threads", {Severity::Warning, Rie::System, {},
+        diagnostics_.reportOnce("threads", {Severity::Warning,
+                                            Rie::System,
+                                            {},
                                             "only " + std::to_string(team) + " of " + std::to_string(settings_.threads) +
-                                                " threads can be started; the picture is the same, later", {}, {}});
+                                                " threads can be started; the picture is the same, later",
+                                            {},
+                                            {}});
     tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
 
     FrameWork f(std::move(frame), told, diagnostics_);
@@ -189,8 +193,8 @@ transport::Settings Renderer::engineSettings(const FrameWork& f) const {
 
 /// Runs the imager of the frame; false: it was stopped.
 std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> Renderer::imagerOf(FrameWork& f) {
-    return [&f, this, poll = static_cast<const StopFlag*>(nullptr), begun = false](
-                 int n, const float* x, const float* y, float* r, float* g, float* b, float* a) mutable {
+    return [&f, this, poll = static_cast<const StopFlag*>(nullptr),
+            begun = false](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) mutable {
         // A stop that was asked for while rendering is obeyed by now: it must not end the imager's loops.
         if (!begun) poll = settings_.stop && !*settings_.stop ? settings_.stop : nullptr;
         begun = true;
@@ -328,7 +332,8 @@ bool Renderer::makeDepths(FrameWork& f, Job& job) {
     f.picture.deep = seeDepths(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), settings_.seed, deepShadowError(f.o, diagnostics_));
     outcome_.interrupted |= job.interrupted;
     if (job.interrupted)
-        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted before the deep shadow map was whole; nothing is written");
+        diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                            "interrupted before the deep shadow map was whole; nothing is written");
     if (f.picture.deep || job.interrupted) return f.picture.deep != nullptr;
     std::erase_if(f.plan.pictures, [](const OutputSpec& p) { return p.deep; });
     return !f.plan.pictures.empty();
@@ -339,7 +344,9 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     DroppedSamples dropped;
     Reconstructions made;
     if (f.plan.onlyDeep()) made = noImages(job);
-    else made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), refinementOf(f.o, job.camera, diagnostics_), settings_.seed, &dropped);
+    else
+        made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), refinementOf(f.o, job.camera, diagnostics_),
+                            settings_.seed, &dropped);
     stats_.classic.subsampledPixels += made.refined.pixels;
     stats_.classic.subsampledRays += made.refined.rays;
     f.nonFinite = dropped.count;
@@ -349,8 +356,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     outcome_.interrupted |= job.interrupted;
     ++outcome_.rendered;
     if (job.interrupted && writesFiles(settings_))
-        diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                            "interrupted: what was not reached stays black in the picture");
+        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what was not reached stays black in the picture");
     if (f.nonFinite) {
         const auto at = dropped.first.value_or(std::array{-1, -1, -1});
         reportDropped(f.nonFinite, at[2], at[1], at[0]);
@@ -358,9 +364,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     f.picture.metadata["nonFinite"] = std::to_string(f.nonFinite);
     f.picture.metadata["spp"] = std::to_string(f.spp);
     f.picture.metadata["seed"] = std::to_string(settings_.seed);
-    auto pixels = [&](const OutputSpec& s) -> const Image& {
-        return made.images[made.of[size_t(&s - f.plan.pictures.data())]];
-    };
+    auto pixels = [&](const OutputSpec& s) -> const Image& { return made.images[made.of[size_t(&s - f.plan.pictures.data())]]; };
     if (settings_.watcher) {
         if (!job.interrupted) settings_.watcher->look({pixels, nullptr, nullptr, job.elapsed(), job.rayTotal, true});
         settings_.watcher->finished(nullptr);

@@ -35,7 +35,7 @@ struct Job {
     Diagnostics& diagnostics;
     std::string what;                             ///< the picture's name, for the progress line
     double startSeconds = 0;                      ///< clock() when rendering began
-    StopFlag halt{0};                    ///< what tracers poll
+    StopFlag halt{0};                             ///< what tracers poll
     bool interrupted = false;                     ///< the user's stop was seen
     std::exception_ptr outOfMemory;               ///< why the samples of a pass did not fit; what is whole stays
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
@@ -78,7 +78,10 @@ std::vector<Window> tilesOf(const Window&, int side = kTile);
 /// The camera ray of a sample of `path`: its place is drawn from the filter. *weight multiplies what comes along it.
 transport::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
 /// The same for many samples at a time.
-struct PixelSample { int x, y; uint32_t sample; };
+struct PixelSample {
+    int x, y;
+    uint32_t sample;
+};
 void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<const PixelSample>, NumberRows&,
               std::vector<transport::CameraRay>& rays, std::vector<float>& weights);
 /// Adds samples to the film in whole passes until the range is done, the noise or time asked for is reached, or the user stops.
@@ -103,10 +106,15 @@ struct Refinement {
 /// What the hider's parameters aaSamples and aaThreshold say; none where a lens or motion needs more rays, which is reported.
 Refinement refinementOf(const scene::Options&, const Camera&, Diagnostics&);
 /// How many pixels were refined, and the rays for it.
-struct Refined { uint64_t pixels = 0, rays = 0; };
+struct Refined {
+    uint64_t pixels = 0, rays = 0;
+};
 transport::CameraRay imageRay(const Camera&, Vec2 position, uint64_t seed, int x, int y, uint32_t sample);
 /// Samples that are not finite numbers: how many, and sample, y and x of the first in the picture.
-struct DroppedSamples { uint64_t count = 0; std::optional<std::array<int, 3>> first; };
+struct DroppedSamples {
+    uint64_t count = 0;
+    std::optional<std::array<int, 3>> first;
+};
 /// Reconstructed pictures: that of plan.pictures[i] is images[of[i]].
 struct Reconstructions {
     std::vector<Image> images;

@@ -25,7 +25,8 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     Job job(settings_, f.camera, f.plan, engine_, f.world, threads, progress_, diagnostics_);
     PhotonPasses passes(job, f.world, {});
     if (!passes.emission().lights())
-        return refuse("Hider \"photon\": no light of the frame emits photons", "ambient lights do not, nor do lights without a place");
+        return refuse("Hider \"photon\": no light of the frame emits photons",
+                      "ambient lights do not, nor do lights without a place");
     std::vector<transport::StoredPhoton> stored;
     uint64_t emitted = 0;
     const bool whole = passes.emit(0, photonsToEmit(f.o, diagnostics_), stored, maps.front(), &emitted);
@@ -34,18 +35,21 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     stats_.cpuSec += processCpuSeconds() - cpu;
     if (!whole) {
         ++outcome_.refused;
-        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted while photons were emitted; no photon map is written");
+        diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                            "interrupted while photons were emitted; no photon map is written");
         return;
     }
     ++outcome_.rendered;
     for (const auto& [name, photons] : transport::photonsByMap(*f.world, maps, stored)) {
         if (photons.empty())
-            diagnostics_.report(Severity::Warning, Rie::NoError, {}, "photon map \"" + name + "\" is empty: no photon came to rest on its surfaces");
+            diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                                "photon map \"" + name + "\" is empty: no photon came to rest on its surfaces");
         const bool saved = transport::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
         outcome_.outputFailed |= !saved;
         if (saved)
             diagnostics_.report(Severity::Info, Rie::NoError, {},
-                                "photon map \"" + name + "\": " + std::to_string(photons.size()) + " photons, " + std::to_string(emitted) + " emitted");
+                                "photon map \"" + name + "\": " + std::to_string(photons.size()) + " photons, " +
+                                    std::to_string(emitted) + " emitted");
     }
 }
 

@@ -19,26 +19,19 @@ int border(double w) { return std::max(0, int(std::ceil(w / 2 - 0.5))); }
 
 Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter jitter) {
     Vec2 u{0.5f, 0.5f};
-    if (jitter == Jitter::Middle)
-        return u;
-    if (jitter != Jitter::Grid)
-        u = Sampler(seed, x, y).get2(0, kPositionSite, 0, uint32_t(k));
-    if (jitter == Jitter::Scrambled)
-        return u;
+    if (jitter == Jitter::Middle) return u;
+    if (jitter != Jitter::Grid) u = Sampler(seed, x, y).get2(0, kPositionSite, 0, uint32_t(k));
+    if (jitter == Jitter::Scrambled) return u;
     // float rounding could reach 1, which is the next pixel's
     constexpr float below = 1 - 0x1p-24f;
     return {std::min(below, (float(k % nx) + u.x) / float(nx)), std::min(below, (float(k / nx) + u.y) / float(ny))};
 }
 
 std::optional<DepthFilter> depthFilterByName(std::string_view n) {
-    if (n == "min" || n == "zmin")
-        return DepthFilter::Min;
-    if (n == "max" || n == "zmax")
-        return DepthFilter::Max;
-    if (n == "average")
-        return DepthFilter::Average;
-    if (n == "midpoint")
-        return DepthFilter::Midpoint;
+    if (n == "min" || n == "zmin") return DepthFilter::Min;
+    if (n == "max" || n == "zmax") return DepthFilter::Max;
+    if (n == "average") return DepthFilter::Average;
+    if (n == "midpoint") return DepthFilter::Midpoint;
     return {};
 }
 
@@ -48,8 +41,7 @@ SampleBuffer::SampleBuffer(Window w, double maxXw, double maxYw, int nx, int ny,
     int bx = border(maxXw), by = border(maxYw);
     sampled_ = {w.x0 - bx, w.y0 - by, w.x1 + bx, w.y1 + by};
     data_.assign(sampled_.pixels() * size_t(nx * ny) * stride_, 0);
-    for (size_t i = 0; i < data_.size(); i += stride_)
-        data_[i] = -1;
+    for (size_t i = 0; i < data_.size(); i += stride_) data_[i] = -1;
 }
 
 Vec2 SampleBuffer::position(int x, int y, int k) const {
@@ -70,8 +62,7 @@ bool SampleBuffer::set(int x, int y, int k, const ImageSample& s) {
             return false;
         }
     auto depth = [&](float z) {
-        if (!std::isnan(z))
-            return z;
+        if (!std::isnan(z)) return z;
         drop();
         return kInf;
     };
@@ -108,28 +99,23 @@ void SampleBuffer::pixel(const PixelFilter& f, DepthFilter depth, int x, int y, 
     auto accumulate = [&](const float* s, double w) {
         weight += w;
         absolute += std::fabs(w);
-        for (size_t i = 0; i < 6; ++i)
-            sum[i] += w * s[kColor + i];
+        for (size_t i = 0; i < 6; ++i) sum[i] += w * s[kColor + i];
         for (size_t i = 0; i < naov; ++i)
-            if (aovs_[i].rule == ChannelRule::Average)
-                sum[6 + i] += w * s[kAovs + i];
+            if (aovs_[i].rule == ChannelRule::Average) sum[6 + i] += w * s[kAovs + i];
     };
     for (int j = y - by; j <= y + by; ++j)
         for (int i = x - bx; i <= x + bx; ++i)
             for (int k = 0; k < spp; ++k) {
                 const float* s = &data_[base(i, j, k)];
-                if (s[0] < 0)
-                    continue;
+                if (s[0] < 0) continue;
                 double w = f(double(i - x) + s[0] - 0.5, double(j - y) + s[1] - 0.5);
-                if (w != 0)
-                    accumulate(s, w);
+                if (w != 0) accumulate(s, w);
             }
     if (!(weight > 1e-6 * absolute)) {
         std::fill(sum.begin(), sum.end(), 0);
         weight = 0;
         for (int k = 0; k < spp; ++k)
-            if (const float* s = &data_[base(x, y, k)]; s[0] >= 0)
-                accumulate(s, 1);
+            if (const float* s = &data_[base(x, y, k)]; s[0] >= 0) accumulate(s, 1);
     }
     double scale = weight > 0 ? 1 / weight : 0;
     for (int i = 0; i < 3; ++i) {
@@ -147,8 +133,7 @@ void SampleBuffer::pixel(const PixelFilter& f, DepthFilter depth, int x, int y, 
                                                                              : -kInf;
     for (int k = 0; k < spp; ++k) {
         const float* s = &data_[base(x, y, k)];
-        if (s[0] < 0)
-            continue;
+        if (s[0] < 0) continue;
         ++samples;
         least = std::min(least, s[kDepth]);
         most = std::max(most, s[kDepth]);
@@ -159,17 +144,23 @@ void SampleBuffer::pixel(const PixelFilter& f, DepthFilter depth, int x, int y, 
         }
         for (size_t i = 0; i < naov; ++i) {
             float& v = out[kImageFixedChannels + i];
-            if (aovs_[i].rule == ChannelRule::Min)
-                v = std::min(v, s[kAovs + i]);
-            else if (aovs_[i].rule == ChannelRule::Max)
-                v = std::max(v, s[kAovs + i]);
+            if (aovs_[i].rule == ChannelRule::Min) v = std::min(v, s[kAovs + i]);
+            else if (aovs_[i].rule == ChannelRule::Max) v = std::max(v, s[kAovs + i]);
         }
     }
     switch (depth) {
-    case DepthFilter::Min: out[7] = least; break;
-    case DepthFilter::Max: out[7] = samples ? most : kInf; break;
-    case DepthFilter::Average: out[7] = hits ? float(zsum / hits) : kInf; break;
-    case DepthFilter::Midpoint: out[7] = middle; break;
+    case DepthFilter::Min:
+        out[7] = least;
+        break;
+    case DepthFilter::Max:
+        out[7] = samples ? most : kInf;
+        break;
+    case DepthFilter::Average:
+        out[7] = hits ? float(zsum / hits) : kInf;
+        break;
+    case DepthFilter::Midpoint:
+        out[7] = middle;
+        break;
     }
 }
 
@@ -177,8 +168,7 @@ Image SampleBuffer::reconstruct(const PixelFilter& filter, DepthFilter depth, Wi
     Image image;
     image.window = out;
     image.channels = {"r", "g", "b", "a", "Or", "Og", "Ob", "z"};
-    for (const Channel& c : aovs_)
-        image.channels.push_back(c.name);
+    for (const Channel& c : aovs_) image.channels.push_back(c.name);
     // A filter wider than the border was made for is cut, not read beyond the buffer.
     PixelFilter f = filter;
     f.xw = std::min(f.xw, 2.0 * (window_.x0 - sampled_.x0) + 1);

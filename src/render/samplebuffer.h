@@ -24,7 +24,7 @@ Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter
 /// One image sample. Colour and AOVs as composited over the sample's surfaces, premultiplied by opacity.
 struct ImageSample {
     Color color, opacity;
-    float z = std::numeric_limits<float>::infinity();      ///< camera-space depth of the first surface that counts; inf: none
+    float z = std::numeric_limits<float>::infinity();       ///< camera-space depth of the first surface that counts; inf: none
     float zSecond = std::numeric_limits<float>::infinity(); ///< of the one behind it, for depth filter "midpoint"
     std::span<const float> aovs;
 };

@@ -16,9 +16,9 @@ namespace alpenglow::render {
 class Watcher;
 
 struct RenderSettings {
-    std::string output; ///< -o: one picture instead of the scene's displays; "" = the displays
+    std::string output;                   ///< -o: one picture instead of the scene's displays; "" = the displays
     std::vector<scene::Display> displays; ///< --display TYPE:NAME:MODE, added to the scene's own
-    int width = 0, height = 0;                                 ///< --format; 0 = the scene's
+    int width = 0, height = 0;            ///< --format; 0 = the scene's
     double resolutionFactor = 1;
     std::optional<std::array<float, 4>> crop; ///< x0 x1 y0 y1 in 0..1
     std::string hider;                        ///< --hider
@@ -29,7 +29,7 @@ struct RenderSettings {
     std::optional<std::array<uint32_t, 2>> part; ///< {K, N}, 1 <= K <= N: the K-th of N equal parts of the samples, likewise
     uint64_t seed = 0;
     bool seedByFrame = false; ///< --seed frame: each frame has its number as its seed
-    int threads = 0; ///< 0 = all cores
+    int threads = 0;          ///< 0 = all cores
     int lanes = 16;
     int maxDepth = -1;
     float sampleClamp = 0; ///< 0 = off
@@ -50,14 +50,14 @@ struct RenderSettings {
     std::string shippedShaders;                         ///< the last place to look for shaders in
     bool allowExec = false, allowWrite = false, allowRead = false;
     std::shared_ptr<ReadLog> reads; ///< gets every shader and map that is read or missed; may be null
-    size_t memoryLimit = 0; ///< what the process is bound to (base/memory.h), for messages; 0 = nothing
+    size_t memoryLimit = 0;         ///< what the process is bound to (base/memory.h), for messages; 0 = nothing
     ProgressMode progress = ProgressMode::Auto;
     bool quiet = false;
     std::string software = "Alpenglow"; ///< name, version and commit, for pictures and --stats
     std::string sceneFile, command;     ///< the scene being read and the command line, for the same
     bool stamp = false;                 ///< --stamp: pictures name command, host, date and seconds
-    const StopFlag* stop = nullptr; ///< non-zero: end soon and keep what is whole
-    Watcher* watcher = nullptr;     ///< who looks on (watcher.h); null: nobody
+    const StopFlag* stop = nullptr;     ///< non-zero: end soon and keep what is whole
+    Watcher* watcher = nullptr;         ///< who looks on (watcher.h); null: nobody
 };
 
 } // namespace alpenglow::render

@@ -13,15 +13,13 @@ constexpr const char* kRayTypes[] = {"camera", "diffuse", "specular", "transmiss
 double finite(double v) { return std::isfinite(v) ? v : 0; }
 
 std::string bytesText(uint64_t b) {
-    if (b >= 1ull << 30)
-        return fmt::format("{:.2f} GiB", double(b) / double(1ull << 30));
+    if (b >= 1ull << 30) return fmt::format("{:.2f} GiB", double(b) / double(1ull << 30));
     return fmt::format("{:.1f} MiB", double(b) / double(1ull << 20));
 }
 
 std::string grouped(uint64_t n) {
     std::string s = std::to_string(n);
-    for (int i = int(s.size()) - 3; i > 0; i -= 3)
-        s.insert(size_t(i), ",");
+    for (int i = int(s.size()) - 3; i > 0; i -= 3) s.insert(size_t(i), ",");
     return s;
 }
 
@@ -55,10 +53,8 @@ std::string toJson(const RenderStats& s) {
     j["saturated"] = s.saturated;
     j["totalRays"] = s.totalRays;
     auto& rays = j["rays"] = nlohmann::ordered_json::object();
-    for (const char* t : kRayTypes)
-        rays[t] = 0;
-    for (const auto& [type, n] : s.rays)
-        rays[type] = n;
+    for (const char* t : kRayTypes) rays[t] = 0;
+    for (const auto& [type, n] : s.rays) rays[type] = n;
     j["classic"] = {{"primary", s.classic.primary},
                     {"reflected", s.classic.reflected},
                     {"refracted", s.classic.refracted},
@@ -67,8 +63,10 @@ std::string toJson(const RenderStats& s) {
     j["shading"] = {{"points", s.shading.points},
                     {"batches", s.shading.batches},
                     {"laneOccupancy", finite(s.shading.laneOccupancy)},
-                    {"affineKernels", s.shading.affineKernels}, {"suspendingKernels", s.shading.suspendingKernels},
-                    {"kernels", s.shading.kernels}, {"cacheHits", s.shading.cacheHits}};
+                    {"affineKernels", s.shading.affineKernels},
+                    {"suspendingKernels", s.shading.suspendingKernels},
+                    {"kernels", s.shading.kernels},
+                    {"cacheHits", s.shading.cacheHits}};
     j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
     j["errors"] = s.errors;
     j["warnings"] = s.warnings;
@@ -85,16 +83,15 @@ std::string toTable(const RenderStats& s) {
     row("before", fmt::format("parse {:.2f} s, compile {:.2f} s, build {:.2f} s", s.parseSec, s.compileSec, s.buildSec));
     std::string types;
     for (const auto& [type, n] : s.rays)
-        if (n)
-            types += fmt::format("{}{} {}", types.empty() ? "" : ", ", type, grouped(n));
+        if (n) types += fmt::format("{}{} {}", types.empty() ? "" : ", ", type, grouped(n));
     row("rays", fmt::format("{}, {:.0f} per ms{}", grouped(s.totalRays), raysPerMS(s.totalRays, s.renderSec),
                             types.empty() ? "" : " (" + types + ")"));
     if (s.classic.reflected || s.classic.refracted)
         row("specular", fmt::format("{} reflected, {} refracted", grouped(s.classic.reflected), grouped(s.classic.refracted)));
     if (s.classic.subsampledPixels)
-        row("refined", fmt::format("{} pixels, by {} rays", grouped(s.classic.subsampledPixels), grouped(s.classic.subsampledRays)));
-    if (s.depth.maximum)
-        row("depth", fmt::format("{} at most, {:.2f} on average", s.depth.maximum, s.depth.average));
+        row("refined",
+            fmt::format("{} pixels, by {} rays", grouped(s.classic.subsampledPixels), grouped(s.classic.subsampledRays)));
+    if (s.depth.maximum) row("depth", fmt::format("{} at most, {:.2f} on average", s.depth.maximum, s.depth.average));
     if (s.shading.points)
         row("shading", fmt::format("{} points in {} batches, {:.1f} % of lanes busy; {} kernels ({} affine, {} suspending), "
                                    "{} from the cache",
@@ -104,12 +101,9 @@ std::string toTable(const RenderStats& s) {
         row("noise", fmt::format("{:.5f}: the mean relative error of the light on surfaces (docs/noise.md)", s.noise.noise));
     if (!s.curve.empty()) row("curve", s.curve);
     row("memory", bytesText(s.peakMemoryBytes) + " at most");
-    if (s.nonFinite)
-        row("dropped", fmt::format("{} samples that were not finite", grouped(s.nonFinite)));
-    if (s.saturated)
-        row("saturated", fmt::format("{} values beyond 2^60", grouped(s.saturated)));
-    if (s.errors || s.warnings)
-        row("messages", fmt::format("{} errors, {} warnings", s.errors, s.warnings));
+    if (s.nonFinite) row("dropped", fmt::format("{} samples that were not finite", grouped(s.nonFinite)));
+    if (s.saturated) row("saturated", fmt::format("{} values beyond 2^60", grouped(s.saturated)));
+    if (s.errors || s.warnings) row("messages", fmt::format("{} errors, {} warnings", s.errors, s.warnings));
     return t;
 }
 
@@ -120,8 +114,7 @@ uint64_t peakMemoryBytes() {
 
 double processCpuSeconds() {
     rusage u{};
-    if (getrusage(RUSAGE_SELF, &u) != 0)
-        return 0;
+    if (getrusage(RUSAGE_SELF, &u) != 0) return 0;
     return double(u.ru_utime.tv_sec + u.ru_stime.tv_sec) + 1e-6 * double(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
 }
 

@@ -10,20 +10,20 @@ namespace alpenglow::render {
 /// Field names are the keys of the JSON object (design, "Fixed from outside").
 struct RenderStats {
     int width = 0, height = 0;
-    uint64_t spp = 0;               ///< samples per pixel, on average
+    uint64_t spp = 0;                   ///< samples per pixel, on average
     uint64_t sppLeast = 0, sppMost = 0; ///< of the pixels with the fewest and the most
-    double renderSec = 0, cpuSec = 0; ///< wall and processor time of rendering
-    uint64_t totalRays = 0;         ///< primary, reflected, refracted, internally reflected, sub-sampled and shadow rays
+    double renderSec = 0, cpuSec = 0;   ///< wall and processor time of rendering
+    uint64_t totalRays = 0;             ///< primary, reflected, refracted, internally reflected, sub-sampled and shadow rays
     NoiseFigures noise;
     std::string curve; ///< of the pictures (curve.h); "" = not known
     int threads = 0;
     uint64_t peakMemoryBytes = 0;
     double parseSec = 0, compileSec = 0, buildSec = 0;
-    uint64_t nonFinite = 0;         ///< samples dropped
-    uint64_t saturated = 0;         ///< values clamped by the exact sums
+    uint64_t nonFinite = 0;               ///< samples dropped
+    uint64_t saturated = 0;               ///< values clamped by the exact sums
     std::map<std::string, uint64_t> rays; ///< by type; camera, diffuse, specular, transmission, shadow are written even when 0
-    /// What a classic ray tracer counts. primary: camera rays but subsampledRays; reflected, refracted: of the specular rays those that
-    /// stay on their side of a surface, and the others.
+    /// What a classic ray tracer counts. primary: camera rays but subsampledRays; reflected, refracted: of the specular rays
+    /// those that stay on their side of a surface, and the others.
     struct Classic {
         uint64_t primary = 0, reflected = 0, refracted = 0, subsampledPixels = 0, subsampledRays = 0;
     } classic;

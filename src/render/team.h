@@ -21,10 +21,9 @@ public:
     int threads() const { return threads_; }
 
     /// Calls work(worker, task) for tasks 0 .. count-1, each once, on `threads` threads; worker < threads. Meanwhile tick(done)
-    /// runs on the calling thread about every 20 ms. Once *halt is set no further task begins. Throws what a task or tick() threw,
-    /// after all have ended. True when every task was done.
-    /// A thread that cannot be started (no memory, or no more processes for this user) is done without; if none can be, the
-    /// calling thread works, with tick() between its tasks.
+    /// runs on the calling thread about every 20 ms. Once *halt is set no further task begins. Throws what a task or tick()
+    /// threw, after all have ended. True when every task was done. A thread that cannot be started (no memory, or no more
+    /// processes for this user) is done without; if none can be, the calling thread works, with tick() between its tasks.
     template <class Work, class Tick> bool run(size_t count, StopFlag* halt, Work work, Tick tick) {
         std::atomic<size_t> next{0}, done{0};
         int running = 0;
@@ -113,7 +112,9 @@ private:
         try {
             threads.emplace_back(std::move(body));
             return true;
-        } catch (const std::system_error&) { return false; } catch (const std::bad_alloc&) { return false; }
+        } catch (const std::system_error&) { return false; } catch (const std::bad_alloc&) {
+            return false;
+        }
     }
     int threads_;
 };

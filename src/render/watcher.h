@@ -22,10 +22,10 @@ struct Glance {
     /// hidden and raytrace, while the picture grows: by pixel of its window in reading order whether it is there, as of the last
     /// call of pixels(). What is not there is black. Null: all is there.
     const std::vector<uint8_t>* there = nullptr;
-    bool whole() const { return !film && !there; }  ///< nothing comes behind it
-    double seconds = 0;                             ///< since rendering began
-    uint64_t rays = 0;                              ///< traced so far, those of the pass under way too
-    bool grown = true;                              ///< a pass, or some tile, came in; false: only time went by
+    bool whole() const { return !film && !there; } ///< nothing comes behind it
+    double seconds = 0;                            ///< since rendering began
+    uint64_t rays = 0;                             ///< traced so far, those of the pass under way too
+    bool grown = true;                             ///< a pass, or some tile, came in; false: only time went by
 };
 
 /// All calls come from the thread that called Renderer::render().

@@ -119,7 +119,8 @@ bool Interpreter::mayReplay(const Call& call) {
     return false;
 }
 
-std::string Interpreter::locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&)) {
+std::string Interpreter::locate(const char* what, const std::string& name, const SourcePlace& place,
+                                bool (*named)(const std::string&)) {
     std::vector<std::string> folders;
     if (auto o = options.values.find("searchpath:archive"); o != options.values.end() && !o->second.strings.empty())
         for (const std::string& f : splitSearchPath(o->second.strings[0])) {
@@ -203,7 +204,8 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
     else readOpened(key, file, calls, std::move(source), place);
 }
 
-void Interpreter::executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file, const SourcePlace& place) {
+void Interpreter::executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file,
+                                const SourcePlace& place) {
     inPart(key, place, [&] {
         auto outer = std::move(reporter.lineText);
         reporter.lineText = [&](const SourcePlace& p) { return p.file == file ? lineOfFile(file, p.line) : std::string(); };
@@ -242,8 +244,7 @@ void Interpreter::inPart(const std::string& key, const SourcePlace& place, const
     const SourcePlace end = body();
     if (motion_.has_value() && !wasMoving) closeOpenEnds(std::max(conditions, conditions_.size()), end);
     while (conditions_.size() > conditions) {
-        if (!interrupted())
-            reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");
+        if (!interrupted()) reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");
         conditions_.pop_back();
     }
     unwind(barriers_.back(), end, true);

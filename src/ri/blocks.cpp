@@ -101,8 +101,9 @@ void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld)
             return;
         }
         if (!interrupted())
-            reporter.error(Rie::Nesting, where,
-                           fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
+            reporter.error(
+                Rie::Nesting, where,
+                fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
         pop();
     }
 }
@@ -242,7 +243,8 @@ void Interpreter::stepInto(scene::SolidOperation operation) {
 
 void Interpreter::beginSolid(scene::SolidOperation operation, const Call& call) {
     const scene::Param* outer = state.attributes->value(scene::kSolidAttribute);
-    const bool inPart = outer && !outer->numbers.empty() && scene::solidPath(*state.attributes).back().operation == scene::SolidOperation::Part;
+    const bool inPart =
+        outer && !outer->numbers.empty() && scene::solidPath(*state.attributes).back().operation == scene::SolidOperation::Part;
     if (inPart) {
         reporter.error(Rie::BadSolid, call.place, "SolidBegin inside a \"primitive\": what it holds belongs to that part");
         begin(BlockKind::Solid, call);

@@ -1,5 +1,5 @@
-// The expressions of IfBegin and ElseIf (ri.md 10.3): numbers, 'strings', $variables, defined(), concat(), the usual operators, and =~ for
-// patterns (PRMan).
+// The expressions of IfBegin and ElseIf (ri.md 10.3): numbers, 'strings', $variables, defined(), concat(), the usual operators,
+// and =~ for patterns (PRMan).
 #include "base/limits.h"
 #include "base/pattern.h"
 #include "ri/interpreter.h"

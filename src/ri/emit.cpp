@@ -85,7 +85,8 @@ void Interpreter::illuminate(const Call& call) {
 namespace {
 /// Exporters write meshes and clouds without a face or point for what is empty or hidden in their frame.
 bool holdsNothing(const scene::Primitive& p) {
-    bool mesh = p.kind == "PointsPolygons" || p.kind == "PointsGeneralPolygons" || p.kind == "SubdivisionMesh" || p.kind == "Curves";
+    bool mesh =
+        p.kind == "PointsPolygons" || p.kind == "PointsGeneralPolygons" || p.kind == "SubdivisionMesh" || p.kind == "Curves";
     if (!(mesh || p.kind == "Points") || !p.ints.empty() || !p.ints2.empty() || p.params.empty()) return false;
     return std::all_of(p.params.begin(), p.params.end(), [](const scene::Param& q) {
         return (q.numbers.empty() && q.strings.empty()) || q.cls == scene::Class::Constant;
@@ -98,7 +99,8 @@ scene::AttributesRef Interpreter::solidPart(const Call& call) {
     const scene::Param* path = state.attributes->value(scene::kSolidAttribute);
     if (!path || scene::solidPath(*state.attributes).back().operation == scene::SolidOperation::Part) return snapshot();
     reporter.once("ri:solidpart", Severity::Warning, Rie::BadSolid, call.place,
-                  fmt::format("{} stands in a solid outside of SolidBegin \"primitive\": it counts as a part of its own", call.request->name));
+                  fmt::format("{} stands in a solid outside of SolidBegin \"primitive\": it counts as a part of its own",
+                              call.request->name));
     const GraphicsState outer = state;
     shared_ = true;
     stepInto(scene::SolidOperation::Part);
@@ -120,7 +122,8 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
     p.attributes = solidPart(call);
     p.toWorld = state.ctm;
     if (holdsNothing(p)) {
-        reporter.once("ri:nothing:" + p.kind, Severity::Warning, Rie::Consistency, call.place, p.kind + " is empty: there is nothing to draw");
+        reporter.once("ri:nothing:" + p.kind, Severity::Warning, Rie::Consistency, call.place,
+                      p.kind + " is empty: there is nothing to draw");
         return;
     }
     p.params.insert(p.params.end(), everywhere_.begin(), everywhere_.end());

@@ -117,8 +117,9 @@ bool fitOne(Param& v, const Primitive& p, const scene::VariableCounts& c, int64_
         return true;
     }
     if (want > 0 && have / per == want) { // a number too many at the end
-        reporter.report(Severity::Warning, Rie::Consistency, v.place,
-                        fmt::format("{}: \"{}\" needs {} x {} values, not {}: the rest is ignored", p.kind, v.name, want, per, have));
+        reporter.report(
+            Severity::Warning, Rie::Consistency, v.place,
+            fmt::format("{}: \"{}\" needs {} x {} values, not {}: the rest is ignored", p.kind, v.name, want, per, have));
         cut(v, size_t(want * per));
         return true;
     }

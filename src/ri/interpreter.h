@@ -108,13 +108,16 @@ public:
     void volume(const Call& call);
     void readArchive(const std::string& name, const SourcePlace& place);
     /// "DelayedReadArchive", "RunProgram" or "DynamicLoad". bound: six numbers, or none.
-    void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
-    /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the graphics state
-    /// saved before and restored after. name: of who makes it, for messages.
-    void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound, const Call& call);
+    void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
+                    const Call& call);
+    /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the
+    /// graphics state saved before and restored after. name: of who makes it, for messages.
+    void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound,
+                   const Call& call);
     /// Numbers for lights and objects that libraries make: never the same twice.
     int nextHandle() { return ++handleSerial_; }
-    /// Executes requests of our own as if they stood at the place of `call`. Their primitives get the variables `everywhere`, too.
+    /// Executes requests of our own as if they stood at the place of `call`. Their primitives get the variables `everywhere`,
+    /// too.
     void expand(const std::string& requests, const Call& call, scene::ParamList everywhere = {});
     void beginRecording(const Call& call);
     void resource(const Call& call);
@@ -187,15 +190,18 @@ private:
     /// Reads what was found: recorded calls, or a stream that messages call `file`. key tells it from other open ones.
     void readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
                     std::unique_ptr<ByteSource> source, const SourcePlace& place);
-    /// Does `body`, which gives back where it ended, within archives and procedurals that are open, and closes what it leaves open.
+    /// Does `body`, which gives back where it ended, within archives and procedurals that are open, and closes what it leaves
+    /// open.
     void inPart(const std::string& key, const SourcePlace& place, const std::function<SourcePlace()>& body);
     void executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file, const SourcePlace& place);
     double detailOf(const std::vector<float>& bound) const;
     /// Makes what is in a procedural, here and now.
-    void makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
+    void makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
+                 const Call& call);
     // unmade.cpp
     /// Whether a procedural may wait until a ray comes to its bound; then it is put into the frame as one that is not yet made.
-    bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound, const Call& call);
+    bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
+               const Call& call);
     struct Waiting;
     using Wanted = std::function<bool(int)>; ///< whether the procedural of this number is to be made
     void putWaiting(Waiting, std::vector<float> grown);
@@ -205,10 +211,11 @@ private:
     void putMade(const std::vector<scene::PrimitiveRef>& from, std::vector<scene::PrimitiveRef>& out, const Wanted&);
     void orderInstances(scene::Frame&) const;
     std::shared_ptr<scene::Frame> makeSome(const scene::Frame&, const Wanted&);
-    /// Whether one more program or library may make content here: how many there are and how deep they nest is bounded (reported).
+    /// Whether one more program or library may make content here: how many there are and how deep they nest is bounded
+    /// (reported).
     bool mayMake(const Call& call);
-    /// Along Option "searchpath" "procedural", --searchpath and beside the scene, under the first of these names that is there and may be
-    /// executed (X_OK) or read (R_OK); "" otherwise. looked: the folders.
+    /// Along Option "searchpath" "procedural", --searchpath and beside the scene, under the first of these names that is there
+    /// and may be executed (X_OK) or read (R_OK); "" otherwise. looked: the folders.
     std::string findForeign(const std::vector<std::string>& names, int access, std::string& looked) const;
     const Library* libraryOf(const std::string& name, const SourcePlace& place);
     void runLibrary(const std::string& name, const std::string& data, const std::vector<float>& bound, const Call& call);
@@ -248,7 +255,7 @@ private:
     std::optional<Motion> motion_;
     std::vector<Condition> conditions_;
     std::optional<Recording> recording_;
-    scene::ParamList everywhere_;                    ///< variables of every primitive that is emitted now
+    scene::ParamList everywhere_;                                       ///< variables of every primitive that is emitted now
     std::vector<std::shared_ptr<scene::Primitive>>* capture_ = nullptr; ///< primitives of a motion block go here
     std::vector<scene::Light> lights_;                                  ///< before WorldBegin; shader spaces to camera
     std::map<std::string, int> handles_;                                ///< light handle -> index
@@ -273,16 +280,16 @@ private:
     scene::AttributesRef solidPart(const Call& call);
     std::set<std::string> archivesRead_;
     std::shared_ptr<const Model> lastModel_;
-    std::map<std::string, std::unique_ptr<Program>> programs_; ///< by command; null: it is not asked again
+    std::map<std::string, std::unique_ptr<Program>> programs_;  ///< by command; null: it is not asked again
     std::map<std::string, std::unique_ptr<Library>> libraries_; ///< by name; null: there is none
     int programCalls_ = 0, programSerial_ = 0, handleSerial_ = 0;
     std::vector<std::shared_ptr<const Waiting>> waiting_; ///< of this frame, by number
     std::string part_;                                    ///< of what is made now
     int partsWithin_ = 0;                                 ///< procedurals in it that wait
     bool making_ = false;                                 ///< what is in procedurals that waited is being made
-    bool replaying_ = false; ///< inside an archive that was read before
-    Lasting base_;           ///< what a scene begins with
-    size_t baseWorld_ = 0;   ///< worldSerial_ at that time
+    bool replaying_ = false;                              ///< inside an archive that was read before
+    Lasting base_;                                        ///< what a scene begins with
+    size_t baseWorld_ = 0;                                ///< worldSerial_ at that time
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

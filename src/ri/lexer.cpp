@@ -20,12 +20,14 @@ constexpr size_t kLineKept = 16 << 10; // bytes of the current line kept for mes
 constexpr size_t kNotFinite = 24;      // bytes that show whether a word stands for no number
 constexpr double kInfinite = 1e38;     // RI_INFINITY
 
-/// Bytes at p that C libraries print for what is no number, 0 for others: nan, -inf, Infinity, -nan(ind). `value`: what is taken for it.
+/// Bytes at p that C libraries print for what is no number, 0 for others: nan, -inf, Infinity, -nan(ind). `value`: what is taken
+/// for it.
 size_t notFinite(const char* p, const char* e, double& value) {
     const char* q = p < e && (*p == '+' || *p == '-') ? p + 1 : p;
     const auto word = [&](const char* w) {
         const size_t n = std::strlen(w);
-        return size_t(e - q) >= n && std::equal(w, w + n, q, [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+        return size_t(e - q) >= n &&
+               std::equal(w, w + n, q, [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
     };
     size_t n = 0;
     for (const char* w : {"nan(ind)", "nan(snan)", "nan", "infinity", "inf"})
@@ -175,9 +177,12 @@ bool Lexer::number(double& out) {
         const char* stop = q;
         // A sign behind a number begins the next one: ".4-.4".
         const auto signedNumber = [&] {
-            return good && q + 1 < e && q > digits && (*q == '+' || *q == '-') && (digit(static_cast<unsigned char>(q[1])) || q[1] == '.');
+            return good && q + 1 < e && q > digits && (*q == '+' || *q == '-') &&
+                   (digit(static_cast<unsigned char>(q[1])) || q[1] == '.');
         };
-        while (!signedNumber() && stop < e && sticks(static_cast<unsigned char>(*stop)) && size_t(stop - p) <= limits::kTokenBytes) ++stop;
+        while (!signedNumber() && stop < e && sticks(static_cast<unsigned char>(*stop)) &&
+               size_t(stop - p) <= limits::kTokenBytes)
+            ++stop;
         if (stop == e && !ended_ && size_t(e - p) <= limits::kTokenBytes) {
             if (more()) continue; // the rest of the number may only just have arrived
         }
@@ -187,7 +192,8 @@ bool Lexer::number(double& out) {
         if (none > 0) {
             length = none + (good ? size_t(q - p) : 0);
             reporter_.once("ri:notfinite:" + file_, Severity::Error, Rie::Range, here(),
-                           "'" + std::string(p, length) + fmt::format("' is no number: {:g} is taken, and so on in this file", out));
+                           "'" + std::string(p, length) +
+                               fmt::format("' is no number: {:g} is taken, and so on in this file", out));
             pos_ += length;
             return true;
         }
@@ -401,7 +407,8 @@ void Lexer::next(Token& t) {
             return quoted(t.text, t.line, t.column);
         }
         if (c == '\'' && apostrophes()) { // some published files have them
-            reporter_.once("ri:apostrophes", Severity::Warning, Rie::Syntax, here(), "a string in apostrophes: RIB writes it in double quotes");
+            reporter_.once("ri:apostrophes", Severity::Warning, Rie::Syntax, here(),
+                           "a string in apostrophes: RIB writes it in double quotes");
             t.kind = Token::Kind::String;
             return quoted(t.text, t.line, t.column);
         }

@@ -9,9 +9,10 @@ namespace alpenglow::ri {
 
 namespace {
 
-/// One function of every file of the C binding, so that a program that has this file has them all (a static library gives only what is
-/// asked for) and libraries find them in it.
-[[gnu::used]] const void* const kBinding[] = {reinterpret_cast<const void*>(&RiDeclare), reinterpret_cast<const void*>(&RiPolygonV)};
+/// One function of every file of the C binding, so that a program that has this file has them all (a static library gives only
+/// what is asked for) and libraries find them in it.
+[[gnu::used]] const void* const kBinding[] = {reinterpret_cast<const void*>(&RiDeclare),
+                                              reinterpret_cast<const void*>(&RiPolygonV)};
 
 } // namespace
 
@@ -56,7 +57,8 @@ const Library* Interpreter::libraryOf(const std::string& name, const SourcePlace
     return slot->second.get();
 }
 
-void Interpreter::runLibrary(const std::string& name, const std::string& data, const std::vector<float>& bound, const Call& call) {
+void Interpreter::runLibrary(const std::string& name, const std::string& data, const std::vector<float>& bound,
+                             const Call& call) {
     if (!frameWanted()) return;
     const Library* library = libraryOf(name, call.place);
     if (!library) return;

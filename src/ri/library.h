@@ -12,8 +12,8 @@ struct Library {
     void (*free)(void* data) = nullptr;
     std::string path;
 
-    /// Null with a reason when the file is no library that can be loaded here, or lacks one of the functions. It stays loaded: it may have
-    /// threads of its own.
+    /// Null with a reason when the file is no library that can be loaded here, or lacks one of the functions. It stays loaded: it
+    /// may have threads of its own.
     static std::unique_ptr<Library> load(const std::string& path, std::string& why);
 };
 

@@ -67,7 +67,8 @@ void addMatrixKeys(scene::Transform& out, double t0, const Matrix& m0, double t1
     const auto affine = [](const Matrix& m) { return m.m[0][3] == 0 && m.m[1][3] == 0 && m.m[2][3] == 0 && m.m[3][3] == 1; };
     if (out.keys.empty()) addKey(out, t0, m0);
     Matrix q0, q1;
-    if (affine(m0) && affine(m1) && finite(m0) && finite(m1) && determinant3(m0) * determinant3(m1) > 0 && orthogonal(m0, q0) && orthogonal(m1, q1)) {
+    if (affine(m0) && affine(m1) && finite(m0) && finite(m1) && determinant3(m0) * determinant3(m1) > 0 && orthogonal(m0, q0) &&
+        orthogonal(m1, q1)) {
         const Matrix d = transposed(q0) * q1;
         const Vec3d axis(d.m[1][2] - d.m[2][1], d.m[2][0] - d.m[0][2], d.m[0][1] - d.m[1][0]);
         const double sine = length(axis), angle = exact::atan2(sine, d.m[0][0] + d.m[1][1] + d.m[2][2] - 1) * 180 / kPi;

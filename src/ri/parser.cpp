@@ -108,7 +108,8 @@ bool Parser::next(Call& call) {
             std::string shown = token_.text.substr(0, 60);
             std::string near = nearestName(shown, requestNames());
             if (unknown_.size() >= size_t(limits::kUnknownNames) || unknown_.insert(shown).second) // each name once
-                reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'", near.empty() ? "" : "did you mean " + near + "?");
+                reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'",
+                                near.empty() ? "" : "did you mean " + near + "?");
             collect(values);
             continue;
         }

@@ -22,7 +22,7 @@ private:
     Lexer lexer_;
     Reporter& reporter_;
     Token token_;
-    bool pending_ = false; ///< token_ was read ahead
+    bool pending_ = false;          ///< token_ was read ahead
     std::set<std::string> unknown_; ///< names that are no requests, reported
 };
 

@@ -141,9 +141,11 @@ double Interpreter::detailOf(const std::vector<float>& bound) const {
     }
     const scene::Attributes& a = *state.attributes;
     const bool still = !state.ctm.moves() && !worldToCamera_.moves() && affine(m) && !(o.fstop > 0 && o.fstop < 1e30f);
-    const bool plain = (perspective || o.projection == "orthographic" || o.projection.empty()) && !scene::find(o.projectionParams, "stereo");
+    const bool plain =
+        (perspective || o.projection == "orthographic" || o.projection.empty()) && !scene::find(o.projectionParams, "stereo");
     const bool placed = innermost(BlockKind::Object) == nullptr && innermost(BlockKind::Solid) == nullptr;
-    if (o.hider == "hidden" && still && plain && placed && a.areaLight < 0 && !a.displacement && forTheCameraOnly(a) && outside(o, corners))
+    if (o.hider == "hidden" && still && plain && placed && a.areaLight < 0 && !a.displacement && forTheCameraOnly(a) &&
+        outside(o, corners))
         return -1;
     const double area = (hi[0] - lo[0]) * (hi[1] - lo[1]);
     return !behind && std::isfinite(area) ? area : INFINITY;

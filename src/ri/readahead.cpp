@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view kWord = "ReadArchive";
-constexpr size_t kName = 4096;                      // bytes of a name and what stands before it
-constexpr uintmax_t kBytes = uintmax_t(64) << 20;   // of files that are held as requests at a time
-constexpr size_t kCalls = 20'000;                   // requests of one of them; a longer one is read as it is executed
+constexpr size_t kName = 4096;                    // bytes of a name and what stands before it
+constexpr uintmax_t kBytes = uintmax_t(64) << 20; // of files that are held as requests at a time
+constexpr size_t kCalls = 20'000;                 // requests of one of them; a longer one is read as it is executed
 
 /// The string behind ReadArchive or "DelayedReadArchive" [ at `at`; "" when there is something else.
 std::string nameAt(std::string_view text, size_t at) {
@@ -25,7 +25,8 @@ std::string nameAt(std::string_view text, size_t at) {
     const size_t quote = text.find_first_not_of(" \t\r\n[", at);
     if (quote == std::string_view::npos || text[quote] != '"') return {};
     const size_t end = text.find_first_of("\"\\\n", quote + 1);
-    return end == std::string_view::npos || text[end] != '"' ? std::string() : std::string(text.substr(quote + 1, end - quote - 1));
+    return end == std::string_view::npos || text[end] != '"' ? std::string()
+                                                             : std::string(text.substr(quote + 1, end - quote - 1));
 }
 
 std::unique_ptr<ParsedArchive> parse(const std::string& path) {
@@ -112,7 +113,8 @@ std::string lineOfFile(const std::string& path, int line) {
     std::string text;
     for (int n = 0; n < line; ++n)
         if (!std::getline(in, text)) return {};
-    const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return c == '\t' || c == '\r' || (c >= ' ' && c != 127); });
+    const bool plain =
+        std::all_of(text.begin(), text.end(), [](char c) { return c == '\t' || c == '\r' || (c >= ' ' && c != 127); });
     return plain ? text.substr(0, 200) : std::string();
 }
 

@@ -1,5 +1,6 @@
-// Archives that a scene is going to read, parsed by all threads before they are executed one by one in the order of the file. What is
-// executed is the same with and without: an archive that has anything to say while it is parsed is left to the ordinary reader.
+// Archives that a scene is going to read, parsed by all threads before they are executed one by one in the order of the file.
+// What is executed is the same with and without: an archive that has anything to say while it is parsed is left to the ordinary
+// reader.
 #pragma once
 #include "ri/call.h"
 #include <map>
@@ -18,9 +19,11 @@ struct ParsedArchive {
 
 class ReadAhead {
 public:
-    /// Notes the archives that a scene names, in order: those of ReadArchive and DelayedReadArchive in plain text. Forgets what was there.
+    /// Notes the archives that a scene names, in order: those of ReadArchive and DelayedReadArchive in plain text. Forgets what
+    /// was there.
     void scan(const std::string& sceneFile);
-    /// The requests of the archive that the scene calls `name` and that was found at `path`. Null: it is to be read in the ordinary way.
+    /// The requests of the archive that the scene calls `name` and that was found at `path`. Null: it is to be read in the
+    /// ordinary way.
     std::unique_ptr<ParsedArchive> take(const std::string& name, const std::string& path);
 
     /// Lets go of what was parsed and is not wanted yet.

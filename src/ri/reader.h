@@ -16,16 +16,16 @@
 namespace alpenglow::ri {
 
 struct ReaderOptions {
-    std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
-    bool allowExec = false;               ///< RunProgram, DynamicLoad, System were asked for by the user
+    std::vector<std::string> searchPaths;            ///< folders for archives, after those of Option "searchpath" "archive"
+    bool allowExec = false;                          ///< RunProgram, DynamicLoad, System were asked for by the user
     double programSeconds = limits::kProgramSeconds; ///< that a program may take for one answer
-    const StopFlag* stop = nullptr;       ///< set: the rest is not read; may be null
-    bool allowRead = true;                ///< archives may lie anywhere; false: below the folders that archive.cpp names
-    size_t mostLights = limits::kLights;  ///< of one frame; further ones are reported
-    /// Procedurals that nothing need meet (ri/unmade.cpp says which) stand in their frame as primitives of the kind scene::kUnmade, until
-    /// RibReader::make() is asked for what is in them. False: all are expanded where they stand.
+    const StopFlag* stop = nullptr;                  ///< set: the rest is not read; may be null
+    bool allowRead = true;               ///< archives may lie anywhere; false: below the folders that archive.cpp names
+    size_t mostLights = limits::kLights; ///< of one frame; further ones are reported
+    /// Procedurals that nothing need meet (ri/unmade.cpp says which) stand in their frame as primitives of the kind
+    /// scene::kUnmade, until RibReader::make() is asked for what is in them. False: all are expanded where they stand.
     bool defers = false;
-    std::vector<int> frames; ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
+    std::vector<int> frames;        ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
     std::shared_ptr<ReadLog> reads; ///< gets every scene and archive that is read or missed; may be null
     /// Called with the number of each FrameBegin, rendered or not.
     std::function<void(int)> frameSeen;
@@ -50,9 +50,9 @@ public:
     /// What is read next is a scene of its own. Where a world was read since the last call, the state goes back to what it was at
     /// that call; else it stays, because what was read held options only, for all scenes behind it.
     void nextScene();
-    /// While FrameConsumer::render() runs, with ReaderOptions::defers: the frame that was handed over, or that this function gave last, with
-    /// what is in some of its procedurals, which are named by scene::unmadeNumber(); none named: in all, and in those within them. Where
-    /// light sources come to light that way, all are made. Null: no frame is being rendered.
+    /// While FrameConsumer::render() runs, with ReaderOptions::defers: the frame that was handed over, or that this function gave
+    /// last, with what is in some of its procedurals, which are named by scene::unmadeNumber(); none named: in all, and in those
+    /// within them. Where light sources come to light that way, all are made. Null: no frame is being rendered.
     std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
 
 private:

@@ -16,18 +16,18 @@ std::set<std::string> wordsOf(const std::string& text) {
 /// Classes of PRMan, 3Delight, Aqsis, BMRT, Pixie, Entropy, Air, RenderDotC and their exporters, whose names do nothing here and
 /// change no picture by much: none of them is warned about.
 const std::set<std::string>& otherClasses(bool option) {
-    static const std::set<std::string> options = wordsOf(
-        "3delight Hider RI Render Ri air aqsis bake bmrt bucket cache caustic checkpoint curve delight dice display "
-        "dspy dspyplugin entropy error exrheader exrprefix file frame fur geometry hair header history houdini indirect "
-        "irradiance license licenses licenseserver lighting lightpath limits lock lpe maya message messages netcache "
-        "occlusion osl photon pixie plugin prman procedural quicknoise radiosity rdc render rerender ri rib ribparse "
-        "rslplugin runtime shader shadow shutter statistics stereo stitch subsurface texture threads time version vm");
-    static const std::set<std::string> attributes = wordsOf(
-        "3delight RI Ri air aqsis area areashadow autoshadows bake blobby bmrt camera caustic caustics cull curve "
-        "delight derivatives dice divisions entropy fur hair houdini identifier indirect irradiance lightfilter "
-        "lighting lightmap lpe maya mesh occlusion photon pixie polygon procedural radiosity reflection ri rib shader "
-        "shadow shutter sides spline sss statistics stereo stitch stochastic subdivision subdivisionmesh subsurface "
-        "texture time toon trimcurve volume");
+    static const std::set<std::string> options =
+        wordsOf("3delight Hider RI Render Ri air aqsis bake bmrt bucket cache caustic checkpoint curve delight dice display "
+                "dspy dspyplugin entropy error exrheader exrprefix file frame fur geometry hair header history houdini indirect "
+                "irradiance license licenses licenseserver lighting lightpath limits lock lpe maya message messages netcache "
+                "occlusion osl photon pixie plugin prman procedural quicknoise radiosity rdc render rerender ri rib ribparse "
+                "rslplugin runtime shader shadow shutter statistics stereo stitch subsurface texture threads time version vm");
+    static const std::set<std::string> attributes =
+        wordsOf("3delight RI Ri air aqsis area areashadow autoshadows bake blobby bmrt camera caustic caustics cull curve "
+                "delight derivatives dice divisions entropy fur hair houdini identifier indirect irradiance lightfilter "
+                "lighting lightmap lpe maya mesh occlusion photon pixie polygon procedural radiosity reflection ri rib shader "
+                "shadow shutter sides spline sss statistics stereo stitch stochastic subdivision subdivisionmesh subsurface "
+                "texture time toon trimcurve volume");
     return option ? options : attributes;
 }
 

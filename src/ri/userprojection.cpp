@@ -36,7 +36,8 @@ bool takeProjection(scene::Transform& worldToCamera, scene::Options& o) {
     o.projection = "perspective";
     o.fov = float(2 * exact::atan(1 / ky) * 180 / kPi);
     if (std::fabs(kx / ky - 1) < kNoise) return true;
-    const double aspect = o.frameAspect ? double(*o.frameAspect) : double(o.xres) * (o.pixelAspect > 0 ? o.pixelAspect : 1) / o.yres;
+    const double aspect =
+        o.frameAspect ? double(*o.frameAspect) : double(o.xres) * (o.pixelAspect > 0 ? o.pixelAspect : 1) / o.yres;
     const double right = aspect >= 1 ? aspect : 1, top = aspect >= 1 ? 1 : 1 / aspect;
     if (!o.screenWindow) o.screenWindow = std::vector<float>{float(-right), float(right), float(-top), float(top)};
     for (size_t i = 0; i < 2; ++i) (*o.screenWindow)[i] = float((*o.screenWindow)[i] * ky / kx);

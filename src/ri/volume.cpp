@@ -1,5 +1,5 @@
-// Volume: a region of space that a volume shader fills. It is drawn as a closed surface that is not seen itself, with the shader as its Interior,
-// so that all that insides of surfaces do holds for it.
+// Volume: a region of space that a volume shader fills. It is drawn as a closed surface that is not seen itself, with the shader
+// as its Interior, so that all that insides of surfaces do holds for it.
 #include "ri/interpreter.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -41,11 +41,13 @@ scene::Primitive boxOf(const std::vector<float>& b) {
 bool Interpreter::regionOf(const Call& c, std::vector<float>& bound) {
     const std::string& type = c.text(0);
     if (type.starts_with("blobbydso:")) {
-        reporter.error(Rie::Incapable, c.place, "Volume: plug-ins of volumes (blobbydso) are those of another renderer; it is left out");
+        reporter.error(Rie::Incapable, c.place,
+                       "Volume: plug-ins of volumes (blobbydso) are those of another renderer; it is left out");
         return false;
     }
     if (!shapes().count(type)) {
-        reporter.error(Rie::BadToken, c.place, fmt::format("Volume: \"{}\" is not known", type), "box, ellipsoid, cylinder or cone");
+        reporter.error(Rie::BadToken, c.place, fmt::format("Volume: \"{}\" is not known", type),
+                       "box, ellipsoid, cylinder or cone");
         return false;
     }
     bound = c.reals(1);
@@ -76,14 +78,16 @@ void Interpreter::volume(const Call& c) {
             p.cls = Class::Constant;
             everywhere.push_back(std::move(p));
         } else {
-            incapable(c, "variables of the voxels of a Volume are left out: its shader has the numbers of the whole region, and its own function of P");
+            incapable(c, "variables of the voxels of a Volume are left out: its shader has the numbers of the whole region, and "
+                         "its own function of P");
         }
     }
     if (!begin(BlockKind::Attribute, c)) return;
     scene::Attributes& a = attributes();
     if (!a.interior) a.interior = std::move(a.atmosphere), a.atmosphere = nullptr; // later renderers say it so
     if (!a.interior)
-        reporter.once("ri:emptyvolume", Severity::Warning, Rie::Incapable, c.place, "a Volume without Interior or Atmosphere is empty",
+        reporter.once("ri:emptyvolume", Severity::Warning, Rie::Incapable, c.place,
+                      "a Volume without Interior or Atmosphere is empty",
                       "Interior \"medium\" \"color scattering\" [1 1 1], for example");
     auto unseen = std::make_shared<scene::ShaderCall>();
     unseen->name = "null";

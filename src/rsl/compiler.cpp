@@ -1,8 +1,8 @@
-#include "rsl/front/protocol.h"
 #include "rsl/compiler.h"
 #include "base/file.h"
 #include "base/limits.h"
 #include "rsl/defaultreads.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
 #include "rsl/ir/print.h"
 #include "rsl/jit/cache.h"
@@ -135,7 +135,8 @@ ShaderPtr ShaderCompiler::finish(std::unique_ptr<Program> program, const std::st
     return describe(std::move(program), *shader, path, jit::sha256(all));
 }
 
-ShaderPtr ShaderCompiler::describe(std::shared_ptr<const Program> program, const Shader& shader, const std::string& path, const std::string& source) {
+ShaderPtr ShaderCompiler::describe(std::shared_ptr<const Program> program, const Shader& shader, const std::string& path,
+                                   const std::string& source) {
     auto c = std::make_shared<CompiledShader>();
     c->path_ = path;
     c->shader_ = &shader;
@@ -274,7 +275,8 @@ ShaderPtr ShaderCompiler::ofKind(const ShaderPtr& shader, ShaderKind kind, const
     const auto& shaders = shader->program().shaders;
     const bool named = std::any_of(shaders.begin(), shaders.end(), [&](const auto& s) { return s->name == name; });
     for (const auto& s : shaders)
-        if (s->kind == kind && (!named || s->name == name)) return describe(shader->program_, *s, shader->path(), shader->source_);
+        if (s->kind == kind && (!named || s->name == name))
+            return describe(shader->program_, *s, shader->path(), shader->source_);
     return nullptr;
 }
 
@@ -427,20 +429,23 @@ void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::ve
 
 } // namespace
 
-std::vector<std::string> CompiledShader::computedParameters(const std::set<std::string>& given, const std::vector<std::string>& varying) const {
+std::vector<std::string> CompiledShader::computedParameters(const std::set<std::string>& given,
+                                                            const std::vector<std::string>& varying) const {
     std::set<std::string> differ(varying.begin(), varying.end()); // from sample to sample
     std::vector<std::string> computed;
     for (const ParameterInfo& p : parameters_) {
         if (given.count(p.name) || differ.count(p.name)) continue;
-        if (!p.sampleDefault && std::none_of(p.defaultReads.begin(), p.defaultReads.end(), [&](const auto& r) { return differ.count(r) > 0; })) continue;
+        if (!p.sampleDefault &&
+            std::none_of(p.defaultReads.begin(), p.defaultReads.end(), [&](const auto& r) { return differ.count(r) > 0; }))
+            continue;
         differ.insert(p.name);
         computed.push_back(p.name);
     }
     return computed;
 }
 
-std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& shader, Diagnostics& diagnostics, const SpaceFn& spaces,
-                                                              const std::vector<ParameterValue>& given) {
+std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& shader, Diagnostics& diagnostics,
+                                                            const SpaceFn& spaces, const std::vector<ParameterValue>& given) {
     std::vector<ParameterValue> values;
     if (!shader) return values;
     for (const auto& p : shader->parameters()) {

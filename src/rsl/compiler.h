@@ -21,7 +21,7 @@ struct ParameterInfo {
     bool output = false;
     bool hasDefault = false;
     Place place;
-    bool open = false; ///< an array of open length, `float w[]`: it is as long as what it is given
+    bool open = false;          ///< an array of open length, `float w[]`: it is as long as what it is given
     bool handle = false;        ///< of type `shader`
     bool sampleDefault = false; ///< varying, with a default that differs from sample to sample: computed where the shader begins
     std::vector<std::string> defaultReads; ///< parameters before it that its default reads
@@ -36,9 +36,10 @@ public:
     const std::vector<ParameterInfo>& parameters() const { return parameters_; }
     const Program& program() const { return *program_; }
     const Shader& shader() const { return *shader_; }
-    /// KernelOptions::computedParameters: those that are not `given` and whose default is not one value for all samples. `varying`:
-    /// overridden by primitive variables.
-    std::vector<std::string> computedParameters(const std::set<std::string>& given, const std::vector<std::string>& varying) const;
+    /// KernelOptions::computedParameters: those that are not `given` and whose default is not one value for all samples.
+    /// `varying`: overridden by primitive variables.
+    std::vector<std::string> computedParameters(const std::set<std::string>& given,
+                                                const std::vector<std::string>& varying) const;
 
 private:
     friend class ShaderCompiler;
@@ -67,12 +68,12 @@ public:
         std::string cacheDirectory;  ///< "": none
         bool useDefaultCache = true; ///< take jit::defaultCacheDirectory() when cacheDirectory is empty
         std::vector<std::pair<std::string, std::string>> defines;
-        std::string dialect; ///< whose macros are predefined: FrontOptions::dialect
-        bool rispecSpecular = false; ///< FrontOptions::rispecSpecular
-        bool lint = false; ///< the warnings for who writes shaders (front/lint.h)
-        bool allowExec = false; ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
+        std::string dialect;                  ///< whose macros are predefined: FrontOptions::dialect
+        bool rispecSpecular = false;          ///< FrontOptions::rispecSpecular
+        bool lint = false;                    ///< the warnings for who writes shaders (front/lint.h)
+        bool allowExec = false;               ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
         std::vector<std::string> pluginPaths; ///< where plug-ins are looked for, after the folder of the shader
-        std::shared_ptr<ReadLog> reads; ///< gets every source that is read or missed; may be null
+        std::shared_ptr<ReadLog> reads;       ///< gets every source that is read or missed; may be null
     };
     ShaderCompiler();
     explicit ShaderCompiler(Settings);
@@ -91,9 +92,10 @@ public:
     static std::shared_ptr<const CompiledShader> variant(const std::shared_ptr<const CompiledShader>&, ShaderKind);
     /// All shaders of the file, in the order of its text; a class once, as the first of its kinds.
     static std::vector<std::shared_ptr<const CompiledShader>> allOfFile(const std::shared_ptr<const CompiledShader>&);
-    /// The shader of a file that a request for one of this kind and name means, where the file has several: the one of that name and
-    /// kind, else, when none has the name, the first of the kind. Null when there is none.
-    static std::shared_ptr<const CompiledShader> ofKind(const std::shared_ptr<const CompiledShader>&, ShaderKind, const std::string& name);
+    /// The shader of a file that a request for one of this kind and name means, where the file has several: the one of that name
+    /// and kind, else, when none has the name, the first of the kind. Null when there is none.
+    static std::shared_ptr<const CompiledShader> ofKind(const std::shared_ptr<const CompiledShader>&, ShaderKind,
+                                                        const std::string& name);
     /// For KernelOptions::coShaders; parameters are left to the caller.
     static CoShader coShader(const std::shared_ptr<const CompiledShader>&, const std::string& handle);
 
@@ -102,10 +104,10 @@ public:
     std::shared_ptr<const CompiledKernel> kernel(const std::shared_ptr<const CompiledShader>&, const KernelOptions&,
                                                  Diagnostics&);
 
-    /// The values of all parameters, in order: what is `given` (as the shader sees it, in "current"), else the default, which may read
-    /// parameters before it. Those without either are zero, "" or for matrices zero. `spaces` resolves named spaces.
-    std::vector<ParameterValue> parameterValues(const std::shared_ptr<const CompiledShader>&, Diagnostics&, const SpaceFn& spaces = {},
-                                                  const std::vector<ParameterValue>& given = {});
+    /// The values of all parameters, in order: what is `given` (as the shader sees it, in "current"), else the default, which may
+    /// read parameters before it. Those without either are zero, "" or for matrices zero. `spaces` resolves named spaces.
+    std::vector<ParameterValue> parameterValues(const std::shared_ptr<const CompiledShader>&, Diagnostics&,
+                                                const SpaceFn& spaces = {}, const std::vector<ParameterValue>& given = {});
 
     /// Our IR after the passes, as text; with `llvm` also the optimised LLVM IR. Empty after an error.
     std::string dump(const std::shared_ptr<const CompiledShader>&, const KernelOptions&, Diagnostics&, bool llvm = false);
@@ -117,8 +119,8 @@ public:
 private:
     std::shared_ptr<const CompiledShader> find(const std::string& name, const std::vector<std::string>& directories,
                                                Diagnostics&);
-    static std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path, const std::string& wanted,
-                                                        const std::string& text);
+    static std::shared_ptr<const CompiledShader> finish(std::unique_ptr<Program>, const std::string& path,
+                                                        const std::string& wanted, const std::string& text);
     static std::shared_ptr<const CompiledShader> describe(std::shared_ptr<const Program>, const Shader&, const std::string& path,
                                                           const std::string& source);
     struct State;

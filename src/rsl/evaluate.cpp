@@ -105,9 +105,12 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
         if (site < 0) return;
         if (*x.answer && (*x.answer)(*x.kernel, site, first, mask, lanes, in, out)) return;
         const ir::Site& s = x.kernel->sites()[size_t(site)];
-        basicService(s, mask, lanes, in, out, *x.diagnostics, [&](int lane, const std::string& text) {
-            if (x.printed && first + lane == 0) *x.printed += text;
-        }, &x.kernel->files());
+        basicService(
+            s, mask, lanes, in, out, *x.diagnostics,
+            [&](int lane, const std::string& text) {
+                if (x.printed && first + lane == 0) *x.printed += text;
+            },
+            &x.kernel->files());
         if (s.op == "random") { // one number for each call in the text, and each turn of a loop
             x.draws.resize(std::max(x.draws.size(), size_t(site + 1) * size_t(x.points)));
             for (int lane = 0; lane < lanes; lane++) {
@@ -115,7 +118,8 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
                 const int turn = x.draws[size_t(site) * size_t(x.points) + size_t(first + lane)]++;
                 float h[3];
                 hashText("random " + std::to_string(site) + " " + std::to_string(turn), h);
-                for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++) out[c * lanes + lane] = h[c];
+                for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++)
+                    out[c * lanes + lane] = h[c];
             }
         }
         if (s.op.ends_with("transform") && s.op != "ctransform") { // every space is "current": names come first, then the value

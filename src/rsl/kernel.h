@@ -21,33 +21,33 @@ struct KernelCall;
 /// bit-cast int32. Emit: in[0..3) is the weight. Returns nothing; must not throw.
 using ServiceFn = void (*)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out);
 
-/// Steps of an illuminance loop, in this order: begin gives the number of lights (the same for all lanes of the strip), then for each
-/// light: fetch writes L, Cl, Ol (nine rows of W floats) and returns the mask of the lanes the body runs for; then end, also when the loop
-/// is left early. Loops stand in each other: what is fetched and ended is of the one begun last in the strip.
+/// Steps of an illuminance loop, in this order: begin gives the number of lights (the same for all lanes of the strip), then for
+/// each light: fetch writes L, Cl, Ol (nine rows of W floats) and returns the mask of the lanes the body runs for; then end, also
+/// when the loop is left early. Loops stand in each other: what is fetched and ended is of the one begun last in the strip.
 struct KernelCall {
-    const float* const* in;   ///< per Kernel::inputs: varying: component c, jet part j at in[k] + (c * parts + j) * stride;
-                              ///< uniform (build S): in[k][c], arrays in[k][e * components + c]
-    float* const* out;        ///< per Kernel::outputs: component c at out[k] + c * stride; lanes beyond n may be written (padding)
-    int32_t n;                ///< points
-    int32_t stride;           ///< floats between rows; a multiple of 64; rows are 64-byte aligned
-    const int32_t* strings;   ///< ids of the kernel's string constants (CompiledKernel::strings), in order
-    void* user;               ///< the caller's
+    const float* const* in; ///< per Kernel::inputs: varying: component c, jet part j at in[k] + (c * parts + j) * stride;
+                            ///< uniform (build S): in[k][c], arrays in[k][e * components + c]
+    float* const* out;      ///< per Kernel::outputs: component c at out[k] + c * stride; lanes beyond n may be written (padding)
+    int32_t n;              ///< points
+    int32_t stride;         ///< floats between rows; a multiple of 64; rows are 64-byte aligned
+    const int32_t* strings; ///< ids of the kernel's string constants (CompiledKernel::strings), in order
+    void* user;             ///< the caller's
     ServiceFn service;
     int32_t (*lightBegin)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* pAxisAngle);
     uint64_t (*lightFetch)(KernelCall*, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* lClOl);
     void (*lightEnd)(KernelCall*, int32_t site, int32_t first, int32_t lanes);
-    const StopFlag* stop; ///< loops leave early when *stop != 0
+    const StopFlag* stop;     ///< loops leave early when *stop != 0
     const int32_t* pairCount; ///< not used by generated code; room for the caller's bookkeeping
-    /// Frames of suspending kernels: `bytes` of memory, 64-byte aligned, or null when there is none left (start then returns null).
-    /// The KernelCall itself, and everything it points to, must stay valid until the coroutine is destroyed.
+    /// Frames of suspending kernels: `bytes` of memory, 64-byte aligned, or null when there is none left (start then returns
+    /// null). The KernelCall itself, and everything it points to, must stay valid until the coroutine is destroyed.
     void* (*alloc)(KernelCall*, uint64_t bytes);
     void (*release)(KernelCall*, void* frame, uint64_t bytes);
-    void* memory;             ///< CompiledKernel::run's, for arrays that the stack has no room for; callers leave it alone
+    void* memory; ///< CompiledKernel::run's, for arrays that the stack has no room for; callers leave it alone
 };
 
 /// Site numbers that `service` gets for the two operations on the strip's list of affine pairs.
-/// Mark: out = one row, the number of pairs emitted so far for this strip. Rescale: in = row of the mark, three rows of factors, row of
-/// the end mark: pairs between the two marks are multiplied, lane by lane (pairs of other lanes stay as they are).
+/// Mark: out = one row, the number of pairs emitted so far for this strip. Rescale: in = row of the mark, three rows of factors,
+/// row of the end mark: pairs between the two marks are multiplied, lane by lane (pairs of other lanes stay as they are).
 inline constexpr int32_t kSiteMark = -1, kSiteRescale = -2;
 
 /// Alignment of KernelCall::memory in bytes: that of the widest strip.
@@ -62,8 +62,9 @@ struct LocalMemory {
     LocalMemory& operator=(const LocalMemory&) = delete;
 };
 
-/// Rows per component of a varying input: 1, 3 (v, du, dv) or 6 (v, du, dv, duu, duv, dvv). Inputs that are uniform by declaration,
-/// matrices, strings and arrays have no derivatives: always 1 (in build V too, where component c of element e is row e * components + c).
+/// Rows per component of a varying input: 1, 3 (v, du, dv) or 6 (v, du, dv, duu, duv, dvv). Inputs that are uniform by
+/// declaration, matrices, strings and arrays have no derivatives: always 1 (in build V too, where component c of element e is row
+/// e * components + c).
 inline int inputParts(const ir::Input& i) {
     if (i.uniform || i.array != 0 || (i.kind != ir::Kind::Float && i.kind != ir::Kind::Triple)) return 1;
     return i.order == 0 ? 1 : i.order == 1 ? 3 : 6;
@@ -100,28 +101,28 @@ struct CoShader {
 };
 
 struct KernelOptions {
-    int lanes = 16;            ///< 4, 8 or 16: the width of the machine's vectors
-    int vectors = 0;           ///< vectors in flight (K): the kernel works on lanes*K points at a time; 0 = chosen from the code
-    bool mixed = false;        ///< build V: uniform inputs come in lanes
-    int optimize = 2;          ///< 0 or 2
-    bool suspend = false;      ///< force the suspending form even where the affine one is possible (tests)
+    int lanes = 16;       ///< 4, 8 or 16: the width of the machine's vectors
+    int vectors = 0;      ///< vectors in flight (K): the kernel works on lanes*K points at a time; 0 = chosen from the code
+    bool mixed = false;   ///< build V: uniform inputs come in lanes
+    int optimize = 2;     ///< 0 or 2
+    bool suspend = false; ///< force the suspending form even where the affine one is possible (tests)
     /// User functions of more operations than this, called more than once, become functions of the machine code; smaller ones are
     /// inlined. 0: all that can be (tests). Never changes a bit of the result.
     int outline = limits::kOutlineInstructions;
-    bool differences = false;  ///< derivatives are differences over du and dv, not exact (passes/differences.h)
-    bool path = false;         ///< lobe shadeops (diffuse, specular, ...) are requests to the light transport engine
-    std::vector<std::string> outputs;  ///< requested; empty: what the shader kind gives (Ci Oi, P N, L Cl Ol, ...)
+    bool differences = false;         ///< derivatives are differences over du and dv, not exact (passes/differences.h)
+    bool path = false;                ///< lobe shadeops (diffuse, specular, ...) are requests to the light transport engine
+    std::vector<std::string> outputs; ///< requested; empty: what the shader kind gives (Ci Oi, P N, L Cl Ol, ...)
     /// The one output that affine requests are for: pairs (weight, request) are its own. A float has the sum of the three
     /// components.
     std::string light = "Ci";
-    /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code. Elements of arrays of strings
-    /// are "name[0]", "name[1]" ...; "name[]" is the length of an array that the shader leaves open.
+    /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code. Elements of
+    /// arrays of strings are "name[0]", "name[1]" ...; "name[]" is the length of an array that the shader leaves open.
     std::vector<std::pair<std::string, std::string>> stringParameters;
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
     /// Parameters whose default the kernel computes for each sample (CompiledShader::computedParameters).
     std::vector<std::string> computedParameters;
     std::vector<std::string> messages; ///< output parameters that lights ask for by surface(), sorted
-    std::vector<CoShader> coShaders; ///< in the order of their handles
+    std::vector<CoShader> coShaders;   ///< in the order of their handles
 };
 
 /// One compiled kernel. Immutable, shared between threads.
@@ -166,7 +167,7 @@ protected:
     void (*entry_)(KernelCall*) = nullptr;
     void* (*start_)(KernelCall*, int32_t) = nullptr;
     void (*resume_)(void*) = nullptr;
-    int32_t (*finished_)(void*) = nullptr; 
+    int32_t (*finished_)(void*) = nullptr;
     void (*destroy_)(void*) = nullptr;
 };
 

@@ -40,7 +40,8 @@ std::vector<Diagnostic> nonlinearUses(const Program& program, const Shader& shad
         const auto& n = kernel->facts.nonLinear[number];
         const Place& at = n.place;
         // The text of a shadeop of ours, written out: of a lobe it is named already, of others the shader is.
-        const bool ours = at.line <= 0 || at.file < 0 || size_t(at.file) >= program.files.size() || program.files[size_t(at.file)][0] == '<';
+        const bool ours =
+            at.line <= 0 || at.file < 0 || size_t(at.file) >= program.files.size() || program.files[size_t(at.file)][0] == '<';
         if (ours && number >= lobes && lobes > 0) continue;
         if (!seen.insert({n.place.file, n.place.line, n.place.column}).second) continue;
         Diagnostic d;

@@ -23,7 +23,8 @@ int rowsOf(Type t) { return componentCount(t.base) * std::max(1, t.array); }
 /// The name before the bracket; "" when the text is no signature that a plug-in can have, with the reason.
 std::string nameOf(const std::string& text, const Signature& s, std::string& why) {
     const size_t open = text.find('(');
-    if (open == std::string::npos || text.find_last_not_of(" \t;") == std::string::npos || text[text.find_last_not_of(" \t;")] != ')') {
+    if (open == std::string::npos || text.find_last_not_of(" \t;") == std::string::npos ||
+        text[text.find_last_not_of(" \t;")] != ')') {
         why = "it has no list of parameters";
         return {};
     }
@@ -79,7 +80,8 @@ std::shared_ptr<Plugin> describe(const AlpenglowRslPlugin& from, const std::stri
             return nullptr;
         }
         addresses[s.symbol] = reinterpret_cast<void*>(e.call);
-        auto op = std::find_if(plugin->functions.begin(), plugin->functions.end(), [&](const Shadeop& o) { return o.name == function; });
+        auto op = std::find_if(plugin->functions.begin(), plugin->functions.end(),
+                               [&](const Shadeop& o) { return o.name == function; });
         if (op == plugin->functions.end()) {
             Shadeop fresh;
             fresh.name = function;
@@ -92,14 +94,15 @@ std::shared_ptr<Plugin> describe(const AlpenglowRslPlugin& from, const std::stri
         if (e.doc && op->doc.empty()) op->doc = e.doc;
         op->signatures.push_back(std::move(s));
     }
-    std::sort(plugin->functions.begin(), plugin->functions.end(), [](const Shadeop& a, const Shadeop& b) { return a.name < b.name; });
+    std::sort(plugin->functions.begin(), plugin->functions.end(),
+              [](const Shadeop& a, const Shadeop& b) { return a.name < b.name; });
     return plugin;
 }
 
 } // namespace
 
-std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const std::vector<std::string>& folders, std::string& why,
-                                                  std::string& hint) {
+std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const std::vector<std::string>& folders,
+                                                  std::string& why, std::string& hint) {
     std::optional<FoundFile> found;
     const bool file = name.ends_with(".so");
     if (file) found = findFile(name, folders);
@@ -107,7 +110,8 @@ std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const
         if (!found && !file && (n[0] == 'l' || !name.empty())) found = findFile(n, folders);
     if (!found) {
         why = "plug-in \"" + name + "\" was not found";
-        hint = "it is looked for as " + (file ? name : name + ".so") + " beside the shader and in the folders of the rslplugin search path";
+        hint = "it is looked for as " + (file ? name : name + ".so") +
+               " beside the shader and in the folders of the rslplugin search path";
         return nullptr;
     }
     std::error_code none;
@@ -126,8 +130,10 @@ std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const
     if (!plugin || plugin->abi != ALPENGLOW_RSL_PLUGIN_ABI) {
         why = "plug-in \"" + name + "\" is not usable: \"" + path + "\" is " +
               (!plugin ? "no RSL plug-in"
-                       : "an RSL plug-in of version " + std::to_string(plugin->abi) + ", not " + std::to_string(ALPENGLOW_RSL_PLUGIN_ABI));
-        hint = plugin ? "compile it with the rslplugin.h of this renderer" : "plug-ins of other renderers are of other kinds: see docs/plugins.md";
+                       : "an RSL plug-in of version " + std::to_string(plugin->abi) + ", not " +
+                             std::to_string(ALPENGLOW_RSL_PLUGIN_ABI));
+        hint = plugin ? "compile it with the rslplugin.h of this renderer"
+                      : "plug-ins of other renderers are of other kinds: see docs/plugins.md";
         dlclose(library);
         return nullptr;
     }

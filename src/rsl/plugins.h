@@ -9,8 +9,9 @@ namespace alpenglow::rsl {
 /// Thread safe. A library that was loaded stays in the process: machine code may call it as long as there is any.
 class PluginLibrary {
 public:
-    /// NAME as a file, or NAME.so or libNAME.so in one of the folders, loaded. Null with the reason: nothing of that name, no plug-in,
-    /// another version of the header, a signature that says nothing or does not fit its function. The same file is loaded once.
+    /// NAME as a file, or NAME.so or libNAME.so in one of the folders, loaded. Null with the reason: nothing of that name, no
+    /// plug-in, another version of the header, a signature that says nothing or does not fit its function. The same file is
+    /// loaded once.
     std::shared_ptr<const Plugin> load(const std::string& name, const std::vector<std::string>& folders, std::string& why,
                                        std::string& hint);
     /// The function that a symbol of a loaded plug-in's signature stands for, or null.

@@ -35,9 +35,9 @@ public:
     /// more than limits::kPrintRuns of these, or no room for them, everything is written first: the order then holds within each
     /// part.
     void add(const PrintKey&, const std::string& text);
-    /// The same for what construct() prints, which runs once for a shader by the book and here in every run of its code: a text of one
-    /// place (`where`, any name for it) is kept once, before all samples, and discard() does not forget it. Beyond limits::kPrintBytes of them
-    /// no more are kept.
+    /// The same for what construct() prints, which runs once for a shader by the book and here in every run of its code: a text
+    /// of one place (`where`, any name for it) is kept once, before all samples, and discard() does not forget it. Beyond
+    /// limits::kPrintBytes of them no more are kept.
     void once(const std::string& where, const std::string& program, const std::string& text);
     /// Writes what was collected, sorted.
     void flush();

@@ -1,9 +1,9 @@
 #include "rsl/services_basic.h"
-#include "base/printable.h"
 #include "base/category.h"
 #include "base/limits.h"
-#include "rsl/front/protocol.h"
 #include "base/pattern.h"
+#include "base/printable.h"
+#include "rsl/front/protocol.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -259,7 +259,8 @@ void hashText(const std::string& s, float out[3]) {
 
 bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics,
                   const PrintFn& print, const std::vector<std::string>* files) {
-    const std::string file = files && s.place.file >= 0 && size_t(s.place.file) < files->size() ? (*files)[size_t(s.place.file)] : "";
+    const std::string file =
+        files && s.place.file >= 0 && size_t(s.place.file) < files->size() ? (*files)[size_t(s.place.file)] : "";
     auto each = [&](auto&& f) {
         for (int l = 0; l < lanes; l++)
             if (mask >> l & 1) f(l);
@@ -286,7 +287,8 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
         d.severity = Severity::Error;
         d.code = Rie::Limit;
         d.place = {file, s.place.line, s.place.column};
-        d.message = s.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off";
+        d.message =
+            s.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off";
         diagnostics.reportOnce("stringlimit:" + file + std::to_string(s.place.line), d);
     };
     if (s.op == "incategory") { // getshaders() with a category that is known now
@@ -296,8 +298,10 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             put(0, l, inCategory(wanted, s.strings[1]) ? 1 : 0);
         });
     } else if (s.op == "complaint") { // what the builder could only say about a way through the shader
-        if (mask) diagnostics.reportOnce("complaint:" + file + std::to_string(s.place.line) + ":" + std::to_string(s.place.column) + s.strings[0],
-                                         {Severity::Error, Rie::Consistency, {file, s.place.line, s.place.column}, s.strings[0], {}, {}});
+        if (mask)
+            diagnostics.reportOnce(
+                "complaint:" + file + std::to_string(s.place.line) + ":" + std::to_string(s.place.column) + s.strings[0],
+                {Severity::Error, Rie::Consistency, {file, s.place.line, s.place.column}, s.strings[0], {}, {}});
     } else if (s.op == "arraylimit") {
         Diagnostic d;
         d.severity = Severity::Error;
@@ -350,11 +354,18 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
                 return t;
             };
             const std::string from = lower(a.string()), to = lower(a.string());
-            const auto known = [](const std::string& t) { return t == "rgb" || t == "hsv" || t == "hsl" || t == "yiq" || t == "xyz"; };
+            const auto known = [](const std::string& t) {
+                return t == "rgb" || t == "hsv" || t == "hsl" || t == "yiq" || t == "xyz";
+            };
             for (const std::string& t : {from, to})
                 if (!t.empty() && !known(t))
-                    diagnostics.reportOnce("ctransform:" + t, {Severity::Warning, Rie::NoError, {file, s.place.line, s.place.column},
-                                                               "there is no colour space \"" + t + "\"; the colour stays as it is", "there are: rgb, hsv, hsl, yiq, xyz", {}});
+                    diagnostics.reportOnce("ctransform:" + t,
+                                           {Severity::Warning,
+                                            Rie::NoError,
+                                            {file, s.place.line, s.place.column},
+                                            "there is no colour space \"" + t + "\"; the colour stays as it is",
+                                            "there are: rgb, hsv, hsl, yiq, xyz",
+                                            {}});
             FormatValue v = a.value();
             float c[3] = {v.numbers[0], v.numbers[1], v.numbers[2]}, r[3];
             if (from != to && known(from) && known(to)) {

@@ -79,7 +79,8 @@ std::optional<std::string> fileWithShader(const std::string& name, const std::ve
     for (const std::string& directory : directories) {
         std::vector<std::string> files;
         std::error_code ignored;
-        for (fs::directory_iterator i(directory.empty() ? "." : directory, ignored), end; !ignored && i != end; i.increment(ignored)) {
+        for (fs::directory_iterator i(directory.empty() ? "." : directory, ignored), end; !ignored && i != end;
+             i.increment(ignored)) {
             if (i->path().extension() == ".sl") files.push_back(i->path().string());
         }
         std::sort(files.begin(), files.end());

@@ -1,4 +1,5 @@
-// Shaders that share a source file: PRMan's compiler wrote one .slo for each of them, so a scene names them as if each had its own.
+// Shaders that share a source file: PRMan's compiler wrote one .slo for each of them, so a scene names them as if each had its
+// own.
 #pragma once
 #include <optional>
 #include <string>
@@ -6,8 +7,8 @@
 
 namespace alpenglow::rsl {
 
-/// The first .sl file of the directories (in order, then by name) whose text declares a shader or class of that name. Text in comments
-/// and strings does not count. At most limits::kShaderFilesLooked files of limits::kShaderFileLooked bytes are read.
+/// The first .sl file of the directories (in order, then by name) whose text declares a shader or class of that name. Text in
+/// comments and strings does not count. At most limits::kShaderFilesLooked files of limits::kShaderFileLooked bytes are read.
 std::optional<std::string> fileWithShader(const std::string& name, const std::vector<std::string>& directories);
 
 /// Whether a text declares a shader or class of that name.

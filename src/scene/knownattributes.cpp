@@ -8,8 +8,8 @@ constexpr auto Used = Effect::Used;
 constexpr auto Asked = Effect::Asked;
 constexpr auto Ignored = Effect::Ignored;
 
-constexpr std::string_view kPrman = "PRMan", kAqsis = "Aqsis", kBmrt = "BMRT",
-                           kSeveral = "several renderers", kRadiosity = "BMRT's radiosity; the hider path is the way here",
+constexpr std::string_view kPrman = "PRMan", kAqsis = "Aqsis", kBmrt = "BMRT", kSeveral = "several renderers",
+                           kRadiosity = "BMRT's radiosity; the hider path is the way here",
                            kCache = "irradiance caches of several renderers; nothing is cached here";
 
 constexpr OptionDescription kAttributes[] = {
@@ -19,24 +19,31 @@ constexpr OptionDescription kAttributes[] = {
     {"caustic:ngather", "", "", "", Ignored, kBmrt},
     {"caustic:refractionindex", "", "", "", Ignored, kBmrt},
     {"caustic:specularcolor", "", "", "", Ignored, kBmrt},
-    {"cull:backfacing", "int", "1", "0", Asked, "Backs are never culled, as 0 asks for; Sides 1 leaves them out of what is seen."},
+    {"cull:backfacing", "int", "1", "0", Asked,
+     "Backs are never culled, as 0 asks for; Sides 1 leaves them out of what is seen."},
     {"cull:hidden", "int", "", "0", Used,
-     "hidden: whether a Procedural whose bound lies outside of the picture is neither read nor run. Unset: where Attribute \"visibility\" lets the "
-     "camera alone see it. Not with a lens, displacement, movement, solids and area lights. Nothing else that is hidden is left out."},
+     "hidden: whether a Procedural whose bound lies outside of the picture is neither read nor run. Unset: where Attribute "
+     "\"visibility\" lets the "
+     "camera alone see it. Not with a lens, displacement, movement, solids and area lights. Nothing else that is hidden is left "
+     "out."},
     {"curve:opacitysamples", "", "", "", Ignored, kPrman},
     {"derivatives:centered", "int", "1", "0", Asked, "shade:derivatives chooses how derivatives are taken here."},
     {"derivatives:extrapolate", "", "", "", Ignored, kPrman},
     {"derivatives:smooth", "int", "1", "0", Asked, "shade:derivatives chooses how derivatives are taken here."},
-    {"dice:binary", "int", "", "", Ignored, "several renderers; edges of diced shapes are always cut into halves, so that shapes with the same edge meet"},
+    {"dice:binary", "int", "", "", Ignored,
+     "several renderers; edges of diced shapes are always cut into halves, so that shapes with the same edge meet"},
     {"dice:hair", "int", "0", "1", Asked, "Curves are not diced."},
     {"dice:maxlength", "", "", "", Ignored, kPrman},
     {"dice:minlength", "float", "", "", Ignored, kSeveral},
-    {"dice:rasterorient", "int", "1", "0", Asked, "Shapes are diced by the length of their edges as if they faced the eye, which is what 0 asks for: mirrors show them from elsewhere."},
+    {"dice:rasterorient", "int", "1", "0", Asked,
+     "Shapes are diced by the length of their edges as if they faced the eye, which is what 0 asks for: mirrors show them from "
+     "elsewhere."},
     {"dice:referencecamera", "string", "", "", Ignored, kSeveral},
     {"dice:roundcurve", "int", "0", "1", Used, "Curves without \"N\" are tubes instead of ribbons that face the ray (PRMan)."},
     {"dice:strategy", "string", "", "", Ignored, kSeveral},
     {"displacementbound:coordinatesystem", "string", "\"object\"", "\"shader\"", Used,
-     "The space of displacementbound:sphere, by any name; unknown ones are camera space. The distance is measured in it, stretched as it is."},
+     "The space of displacementbound:sphere, by any name; unknown ones are camera space. The distance is measured in it, "
+     "stretched as it is."},
     {"displacementbound:offscreen", "", "", "", Ignored, kPrman},
     {"displacementbound:sphere", "float", "0", "0.1", Used,
      "The farthest that displacement moves a point. More than that is drawn as well, with a warning that names the distance."},
@@ -64,9 +71,11 @@ constexpr OptionDescription kAttributes[] = {
     {"irradiance:nsamples", "int", "64", "256", Asked, "Shaders ask it for a number of samples."},
     {"irradiance:shadingrate", "float", "1", "4", Asked, "Irradiance is found at every shaded point."},
     {"light:emitphotons", "int", "0", "1", Used,
-     "1: the light emits photons; 0: it does not. Where no light says 1, all do for Hider \"photon\" and for the caustics of path, "
+     "1: the light emits photons; 0: it does not. Where no light says 1, all do for Hider \"photon\" and for the caustics of "
+     "path, "
      "and no photon map is made that has no file."},
-    {"light:group", "string", "\"\"", "\"key\"", Used, "The label of a light in light path expressions, beside its handle (docs/lightpaths.md)."},
+    {"light:group", "string", "\"\"", "\"key\"", Used,
+     "The label of a light in light path expressions, beside its handle (docs/lightpaths.md)."},
     {"light:nsamples", "", "1", "16", Used, "BMRT's name of light:samples."},
     {"light:samples", "int", "1", "16", Used, "Samples of an area light in an illuminance loop, 1 to 1024."},
     {"light:samplingstrategy", "string", "\"illuminance\"", "\"trace\"", Used,
@@ -79,9 +88,11 @@ constexpr OptionDescription kAttributes[] = {
      "3Delight had it."},
     {"photon:causticmap", "string", "\"\"", "\"caustics\"", Used,
      "The photon map of light that comes to the surface by way of mirrors and glass: what caustic() looks up."},
-    {"photon:estimator", "int", "50", "100", Used, "Photons of one lookup by caustic() or by rays of indirectdiffuse(), 1 to 4096."},
+    {"photon:estimator", "int", "50", "100", Used,
+     "Photons of one lookup by caustic() or by rays of indirectdiffuse(), 1 to 4096."},
     {"photon:globalmap", "string", "\"\"", "\"global\"", Used,
-     "The photon map of all light on the surface: what rays of indirectdiffuse() that meet it take instead of running its shader."},
+     "The photon map of all light on the surface: what rays of indirectdiffuse() that meet it take instead of running its "
+     "shader."},
     {"photon:shadingmodel", "string", "the shader's lobes", "\"glass\"", Used,
      "How the surface scatters photons: matte, plastic, glass, dielectric, water, chrome, conductor or transparent. Not for the "
      "caustics of path."},
@@ -120,12 +131,14 @@ constexpr OptionDescription kAttributes[] = {
     {"shade:volumeintersectionpriority", "", "", "", Ignored, kPrman},
     {"shade:volumeintersectionstrategy", "", "", "", Ignored, kPrman},
     {"shadow:bias", "float", "that of the option", "0.05", Used, "shadow(): the option of this name, for points of a primitive."},
-    {"shadow:bias0", "float", "bias", "0.05", Used, "shadow(): comparisons with a depth map spread their bias from bias0 to bias1."},
+    {"shadow:bias0", "float", "bias", "0.05", Used,
+     "shadow(): comparisons with a depth map spread their bias from bias0 to bias1."},
     {"shadow:bias1", "float", "bias", "0.1", Used, "See bias0."},
     {"sides:backfacetolerance", "", "", "", Ignored, kPrman},
     {"sides:doubleshaded", "int", "0", "1", Asked, "Each side is shaded where a ray meets it."},
     {"stitch:enable", "int", "1", "0", Used,
-     "Displaced shapes with the same edge meet there: its points go to the middle of where the shapes take them. 0: each goes its own way."},
+     "Displaced shapes with the same edge meet there: its points go to the middle of where the shapes take them. 0: each goes "
+     "its own way."},
     {"stitch:newgroup", "", "", "", Ignored, kPrman},
     {"stitch:traceenable", "", "", "", Ignored, kPrman},
     {"stochastic:pointfalloff", "", "", "", Ignored, kPrman},
@@ -133,7 +146,8 @@ constexpr OptionDescription kAttributes[] = {
     {"subsurface:absorption", "color", "", "[0.0021 0.0041 0.0071]", Used, "Of subsurface(): coefficient of absorption, 1/mm."},
     {"subsurface:groupname", "string", "\"\"", "\"skin\"", Used,
      "Of subsurface(): primitives of one group bound one inside. Without it those that have the same attributes."},
-    {"subsurface:meanfreepath", "color", "1", "[1.2 0.8 0.5]", Used, "Of subsurface(), with reflectance: the mean way between two events, mm."},
+    {"subsurface:meanfreepath", "color", "1", "[1.2 0.8 0.5]", Used,
+     "Of subsurface(), with reflectance: the mean way between two events, mm."},
     {"subsurface:reflectance", "color", "", "[0.8 0.6 0.5]", Used,
      "Of subsurface(): what a half space gives back of diffuse light; with meanfreepath, in place of the coefficients."},
     {"subsurface:refractionindex", "float", "1.3", "1.5", Used,
@@ -152,14 +166,16 @@ constexpr OptionDescription kAttributes[] = {
      "Diffuse bounces after which these surfaces send no more diffuse rays."},
     {"trace:maxspeculardepth", "int", "32 under path, else 2", "5", Used,
      "Specular bounces after which these surfaces send no more specular rays."},
-    {"trace:samplemotion", "int", "0", "1", Asked, "hidden: on any surface, shading and rays are those of the time of the sample, not of when the shutter opens."},
+    {"trace:samplemotion", "int", "0", "1", Asked,
+     "hidden: on any surface, shading and rays are those of the time of the sample, not of when the shutter opens."},
     {"trace:samplepattern", "", "", "", Ignored, kPrman},
     {"trimcurve:sense", "string", "\"inside\"", "\"outside\"", Used, "Which side of a TrimCurve is cut away."},
     {"visibility:camera", "int", "1", "0", Used, "Seen by the camera."},
     {"visibility:diffuse", "int", "as visibility:trace", "1", Used, "Seen by diffuse rays."},
     {"visibility:indirect", "", "", "", Ignored, kPrman},
     {"visibility:midpoint", "", "", "", Ignored, kPrman},
-    {"visibility:photon", "", "as diffuse or specular", "1", Used, "Whether photons meet the primitive. Not for the caustics of path."},
+    {"visibility:photon", "", "as diffuse or specular", "1", Used,
+     "Whether photons meet the primitive. Not for the caustics of path."},
     {"visibility:specular", "int", "as visibility:trace", "1", Used, "Seen by specular rays."},
     {"visibility:subset", "string", "", "", Ignored, kSeveral},
     {"visibility:trace", "int", "1 under path and where a scene says no visibility at all, else 0", "1", Used,

@@ -32,7 +32,8 @@ constexpr OptionDescription kOptions[] = {
     {"licenseserver:holdlicense", "", "", "", Ignored, kDelight},
     {"limits:brickmemory", "int", "", "", Ignored, kMemory},
     {"limits:bucketsize", "int[2]", "", "", Ignored, kSeveral},
-    {"limits:deepshadowerror", "float", "0.01", "0.002", Used, "Deep shadow maps: how far, as a part of the light, a pixel may lie from the mean of its samples. 0: nowhere."},
+    {"limits:deepshadowerror", "float", "0.01", "0.002", Used,
+     "Deep shadow maps: how far, as a part of the light, a pixel may lie from the mean of its samples. 0: nowhere."},
     {"limits:derivmemory", "", "", "", Ignored, kBmrt},
     {"limits:extremedisplacement", "", "", "", Ignored, kPrman},
     {"limits:eyesplits", "int", "", "", Ignored, "several renderers; nothing is split at the eye here"},
@@ -88,7 +89,9 @@ constexpr OptionDescription kOptions[] = {
     {"searchpath:display", "string", "", "", Ignored, "several renderers; there are no display plug-ins here"},
     {"searchpath:dsolibs", "", "", "", Ignored, kAqsis},
     {"searchpath:plugin", "", "", "", Ignored, kAqsis},
-    {"searchpath:procedural", "string", "\"\"", "\"tools\"", Used, "Folders for programs and libraries of Procedural \"RunProgram\" and \"DynamicLoad\". After them: --searchpath, the scene's folder."},
+    {"searchpath:procedural", "string", "\"\"", "\"tools\"", Used,
+     "Folders for programs and libraries of Procedural \"RunProgram\" and \"DynamicLoad\". After them: --searchpath, the scene's "
+     "folder."},
     {"searchpath:resource", "string", "", "", Ignored, kSeveral},
     {"searchpath:rixplugin", "", "", "", Ignored, kPrman},
     {"searchpath:rslplugin", "string", "\"\"", "\"plugins:@\"", Used,
@@ -99,8 +102,10 @@ constexpr OptionDescription kOptions[] = {
     {"searchpath:texture", "string", "\"\"", "\"maps:@\"", Used, "Folders for texture, environment and shadow maps."},
     {"shade:specular", "string", "\"prman\"", "\"rispec\"", Used,
      "The exponent of specular(): \"prman\" 8/roughness, \"rispec\" 1/roughness, as RISpec prints it."},
-    {"shadow:bias", "float", "0.225", "0.05", Used, "shadow(): how far before the surfaces of a depth map a point is lit, in world units."},
-    {"shadow:bias0", "float", "bias", "0.05", Used, "shadow(): comparisons with a depth map spread their bias from bias0 to bias1."},
+    {"shadow:bias", "float", "0.225", "0.05", Used,
+     "shadow(): how far before the surfaces of a depth map a point is lit, in world units."},
+    {"shadow:bias0", "float", "bias", "0.05", Used,
+     "shadow(): comparisons with a depth map spread their bias from bias0 to bias1."},
     {"shadow:bias1", "float", "bias", "0.1", Used, "See bias0."},
     {"shadow:sample", "int", "16", "64", Used, "shadow(): comparisons of a lookup in a depth map."},
     {"shutter:clampmotion", "", "", "", Ignored, kPrman},
@@ -135,39 +140,50 @@ constexpr OptionDescription kOptions[] = {
 
 constexpr OptionDescription kHiderParameters[] = {
     {"aaSamples", "int", "1", "3", Used,
-     "raytrace: anti-aliasing by colours. A ray goes through the middle of each pixel; pixels that differ from one beside, above or below get "
-     "this many by this many rays: 3, 5, 7 or 9; 1: off. A pixel is the mean of its own rays; PixelSamples and filters have no say."},
+     "raytrace: anti-aliasing by colours. A ray goes through the middle of each pixel; pixels that differ from one beside, above "
+     "or below get "
+     "this many by this many rays: 3, 5, 7 or 9; 1: off. A pixel is the mean of its own rays; PixelSamples and filters have no "
+     "say."},
     {"aaThreshold", "float", "0.3", "0.1", Used,
      "raytrace, with aaSamples: sum of the differences of red, green and blue (each from 0 to 1) above which pixels differ."},
     {"adaptive", "int", "1", "0", Used,
-     "path: 1: under --noise pixels get samples by the noise about them, without bias (docs/noise.md); 0: all the same number. Parts, and "
+     "path: 1: under --noise pixels get samples by the noise about them, without bias (docs/noise.md); 0: all the same number. "
+     "Parts, and "
      "pictures with caustics, always have the latter."},
     {"aperture", "float[4]", "[0 0 0 0]", "[6 15 0.2 0]", Used,
-     "The opening of the lens of DepthOfField: sides (0: a circle), degrees by which it is turned, roundness of the sides (0 to 1), and "
+     "The opening of the lens of DepthOfField: sides (0: a circle), degrees by which it is turned, roundness of the sides (0 to "
+     "1), and "
      "whether light grows toward the rim (1) or the middle (-1)."},
     {"caustics", "int", "0", "1", Used,
-     "path: 1: light that reaches surfaces by way of mirrors, glass and narrow highlights is brought by photons, new ones for each sample; their bias "
+     "path: 1: light that reaches surfaces by way of mirrors, glass and narrow highlights is brought by photons, new ones for "
+     "each sample; their bias "
      "vanishes with the number of samples."},
     {"causticwidth", "float", "0.1", "0", Used,
-     "path with caustics: photons also bring what comes by way of narrow highlights and rough glass, whose lobes spread by less than this "
+     "path with caustics: photons also bring what comes by way of narrow highlights and rough glass, whose lobes spread by less "
+     "than this "
      "half angle in radians (of trace()'s distributions about their roughness), 0 to 0.5. 0: mirrors and clear glass alone."},
     {"composite", "", "", "", Ignored, kDelight},
     {"depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
      "hidden and raytrace: the depth of a pixel: min, max, average or midpoint."},
     {"emit", "int", "200000", "1000000", Used,
-     "photon: photons that are emitted. path with caustics: those of one sample of all pixels; one for four pixels, if it is not said."},
+     "photon: photons that are emitted. path with caustics: those of one sample of all pixels; one for four pixels, if it is not "
+     "said."},
     {"extrememotiondof", "", "", "", Ignored, kPrman},
-    {"focalDist", "float", "that of DepthOfField", "5", Used, "raytrace: distance along the axis that a lens by lensDiameter has in focus."},
+    {"focalDist", "float", "that of DepthOfField", "5", Used,
+     "raytrace: distance along the axis that a lens by lensDiameter has in focus."},
     {"jitter", "int", "1", "0", Used,
      "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "
      "pattern."},
     {"lensDiameter", "float", "that of DepthOfField", "0.2", Used,
-     "raytrace: diameter of the lens in camera units, as SLProject says it, with focalDist; 0: a pinhole. It takes the place of DepthOfField."},
+     "raytrace: diameter of the lens in camera units, as SLProject says it, with focalDist; 0: a pinhole. It takes the place of "
+     "DepthOfField."},
     {"lensSamples", "int[2]", "", "[7 7]", Used,
-     "raytrace: so many by so many rays (1 to 256) go through the middle of each pixel, from places spread evenly over the lens; 1 by 1: a "
+     "raytrace: so many by so many rays (1 to 256) go through the middle of each pixel, from places spread evenly over the lens; "
+     "1 by 1: a "
      "pinhole. A pixel is the mean of its own rays; PixelSamples, --spp and filters have no say."},
     {"mpcache", "", "", "", Ignored, kPrman},
-    {"samplemotion", "int", "0", "1", Used, "hidden: surfaces are shaded at the time of each sample, not when the shutter opens."},
+    {"samplemotion", "int", "0", "1", Used,
+     "hidden: surfaces are shaded at the time of each sample, not when the shutter opens."},
     {"samplepattern", "", "", "", Ignored, kSeveral},
     {"sigma", "", "", "", Ignored, kPrman},
     {"sigmablur", "", "", "", Ignored, kPrman},
@@ -209,8 +225,9 @@ constexpr HiderDescription kHiders[] = {
     {"path", "Path-traced global illumination: the same scene and the same shaders, diffuse() specular() and phong() gather the "
              "indirect light "
              "of their lobe, point and distant lights cast traced shadows, noise is measured. docs/light.md has the rules."},
-    {"photon", "No picture: photons are emitted and the photon maps written that surfaces (Attribute \"photon\") and shaders name. "
-               "docs/light.md has the rules."},
+    {"photon",
+     "No picture: photons are emitted and the photon maps written that surfaces (Attribute \"photon\") and shaders name. "
+     "docs/light.md has the rules."},
     {"raytrace", "The same as hidden, with the name that ray-traced scenes give."},
 };
 

@@ -9,13 +9,16 @@ namespace alpenglow::scene {
 
 namespace {
 
-struct Kind { PathEvent event; PathScattering scattering; };
+struct Kind {
+    PathEvent event;
+    PathScattering scattering;
+};
 using enum PathEvent;
 using enum PathScattering;
 /// What there is.
-constexpr Kind kKinds[] = {{Object, None},           {Camera, None},           {Reflection, Diffuse},    {Reflection, Glossy},
-                           {Reflection, Singular},   {Transmission, Diffuse},  {Transmission, Glossy},   {Transmission, Singular},
-                           {Transmission, Straight}, {Volume, None},           {Light, None},            {Sky, None}};
+constexpr Kind kKinds[] = {{Object, None},           {Camera, None},          {Reflection, Diffuse},  {Reflection, Glossy},
+                           {Reflection, Singular},   {Transmission, Diffuse}, {Transmission, Glossy}, {Transmission, Singular},
+                           {Transmission, Straight}, {Volume, None},          {Light, None},          {Sky, None}};
 constexpr size_t kKindCount = std::size(kKinds);
 constexpr size_t kStraightKind = 8;
 static_assert(kKinds[kStraightKind].scattering == Straight);
@@ -37,8 +40,8 @@ std::string trimmed(const std::string& s) {
     return b == std::string::npos ? "" : s.substr(b, e - b + 1);
 }
 
-/// A state while the automaton is made: the positions at which a path may have arrived, with the beginnings of the expressions behind
-/// them.
+/// A state while the automaton is made: the positions at which a path may have arrived, with the beginnings of the expressions
+/// behind them.
 using Places = std::vector<uint64_t>;
 
 struct Hash {
@@ -243,8 +246,7 @@ bool LightPaths::makeParts(std::span<const uint64_t> accepts, std::string& why) 
     const size_t sets = labelSets(labels_.size());
     for (size_t s = kDead; s < accepts.size(); ++s)
         for (size_t kind = 0; kind < kKindCount; ++kind)
-            for (size_t l = 0; l < sets && (kKinds[kind].event >= Light); ++l)
-                ends[next(State(s), int(kind * sets + l))] = 1;
+            for (size_t l = 0; l < sets && (kKinds[kind].event >= Light); ++l) ends[next(State(s), int(kind * sets + l))] = 1;
     partOf_.assign(accepts.size(), 0);
     std::map<uint64_t, int> known{{0, 0}};
     for (size_t s = kDead; s < accepts.size(); ++s) {

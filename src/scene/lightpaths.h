@@ -33,7 +33,7 @@ std::optional<std::string> lightPathOfWord(std::string_view word);
 class LightPaths {
 public:
     /// The most of what all expressions of a frame may need together. More is an error.
-    static constexpr size_t kMostPositions = 1024; ///< letters and brackets, repetitions written out
+    static constexpr size_t kMostPositions = 1024;        ///< letters and brackets, repetitions written out
     static constexpr size_t kMostTable = size_t(1) << 18; ///< states times kinds of events
     static constexpr size_t kMostStates = 4096;
     static constexpr size_t kMostLabels = 32;
@@ -47,7 +47,10 @@ public:
     static constexpr State kDead = 1; ///< no expression can match any more
 
     /// "other": all that no expression of the frame matches.
-    struct Source { std::string expression; SourcePlace place; };
+    struct Source {
+        std::string expression;
+        SourcePlace place;
+    };
     /// Expressions that are wrong, or too large together, are reported, and their outputs have no parts.
     LightPaths(std::span<const Source>, Diagnostics&);
 
@@ -58,9 +61,7 @@ public:
     int symbol(PathEvent, PathScattering = PathScattering::None, int labelA = -1, int labelB = -1) const;
     /// Behind the camera.
     State begin() const { return begin_; }
-    State next(State s, int symbol) const {
-        return s == kNone ? kNone : table_[size_t(s) * classes_ + classOf_[size_t(symbol)]];
-    }
+    State next(State s, int symbol) const { return s == kNone ? kNone : table_[size_t(s) * classes_ + classOf_[size_t(symbol)]]; }
     /// Whether some expression names s: then a shadow ray has to know how many surfaces it went straight through.
     bool countsStraight() const { return countsStraight_; }
 

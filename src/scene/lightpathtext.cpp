@@ -11,15 +11,23 @@ namespace {
 constexpr uint8_t bit(PathEvent e) { return uint8_t(1u << unsigned(e)); }
 constexpr uint8_t bit(PathScattering s) { return uint8_t(1u << unsigned(s)); }
 
-struct Letter { char c; uint8_t bits; };
-constexpr Letter kEvents[] = {{'C', bit(PathEvent::Camera)}, {'R', bit(PathEvent::Reflection)}, {'T', bit(PathEvent::Transmission)},
-                              {'V', bit(PathEvent::Volume)}, {'L', uint8_t(bit(PathEvent::Light) | bit(PathEvent::Sky))},
-                              {'B', bit(PathEvent::Sky)},    {'O', bit(PathEvent::Object)}};
+struct Letter {
+    char c;
+    uint8_t bits;
+};
+constexpr Letter kEvents[] = {{'C', bit(PathEvent::Camera)},
+                              {'R', bit(PathEvent::Reflection)},
+                              {'T', bit(PathEvent::Transmission)},
+                              {'V', bit(PathEvent::Volume)},
+                              {'L', uint8_t(bit(PathEvent::Light) | bit(PathEvent::Sky))},
+                              {'B', bit(PathEvent::Sky)},
+                              {'O', bit(PathEvent::Object)}};
 constexpr Letter kScatterings[] = {{'D', bit(PathScattering::Diffuse)},
                                    {'G', bit(PathScattering::Glossy)},
                                    {'S', bit(PathScattering::Singular)},
                                    {'s', bit(PathScattering::Straight)}};
-constexpr char kEventLetters[] = "events are C R T V L B O, and . for any", kScatteringLetters[] = "scatterings are D G S s, and . for any";
+constexpr char kEventLetters[] = "events are C R T V L B O, and . for any",
+               kScatteringLetters[] = "scatterings are D G S s, and . for any";
 
 template <size_t N> uint8_t bitsOf(const Letter (&letters)[N], char c) {
     for (const Letter& l : letters)
@@ -33,7 +41,10 @@ struct Fragment {
     bool empty = false;
 };
 
-struct Wrong { size_t at; std::string what, hint; };
+struct Wrong {
+    size_t at;
+    std::string what, hint;
+};
 
 class Reader {
 public:
@@ -57,7 +68,9 @@ private:
         ++at_;
         return true;
     }
-    [[noreturn]] void fail(const std::string& what, const std::string& hint) { throw Wrong{std::min(at_, text_.size()), what, hint}; }
+    [[noreturn]] void fail(const std::string& what, const std::string& hint) {
+        throw Wrong{std::min(at_, text_.size()), what, hint};
+    }
     void expect(char c, const char* what) {
         if (!take(c)) fail(std::string("\"") + c + "\" is missing " + what, "");
     }
@@ -121,7 +134,8 @@ private:
             if (!open) most = number();
         }
         expect('}', "behind a repetition");
-        if (most < least || (most == 0 && !open)) fail("a repetition has to be {n}, {n,} or {n,m} with n up to m, and m not 0", "");
+        if (most < least || (most == 0 && !open))
+            fail("a repetition has to be {n}, {n,} or {n,m} with n up to m, and m not 0", "");
         const size_t behind = at_;
         const int copies = std::max(open ? std::max(least, 1) : most, 1);
         Fragment all;
@@ -162,7 +176,9 @@ private:
     }
 
     [[noreturn]] void tooLong() {
-        fail("all expressions of a frame together have more than " + std::to_string(LightPaths::kMostPositions) + " events, repetitions written out", "");
+        fail("all expressions of a frame together have more than " + std::to_string(LightPaths::kMostPositions) +
+                 " events, repetitions written out",
+             "");
     }
 
     Fragment position(PathPosition p) {
@@ -198,7 +214,8 @@ private:
         const char c = peek();
         if (take('<')) {
             if (peek() != '>') e.events = mask(kEvents, "event", kEventLetters);
-            if (peek() != '>' && peek() != '\'' && peek() != '"') e.scatterings = mask(kScatterings, "scattering", kScatteringLetters);
+            if (peek() != '>' && peek() != '\'' && peek() != '"')
+                e.scatterings = mask(kScatterings, "scattering", kScatteringLetters);
             if (peek() != '>') labels(e);
             expect('>', "behind what began with \"<\"");
             return e;
@@ -276,8 +293,9 @@ private:
 bool PathEvents::has(PathEvent e, PathScattering s, std::span<const std::string> carried) const {
     if (!(events & bit(e)) || !(scatterings & bit(s))) return false;
     if (labels.empty()) return true;
-    const bool one = std::any_of(carried.begin(), carried.end(),
-                                 [&](const std::string& c) { return std::find(labels.begin(), labels.end(), c) != labels.end(); });
+    const bool one = std::any_of(carried.begin(), carried.end(), [&](const std::string& c) {
+        return std::find(labels.begin(), labels.end(), c) != labels.end();
+    });
     return one != notLabels;
 }
 
@@ -289,9 +307,11 @@ std::optional<LightPathText> readLightPath(const std::string& text, size_t room,
     std::string shown = text.substr(0, 60) + (text.size() > 60 ? "..." : "");
     try {
         if (text.size() > LightPaths::kMostLength)
-            throw Wrong{LightPaths::kMostLength, "it has more than " + std::to_string(LightPaths::kMostLength) + " characters", ""};
+            throw Wrong{LightPaths::kMostLength, "it has more than " + std::to_string(LightPaths::kMostLength) + " characters",
+                        ""};
         if (const size_t flag = text.find(';'); flag != std::string::npos)
-            throw Wrong{0, "\"" + text.substr(0, flag) + ";\" is not available", "unoccluded, holdout and other flags are not; expressions show light as it is in Ci"};
+            throw Wrong{0, "\"" + text.substr(0, flag) + ";\" is not available",
+                        "unoccluded, holdout and other flags are not; expressions show light as it is in Ci"};
         return Reader(text, room).read();
     } catch (const Wrong& w) {
         d.report(Severity::Error, Rie::Syntax, place,

@@ -24,10 +24,10 @@ using PathPositions = std::bitset<LightPaths::kMostPositions>;
 
 struct LightPathText {
     std::vector<PathPosition> positions;
-    PathPositions first, last;          ///< where a path may begin and end
-    std::vector<PathPositions> follow;  ///< by position
-    bool empty = false;                 ///< the path without events is one
-    bool straight = false;              ///< it names s; else straight passages are as if they were not there
+    PathPositions first, last;         ///< where a path may begin and end
+    std::vector<PathPositions> follow; ///< by position
+    bool empty = false;                ///< the path without events is one
+    bool straight = false;             ///< it names s; else straight passages are as if they were not there
 };
 
 /// Reads an expression. `room`: positions that it may have. Nothing: it is wrong, which was reported.

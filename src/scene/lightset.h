@@ -1,5 +1,5 @@
-// Which lights are on for a primitive. Scenes with many lights name nearly all of them nearly everywhere, and every area light has
-// attributes of its own: as runs of indices such sets take the room of their gaps, not that of their lights.
+// Which lights are on for a primitive. Scenes with many lights name nearly all of them nearly everywhere, and every area light
+// has attributes of its own: as runs of indices such sets take the room of their gaps, not that of their lights.
 #pragma once
 #include <algorithm>
 #include <initializer_list>

@@ -30,7 +30,8 @@ Transform compose(const Transform& a, const Transform& b) {
 
 Shutter::Shutter(const Options& o) {
     double offset = 0;
-    if (auto i = o.values.find("shutter:offset"); i != o.values.end() && !i->second.numbers.empty()) offset = i->second.numbers[0];
+    if (auto i = o.values.find("shutter:offset"); i != o.values.end() && !i->second.numbers.empty())
+        offset = i->second.numbers[0];
     open = o.shutterOpen + offset;
     close = std::max(open, o.shutterClose + offset);
 }
@@ -71,7 +72,8 @@ PrimitiveRef primitiveAt(const PrimitiveRef& p, double time) {
     };
     blend(out->numbers, b->numbers);
     for (Param& x : out->params)
-        if (const Param* y = find(b->params, x.name); y && x.type != Type::Integer && x.type != Type::String) blend(x.numbers, y->numbers);
+        if (const Param* y = find(b->params, x.name); y && x.type != Type::Integer && x.type != Type::String)
+            blend(x.numbers, y->numbers);
     return out;
 }
 

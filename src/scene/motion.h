@@ -19,12 +19,12 @@ struct Shutter {
     Shutter() = default;
 };
 
-/// What of a moving transform falls into the shutter, with times of 0 (open) to 1 (close): keys at both ends and those between. One
-/// key where nothing moves then.
+/// What of a moving transform falls into the shutter, with times of 0 (open) to 1 (close): keys at both ends and those between.
+/// One key where nothing moves then.
 Transform overShutter(const Transform&, const Shutter&);
 
-/// A moving primitive at a time: its numbers and the numbers of its variables, linear between the keys; the first key's otherwise. A
-/// key's own, not a copy, where the time is that of a key; the primitive itself where it does not move.
+/// A moving primitive at a time: its numbers and the numbers of its variables, linear between the keys; the first key's
+/// otherwise. A key's own, not a copy, where the time is that of a key; the primitive itself where it does not move.
 PrimitiveRef primitiveAt(const PrimitiveRef&, double time);
 /// The times of 0 to 1 within the shutter at which a primitive has keys, 0 and 1 among them; only 0 where it does not move then.
 std::vector<float> keysOverShutter(const Primitive&, const Shutter&);

@@ -4,10 +4,17 @@ namespace alpenglow::scene {
 
 int componentCount(Type t) {
     switch (t) {
-    case Type::Color: case Type::Point: case Type::Vector: case Type::Normal: return 3;
-    case Type::HPoint: return 4;
-    case Type::Matrix: return 16;
-    default: return 1;
+    case Type::Color:
+    case Type::Point:
+    case Type::Vector:
+    case Type::Normal:
+        return 3;
+    case Type::HPoint:
+        return 4;
+    case Type::Matrix:
+        return 16;
+    default:
+        return 1;
     }
 }
 

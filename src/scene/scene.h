@@ -23,10 +23,10 @@ struct Param {
     std::string name;
     Class cls = Class::Uniform;
     Type type = Type::Float;
-    int arrayLength = 0;               ///< 0 = not an array
-    bool declared = true;              ///< false: type guessed from the values; a shader's own declaration decides (wild.md)
-    std::vector<float> numbers;        ///< all numeric types, flattened (integers too)
-    std::vector<std::string> strings;  ///< Type::String
+    int arrayLength = 0;              ///< 0 = not an array
+    bool declared = true;             ///< false: type guessed from the values; a shader's own declaration decides (wild.md)
+    std::vector<float> numbers;       ///< all numeric types, flattened (integers too)
+    std::vector<std::string> strings; ///< Type::String
     SourcePlace place;
 };
 using ParamList = std::vector<Param>;
@@ -48,7 +48,7 @@ using Transform = Moving<Matrix>;
 struct ShaderCall {
     std::string name;
     ParamList params;
-    Transform toWorld;   ///< "shader" space to world: the CTM at the call
+    Transform toWorld; ///< "shader" space to world: the CTM at the call
     SourcePlace place;
 };
 using ShaderRef = std::shared_ptr<const ShaderCall>;
@@ -64,20 +64,20 @@ struct Basis {
 struct Attributes {
     Color color{1}, opacity{1};
     ShaderRef surface, displacement, atmosphere, interior, exterior; ///< null = none (surface: the default surface)
-    LightSet lights;                   ///< indices into Frame::lights that are on, in order of declaration
-    int areaLight = -1;                ///< index into Frame::lights when primitives made now are its geometry
+    LightSet lights;    ///< indices into Frame::lights that are on, in order of declaration
+    int areaLight = -1; ///< index into Frame::lights when primitives made now are its geometry
     float shadingRate = 1;
-    bool smoothShading = false;        ///< ShadingInterpolation "smooth"
+    bool smoothShading = false; ///< ShadingInterpolation "smooth"
     bool matte = false;
     int sides = 2;
-    bool inside = false;               ///< Orientation flag relative to the CTM's handedness ("inside", ReverseOrientation)
-    bool absoluteHandedness = false;   ///< Orientation "lh"/"rh" was given: then `rightHanded` decides, whatever the CTM
+    bool inside = false;             ///< Orientation flag relative to the CTM's handedness ("inside", ReverseOrientation)
+    bool absoluteHandedness = false; ///< Orientation "lh"/"rh" was given: then `rightHanded` decides, whatever the CTM
     bool rightHanded = false;
     float textureCoordinates[8] = {0, 0, 1, 0, 0, 1, 1, 1};
     Basis ubasis, vbasis;
     std::optional<std::vector<float>> bound, detail; ///< six numbers, object space
     float detailRange[4] = {0, 0, 1e38f, 1e38f};
-    Matrix detailSpace;                ///< of `detail`: object space at the request, to world (in an Object: to its own space)
+    Matrix detailSpace; ///< of `detail`: object space at the request, to world (in an Object: to its own space)
     /// Attribute "class" "name" value, keyed "class:name" (also "user:x");
     /// GeometricApproximation as "GeometricApproximation:motionfactor".
     std::map<std::string, Param> values;
@@ -123,35 +123,49 @@ struct Primitive {
     std::vector<std::string> strings;
     ParamList params;
     AttributesRef attributes;
-    Transform toWorld;                 ///< object to world; for primitives inside an Object: object to the object's own space
+    Transform toWorld; ///< object to world; for primitives inside an Object: object to the object's own space
     std::vector<float> motionTimes;
     std::vector<std::shared_ptr<Primitive>> motionKeys;
     SourcePlace place;
     /// Inside an Object only: attributes were set between ObjectBegin and here, so they hold in every instance.
     /// Otherwise an instance's own attributes count (ri.md 9.2). Never null either way.
     bool attributesInside = false;
-    AttributesRef attributesBefore;    ///< with attributesInside: those at ObjectBegin. What differs from them was set inside
+    AttributesRef attributesBefore; ///< with attributesInside: those at ObjectBegin. What differs from them was set inside
 };
 using PrimitiveRef = std::shared_ptr<const Primitive>;
 
 struct Light {
-    ShaderRef shader;                  ///< the light shader call
+    ShaderRef shader; ///< the light shader call
     std::string handle;
     /// AreaLightSource: its geometry is the primitives with attributes->areaLight == this light's index.
     bool area = false;
-    AttributesRef attributes;          ///< at the request (light samples, strategy, visibility)
+    AttributesRef attributes; ///< at the request (light samples, strategy, visibility)
 };
 
 /// ObjectBegin..ObjectEnd, or what an instance shares.
-struct Object { std::string handle; std::vector<PrimitiveRef> primitives; };
-struct Instance { int object = -1; Transform toWorld; AttributesRef attributes; SourcePlace place; };
+struct Object {
+    std::string handle;
+    std::vector<PrimitiveRef> primitives;
+};
+struct Instance {
+    int object = -1;
+    Transform toWorld;
+    AttributesRef attributes;
+    SourcePlace place;
+};
 
-struct PixelFilter { std::string name = "gaussian"; float xwidth = 2, ywidth = 2; };
-struct Quantize { float one = 0, min = 0, max = 0, dither = 0; bool set = false; };
+struct PixelFilter {
+    std::string name = "gaussian";
+    float xwidth = 2, ywidth = 2;
+};
+struct Quantize {
+    float one = 0, min = 0, max = 0, dither = 0;
+    bool set = false;
+};
 
 struct Display {
     std::string name = "ri.pic", type = "file", mode = "rgba";
-    ParamList params;                  ///< "quantize", "exposure", "filter", "filterwidth", "dither" etc.
+    ParamList params; ///< "quantize", "exposure", "filter", "filterwidth", "dither" etc.
     SourcePlace place;
     bool read = false; ///< a Make request of the scene reads its file
 };
@@ -171,15 +185,16 @@ struct Options {
     std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes; ///< camera space point, normal; the side the normal points to is removed
     float fstop = 1e38f, focalLength = 0, focalDistance = 0;
     float shutterOpen = 0, shutterClose = 0;
-    float pixelSamplesX = 2, pixelSamplesY = 2; bool pixelSamplesSet = false;
-    float pixelVariance = -1;          ///< < 0: unset
+    float pixelSamplesX = 2, pixelSamplesY = 2;
+    bool pixelSamplesSet = false;
+    float pixelVariance = -1; ///< < 0: unset
     PixelFilter filter;
     float gain = 1, gamma = 1;
     bool exposureSet = false; ///< Exposure was called, also with 1 1
     ShaderRef imager;
-    AttributesRef attributes;          ///< those at WorldBegin: what the imager sees. Null where no stream was read
+    AttributesRef attributes; ///< those at WorldBegin: what the imager sees. Null where no stream was read
     Quantize quantizeRgba{255, 0, 255, 0.5f, false}, quantizeZ{0, 0, 0, 0, false};
-    std::vector<Display> displays;     ///< empty: ri.pic
+    std::vector<Display> displays;                         ///< empty: ri.pic
     std::map<std::string, Param> displayChannels;          ///< by name: the declaration, no values
     std::map<std::string, ParamList> displayChannelParams; ///< by name: "quantize", "filter" etc. of that channel
     std::string hider = "hidden";

@@ -1,12 +1,12 @@
-// Where a primitive stands in a solid (RISpec 3.2, "Solids"): a path from the outermost SolidBegin to the part that it bounds, kept among its
-// attributes, so that instances have it as well.
+// Where a primitive stands in a solid (RISpec 3.2, "Solids"): a path from the outermost SolidBegin to the part that it bounds,
+// kept among its attributes, so that instances have it as well.
 #pragma once
 #include "scene/scene.h"
 
 namespace alpenglow::scene {
 
-/// Key in Attributes::values. Its numbers: for each block from the outermost its number, its operation and which child of the one before it
-/// is; behind them how many children the innermost has had. No request can set it.
+/// Key in Attributes::values. Its numbers: for each block from the outermost its number, its operation and which child of the one
+/// before it is; behind them how many children the innermost has had. No request can set it.
 inline constexpr const char* kSolidAttribute = "solid:__path";
 
 enum class SolidOperation { Part, Union, Intersection, Difference };

@@ -31,14 +31,14 @@ Bitcode between(const unsigned char* begin, const unsigned char* end) { return {
 uint64_t hashDescriptors() {
     uint64_t h = 14695981039346656037ull;
     const auto add = [&h](std::string_view text) {
-        for (const char c : text)
-            h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+        for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
         h = (h ^ 0xffu) * 1099511628211ull;
     };
     for (const Shadeop& op : shadeops()) {
         add(op.name);
         add(op.rsl);
-        add(std::to_string(static_cast<int>(op.lowering)) + std::to_string(static_cast<int>(op.derivative)) + (op.pure ? "p" : "e"));
+        add(std::to_string(static_cast<int>(op.lowering)) + std::to_string(static_cast<int>(op.derivative)) +
+            (op.pure ? "p" : "e"));
         for (const Signature& s : op.signatures) {
             add(s.text);
             add(s.symbol);
@@ -51,12 +51,18 @@ uint64_t hashDescriptors() {
 
 Bitcode runtimeBitcode(int lanes) {
     switch (lanes) {
-    case 4: return between(alpenglow_bitcode_4, alpenglow_bitcode_4_end);
-    case 8: return between(alpenglow_bitcode_8, alpenglow_bitcode_8_end);
-    case 16: return between(alpenglow_bitcode_16, alpenglow_bitcode_16_end);
-    case 32: return between(alpenglow_bitcode_32, alpenglow_bitcode_32_end);
-    case 64: return between(alpenglow_bitcode_64, alpenglow_bitcode_64_end);
-    default: return {nullptr, 0};
+    case 4:
+        return between(alpenglow_bitcode_4, alpenglow_bitcode_4_end);
+    case 8:
+        return between(alpenglow_bitcode_8, alpenglow_bitcode_8_end);
+    case 16:
+        return between(alpenglow_bitcode_16, alpenglow_bitcode_16_end);
+    case 32:
+        return between(alpenglow_bitcode_32, alpenglow_bitcode_32_end);
+    case 64:
+        return between(alpenglow_bitcode_64, alpenglow_bitcode_64_end);
+    default:
+        return {nullptr, 0};
     }
 }
 

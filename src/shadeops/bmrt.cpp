@@ -5,7 +5,8 @@ namespace alpenglow::rsl {
 
 std::vector<Shadeop> bmrtShadeops() {
     std::vector<Shadeop> list;
-    const auto add = [&](const char* name, const char* signature, const char* doc, const char* source, const char* rsl) -> Shadeop& {
+    const auto add = [&](const char* name, const char* signature, const char* doc, const char* source,
+                         const char* rsl) -> Shadeop& {
         Shadeop op;
         op.section = "Ray tracing";
         op.source = source;
@@ -20,14 +21,16 @@ std::vector<Shadeop> bmrtShadeops() {
         list.push_back(std::move(op));
         return list.back();
     };
-    add("visibility", "color visibility(point a, point b; pairs)", "Visibility between two points: transmission(a, b).", "BMRT", R"(
+    add("visibility", "color visibility(point a, point b; pairs)", "Visibility between two points: transmission(a, b).", "BMRT",
+        R"(
 color visibility(point a; point b; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias; float maxdist) {
     return transmission(a, b, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode, "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
 }
 )");
     list.back().examples = {{"visibility(P, P + N)", "1 1 1", "", kNothing}};
     add("rayhittest", "float rayhittest(point from; vector dir; output point Ph, output vector Nh; pairs)",
-        "Distance from `from` along dir to the nearest surface that is visible to transmission rays, in units of length; above 1e30 for none. Ph becomes "
+        "Distance from `from` along dir to the nearest surface that is visible to transmission rays, in units of length; above "
+        "1e30 for none. Ph becomes "
         "the point that was hit, Nh the normal there; both stay as they are when nothing was hit.",
         "BMRT", R"(
 float rayhittest(point from; vector dir; output point Ph; output vector Nh; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias; float maxdist) {
@@ -44,9 +47,11 @@ float rayhittest(point from; vector dir; output point Ph; output vector Nh; stri
 )");
     list.back().examples = {{"rayhittest(P, N, p, n)", "2", "point p = 0; vector n = 0;", "a surface stands 2 away along N"}};
     add("fulltrace",
-        "float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector Nhit; output point Pmiss; output "
+        "float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector "
+        "Nhit; output point Pmiss; output "
         "vector Rmiss; pairs)",
-        "Traces a ray from pos along dir. On a hit 1, with the colour, the distance, the point and the normal of the hit; else 0, with Pmiss = pos and Rmiss = dir, "
+        "Traces a ray from pos along dir. On a hit 1, with the colour, the distance, the point and the normal of the hit; else "
+        "0, with Pmiss = pos and Rmiss = dir, "
         "the ray that saw nothing, hitcolor the light from there and hitdist above 1e30. What does not apply stays as it is.",
         "BMRT", R"(
 float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector Nhit; output point Pmiss; output vector Rmiss; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias; float maxdist) {
@@ -67,7 +72,8 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
     return found;
 }
 )");
-    list.back().examples = {{"fulltrace(P, N, c, d, p, n, m, r)", "0", "color c = 0; float d = 0; point p = 0, m = 0; vector n = 0, r = 0;", kNothing}};
+    list.back().examples = {{"fulltrace(P, N, c, d, p, n, m, r)", "0",
+                             "color c = 0; float d = 0; point p = 0, m = 0; vector n = 0, r = 0;", kNothing}};
     const Type text{Base::String, 0}, real{Base::Float, 0};
     for (Shadeop& op : list) // BMRT had none; those of trace() are as good here. The texts take them in this order
         op.optional = {{text, "label", false, "\"\"", "label of the ray, for rayinfo"},
@@ -78,7 +84,8 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
                        {real, "bias", false, "-1", "offset of the ray's start"},
                        {real, "maxdist", false, "1e38", "no intersections beyond this distance"}};
     Shadeop& bump = add("bump", "point bump(string name; normal norm; vector dPds, vector dPdt; pairs)",
-                        "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first channel of the texture "
+                        "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first "
+                        "channel of the texture "
                         "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",
                         "RISpec 3.0 (bump maps); formula (k)", R"(
 point bump(string name; normal norm; vector dPds; vector dPdt; float ss; float tt; float blur; float width) {
@@ -96,7 +103,8 @@ point bump(string name; normal norm; vector dPds; vector dPdt; float blur; float
 }
 )");
     list.back().examples = {{"bump(\"bumps.tex\", N, dPdu, dPdv)", "0 0 0", "", "the map is the same everywhere"}};
-    bump.signatures = bump.signatures + sigs({{"point bump(string name; normal norm; vector dPds, vector dPdt; float ss, float tt; pairs)"}});
+    bump.signatures =
+        bump.signatures + sigs({{"point bump(string name; normal norm; vector dPds, vector dPdt; float ss, float tt; pairs)"}});
     bump.optional = {{{Base::Float, 0}, "blur", false, "0", "added to the filter size, fraction of the map"},
                      {{Base::Float, 0}, "width", false, "1", "multiplies the filter size"}};
     bump.section = "Texture";

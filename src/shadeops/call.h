@@ -24,8 +24,12 @@ template <class T> struct Pair {
     T a, b;
 };
 
-template <class T> AL_INLINE Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-template <class T> AL_INLINE Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+template <class T> AL_INLINE Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T> AL_INLINE Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 template <class T> AL_INLINE Triple<T> operator-(const Triple<T>& a) { return {-a.x, -a.y, -a.z}; }
 template <class T> AL_INLINE Triple<T> times(const Triple<T>& a, const T& k) { return {a.x * k, a.y * k, a.z * k}; }
 /// a * k + b.
@@ -59,8 +63,7 @@ template <class T> AL_INLINE void load(const vf*& p, Triple<T>& t) {
 }
 template <class T> AL_INLINE void load(const vf*& p, Matrix<T>& t) {
 #pragma clang loop unroll(full)
-    for (int i = 0; i < 16; ++i)
-        load(p, t.m[i]);
+    for (int i = 0; i < 16; ++i) load(p, t.m[i]);
 }
 AL_INLINE void store(vf*& p, vf x) { *p++ = x; }
 AL_INLINE void store(vf*& p, const Jet1& x) {
@@ -82,23 +85,20 @@ template <class T> AL_INLINE void store(vf*& p, const Pair<T>& t) {
 }
 template <class T> AL_INLINE void store(vf*& p, const Matrix<T>& t) {
 #pragma clang loop unroll(full)
-    for (int i = 0; i < 16; ++i)
-        store(p, t.m[i]);
+    for (int i = 0; i < 16; ++i) store(p, t.m[i]);
 }
 
 /// An argument that is a reference to non-const is an output: loaded first, stored after the result.
 template <class A> AL_INLINE void storeOutput(vf*& p, const std::remove_cvref_t<A>& x) {
-    if constexpr (std::is_lvalue_reference_v<A> && !std::is_const_v<std::remove_reference_t<A>>)
-        store(p, x);
+    if constexpr (std::is_lvalue_reference_v<A> && !std::is_const_v<std::remove_reference_t<A>>) store(p, x);
 }
 
-template <class R, class... A, std::size_t... I> AL_INLINE void callWith(R (*f)(A...), const vf* in, vf* out, std::index_sequence<I...>) {
+template <class R, class... A, std::size_t... I>
+AL_INLINE void callWith(R (*f)(A...), const vf* in, vf* out, std::index_sequence<I...>) {
     std::tuple<std::remove_cvref_t<A>...> arguments;
     (load(in, std::get<I>(arguments)), ...);
-    if constexpr (std::is_void_v<R>)
-        f(std::get<I>(arguments)...);
-    else
-        store(out, f(std::get<I>(arguments)...));
+    if constexpr (std::is_void_v<R>) f(std::get<I>(arguments)...);
+    else store(out, f(std::get<I>(arguments)...));
     (storeOutput<A>(out, std::get<I>(arguments)), ...);
 }
 template <class R, class... A> AL_INLINE void call(R (*f)(A...), const vf* in, vf* out) {
@@ -115,10 +115,8 @@ template <class R, class... A> AL_INLINE void call(R (*f)(A...), const vf* in, v
 #else
 
 template <class A> constexpr int componentsOf() {
-    if constexpr (std::is_void_v<A>)
-        return 0;
-    else
-        return static_cast<int>(sizeof(std::remove_cvref_t<A>) / sizeof(vf));
+    if constexpr (std::is_void_v<A>) return 0;
+    else return static_cast<int>(sizeof(std::remove_cvref_t<A>) / sizeof(vf));
 }
 template <class R, class... A> constexpr int inputsOf(R (*)(A...)) { return (componentsOf<A>() + ... + 0); }
 template <class R, class... A> constexpr int outputsOf(R (*)(A...)) {

@@ -14,7 +14,9 @@ template <class T> AL_INLINE void opSetcomp(Triple<T>& c, const T& i, const T& v
     c.y = select(at == 1, v, c.y);
     c.z = select(at == 2, v, c.z);
 }
-template <class T> AL_INLINE T weighted(const Triple<T>& c, float a, float b, float d) { return mad(T(c.x), vf(a), vf(0)) + (c.y * vf(b) + c.z * vf(d)); }
+template <class T> AL_INLINE T weighted(const Triple<T>& c, float a, float b, float d) {
+    return mad(T(c.x), vf(a), vf(0)) + (c.y * vf(b) + c.z * vf(d));
+}
 template <class T> AL_INLINE T opLuminance(const Triple<T>& c) { return weighted(c, 0.2126f, 0.7152f, 0.0722f); }
 
 /// Hue in 0..1, 0 for grey; largest - smallest = range.
@@ -55,10 +57,12 @@ template <class T> AL_INLINE Triple<T> opHslToRgb(const Triple<T>& c) {
 }
 // NTSC: Y from 0.299 0.587 0.114, I and Q of unit range; back by the inverse matrix.
 template <class T> AL_INLINE Triple<T> opRgbToYiq(const Triple<T>& c) {
-    return {weighted(c, 0.299f, 0.587f, 0.114f), weighted(c, 0.595716f, -0.274453f, -0.321263f), weighted(c, 0.211456f, -0.522591f, 0.311135f)};
+    return {weighted(c, 0.299f, 0.587f, 0.114f), weighted(c, 0.595716f, -0.274453f, -0.321263f),
+            weighted(c, 0.211456f, -0.522591f, 0.311135f)};
 }
 template <class T> AL_INLINE Triple<T> opYiqToRgb(const Triple<T>& c) {
-    return {weighted(c, 1, 0.95629572f, 0.62102442f), weighted(c, 1, -0.2721221f, -0.64738060f), weighted(c, 1, -1.10698902f, 1.70461500f)};
+    return {weighted(c, 1, 0.95629572f, 0.62102442f), weighted(c, 1, -0.2721221f, -0.64738060f),
+            weighted(c, 1, -1.10698902f, 1.70461500f)};
 }
 // CIE XYZ from the Rec. 709 primaries (0.64 0.33, 0.30 0.60, 0.15 0.06) and the white point D65 (0.3127 0.3290).
 template <class T> AL_INLINE Triple<T> opRgbToXyz(const Triple<T>& c) {
@@ -94,14 +98,18 @@ std::vector<Shadeop> colourShadeops() {
     op.section = "Colours";
     op.source = "seed";
     op.name = "comp";
-    op.signatures = sigs({{"float comp(color c; float i)", "al_comp"}, {"float comp(vector c; float i)", "al_comp"},
-                          {"float comp(point c; float i)", "al_comp"}, {"float comp(normal c; float i)", "al_comp"}});
+    op.signatures = sigs({{"float comp(color c; float i)", "al_comp"},
+                          {"float comp(vector c; float i)", "al_comp"},
+                          {"float comp(point c; float i)", "al_comp"},
+                          {"float comp(normal c; float i)", "al_comp"}});
     op.doc = "Component of a colour, a tuple (or of a matrix); the index is truncated and clamped to 0..2.";
     op.examples = {{"comp(color(1,2,3), 1)", "2"}, {"comp(vector(1,2,3), 2)", "3"}};
     list.push_back(op);
     op.name = "setcomp";
-    op.signatures = sigs({{"void setcomp(output color c; float i, float value)", "al_setcomp"}, {"void setcomp(output vector c; float i, float value)", "al_setcomp"},
-                          {"void setcomp(output point c; float i, float value)", "al_setcomp"}, {"void setcomp(output normal c; float i, float value)", "al_setcomp"}});
+    op.signatures = sigs({{"void setcomp(output color c; float i, float value)", "al_setcomp"},
+                          {"void setcomp(output vector c; float i, float value)", "al_setcomp"},
+                          {"void setcomp(output point c; float i, float value)", "al_setcomp"},
+                          {"void setcomp(output normal c; float i, float value)", "al_setcomp"}});
     op.doc = "Sets a component of a colour, a tuple (or of a matrix); the index is truncated and clamped to 0..2.";
     op.examples = {{"c", "0 2 0", "color c = 0; setcomp(c, 1, 2);"}};
     list.push_back(op);
@@ -112,11 +120,14 @@ std::vector<Shadeop> colourShadeops() {
     op.examples = {{"luminance(color(1,1,1))", "1"}};
     list.push_back(op);
     op.name = "ctransform";
-    op.signatures = sigs({{"color ctransform(string tospace; color c)"}, {"color ctransform(string fromspace, string tospace; color c)"}});
+    op.signatures =
+        sigs({{"color ctransform(string tospace; color c)"}, {"color ctransform(string fromspace, string tospace; color c)"}});
     op.lowering = Lowering::Special;
     op.derivative = DerivativeRule::Inherent;
-    op.doc = "From one colour space (default rgb) to another: rgb hsv hsl yiq xyz, any case; an unknown space leaves c as it is. hue 0..1; YIQ by "
-             "the NTSC coefficients; XYZ of Rec. 709 primaries with D65. Symbols al_rgb_to_hsv, al_hsv_to_rgb, al_rgb_to_hsl, al_hsl_to_rgb, "
+    op.doc = "From one colour space (default rgb) to another: rgb hsv hsl yiq xyz, any case; an unknown space leaves c as it is. "
+             "hue 0..1; YIQ by "
+             "the NTSC coefficients; XYZ of Rec. 709 primaries with D65. Symbols al_rgb_to_hsv, al_hsv_to_rgb, al_rgb_to_hsl, "
+             "al_hsl_to_rgb, "
              "al_rgb_to_yiq, al_yiq_to_rgb, al_rgb_to_xyz, al_xyz_to_rgb; the way between two spaces goes through rgb.";
     op.source = "seed; details (k)";
     op.examples = {{"ctransform(\"hsv\", color(1,0,0))", "0 1 1"}};

@@ -6,7 +6,8 @@ namespace alpenglow::rsl {
 
 std::vector<Shadeop> derivativeShadeops() {
     std::vector<Shadeop> list;
-    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc, const char* rsl) -> Shadeop& {
+    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc,
+                         const char* rsl) -> Shadeop& {
         Shadeop op;
         op.section = "Derivatives";
         op.source = "seed";
@@ -36,18 +37,23 @@ std::vector<Shadeop> derivativeShadeops() {
         op.examples = {n == "Du" ? Example{"Du(u * u)", "1"} : Example{"Dv(u * v)", "0.5"}};
     }
     add("Deriv",
-        sigs({{"float Deriv(float num; float den)"}, {"color Deriv(color num; float den)"}, {"vector Deriv(point num; float den)"},
-              {"vector Deriv(vector num; float den)"}, {"vector Deriv(normal num; float den)"}}),
+        sigs({{"float Deriv(float num; float den)"},
+              {"color Deriv(color num; float den)"},
+              {"vector Deriv(point num; float den)"},
+              {"vector Deriv(vector num; float den)"},
+              {"vector Deriv(normal num; float den)"}}),
         Lowering::Rsl, "Du(num) / Du(den) + Dv(num) / Dv(den); a quotient by 0 counts as 0.", R"(
 float Deriv(float num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 color Deriv(color num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 vector Deriv(point num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 vector Deriv(vector num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 vector Deriv(normal num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
-)").source = "seed; formula (k)";
+)")
+        .source = "seed; formula (k)";
     list.back().examples = {{"Deriv(u * u, u)", "1"}};
     add("area", sigs({{"float area(point p)"}, {"float area(point p; string strategy)"}}), Lowering::Rsl,
-        "Area of one micropolygon of the surface p: length(Du(p) ^ Dv(p)) du dv. A hit is a grid of one point, so both strategies, \"shading\" and "
+        "Area of one micropolygon of the surface p: length(Du(p) ^ Dv(p)) du dv. A hit is a grid of one point, so both "
+        "strategies, \"shading\" and "
         "\"dicing\", give this.",
         R"(
 float area(point p) { extern float du, dv; return length(Du(p) ^ Dv(p)) * abs(du * dv); }
@@ -55,14 +61,17 @@ float area(point p; string strategy) { extern float du, dv; return length(Du(p) 
 )");
     list.back().examples = {{"area(2 * P)", "4"}};
     add("calculatenormal", sigs({{"normal calculatenormal(point p)"}}), Lowering::Rsl,
-        "Normal of the surface p: Du(p) ^ Dv(p), not normalised, on the side that the orientation of the primitive says (that of Ng).", R"(
+        "Normal of the surface p: Du(p) ^ Dv(p), not normalised, on the side that the orientation of the primitive says (that of "
+        "Ng).",
+        R"(
 normal calculatenormal(point p) {
     extern vector dPdu, dPdv;
     extern normal Ng;
     normal n = Du(p) ^ Dv(p);
     return ((dPdu ^ dPdv) . Ng) < 0 ? -n : n;
 }
-)").contexts = kSurface | kDisplacement;
+)")
+        .contexts = kSurface | kDisplacement;
     list.back().examples = {{"calculatenormal(P)", "0 0 1"}};
 
     Shadeop& filterstep = add("filterstep",

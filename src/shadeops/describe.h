@@ -15,8 +15,8 @@ struct SignatureText {
 /// Parses each text.
 std::vector<Signature> sigs(std::initializer_list<SignatureText> texts);
 
-/// One signature per type in `types` (separated by spaces): every '$' in the pattern becomes the type's name. Floats take the symbol
-/// `symbol` + "_f", tuples `symbol` + "_t"; an empty symbol stays empty.
+/// One signature per type in `types` (separated by spaces): every '$' in the pattern becomes the type's name. Floats take the
+/// symbol `symbol` + "_f", tuples `symbol` + "_t"; an empty symbol stays empty.
 std::vector<Signature> each(const std::string& types, const std::string& pattern, const std::string& symbol = {});
 
 std::vector<Signature> operator+(std::vector<Signature> a, const std::vector<Signature>& b);

@@ -11,12 +11,12 @@ namespace alpenglow::rsl {
 
 /// How the IR builder turns a call into IR.
 enum class Lowering : uint8_t {
-    Runtime,     ///< pure arithmetic in the bitcode runtime; one symbol a signature, instantiated on jets (see Signature::symbol)
-    Rsl,         ///< the body is RSL text (Shadeop::rsl), inlined like a user's function
-    Special,     ///< the IR builder knows it by name (Du, transform, spline, format, ...)
-    Service,     ///< answered by the renderer at once, through KernelCall::service (texture, attribute, printf, ...)
-    Request,     ///< answered by rays or lights: affine pair or suspension (trace, transmission, diffuse under path, ...)
-    Unavailable  ///< type-checks; reported once with its place as not yet available
+    Runtime,    ///< pure arithmetic in the bitcode runtime; one symbol a signature, instantiated on jets (see Signature::symbol)
+    Rsl,        ///< the body is RSL text (Shadeop::rsl), inlined like a user's function
+    Special,    ///< the IR builder knows it by name (Du, transform, spline, format, ...)
+    Service,    ///< answered by the renderer at once, through KernelCall::service (texture, attribute, printf, ...)
+    Request,    ///< answered by rays or lights: affine pair or suspension (trace, transmission, diffuse under path, ...)
+    Unavailable ///< type-checks; reported once with its place as not yet available
 };
 
 /// How derivatives pass through (design decision 7).
@@ -43,7 +43,8 @@ struct Signature {
     std::vector<Parameter> parameters;
     bool repeats = false; ///< the last parameter may be given any number of times ("...")
     bool pairs = false;   ///< token/value pairs may follow ("; ..." pairs)
-    /// Runtime: base name of the bitcode functions. `symbol` + "_0", "_1", "_2" are the instantiations on plain lanes, Jet1, Jet2:
+    /// Runtime: base name of the bitcode functions. `symbol` + "_0", "_1", "_2" are the instantiations on plain lanes, Jet1,
+    /// Jet2:
     ///   extern "C" void sym_k(const vf* in, vf* out)
     /// in: the arguments flattened, component after component, each component as its jet parts {v}, {v,du,dv} or
     /// {v,du,dv,duu,duv,dvv}; out: the result (if not void), then the output parameters, flattened the same way.
@@ -54,10 +55,18 @@ struct Signature {
     std::string text; ///< as written
 };
 
-struct OptionalParameter { Type type; std::string name; bool output = false; std::string defaultText, doc; };
+struct OptionalParameter {
+    Type type;
+    std::string name;
+    bool output = false;
+    std::string defaultText, doc;
+};
 
-/// "radians(180)" gives "3.141593" under `alpenglow eval`, after the statements of `setup`; or, where `when` says so, in such a scene.
-struct Example { std::string expression, value, setup = {}, when = {}; };
+/// "radians(180)" gives "3.141593" under `alpenglow eval`, after the statements of `setup`; or, where `when` says so, in such a
+/// scene.
+struct Example {
+    std::string expression, value, setup = {}, when = {};
+};
 
 struct Shadeop {
     std::string name;
@@ -65,17 +74,17 @@ struct Shadeop {
     uint32_t contexts = kAnyContext;
     Lowering lowering = Lowering::Runtime;
     DerivativeRule derivative = DerivativeRule::Jet;
-    bool pure = true;            ///< same arguments, same result, no effect: may be folded, merged, removed
-    bool outOfLine = false;      ///< large (noise): called, not inlined
+    bool pure = true;       ///< same arguments, same result, no effect: may be folded, merged, removed
+    bool outOfLine = false; ///< large (noise): called, not inlined
     Bias bias = Bias::Unbiased;
     std::string biasReason;
-    std::string section;         ///< "Mathematics", "Noise", ... as in rsl.md chapter 10
-    std::string doc;             ///< semantics and edge cases
-    std::string source;          ///< seed, RISpec, (k)
+    std::string section; ///< "Mathematics", "Noise", ... as in rsl.md chapter 10
+    std::string doc;     ///< semantics and edge cases
+    std::string source;  ///< seed, RISpec, (k)
     std::vector<Example> examples;
     std::vector<OptionalParameter> optional;
     std::vector<Base> lastResort; ///< results that are meant only where no other becomes what is wanted: the distance of trace()
-    std::string rsl;             ///< Lowering::Rsl: the functions in RSL; names as in signatures
+    std::string rsl;              ///< Lowering::Rsl: the functions in RSL; names as in signatures
 };
 
 /// All shadeops, sorted by name. Built once, immutable.
@@ -83,9 +92,9 @@ std::span<const Shadeop> shadeops();
 const Shadeop* findShadeop(std::string_view name);
 
 /// Parses "float noise(point p; float w)", "type min(type x, y, ...)" is not accepted here: list generics one by one.
-/// "any" as a parameter's type is Base::Void: every type is accepted (printf). "shader" is Base::String: a handle is the name of what it stands for.
-/// Arrays: "float p[]", "float p[4]", "float[] p", result "color[]".
-/// In a parameter list "uniform" and "output" may precede a type; a final "..." sets `repeats`; a final "; pairs" sets `pairs`.
+/// "any" as a parameter's type is Base::Void: every type is accepted (printf). "shader" is Base::String: a handle is the name of
+/// what it stands for. Arrays: "float p[]", "float p[4]", "float[] p", result "color[]". In a parameter list "uniform" and
+/// "output" may precede a type; a final "..." sets `repeats`; a final "; pairs" sets `pairs`.
 Signature parseSignature(std::string_view text, std::string symbol = {});
 
 /// Evaluates a Runtime shadeop on one point, order 0, with the code that kernels run (compiled into the program at 4 lanes).

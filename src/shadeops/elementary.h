@@ -1,7 +1,7 @@
 // Elementary functions over lanes: our own range reductions and polynomials (tools/fit_elementary.py derives the coefficients).
 // Errors in ulp are the largest seen against double precision over the ranges that tests/shadeops/elementary_test.cpp walks.
-// No argument traps; NaN gives NaN or a bounded number, and counts as 0 in logarithms. Its sign and payload, which differ from one
-// instruction set to the next, never show in a result. Included by lanes.h.
+// No argument traps; NaN gives NaN or a bounded number, and counts as 0 in logarithms. Its sign and payload, which differ from
+// one instruction set to the next, never show in a result. Included by lanes.h.
 #pragma once
 
 namespace alpenglow::rsl::AL_NAMESPACE {
@@ -16,10 +16,11 @@ inline constexpr float kSmallest = 0x1p-126f; ///< below it numbers count as 0 i
 inline constexpr float kSin[] = {-0x1.55554cp-3f, 0x1.110ed6p-7f, -0x1.9f6fbap-13f, 0x1.5db2dep-19f};
 inline constexpr float kTan[] = {0x1.5554dep-2f, 0x1.112deap-3f, 0x1.b5851ep-5f, 0x1.9072a0p-6f, 0x1.96847ap-9f, 0x1.33e7c6p-7f};
 inline constexpr float kAsin[] = {0x1.5555c8p-3f, 0x1.3301fcp-4f, 0x1.747d06p-5f, 0x1.8c2d82p-6f, 0x1.596d66p-5f};
-inline constexpr float kAtan[] = {-0x1.5554dcp-2f, 0x1.9978ecp-3f,  -0x1.230a9cp-3f, 0x1.b4df74p-4f,
+inline constexpr float kAtan[] = {-0x1.5554dcp-2f, 0x1.9978ecp-3f, -0x1.230a9cp-3f, 0x1.b4df74p-4f,
                                   -0x1.3553f2p-4f, 0x1.61f9c8p-5f, -0x1.0c2b62p-6f, 0x1.7ede4ap-9f};
 inline constexpr float kExp[] = {0x1.fffffcp-2f, 0x1.555490p-3f, 0x1.5558f4p-5f, 0x1.123a6cp-7f, 0x1.6a2352p-10f};
-inline constexpr float kExp2[] = {0x1.62e430p-1f, 0x1.ebfbdcp-3f, 0x1.c6aee6p-5f, 0x1.3b2d52p-7f, 0x1.5f400ep-10f, 0x1.41fa9ep-13f};
+inline constexpr float kExp2[] = {0x1.62e430p-1f, 0x1.ebfbdcp-3f,  0x1.c6aee6p-5f,
+                                  0x1.3b2d52p-7f, 0x1.5f400ep-10f, 0x1.41fa9ep-13f};
 inline constexpr float kLog[] = {0x1.555554p-2f, -0x1.000228p-2f, 0x1.99a012p-3f, -0x1.5471f6p-3f,
                                  0x1.22d90ap-3f, -0x1.0d875ap-3f, 0x1.05649ap-3f, -0x1.38c1b0p-4f};
 inline constexpr float kLog2[] = {0x1.ec7098p-2f, -0x1.71587ap-2f, 0x1.277ceap-2f, -0x1.eaf4d2p-3f,
@@ -29,8 +30,7 @@ inline constexpr float kLog2[] = {0x1.ec7098p-2f, -0x1.71587ap-2f, 0x1.277ceap-2
 template <int N> AL_INLINE vf polynomial(const float (&c)[N], vf x) {
     vf r = vf(c[N - 1]);
 #pragma clang loop unroll(full)
-    for (int i = N - 2; i >= 0; --i)
-        r = mad(r, x, vf(c[i]));
+    for (int i = N - 2; i >= 0; --i) r = mad(r, x, vf(c[i]));
     return r;
 }
 
@@ -154,8 +154,8 @@ AL_INLINE vf log2Lanes(vf x) {
     return select(x >= kSmallest, hi + lo, vf(-kInfinity));
 }
 
-/// 1.5 ulp while |y log2 x| < 16, growing to about 12 where the result nears overflow. x < 0: integer y as multiplication would, else 0.
-/// |x| < 2^-126 counts as 0: 0 for y > 0, 1 for y = 0, infinity for y < 0.
+/// 1.5 ulp while |y log2 x| < 16, growing to about 12 where the result nears overflow. x < 0: integer y as multiplication would,
+/// else 0. |x| < 2^-126 counts as 0: 0 for y > 0, 1 for y = 0, infinity for y < 0.
 AL_INLINE vf powLanes(vf x, vf y) {
     const vf a = absLanes(x);
     vf hi, lo;

@@ -10,8 +10,8 @@ template <class T> AL_INLINE T opZ(const Triple<T>& p) { return p.z; }
 template <class T> AL_INLINE void opSetX(Triple<T>& p, const T& v) { p.x = v; }
 template <class T> AL_INLINE void opSetY(Triple<T>& p, const T& v) { p.y = v; }
 template <class T> AL_INLINE void opSetZ(Triple<T>& p, const T& v) { p.z = v; }
-/// The square of a length leaves the range of floats long before the length does. Where it would, the power of two that brings the
-/// vector into the middle of the range; else 1, and nothing changes.
+/// The square of a length leaves the range of floats long before the length does. Where it would, the power of two that brings
+/// the vector into the middle of the range; else 1, and nothing changes.
 template <class T> AL_INLINE vf midRange(const Triple<T>& v) {
     const vf x = value(v.x), y = value(v.y), z = value(v.z), square = mad(x, x, mad(y, y, z * z));
     return select(square < 0x1p-100f, vf(0x1p100f), select(square > 0x1p120f, vf(0x1p-70f), vf(1)));
@@ -24,9 +24,7 @@ template <class T> AL_INLINE T opLength(const Triple<T>& v) {
     return length(scaled(v, k)) * fromMidRange(k);
 }
 template <class T> AL_INLINE T opDistance(const Triple<T>& a, const Triple<T>& b) { return opLength(b - a); }
-template <class T> AL_INLINE Triple<T> opNormalize(const Triple<T>& v) {
-    return normalize(scaled(v, midRange(v)));
-}
+template <class T> AL_INLINE Triple<T> opNormalize(const Triple<T>& v) { return normalize(scaled(v, midRange(v))); }
 template <class T> AL_INLINE T opPtlined(const Triple<T>& a, const Triple<T>& b, const Triple<T>& q) {
     const Triple<T> d = b - a, e = q - a;
     const vf kd = midRange(d), ke = midRange(e);
@@ -44,7 +42,9 @@ template <class T> AL_INLINE Triple<T> opRotatePoint(const Triple<T>& q, const T
     return select3(value(dot(k, k)) == 0, q, a + r);
 }
 
-template <class T> AL_INLINE Triple<T> opReflect(const Triple<T>& i, const Triple<T>& n) { return mad3(n, dot(i, n) * vf(-2), i); }
+template <class T> AL_INLINE Triple<T> opReflect(const Triple<T>& i, const Triple<T>& n) {
+    return mad3(n, dot(i, n) * vf(-2), i);
+}
 template <class T> AL_INLINE Triple<T> opRefract(const Triple<T>& i, const Triple<T>& n, const T& eta) {
     const T d = dot(i, n), k = vf(1) - eta * eta * (vf(1) - d * d);
     const T zero = T(vf(0));
@@ -60,7 +60,8 @@ template <class T> AL_INLINE Triple<T> opTransformPoint(const Matrix<T>& a, cons
     return {divide(column(0), w), divide(column(1), w), divide(column(2), w)};
 }
 template <class T> AL_INLINE Triple<T> opTransformVector(const Matrix<T>& a, const Triple<T>& p) {
-    const auto column = [&](int c) __attribute__((always_inline)) { return mad(p.x, a.m[c], mad(p.y, a.m[4 + c], p.z * a.m[8 + c])); };
+    const auto column = [&](int c)
+                            __attribute__((always_inline)) { return mad(p.x, a.m[c], mad(p.y, a.m[4 + c], p.z * a.m[8 + c])); };
     return {column(0), column(1), column(2)};
 }
 /// By the inverse transpose of the upper 3x3, which is its matrix of cofactors over the determinant. 0 for a singular matrix.
@@ -99,7 +100,8 @@ std::vector<Shadeop> geometryShadeops() {
     Shadeop base;
     base.section = "Geometry";
     base.source = "seed";
-    const auto add = [&](const char* name, std::vector<Signature> signatures, const char* doc, std::vector<Example> examples) -> Shadeop& {
+    const auto add = [&](const char* name, std::vector<Signature> signatures, const char* doc,
+                         std::vector<Example> examples) -> Shadeop& {
         Shadeop op = base;
         op.name = name;
         op.signatures = std::move(signatures);
@@ -112,20 +114,25 @@ std::vector<Shadeop> geometryShadeops() {
         const std::string axis(1, "xyz"[i]);
         add((axis + "comp").c_str(), each(kTuples, "float " + axis + "comp($ p)", "al_" + axis + "comp"),
             ("The " + axis + " component of a tuple.").c_str(), {{axis + "comp(point(1,2,3))", std::to_string(i + 1)}});
-        add(("set" + axis + "comp").c_str(), each(kTuples, "void set" + axis + "comp(output $ p; float value)", "al_set" + axis + "comp"),
+        add(("set" + axis + "comp").c_str(),
+            each(kTuples, "void set" + axis + "comp(output $ p; float value)", "al_set" + axis + "comp"),
             ("Sets the " + axis + " component of a tuple.").c_str(),
-            {{"p", std::string(i == 0 ? "2" : "0") + (i == 1 ? " 2" : " 0") + (i == 2 ? " 2" : " 0"), "point p = 0; set" + axis + "comp(p, 2);"}});
+            {{"p", std::string(i == 0 ? "2" : "0") + (i == 1 ? " 2" : " 0") + (i == 2 ? " 2" : " 0"),
+              "point p = 0; set" + axis + "comp(p, 2);"}});
     }
     add("distance", sigs({{"float distance(point a, point b)", "al_distance"}}), "Length of b - a.",
         {{"distance(point(1,2,3), point(1,5,7))", "5"}});
-    add("length", sigs({{"float length(vector v)", "al_length"}}), "Euclidean length. Its derivative at the zero vector is taken as 0.",
-        {{"length(vector(0,3,4))", "5"}});
-    add("normalize", each("vector point normal", "$ normalize($ v)", "al_normalize"), "v / length(v); the zero vector for the zero vector.",
+    add("length", sigs({{"float length(vector v)", "al_length"}}),
+        "Euclidean length. Its derivative at the zero vector is taken as 0.", {{"length(vector(0,3,4))", "5"}});
+    add("normalize", each("vector point normal", "$ normalize($ v)", "al_normalize"),
+        "v / length(v); the zero vector for the zero vector.",
         {{"normalize(vector(0,3,4))", "0 0.6 0.8"}, {"normalize(vector(0,0,0))", "0 0 0"}});
-    add("ptlined", sigs({{"float ptlined(point a, point b, point q)", "al_ptlined"}}), "Distance from q to the segment from a to b.",
+    add("ptlined", sigs({{"float ptlined(point a, point b, point q)", "al_ptlined"}}),
+        "Distance from q to the segment from a to b.",
         {{"ptlined(point(0,0,0), point(1,0,0), point(4,4,0))", "5"}, {"ptlined(point(0,0,0), point(4,0,0), point(1,2,0))", "2"}});
     add("rotate", sigs({{"point rotate(point q; float angle; point a, point b)", "al_rotatepoint"}}),
-        "Rotates q by angle (radians) about the line from a to b, counterclockwise seen with b - a toward the eye in a right-handed space. "
+        "Rotates q by angle (radians) about the line from a to b, counterclockwise seen with b - a toward the eye in a "
+        "right-handed space. "
         "q itself when a = b.",
         {{"rotate(point(1,0,0), 0, point(0,0,0), point(0,0,1))", "1 0 0"}});
     add("faceforward", {},
@@ -133,17 +140,19 @@ std::vector<Shadeop> geometryShadeops() {
         {{"faceforward(vector(0,0,1), vector(0,0,1), vector(0,0,1))", "0 0 -1"}});
     list.back().lowering = Lowering::Rsl;
     list.back().derivative = DerivativeRule::Inherent;
-    list.back().signatures = each("vector normal", "$ faceforward($ n; vector i; vector nref)") + each("vector normal", "$ faceforward($ n; vector i)");
+    list.back().signatures = each("vector normal", "$ faceforward($ n; vector i; vector nref)") +
+                             each("vector normal", "$ faceforward($ n; vector i)");
     list.back().rsl = R"(
 vector faceforward(vector n; vector i; vector nref) { return (i . nref) > 0 ? -n : n; }
 normal faceforward(normal n; vector i; vector nref) { return (i . nref) > 0 ? -n : n; }
 vector faceforward(vector n; vector i) { extern normal Ng; return (i . Ng) > 0 ? -n : n; }
 normal faceforward(normal n; vector i) { extern normal Ng; return (i . Ng) > 0 ? -n : n; }
 )";
-    add("reflect", sigs({{"vector reflect(vector i, vector n)", "al_reflect"}}), "i - 2 (i . n) n: i mirrored at the plane of the unit vector n.",
-        {{"reflect(vector(1,-1,0), vector(0,1,0))", "1 1 0"}});
+    add("reflect", sigs({{"vector reflect(vector i, vector n)", "al_reflect"}}),
+        "i - 2 (i . n) n: i mirrored at the plane of the unit vector n.", {{"reflect(vector(1,-1,0), vector(0,1,0))", "1 1 0"}});
     add("refract", sigs({{"vector refract(vector i, vector n; float eta)", "al_refract"}}),
-        "Direction of the refracted ray; i and n unit, n against i, eta = index of the side of i / index of the side entered. The zero vector on "
+        "Direction of the refracted ray; i and n unit, n against i, eta = index of the side of i / index of the side entered. "
+        "The zero vector on "
         "total reflection.",
         {{"refract(vector(0,0,1), vector(0,0,-1), 0.5)", "0 0 1"}, {"refract(vector(0.6,0,0.8), vector(0,0,-1), 2)", "0 0 0"}});
     Shadeop& depth = add("depth", sigs({{"float depth(point p)"}}),
@@ -152,8 +161,7 @@ normal faceforward(normal n; vector i) { extern normal Ng; return (i . Ng) > 0 ?
     depth.lowering = Lowering::Service;
     depth.derivative = DerivativeRule::ZeroWarn;
 
-    Shadeop& transform = add("transform", {}, "",
-                             {{"transform(translate(matrix(1), point(1, 2, 3)), P)", "1 2 3"}});
+    Shadeop& transform = add("transform", {}, "", {{"transform(translate(matrix(1), point(1, 2, 3)), P)", "1 2 3"}});
     transform.lowering = Lowering::Special;
     transform.derivative = DerivativeRule::Inherent;
     for (const char* type : {"point", "vector", "normal"}) {
@@ -161,11 +169,12 @@ normal faceforward(normal n; vector i) { extern normal Ng; return (i . Ng) > 0 ?
                                      std::string(type) + " transform(string fromspace, string tospace; " + type + " p)",
                                      std::string(type) + " transform(matrix m; " + type + " p)",
                                      std::string(type) + " transform(string fromspace; matrix m; " + type + " p)"};
-        for (const std::string& text : parts)
-            transform.signatures.push_back(parseSignature(text));
+        for (const std::string& text : parts) transform.signatures.push_back(parseSignature(text));
     }
-    transform.doc = "From one named space (default current) to another, or by a matrix. Points with translation and homogeneous divide, vectors by "
-                    "the upper 3x3, normals by its inverse transpose. Symbols al_transformpoint, al_transformvector, al_transformnormal (matrix, "
+    transform.doc = "From one named space (default current) to another, or by a matrix. Points with translation and homogeneous "
+                    "divide, vectors by "
+                    "the upper 3x3, normals by its inverse transpose. Symbols al_transformpoint, al_transformvector, "
+                    "al_transformnormal (matrix, "
                     "tuple). Row vectors: p' = p M.";
     Shadeop& vtransform = add("vtransform", {}, "transform() by the rule of vectors, whatever the type of the argument.",
                               {{"vtransform(scale(matrix(1), point(2, 3, 4)), vector(1, 1, 1))", "2 3 4"}});

@@ -32,7 +32,8 @@ AL_INLINE Jet2 withValue(const Jet2& x, vf v) { return {v, x.du, x.dv, x.duu, x.
 AL_INLINE vf chain(vf, vf f, vf, vf) { return f; }
 AL_INLINE Jet1 chain(const Jet1& x, vf f, vf d, vf) { return {f, d * x.du, d * x.dv}; }
 AL_INLINE Jet2 chain(const Jet2& x, vf f, vf d, vf dd) {
-    return {f, d * x.du, d * x.dv, mad(dd * x.du, x.du, d * x.duu), mad(dd * x.du, x.dv, d * x.duv), mad(dd * x.dv, x.dv, d * x.dvv)};
+    return {
+        f, d * x.du, d * x.dv, mad(dd * x.du, x.du, d * x.duu), mad(dd * x.du, x.dv, d * x.duv), mad(dd * x.dv, x.dv, d * x.dvv)};
 }
 
 /// f(x, y), given its partial derivatives.
@@ -55,7 +56,9 @@ AL_INLINE Jet2 chain2(const Jet2& x, const Jet2& y, vf f, const Partials& p) {
             second(x.dv, x.dv, x.dvv, y.dv, y.dv, y.dvv)};
 }
 
-AL_INLINE Jet1 select(vm m, const Jet1& a, const Jet1& b) { return {select(m, a.v, b.v), select(m, a.du, b.du), select(m, a.dv, b.dv)}; }
+AL_INLINE Jet1 select(vm m, const Jet1& a, const Jet1& b) {
+    return {select(m, a.v, b.v), select(m, a.du, b.du), select(m, a.dv, b.dv)};
+}
 AL_INLINE Jet2 select(vm m, const Jet2& a, const Jet2& b) {
     return {select(m, a.v, b.v),     select(m, a.du, b.du),   select(m, a.dv, b.dv),
             select(m, a.duu, b.duu), select(m, a.duv, b.duv), select(m, a.dvv, b.dvv)};
@@ -99,7 +102,9 @@ AL_INLINE Jet2 mad(const Jet2& a, const Jet2& b, const Jet2& c) {
 /// x * factor + c with constants.
 AL_INLINE Jet1 mad(const Jet1& x, vf k, vf c) { return {mad(x.v, k, c), x.du * k, x.dv * k}; }
 AL_INLINE Jet2 mad(const Jet2& x, vf k, vf c) { return {mad(x.v, k, c), x.du * k, x.dv * k, x.duu * k, x.duv * k, x.dvv * k}; }
-AL_INLINE Jet1 operator*(const Jet1& a, const Jet1& b) { return {a.v * b.v, mad(a.v, b.du, b.v * a.du), mad(a.v, b.dv, b.v * a.dv)}; }
+AL_INLINE Jet1 operator*(const Jet1& a, const Jet1& b) {
+    return {a.v * b.v, mad(a.v, b.du, b.v * a.du), mad(a.v, b.dv, b.v * a.dv)};
+}
 AL_INLINE Jet2 operator*(const Jet2& a, const Jet2& b) {
     const vf two = vf(2);
     return {a.v * b.v,

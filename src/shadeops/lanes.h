@@ -1,6 +1,7 @@
-// Numbers over lanes, and the few primitives that shadeops are written in. Compiled four ways: into the program at 4 lanes, into its stages
-// at 1 to 16 (transport/lanes), to bitcode at 4..64 lanes, and in a test with another type in place of float (ALPENGLOW_REFERENCE names the header that replaces this one).
-// Lane-wise operations only, in a fixed order, with fused multiply-add where the source says mad(): so every width gives the same bits.
+// Numbers over lanes, and the few primitives that shadeops are written in. Compiled four ways: into the program at 4 lanes, into
+// its stages at 1 to 16 (transport/lanes), to bitcode at 4..64 lanes, and in a test with another type in place of float
+// (ALPENGLOW_REFERENCE names the header that replaces this one). Lane-wise operations only, in a fixed order, with fused
+// multiply-add where the source says mad(): so every width gives the same bits.
 #pragma once
 #ifdef ALPENGLOW_REFERENCE
 #include ALPENGLOW_REFERENCE

@@ -7,7 +7,8 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
-template <class T> AL_INLINE Triple<T> opSpecularBrdf(const Triple<T>& l, const Triple<T>& n, const Triple<T>& v, const T& roughness) {
+template <class T>
+AL_INLINE Triple<T> opSpecularBrdf(const Triple<T>& l, const Triple<T>& n, const Triple<T>& v, const T& roughness) {
     const T cosine = larger(T(vf(0)), dot(n, opNormalize(opNormalize(l) + v)));
     const T p = power(cosine, divide(T(vf(kSpecularExponent)), roughness));
     const T r = select(value(roughness) > 0, p, T(vf(0)));
@@ -19,7 +20,8 @@ template <class T> AL_INLINE void opFresnel(const Triple<T>& i, const Triple<T>&
     kt = vf(1) - kr;
 }
 template <class T>
-AL_INLINE void opFresnelRt(const Triple<T>& i, const Triple<T>& n, const T& eta, T& kr, T& kt, Triple<T>& reflected, Triple<T>& refracted) {
+AL_INLINE void opFresnelRt(const Triple<T>& i, const Triple<T>& n, const T& eta, T& kr, T& kt, Triple<T>& reflected,
+                           Triple<T>& refracted) {
     opFresnel(i, n, eta, kr, kt);
     reflected = opReflect(i, n);
     refracted = opRefract(i, n, eta);
@@ -45,17 +47,21 @@ std::vector<Shadeop> lightingShadeops() {
         op.signatures = std::move(signatures);
         op.contexts = kSurface | kVolume;
         op.lowering = lowering;
-        op.derivative = lowering == Lowering::Runtime ? DerivativeRule::Jet : lowering == Lowering::Rsl ? DerivativeRule::Inherent : DerivativeRule::ZeroWarn;
+        op.derivative = lowering == Lowering::Runtime ? DerivativeRule::Jet
+                        : lowering == Lowering::Rsl   ? DerivativeRule::Inherent
+                                                      : DerivativeRule::ZeroWarn;
         op.doc = doc;
         list.push_back(std::move(op));
         return list.back();
     };
     add("ambient", sigs({{"color ambient()"}}), Lowering::Service,
-        "Sum of Cl over the ambient lights: those without illuminate() and solar(). Under path, ambient light is what escaping diffuse rays see.");
+        "Sum of Cl over the ambient lights: those without illuminate() and solar(). Under path, ambient light is what escaping "
+        "diffuse rays see.");
     list.back().examples = {{"ambient()", "0.2 0.2 0.2", "", "there is one light \"ambientlight\" of intensity 0.2"}};
 
     Shadeop& diffuse = add("diffuse", sigs({{"color diffuse(vector n)"}}), Lowering::Rsl,
-                           "Sum over lights of Cl max(0, n . L) (1 - __nondiffuse), L unit; no 1/PI. n is unit. Under path the indirect light of the "
+                           "Sum over lights of Cl max(0, n . L) (1 - __nondiffuse), L unit; no 1/PI. n is unit. Under path the "
+                           "indirect light of the "
                            "same lobe is added by the light transport engine.");
     list.back().examples = {{"diffuse(N)", "1 1 1", "", kOneLight}};
     diffuse.rsl = R"(
@@ -72,8 +78,9 @@ color diffuse(vector n) {
     return sum;
 }
 )";
-    Shadeop& specular = add("specular", sigs({{"color specular(vector n, vector v; float roughness)"}}), Lowering::Rsl,
-                            "Sum over lights of Cl specularbrdf(L, n, v, roughness) (1 - __nonspecular). n and v are unit, v toward the eye.");
+    Shadeop& specular =
+        add("specular", sigs({{"color specular(vector n, vector v; float roughness)"}}), Lowering::Rsl,
+            "Sum over lights of Cl specularbrdf(L, n, v, roughness) (1 - __nonspecular). n and v are unit, v toward the eye.");
     list.back().examples = {{"specular(N, N, 0.1)", "1 1 1", "", kOneLight}};
     specular.source = "seed; the model of 3Delight is not published, see specularbrdf";
     specular.rsl = R"(
@@ -100,7 +107,8 @@ color specular(vector n, v; float roughness) {
     brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"},
                      {"specularbrdf(vector(1,0,0), vector(0,0,1), vector(0,0,1), 4)", "0.5 0.5 0.5"}};
     Shadeop& standard = add("specularstd", sigs({{"color specularstd(normal n; vector v; float roughness)"}}), Lowering::Rsl,
-                            "The text-book model: sum over lights of Cl pow(max(0, n . h), 1 / roughness) (1 - __nonspecular), h = normalize(normalize(L) + v).");
+                            "The text-book model: sum over lights of Cl pow(max(0, n . h), 1 / roughness) (1 - __nonspecular), h "
+                            "= normalize(normalize(L) + v).");
     list.back().examples = {{"specularstd(N, N, 0.1)", "1 1 1", "", kOneLight}};
     standard.rsl = R"(
 color specularstd(normal n; vector v; float roughness) {
@@ -119,8 +127,9 @@ color specularstd(normal n; vector v; float roughness) {
     return sum;
 }
 )";
-    Shadeop& phong = add("phong", sigs({{"color phong(vector n, vector v; float size)"}}), Lowering::Rsl,
-                         "Phong's highlight: sum over lights of Cl pow(max(0, r . L), size) (1 - __nonspecular), r = reflect(-v, n), L unit.");
+    Shadeop& phong =
+        add("phong", sigs({{"color phong(vector n, vector v; float size)"}}), Lowering::Rsl,
+            "Phong's highlight: sum over lights of Cl pow(max(0, r . L), size) (1 - __nonspecular), r = reflect(-v, n), L unit.");
     list.back().examples = {{"phong(N, N, 10)", "1 1 1", "", kOneLight}};
     phong.rsl = R"(
 color phong(vector n, v; float size) {
@@ -137,25 +146,33 @@ color phong(vector n, v; float size) {
     return sum;
 }
 )";
-    Shadeop& bsdf = add("bsdf", sigs({{"color bsdf(vector l; normal n; pairs)"}, {"color[] bsdf(vector l; normal n; pairs)"}}), Lowering::Special,
-                        "One of the distributions of trace() for a single direction l toward the light: the reflection function times the cosine n . l, so "
-                        "that PI bsdf(\"oren-nayar\", roughness 0) is the weight of diffuse(). An array gets the parts of glass-ggx (reflected, refracted) or of hair "
-                        "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the plane of \"horizon\" is 0. The "
+    Shadeop& bsdf = add("bsdf", sigs({{"color bsdf(vector l; normal n; pairs)"}, {"color[] bsdf(vector l; normal n; pairs)"}}),
+                        Lowering::Special,
+                        "One of the distributions of trace() for a single direction l toward the light: the reflection function "
+                        "times the cosine n . l, so "
+                        "that PI bsdf(\"oren-nayar\", roughness 0) is the weight of diffuse(). An array gets the parts of "
+                        "glass-ggx (reflected, refracted) or of hair "
+                        "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the "
+                        "plane of \"horizon\" is 0. The "
                         "hidden shadeops __bsdf_<name> document each distribution.");
     bsdf.source = "seed; formulas rsl.md 12.4 (k)";
     bsdf.derivative = DerivativeRule::Inherent;
     bsdf.optional = distributionParameters();
-    bsdf.optional.push_back({{Base::Float, 0}, "samplecone", false, "PI/2", "half angle of the cone of uniform and cosine, radians"});
+    bsdf.optional.push_back(
+        {{Base::Float, 0}, "samplecone", false, "PI/2", "half angle of the cone of uniform and cosine, radians"});
     bsdf.examples = {{"bsdf(vector(0,0,1), normal(0,0,1), \"distribution\", \"cosine\")", "0.3183099 0.3183099 0.3183099"}};
 
-    Shadeop& fresnel = add("fresnel",
-                           sigs({{"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt)", "al_fresnel"},
-                                 {"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt; output vector R, output vector T)",
-                                  "al_fresnelrt"}}),
-                           Lowering::Runtime,
-                           "Fresnel reflectance Kr of an unpolarised ray i (unit) at the unit normal n facing it, eta = index of the side of i / index "
-                           "entered; Kt = 1 - Kr. R and T are the reflected and refracted directions; T is 0 and Kr 1 on total reflection.");
-    list.back().examples = {{"round(kr * 9)", "1", "float kr = 0, kt = 0; fresnel(vector(0, 0, 1), vector(0, 0, -1), 0.5, kr, kt);"}};
+    Shadeop& fresnel = add(
+        "fresnel",
+        sigs({{"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt)", "al_fresnel"},
+              {"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt; output vector R, output vector T)",
+               "al_fresnelrt"}}),
+        Lowering::Runtime,
+        "Fresnel reflectance Kr of an unpolarised ray i (unit) at the unit normal n facing it, eta = index of the side of i / "
+        "index "
+        "entered; Kt = 1 - Kr. R and T are the reflected and refracted directions; T is 0 and Kr 1 on total reflection.");
+    list.back().examples = {
+        {"round(kr * 9)", "1", "float kr = 0, kt = 0; fresnel(vector(0, 0, 1), vector(0, 0, -1), 0.5, kr, kt);"}};
     fresnel.contexts = kAnyContext;
     fresnel.source = "seed; energy form of Kt (k)";
     return list;

@@ -4,9 +4,9 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
-// The lattice: a coordinate times an odd constant plus an offset (without it a cell and its mirror image at the origin would share a hash),
-// neighbours by addition; a corner is the xor of its coordinates, folded and multiplied. Sequences of corners along axes and diagonals have
-// flat spectra (noise_test.cpp). Each channel multiplies by its own constant.
+// The lattice: a coordinate times an odd constant plus an offset (without it a cell and its mirror image at the origin would
+// share a hash), neighbours by addition; a corner is the xor of its coordinates, folded and multiplied. Sequences of corners
+// along axes and diagonals have flat spectra (noise_test.cpp). Each channel multiplies by its own constant.
 inline constexpr unsigned kLattice[4] = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
 inline constexpr unsigned kOffset[4] = {0x68e31da4u, 0xb5297a4du, 0x1b56c4e9u, 0x7f4a7c15u};
 inline constexpr unsigned kChannel[3] = {0x2c1b3c6du, 0x9c8f2d35u, 0x6a09e667u};
@@ -23,8 +23,8 @@ template <class T, int N, int C> struct NoiseCell {
     T low[N], high[N], fade[N]; // distances to the two lattice planes, and the weight of the high one
     vu hash[N][2];
 
-    /// Gradients: one dimension: slopes of random size; two: eight directions; three and four: to the middles of edges of the cube
-    /// (one component 0, the others +-1).
+    /// Gradients: one dimension: slopes of random size; two: eight directions; three and four: to the middles of edges of the
+    /// cube (one component 0, the others +-1).
     static AL_MEMBER T gradient(vu h, const T* d) {
         const vi s = __builtin_bit_cast(vi, h);
         if constexpr (N == 1) {
@@ -37,7 +37,8 @@ template <class T, int N, int C> struct NoiseCell {
             const T u = select(maskOf(s < -715827883), d[1], d[0]), v = select(maskOf(s < 715827883), d[2], d[1]);
             return flipSign(u, h << 12) + flipSign(v, h << 13);
         } else {
-            const T u = select(maskOf(s < -1073741824), d[1], d[0]), v = select(maskOf(s < 0), d[2], d[1]), w = select(maskOf(s < 1073741824), d[3], d[2]);
+            const T u = select(maskOf(s < -1073741824), d[1], d[0]), v = select(maskOf(s < 0), d[2], d[1]),
+                    w = select(maskOf(s < 1073741824), d[3], d[2]);
             return flipSign(u, h << 12) + flipSign(v, h << 13) + flipSign(w, h << 14);
         }
     }
@@ -47,16 +48,14 @@ template <class T, int N, int C> struct NoiseCell {
         if constexpr (D < 0) {
             h = h ^ (h >> 15);
 #pragma clang loop unroll(full)
-            for (int i = 0; i < C; ++i)
-                r.c[i] = gradient(h * kChannel[i], d);
+            for (int i = 0; i < C; ++i) r.c[i] = gradient(h * kChannel[i], d);
         } else {
             d[D] = low[D];
             const Channels<T, C> a = sum<D - 1>(d, h ^ hash[D][0]);
             d[D] = high[D];
             const Channels<T, C> b = sum<D - 1>(d, h ^ hash[D][1]);
 #pragma clang loop unroll(full)
-            for (int i = 0; i < C; ++i)
-                r.c[i] = mad(fade[D], b.c[i] - a.c[i], a.c[i]);
+            for (int i = 0; i < C; ++i) r.c[i] = mad(fade[D], b.c[i] - a.c[i], a.c[i]);
         }
         return r;
     }
@@ -99,8 +98,7 @@ template <int N, int C, bool Periodic, class T> AL_INLINE Channels<T, C> noiseSu
     T d[N];
     Channels<T, C> r = cell.template sum<N - 1>(d, vu(0));
 #pragma clang loop unroll(full)
-    for (int i = 0; i < C; ++i)
-        r.c[i] = mad(r.c[i], vf(0.49999f / kNoiseBound[N]), vf(0.5f));
+    for (int i = 0; i < C; ++i) r.c[i] = mad(r.c[i], vf(0.49999f / kNoiseBound[N]), vf(0.5f));
     return r;
 }
 
@@ -205,8 +203,10 @@ std::vector<Shadeop> noiseShadeops() {
 
     op.name = "noise";
     op.signatures = noiseForms("noise", "al_noise", false);
-    op.doc = "Gradient noise of 1 to 4 dimensions in [0,1]: mean near 0.5, exactly 0.5 at integer points, continuous second derivatives, no "
-             "period. The components of a color, point or vector result do not correlate. The result is in [0,1] for points and vectors too. "
+    op.doc = "Gradient noise of 1 to 4 dimensions in [0,1]: mean near 0.5, exactly 0.5 at integer points, continuous second "
+             "derivatives, no "
+             "period. The components of a color, point or vector result do not correlate. The result is in [0,1] for points and "
+             "vectors too. "
              "Beyond 1e9 the argument counts as 1e9. Same bits for any number of lanes.";
     op.source = "seed; range and smoothness (k)";
     op.examples = {{"noise(3)", "0.5"}, {"noise(point(1,2,3))", "0.5"}, {"noise(2, 5)", "0.5"}};
@@ -214,7 +214,8 @@ std::vector<Shadeop> noiseShadeops() {
 
     op.name = "pnoise";
     op.signatures = noiseForms("pnoise", "al_pnoise", true);
-    op.doc = "As noise, repeating with the given period in each coordinate. Periods are rounded to integers, at least 1; 256 and any other "
+    op.doc = "As noise, repeating with the given period in each coordinate. Periods are rounded to integers, at least 1; 256 and "
+             "any other "
              "integer up to 2^22. No derivative with respect to a period.";
     op.examples = {{"pnoise(3, 4)", "0.5"}};
     list.push_back(op);
@@ -233,8 +234,10 @@ std::vector<Shadeop> noiseShadeops() {
     op.lowering = Lowering::Special;
     op.derivative = DerivativeRule::Zero;
     op.pure = false;
-    op.doc = "Uniform in [0,1), components independent. Varying: hashes pixel, sample and call site. Assigned to a uniform variable: hashes "
-             "primitive, call site and seed, so that a value does not depend on how points are batched. al_random_f and al_random_t turn a "
+    op.doc = "Uniform in [0,1), components independent. Varying: hashes pixel, sample and call site. Assigned to a uniform "
+             "variable: hashes "
+             "primitive, call site and seed, so that a value does not depend on how points are batched. al_random_f and "
+             "al_random_t turn a "
              "hash into the value.";
     op.source = "seed";
     op.examples = {{"x >= 0 && x < 1", "1", "float x = random();"}};

@@ -223,9 +223,11 @@ color __asked(shader handle; uniform string which; vector w; float far; color li
     return materialResponse[0];
 }
 )";
-    const struct { const char *name, *result; } kCalls[] = {{"directlighting", "diffuseresult + specularresult"},
-                                                            {"diffuselighting", "diffuseresult"},
-                                                            {"specularlighting", "specularresult"}};
+    const struct {
+        const char *name, *result;
+    } kCalls[] = {{"directlighting", "diffuseresult + specularresult"},
+                  {"diffuselighting", "diffuseresult"},
+                  {"specularlighting", "specularresult"}};
     for (const auto& c : kCalls)
         for (const char* lights : {"", " shader lights[];"}) {
             std::string text = R"(
@@ -289,23 +291,35 @@ std::vector<Shadeop> plausibleShadeops() {
         list.push_back(std::move(op));
         return list.back();
     };
-    Shadeop& emit = add("emit", sigs({{"void emit(color light; pairs)"}}),
-                        "void emit(color light; float specularcontribution; float diffusecontribution; float raytraceshadows; float shadowbias; float adaptiveshadow; "
-                        "float shadowmapbias; float shadowmapbias2; float areanormalized; string environmentmap) {}\n",
-                        "In the method prelighting() of a class of PRMan: the radiance that the primitive sends along its normal, all calls added up. A class "
-                        "that has neither light() nor generateSamples() lights by it, behind AreaLightSource; others light by those methods, and the "
-                        "call does nothing more. The optional parameters are hints for the sampling of another renderer, and change nothing.");
+    Shadeop& emit = add(
+        "emit", sigs({{"void emit(color light; pairs)"}}),
+        "void emit(color light; float specularcontribution; float diffusecontribution; float raytraceshadows; float shadowbias; "
+        "float adaptiveshadow; "
+        "float shadowmapbias; float shadowmapbias2; float areanormalized; string environmentmap) {}\n",
+        "In the method prelighting() of a class of PRMan: the radiance that the primitive sends along its normal, all calls "
+        "added up. A class "
+        "that has neither light() nor generateSamples() lights by it, behind AreaLightSource; others light by those methods, and "
+        "the "
+        "call does nothing more. The optional parameters are hints for the sampling of another renderer, and change nothing.");
     emit.examples = {{"x", "2 2 2", "color x = 2; emit(x);"}};
-    emit.optional = {{kF, "specularcontribution", false, "", "hint"}, {kF, "diffusecontribution", false, "", "hint"},
-                     {kF, "raytraceshadows", false, "", "hint"},      {kF, "shadowbias", false, "", "hint"},
-                     {kF, "adaptiveshadow", false, "", "hint"},       {kF, "shadowmapbias", false, "", "hint"},
-                     {kF, "shadowmapbias2", false, "", "hint"},       {kF, "areanormalized", false, "0", "read over: light is the radiance, not divided by the area"},
+    emit.optional = {{kF, "specularcontribution", false, "", "hint"},
+                     {kF, "diffusecontribution", false, "", "hint"},
+                     {kF, "raytraceshadows", false, "", "hint"},
+                     {kF, "shadowbias", false, "", "hint"},
+                     {kF, "adaptiveshadow", false, "", "hint"},
+                     {kF, "shadowmapbias", false, "", "hint"},
+                     {kF, "shadowmapbias2", false, "", "hint"},
+                     {kF, "areanormalized", false, "0", "read over: light is the radiance, not divided by the area"},
                      {kS, "environmentmap", false, "", "hint"}};
     Shadeop& shadow = add("areashadow", sigs({{"color areashadow(point lit; float samples)"}}), shadowText(),
-                          "The form with samples multiplies the radiance of each sample of a light by what reaches the point in the middle of the region (a filterregion, or the "
-                          "point) from there: by a shadow map, or by rays where the map is \"\" or \"raytrace\". Class lights call it in shadowSamples(), which "
-                          "runs behind their generateSamples(). Under path all lights have traced shadows, so that rays are not sent twice. The other form is that of "
-                          "BMRT's ray server (rayserver.h), in lights: how much of the light that L comes from reaches the point that is lit, traced; 1 is all.");
+                          "The form with samples multiplies the radiance of each sample of a light by what reaches the point in "
+                          "the middle of the region (a filterregion, or the "
+                          "point) from there: by a shadow map, or by rays where the map is \"\" or \"raytrace\". Class lights "
+                          "call it in shadowSamples(), which "
+                          "runs behind their generateSamples(). Under path all lights have traced shadows, so that rays are not "
+                          "sent twice. The other form is that of "
+                          "BMRT's ray server (rayserver.h), in lights: how much of the light that L comes from reaches the point "
+                          "that is lit, traced; 1 is all.");
     shadow.signatures.push_back(ofSamples("void areashadow(string map; vector region; SAMPLES; pairs)"));
     shadow.source = "BMRT, PRMan";
     shadow.examples = {{"areashadow(Ps, 4)", "1 1 1", "", "a light asks and nothing stands between it and Ps"}};
@@ -316,53 +330,73 @@ std::vector<Shadeop> plausibleShadeops() {
                        {kS, "label", false, "\"\"", "of the rays, for rayinfo()"},
                        {kS, "subset", false, "\"\"", "groups of objects that the rays may meet"},
                        {kS, "hitmode", false, "\"default\"", "of the rays: primitive, shader or default"}};
-    const std::vector<OptionalParameter> sky = {{kS, "environmentspace", false, "\"\"", "space of the map, taken as a rotation; none: current"},
-                                                {kS, "distribution", false, "\"\"", "cosine or uniform; all others: in proportion to the light of the map"},
-                                                {kF, "radius", false, "0", "distance of the samples, as far as shadows are looked for; 0: endless"},
-                                                {kC, "scale", false, "1", "multiplies the map"},
-                                                {kS, "integrationdomain", false, "\"\"", "words that begin with \"spher\": all directions; else light comes from the side of n alone"}};
-    add("generateSamplesEnv", {ofSamples("void generateSamplesEnv(string map; point p; normal n; uniform float count; SAMPLES; pairs)")}, skyText(),
-        "Adds samples of an environment to the array: directions, distances, radiances, and lightPdf, the density per steradian with which a direction is drawn. Without "
-        "a map (\"\") the radiance is \"scale\" from everywhere, drawn by the cosine to n. A light that gives the samples out of generateSamples() "
+    const std::vector<OptionalParameter> sky = {
+        {kS, "environmentspace", false, "\"\"", "space of the map, taken as a rotation; none: current"},
+        {kS, "distribution", false, "\"\"", "cosine or uniform; all others: in proportion to the light of the map"},
+        {kF, "radius", false, "0", "distance of the samples, as far as shadows are looked for; 0: endless"},
+        {kC, "scale", false, "1", "multiplies the map"},
+        {kS, "integrationdomain", false, "\"\"",
+         "words that begin with \"spher\": all directions; else light comes from the side of n alone"}};
+    add("generateSamplesEnv",
+        {ofSamples("void generateSamplesEnv(string map; point p; normal n; uniform float count; SAMPLES; pairs)")}, skyText(),
+        "Adds samples of an environment to the array: directions, distances, radiances, and lightPdf, the density per steradian "
+        "with which a direction is drawn. Without "
+        "a map (\"\") the radiance is \"scale\" from everywhere, drawn by the cosine to n. A light that gives the samples out of "
+        "generateSamples() "
         "lights by them without bias.")
-        .examples = {{"arraylength(s) * s[3]->lightPdf / max(0, s[3]->direction . normalize(N))", "1.273239", "__radiancesample s[]; generateSamplesEnv(\"\", P, N, 4, s);"}};
+        .examples = {{"arraylength(s) * s[3]->lightPdf / max(0, s[3]->direction . normalize(N))", "1.273239",
+                      "__radiancesample s[]; generateSamplesEnv(\"\", P, N, 4, s);"}};
     list.back().optional = sky;
     add("evaluateSamplesEnv", {ofSamples("void evaluateSamplesEnv(string map; point p; normal n; SAMPLES; pairs)")}, skyText(),
-        "Radiance, distance and lightPdf of samples whose directions are known: what generateSamplesEnv() would have said of them.")
-        .examples = {{"s[0]->lightPdf", "0.3183099", "__radiancesample s[1]; s[0]->direction = vector(N); evaluateSamplesEnv(\"\", P, N, s);"}};
+        "Radiance, distance and lightPdf of samples whose directions are known: what generateSamplesEnv() would have said of "
+        "them.")
+        .examples = {{"s[0]->lightPdf", "0.3183099",
+                      "__radiancesample s[1]; s[0]->direction = vector(N); evaluateSamplesEnv(\"\", P, N, s);"}};
     list.back().optional = sky;
     add("generateSamplesAS",
-        {ofSamples("void generateSamplesAS(color response; uniform float count; float exponentU, exponentV; vector lobe, tangent, view; SAMPLES)")}, lobeText(),
-        "Adds samples of the glossy lobe of Ashikhmin and Shirley to the array: directions, materialResponse (response times the lobe and the cosine to "
+        {ofSamples("void generateSamplesAS(color response; uniform float count; float exponentU, exponentV; vector lobe, "
+                   "tangent, view; SAMPLES)")},
+        lobeText(),
+        "Adds samples of the glossy lobe of Ashikhmin and Shirley to the array: directions, materialResponse (response times the "
+        "lobe and the cosine to "
         "`lobe`, which is its axis; no Fresnel) and materialPdf, the density per steradian of the facets that mirror view there.")
         .examples = {{"comp(s[0]->materialResponse, 0) / (s[0]->materialPdf * s[0]->direction . N)", "2",
                       "__radiancesample s[]; generateSamplesAS(2, 1, 1000, 1000, vector(N), dPdu, vector(N), s);"}};
     add("evaluateSamplesAS",
-        {ofSamples("void evaluateSamplesAS(color response; float exponentU, exponentV; vector lobe, tangent, view; SAMPLES)")}, lobeText(),
-        "materialResponse and materialPdf of samples whose directions are known, as generateSamplesAS() gives them.")
-        .examples = {{"s[0]->materialPdf", "0.4376761",
-                      "__radiancesample s[1]; s[0]->direction = vector(N); evaluateSamplesAS(1, 10, 10, vector(N), dPdu, vector(N), s);"}};
-    const std::vector<OptionalParameter> results = {{kC, "diffuseresult", true, "", "light times the diffuse material"},
-                                                    {kC, "specularresult", true, "", "light times the specular material"},
-                                                    {kC, "unshadoweddiffuseresult", true, "", "the same, with the shadows that the lights have"},
-                                                    {kC, "unshadowedspecularresult", true, "", "the same, with the shadows that the lights have"},
-                                                    {kF, "mis", false, "1", "read over: lights here are sampled once for all lobes"},
-                                                    {kS, "integrationdomain", false, "\"\"", "words that begin with \"spher\": lights from all sides; else from that of the normal"}};
-    const struct { const char *name, *doc; } kSums[] = {
-        {"directlighting", "Light of the lights, each times PI and what the method evaluateSamples(\"diffuse\", samples) and then (\"specular\", samples) of the shader object says of its direction. `this`, or "
-                           "any handle. lights: those of the list only, else all."},
-        {"diffuselighting", "The diffuse part of directlighting()."},
-        {"specularlighting", "The specular part of directlighting()."}};
+        {ofSamples("void evaluateSamplesAS(color response; float exponentU, exponentV; vector lobe, tangent, view; SAMPLES)")},
+        lobeText(), "materialResponse and materialPdf of samples whose directions are known, as generateSamplesAS() gives them.")
+        .examples = {
+        {"s[0]->materialPdf", "0.4376761",
+         "__radiancesample s[1]; s[0]->direction = vector(N); evaluateSamplesAS(1, 10, 10, vector(N), dPdu, vector(N), s);"}};
+    const std::vector<OptionalParameter> results = {
+        {kC, "diffuseresult", true, "", "light times the diffuse material"},
+        {kC, "specularresult", true, "", "light times the specular material"},
+        {kC, "unshadoweddiffuseresult", true, "", "the same, with the shadows that the lights have"},
+        {kC, "unshadowedspecularresult", true, "", "the same, with the shadows that the lights have"},
+        {kF, "mis", false, "1", "read over: lights here are sampled once for all lobes"},
+        {kS, "integrationdomain", false, "\"\"",
+         "words that begin with \"spher\": lights from all sides; else from that of the normal"}};
+    const struct {
+        const char *name, *doc;
+    } kSums[] = {{"directlighting",
+                  "Light of the lights, each times PI and what the method evaluateSamples(\"diffuse\", samples) and then "
+                  "(\"specular\", samples) of the shader object says of its direction. `this`, or "
+                  "any handle. lights: those of the list only, else all."},
+                 {"diffuselighting", "The diffuse part of directlighting()."},
+                 {"specularlighting", "The specular part of directlighting()."}};
     for (const auto& sum : kSums) {
         const std::string n = sum.name;
-        Shadeop& op = add(sum.name, sigs({{("color " + n + "(shader handle; pairs)").c_str()}, {("color " + n + "(shader handle; shader lights[]; pairs)").c_str()}}),
+        Shadeop& op = add(sum.name,
+                          sigs({{("color " + n + "(shader handle; pairs)").c_str()},
+                                {("color " + n + "(shader handle; shader lights[]; pairs)").c_str()}}),
                           lightingText(), sum.doc);
         op.contexts = kSurface;
         op.optional = results;
         op.examples = {{n + "(getshader(\"none\"))", "0 0 0"}};
     }
     Shadeop& specular = add("indirectspecular", sigs({{"color indirectspecular(shader handle; pairs)"}}), kSpecularText,
-                            "Light along the directions that the method generateSamples(\"specular\", samples) of the shader object gives, by trace(): the mean of materialResponse "
+                            "Light along the directions that the method generateSamples(\"specular\", samples) of the shader "
+                            "object gives, by trace(): the mean of materialResponse "
                             "over materialPdf times what arrives from there. `this`, or any handle.");
     specular.contexts = kSurface;
     specular.optional = {{kF, "bias", false, "-1", "offset of the start of the rays"},

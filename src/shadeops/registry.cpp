@@ -16,8 +16,7 @@ std::vector<std::string> words(std::string_view text) {
             ++i;
         } else if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') {
             size_t end = i;
-            while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_'))
-                ++end;
+            while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_')) ++end;
             list.emplace_back(text.substr(i, end - i));
             i = end;
         } else if (text.substr(i, 3) == "...") {
@@ -32,9 +31,12 @@ std::vector<std::string> words(std::string_view text) {
 }
 
 bool baseOf(const std::string& word, Base& base) {
-    static constexpr struct { const char* name; Base base; } kNames[] = {
-        {"void", Base::Void},     {"any", Base::Void},      {"shader", Base::String},   {"float", Base::Float},   {"color", Base::Color},
-        {"point", Base::Point},   {"vector", Base::Vector}, {"normal", Base::Normal}, {"matrix", Base::Matrix}, {"string", Base::String}};
+    static constexpr struct {
+        const char* name;
+        Base base;
+    } kNames[] = {{"void", Base::Void},     {"any", Base::Void},     {"shader", Base::String}, {"float", Base::Float},
+                  {"color", Base::Color},   {"point", Base::Point},  {"vector", Base::Vector}, {"normal", Base::Normal},
+                  {"matrix", Base::Matrix}, {"string", Base::String}};
     for (const auto& n : kNames)
         if (word == n.name) {
             base = n.base;
@@ -59,8 +61,8 @@ void readArray(const std::vector<std::string>& list, size_t& i, Type& type) {
 std::vector<Shadeop> buildAll() {
     std::vector<Shadeop> all;
     for (auto section : {mathematicsShadeops, noiseShadeops, geometryShadeops, matrixShadeops, colourShadeops, splineShadeops,
-                         derivativeShadeops, lightingShadeops, bsdfShadeops, messageShadeops, stringShadeops, arrayShadeops, textureShadeops,
-                         raytracingShadeops, bmrtShadeops, publishedShadeops, plausibleShadeops})
+                         derivativeShadeops, lightingShadeops, bsdfShadeops, messageShadeops, stringShadeops, arrayShadeops,
+                         textureShadeops, raytracingShadeops, bmrtShadeops, publishedShadeops, plausibleShadeops})
         for (Shadeop& op : section()) {
             // One name, one object: rotate() of points and rotate() of matrices stand in two sections.
             auto same = std::find_if(all.begin(), all.end(), [&](const Shadeop& o) { return o.name == op.name; });
@@ -84,13 +86,10 @@ Signature parseSignature(std::string_view text, std::string symbol) {
     s.symbol = std::move(symbol);
     const std::vector<std::string> list = words(text);
     size_t i = 0;
-    if (i < list.size() && list[i] == "uniform")
-        ++i;
-    if (i < list.size() && baseOf(list[i], s.result.base))
-        ++i;
+    if (i < list.size() && list[i] == "uniform") ++i;
+    if (i < list.size() && baseOf(list[i], s.result.base)) ++i;
     readArray(list, i, s.result);
-    while (i < list.size() && list[i] != "(")
-        ++i;
+    while (i < list.size() && list[i] != "(") ++i;
     ++i;
     Parameter p; // type and storage carry over to the next name: "float a, b"
     const auto isStorage = [](const std::string& w) { return w == "output" || w == "uniform" || w == "varying"; };
@@ -105,14 +104,12 @@ Signature parseSignature(std::string_view text, std::string symbol) {
             s.pairs = true;
             ++i;
         } else if (isStorage(list[i])) {
-            if (!opened)
-                p = Parameter{};
+            if (!opened) p = Parameter{};
             p.output |= list[i] == "output";
             p.uniform |= list[i] == "uniform";
             ++i;
         } else if (Base base; baseOf(list[i], base)) {
-            if (!opened)
-                p = Parameter{};
+            if (!opened) p = Parameter{};
             p.type = Type{base, 0};
             ++i;
             readArray(list, i, p.type);
@@ -128,8 +125,7 @@ Signature parseSignature(std::string_view text, std::string symbol) {
 
 std::vector<Signature> sigs(std::initializer_list<SignatureText> texts) {
     std::vector<Signature> list;
-    for (const SignatureText& t : texts)
-        list.push_back(parseSignature(t.text, t.symbol));
+    for (const SignatureText& t : texts) list.push_back(parseSignature(t.text, t.symbol));
     return list;
 }
 
@@ -137,8 +133,7 @@ std::vector<Signature> each(const std::string& types, const std::string& pattern
     std::vector<Signature> list;
     for (const std::string& type : words(types)) {
         std::string text;
-        for (const char c : pattern)
-            text += c == '$' ? type : std::string(1, c);
+        for (const char c : pattern) text += c == '$' ? type : std::string(1, c);
         list.push_back(parseSignature(text, symbol.empty() ? "" : symbol + (type == "float" ? "_f" : "_t")));
     }
     return list;

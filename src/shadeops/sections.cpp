@@ -10,8 +10,7 @@ namespace {
 const lanes4::RuntimeEntry* findEntry(std::string_view symbol) {
     static const auto table = [] {
         std::map<std::string_view, const lanes4::RuntimeEntry*> t;
-        for (const auto& e : lanes4::kEntries)
-            t[e.symbol] = &e;
+        for (const auto& e : lanes4::kEntries) t[e.symbol] = &e;
         return t;
     }();
     const auto it = table.find(symbol);
@@ -26,8 +25,7 @@ RuntimeShape runtimeShape(std::string_view symbol) {
 
 std::vector<std::string_view> runtimeSymbols() {
     std::vector<std::string_view> list;
-    for (const auto& e : lanes4::kEntries)
-        list.push_back(e.symbol);
+    for (const auto& e : lanes4::kEntries) list.push_back(e.symbol);
     return list;
 }
 
@@ -35,17 +33,13 @@ bool evaluateRuntimeJet(std::string_view symbol, int order, const float* in, int
     static constexpr int kParts[] = {1, 3, 6};
     static constexpr int kMost = 64 * 6; // more components than any symbol has
     const auto* entry = findEntry(symbol);
-    if (!entry || order < 0 || order > 2)
-        return false;
+    if (!entry || order < 0 || order > 2) return false;
     const int parts = kParts[order];
-    if (inCount != entry->in * parts || outCount != entry->out * parts || inCount > kMost || outCount > kMost)
-        return false;
+    if (inCount != entry->in * parts || outCount != entry->out * parts || inCount > kMost || outCount > kMost) return false;
     lanes4::vf a[kMost], r[kMost];
-    for (int i = 0; i < inCount; ++i)
-        a[i] = lanes4::vf(in[i]);
+    for (int i = 0; i < inCount; ++i) a[i] = lanes4::vf(in[i]);
     entry->order[order](a, r);
-    for (int i = 0; i < outCount; ++i)
-        out[i] = r[i][0];
+    for (int i = 0; i < outCount; ++i) out[i] = r[i][0];
     return true;
 }
 

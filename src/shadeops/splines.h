@@ -25,7 +25,8 @@ struct CatmullRom {
 };
 struct BSpline {
     template <class T> static AL_MEMBER Cubic<T> of(const T& p, const T& q, const T& r, const T& s) {
-        return {(p + q * vf(4) + r) * vf(1.0f / 6), (r - p) * vf(0.5f), (p + r) * vf(0.5f) - q, ((s - p) + (q - r) * vf(3)) * vf(1.0f / 6)};
+        return {(p + q * vf(4) + r) * vf(1.0f / 6), (r - p) * vf(0.5f), (p + r) * vf(0.5f) - q,
+                ((s - p) + (q - r) * vf(3)) * vf(1.0f / 6)};
     }
 };
 struct Bezier {
@@ -41,7 +42,9 @@ struct Hermite {
 };
 /// Between the second and the third point.
 struct Linear {
-    template <class T> static AL_MEMBER Cubic<T> of(const T&, const T& q, const T& r, const T&) { return {q, r - q, T(vf(0)), T(vf(0))}; }
+    template <class T> static AL_MEMBER Cubic<T> of(const T&, const T& q, const T& r, const T&) {
+        return {q, r - q, T(vf(0)), T(vf(0))};
+    }
 };
 
 template <class Basis, class T> AL_INLINE T spline1(const T& t, const T& p, const T& q, const T& r, const T& s) {
@@ -52,7 +55,8 @@ AL_INLINE Triple<T> spline3(const T& t, const Triple<T>& p, const Triple<T>& q, 
     return {spline1<Basis>(t, p.x, q.x, r.x, s.x), spline1<Basis>(t, p.y, q.y, r.y, s.y), spline1<Basis>(t, p.z, q.z, r.z, s.z)};
 }
 
-/// t in [0,1] where the segment takes a value: 24 bisections find it, then two Newton steps carry the derivatives (implicit function).
+/// t in [0,1] where the segment takes a value: 24 bisections find it, then two Newton steps carry the derivatives (implicit
+/// function).
 template <class Basis, class T> AL_INLINE T solve1(const T& target, const T& p, const T& q, const T& r, const T& s) {
     const Cubic<T> k = Basis::of(p, q, r, s);
     const Cubic<vf> plain{value(k.a), value(k.b), value(k.c), value(k.d)};
@@ -78,7 +82,8 @@ template <class Basis, class T> AL_INLINE T solve1(const T& target, const T& p, 
         return spline1<Basis>(t, p, q, r, s);                                                                                    \
     }                                                                                                                            \
     template <class T>                                                                                                           \
-    AL_INLINE Triple<T> opSpline3_##name(const T& t, const Triple<T>& p, const Triple<T>& q, const Triple<T>& r, const Triple<T>& s) { \
+    AL_INLINE Triple<T> opSpline3_##name(const T& t, const Triple<T>& p, const Triple<T>& q, const Triple<T>& r,                 \
+                                         const Triple<T>& s) {                                                                   \
         return spline3<Basis>(t, p, q, r, s);                                                                                    \
     }                                                                                                                            \
     template <class T> AL_INLINE T opSolve_##name(const T& v, const T& p, const T& q, const T& r, const T& s) {                  \
@@ -114,15 +119,21 @@ std::vector<Shadeop> splineShadeops() {
     }
     op.lowering = Lowering::Special;
     op.derivative = DerivativeRule::Inherent;
-    op.doc =
-        "Point on a curve through or near control points; v in [0,1], outside it is clamped. Bases: catmull-rom (default), bezier, bspline, "
-        "hermite, linear; an unknown name means linear. Segment s uses the points p[s step .. s step + 3], step = 1 for catmull-rom, bspline "
-        "and linear (which ignores the first and the last), 3 for bezier, 2 for hermite (point, tangent, point, tangent); the number of segments "
-        "is (n - 4) / step + 1. al_splinesegment(v, segments) gives s and the local parameter t; al_spline_<basis>_f and _t(t, p0, p1, p2, p3) "
-        "evaluate, basis spelled catmullrom, bezier, bspline, hermite, linear. The prefix \"solve\" (floats only) inverts: the v for which the spline "
-        "has the given value, for control points that rise or fall; the first such segment; outside the range the nearer end, 0 or 1. A segment "
-        "contains the value when it lies between the segment's values at t = 0 and t = 1; al_splinesolve_<basis>(value, p0, p1, p2, p3) then "
-        "gives t, and v = (s + t) / segments.";
+    op.doc = "Point on a curve through or near control points; v in [0,1], outside it is clamped. Bases: catmull-rom (default), "
+             "bezier, bspline, "
+             "hermite, linear; an unknown name means linear. Segment s uses the points p[s step .. s step + 3], step = 1 for "
+             "catmull-rom, bspline "
+             "and linear (which ignores the first and the last), 3 for bezier, 2 for hermite (point, tangent, point, tangent); "
+             "the number of segments "
+             "is (n - 4) / step + 1. al_splinesegment(v, segments) gives s and the local parameter t; al_spline_<basis>_f and "
+             "_t(t, p0, p1, p2, p3) "
+             "evaluate, basis spelled catmullrom, bezier, bspline, hermite, linear. The prefix \"solve\" (floats only) inverts: "
+             "the v for which the spline "
+             "has the given value, for control points that rise or fall; the first such segment; outside the range the nearer "
+             "end, 0 or 1. A segment "
+             "contains the value when it lies between the segment's values at t = 0 and t = 1; al_splinesolve_<basis>(value, p0, "
+             "p1, p2, p3) then "
+             "gives t, and v = (s + t) / segments.";
     op.source = "seed; point counts (k)";
     op.examples = {{"spline(0.5, 0, 0, 1, 1)", "0.5"}, {"spline(\"linear\", 0.25, 9, 0, 1, 9)", "0.25"}};
     return {op};

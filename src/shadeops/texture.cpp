@@ -37,13 +37,20 @@ std::vector<OptionalParameter> filterParameters() {
 std::vector<OptionalParameter> shadowParameters() {
     std::vector<OptionalParameter> list = filterParameters();
     for (OptionalParameter& o : list) {
-        if (o.name == "samples") o.defaultText = "Option \"shadow\" \"sample\", else 16", o.doc = "comparisons with the map, a square number of them, at most 1024; of rays: how many, 4 where it is missing";
-        if (o.name == "bias") o.doc = "how far before the map's surfaces a point is lit, world units; negative: Attribute or Option \"shadow\" \"bias\", else 0.225";
+        if (o.name == "samples")
+            o.defaultText = "Option \"shadow\" \"sample\", else 16",
+            o.doc = "comparisons with the map, a square number of them, at most 1024; of rays: how many, 4 where it is missing";
+        if (o.name == "bias")
+            o.doc = "how far before the map's surfaces a point is lit, world units; negative: Attribute or Option \"shadow\" "
+                    "\"bias\", else 0.225";
     }
-    list.push_back({kF, "bias0", false, "-1", "with bias1: the comparisons spread their bias between the two; negative: those of the attribute or option"});
+    list.push_back({kF, "bias0", false, "-1",
+                    "with bias1: the comparisons spread their bias between the two; negative: those of the attribute or option"});
     list.push_back({kF, "bias1", false, "-1", "see bias0"});
     for (const char* name : {"source", "source2", "source3", "source4"})
-        list.push_back({kP, name, false, "none", "shadow of an area light about the eye of the map: its corners, four points behind \"source\", in order around it"});
+        list.push_back(
+            {kP, name, false, "none",
+             "shadow of an area light about the eye of the map: its corners, four points behind \"source\", in order around it"});
     list.push_back({kF, "gapbias", false, "0", "of a source: how thick the map's surfaces are at least, world units"});
     for (const char* name : {"resbias", "noiserobust"}) list.push_back({kF, name, false, "0", "accepted and ignored"});
     return list;
@@ -84,30 +91,43 @@ std::vector<Shadeop> textureShadeops() {
     };
     const std::string quad = "float s1, float t1, float s2, float t2, float s3, float t3, float s4, float t4; pairs)";
     add("texture",
-        each("float color", "$ texture(string name; pairs)") + each("float color", "$ texture(string name; float s, float t; pairs)") +
+        each("float color", "$ texture(string name; pairs)") +
+            each("float color", "$ texture(string name; float s, float t; pairs)") +
             each("float color", "$ texture(string name; " + quad),
         Lowering::Service,
-        "Filtered lookup at s, t (default: those of the sample), or over an explicit quadrilateral; the same point four times: no filter. Float: one "
-        "channel, color: three, from the channel in brackets. Linear colours. Derivatives (calculatenormal(P + N * texture(...)), Du(texture(...))) go through: the "
-        "slopes of the map at the level that is looked up, differences over a texel of it, times the derivatives of s and t, or of the mean of four "
+        "Filtered lookup at s, t (default: those of the sample), or over an explicit quadrilateral; the same point four times: "
+        "no filter. Float: one "
+        "channel, color: three, from the channel in brackets. Linear colours. Derivatives (calculatenormal(P + N * "
+        "texture(...)), Du(texture(...))) go through: the "
+        "slopes of the map at the level that is looked up, differences over a texel of it, times the derivatives of s and t, or "
+        "of the mean of four "
         "corners. So bump maps tilt normals, smoothly across texels, and fade with distance.")
         .derivative = DerivativeRule::Gradient;
     list.back().examples = {{"color texture(\"wood.tex\", s, t)", "0.5 0.3 0.1", "", "the map has this colour everywhere"}};
     add("environment",
         each("float color", "$ environment(string name; vector v; pairs)") +
             each("float color", "$ environment(string name; vector v1, vector v2, vector v3, vector v4; pairs)"),
-        Lowering::Service, "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" sends rays from P, as trace() does: \"samples\" of them, with its other "
-        "parameters; \"blur\" is the part of all directions over which they spread (half angle blur * PI), and four vectors span a cone. Filters are those of maps. "
+        Lowering::Service,
+        "Lookup of an environment map (latitude-longitude, or cube faces) in direction v. The name \"raytrace\" sends rays from "
+        "P, as trace() does: \"samples\" of them, with its other "
+        "parameters; \"blur\" is the part of all directions over which they spread (half angle blur * PI), and four vectors span "
+        "a cone. Filters are those of maps. "
         "Derivatives go through, as for texture().")
         .derivative = DerivativeRule::Gradient;
     list.back().optional = environmentParameters();
     list.back().examples = {{"color environment(\"sky.env\", N)", "0.5 0.7 1", "", "the map has this colour everywhere"}};
-    Shadeop& shadow = add("shadow",
-        each("float color", "$ shadow(string name; point p; pairs)") +
-            each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
-        Lowering::Service, "The part of p's surroundings, 0 to 1, that a depth map puts in shadow: its comparisons with the map, not its depths, are filtered over the footprint of p, or over that "
-        "of four points. Of a deep map (Display \"deepshad\"), what its surfaces take of each colour; the float form is their mean. 0 where the map does not look. In light shaders under path maps are not read: lights trace their shadows there. \"raytrace\" sends the rays of transmission() from p to the light: "
-        "where L comes from, in a light's own shader or in illuminance(); far away in solar(). The float form of it is the mean of the channels.");
+    Shadeop& shadow =
+        add("shadow",
+            each("float color", "$ shadow(string name; point p; pairs)") +
+                each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
+            Lowering::Service,
+            "The part of p's surroundings, 0 to 1, that a depth map puts in shadow: its comparisons with the map, not its "
+            "depths, are filtered over the footprint of p, or over that "
+            "of four points. Of a deep map (Display \"deepshad\"), what its surfaces take of each colour; the float form is "
+            "their mean. 0 where the map does not look. In light shaders under path maps are not read: lights trace their "
+            "shadows there. \"raytrace\" sends the rays of transmission() from p to the light: "
+            "where L comes from, in a light's own shader or in illuminance(); far away in solar(). The float form of it is the "
+            "mean of the channels.");
     list.back().examples = {{"shadow(\"light.shd\", P)", "0"}};
     shadow.contexts = kSurface | kVolume | kLight;
     shadow.optional = shadowParameters();
@@ -116,44 +136,59 @@ std::vector<Shadeop> textureShadeops() {
             each("float color", "$ ptexture(string name; uniform float channel; float face, float s, float t; pairs)") +
             each("float color", "$ ptexture(string name; uniform float channel; float face; " + quad),
         Lowering::Service,
-        "Lookup in a Ptex file, which has a picture for each face of a mesh, at s, t of a face (0 to 1 from its first corner to the second and to the last), or over a quadrilateral. "
-        "Without coordinates those of the face at the hit: of triangles and quadrilaterals of polygon meshes, of subdivision surfaces u and v; of other faces s and t. Filters go across the edges of "
-        "faces, from picture to picture. Float: the channel of this number, color: three from it on. Values are linear and multiplied with alpha. A shader parameter \"float __faceindex\" that the primitive "
+        "Lookup in a Ptex file, which has a picture for each face of a mesh, at s, t of a face (0 to 1 from its first corner to "
+        "the second and to the last), or over a quadrilateral. "
+        "Without coordinates those of the face at the hit: of triangles and quadrilaterals of polygon meshes, of subdivision "
+        "surfaces u and v; of other faces s and t. Filters go across the edges of "
+        "faces, from picture to picture. Float: the channel of this number, color: three from it on. Values are linear and "
+        "multiplied with alpha. A shader parameter \"float __faceindex\" that the primitive "
         "has no variable for gets the number of the face.");
     for (OptionalParameter& o : list.back().optional)
         if (o.name == "filter") o.doc = "gaussian, triangle, box or point";
     list.back().examples = {{"ptexture(\"none.ptx\", 0, 0)", "0"}};
     Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Service,
-                        "Writes (s, t, value) to a file, which maketx or MakeTexture turn into a texture. Readable text, one line a point: s, t and the numbers of value; "
-                        "binary when the name ends with \"&binary\", which is no part of the name. Before the frame is rendered, each primitive whose surface shader bakes is shaded once at "
-                        "every corner of micropolygons of the size that ShadingRate says, seen or not, in their order; under path as often as a pixel has samples, and the mean is written. "
-                        "Curves, points and other primitives without a grid are baked where camera rays meet them. docs/pointclouds.md has the format.");
+                        "Writes (s, t, value) to a file, which maketx or MakeTexture turn into a texture. Readable text, one "
+                        "line a point: s, t and the numbers of value; "
+                        "binary when the name ends with \"&binary\", which is no part of the name. Before the frame is rendered, "
+                        "each primitive whose surface shader bakes is shaded once at "
+                        "every corner of micropolygons of the size that ShadingRate says, seen or not, in their order; under "
+                        "path as often as a pixel has samples, and the mean is written. "
+                        "Curves, points and other primitives without a grid are baked where camera rays meet them. "
+                        "docs/pointclouds.md has the format.");
     list.back().examples = {{"x", "7", "float x = 7; bake(\"none.bake\", s, t, x);"}};
     bake.pure = false;
     bake.optional.clear();
     bake.bias = Bias::Unbiased;
     bake.biasReason.clear();
     bake.contexts = kSurface | kDisplacement | kVolume;
-    Shadeop& bake3d = add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Service,
-                          "Writes p, n, a radius and values, given as pairs, to a point cloud: .ply where the name says so, else of docs/pointclouds.md. 1 on success, 0 without a scene. The points are "
-                          "those of bake(). Points, vectors, normals and matrices among the values go to the space of the file, too. \"_area\" is the part of the surface that the point "
-                          "stands for (missing: of its micropolygon), \"_radiosity\" the light that it sends. \"channels\" is not read. Calls in lights, volumes and displacement write nothing.");
+    Shadeop& bake3d =
+        add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Service,
+            "Writes p, n, a radius and values, given as pairs, to a point cloud: .ply where the name says so, else of "
+            "docs/pointclouds.md. 1 on success, 0 without a scene. The points are "
+            "those of bake(). Points, vectors, normals and matrices among the values go to the space of the file, too. \"_area\" "
+            "is the part of the surface that the point "
+            "stands for (missing: of its micropolygon), \"_radiosity\" the light that it sends. \"channels\" is not read. Calls "
+            "in lights, volumes and displacement write nothing.");
     list.back().examples = {{"bake3d(\"light.ptc\", \"\", P, N, \"light\", Cs)", "0"}};
     bake3d.pure = false;
     bake3d.bias = Bias::Unbiased;
     bake3d.biasReason.clear();
     bake3d.contexts = kAnyContext; // 3Delight bakes irradiance from lights
-    bake3d.optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
-                       {kF, "radius", false, "from the grid", "radius of the disk, or of the ball where n is 0; in the space of the file"},
-                       {kF, "radiusscale", false, "1", "multiplies the radius"},
-                       {kF, "interpolate", false, "0", "1 writes the middles of micropolygons instead of their corners"}};
+    bake3d.optional = {
+        {kS, "coordsystem", false, "\"world\"", "space of the file"},
+        {kF, "radius", false, "from the grid", "radius of the disk, or of the ball where n is 0; in the space of the file"},
+        {kF, "radiusscale", false, "1", "multiplies the radius"},
+        {kF, "interpolate", false, "0", "1 writes the middles of micropolygons instead of their corners"}};
     add("texture3d", sigs({{"float texture3d(string file; point p; normal n; pairs)"}}), Lowering::Service,
-        "Reads values, named as output pairs, from a point cloud, brick map or volume (docs/maps.md): means of the points about p whose normals fit n (0: all do). 1 on success; 0 where "
+        "Reads values, named as output pairs, from a point cloud, brick map or volume (docs/maps.md): means of the points about "
+        "p whose normals fit n (0: all do). 1 on success; 0 where "
         "there is nothing, and the variables stay as they are. What the file has no channel for is 0, and said once.")
-        .optional = {{kS, "coordsystem", false, "\"world\"", "space of the file"},
-                     {kF, "filterradius", false, "half the step of p from sample to sample", "radius of the filter; in the space of the file"},
-                     {kF, "filterscale", false, "1", "multiplies the radius"},
-                     {kF, "maxdepth", false, "deepest", "the finest level that is read, 0 the coarsest: each halves the cells of the cube about the points"}};
+        .optional = {
+        {kS, "coordsystem", false, "\"world\"", "space of the file"},
+        {kF, "filterradius", false, "half the step of p from sample to sample", "radius of the filter; in the space of the file"},
+        {kF, "filterscale", false, "1", "multiplies the radius"},
+        {kF, "maxdepth", false, "deepest",
+         "the finest level that is read, 0 the coarsest: each halves the cells of the cube about the points"}};
     list.back().examples = {{"texture3d(\"none.ptc\", P, N, \"light\", x)", "0", "float x = 3;"}};
     return list;
 }

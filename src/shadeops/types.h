@@ -25,7 +25,12 @@ std::string toString(Type);
 
 /// Kinds of shader, as bits: the contexts in which a construct is legal.
 enum Context : uint32_t {
-    kSurface = 1, kDisplacement = 2, kLight = 4, kVolume = 8, kImager = 16, kTransformation = 32,
+    kSurface = 1,
+    kDisplacement = 2,
+    kLight = 4,
+    kVolume = 8,
+    kImager = 16,
+    kTransformation = 32,
     kAnyContext = 63
 };
 

@@ -15,7 +15,10 @@ constexpr float kConstants[3] = {0, 1, 3};
 
 // One line per predefined variable (rsl.md section 8): where its parts {v, du, dv, duu, duv, dvv} lie in a ShadePoint. Second
 // derivatives that the geometry does not know are zero.
-struct Variable { const char* name; int16_t part[6]; };
+struct Variable {
+    const char* name;
+    int16_t part[6];
+};
 #define AT(member) int16_t(offsetof(ShadePoint, member))
 const Variable kVariables[] = {
     {"P", {AT(P), AT(surface.dPdu), AT(surface.dPdv), AT(surface.Puu), AT(surface.Puv), AT(surface.Pvv)}},
@@ -157,7 +160,8 @@ int BatchPlan::output(const rsl::OutputName& name) const {
 int BatchPlan::output(std::string_view name) const {
     for (size_t i = 0; i < outputs_.size(); ++i) {
         const rsl::OutputName& o = outputs_[i];
-        if (o.what == rsl::OutputName::What::Value && !o.parameter && o.element < 0 && o.block == 0 && o.name == name) return int(i);
+        if (o.what == rsl::OutputName::What::Value && !o.parameter && o.element < 0 && o.block == 0 && o.name == name)
+            return int(i);
     }
     return -1;
 }
@@ -235,7 +239,8 @@ void Batch::tell(const Batch& displaced) {
             const int o = displaced.output(h.output);
             for (int c = 0; o >= 0 && c < s.components; ++c)
                 std::memcpy(row + size_t((h.element * s.components + c) * s.parts + h.part) * stride,
-                            displaced.out_[size_t(o)] + size_t(c) * size_t(displaced.call_.stride), size_t(call_.n) * sizeof(float));
+                            displaced.out_[size_t(o)] + size_t(c) * size_t(displaced.call_.stride),
+                            size_t(call_.n) * sizeof(float));
         }
         pad(s, row);
     }
@@ -254,7 +259,8 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
             for (size_t c = 0; c < size_t(s.components); ++c)
                 for (size_t p = 0; p < parts; ++p, row += next) {
                     if (s.offset[p] == kLitNormal) {
-                        for (size_t i = first; i < to; ++i) row[i] = points[i].lit ? points[i].lit->Ng[int(c)] : points[i].Ns[int(c)];
+                        for (size_t i = first; i < to; ++i)
+                            row[i] = points[i].lit ? points[i].lit->Ng[int(c)] : points[i].Ns[int(c)];
                         continue;
                     }
                     if (s.offset[p] < 0) {
@@ -268,13 +274,16 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
     }
 }
 
-/// Whether a variable of a primitive holds what a parameter is: as many numbers, or elements of the same kind (arrays of open length).
+/// Whether a variable of a primitive holds what a parameter is: as many numbers, or elements of the same kind (arrays of open
+/// length).
 static bool fits(const geometry::PrimVar& v, int components, int elements) {
     if (v.type == scene::Type::String) return false;
-    return v.outWidth() == components * elements || (v.arrayLength > 0 && elements > 1 && v.outWidth() == components * v.elements());
+    return v.outWidth() == components * elements ||
+           (v.arrayLength > 0 && elements > 1 && v.outWidth() == components * v.elements());
 }
 
-void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views, const SpaceResolver& spaces) {
+void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views,
+                 const SpaceResolver& spaces) {
     using From = BatchPlan::From;
     int n = int(points.size()), np = s.parts, comps = s.components;
     size_t stride = size_t(call_.stride);
@@ -283,7 +292,8 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
     };
     int count = s.scalar ? 1 : n;
     switch (s.from) {
-    case From::Variable: return; // fillVariables
+    case From::Variable:
+        return; // fillVariables
     case From::Cs:
     case From::Os: {
         const char* name = s.from == From::Cs ? "Cs" : "Os";
@@ -329,7 +339,10 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
             }
             Matrix m;
             auto own = [&](const std::string& space, Matrix& toCurrent) {
-                if (space == "object" && points[i].shape) { toCurrent = points[i].shape->toCameraAt(points[i].shutter); return true; }
+                if (space == "object" && points[i].shape) {
+                    toCurrent = points[i].shape->toCameraAt(points[i].shutter);
+                    return true;
+                }
                 if (space == "shader" && views[i].shaderToCurrent) {
                     toCurrent = views[i].moving ? views[i].moving->at(points[i].shutter) : *views[i].shaderToCurrent;
                     return true;
@@ -343,9 +356,12 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
             for (int c = 0; c < 16; ++c) at(c, 0, i) = float(m.m[c / 4][c % 4]);
         }
         return;
-    case From::Parameter: return fillParameter(s, row, points, views);
+    case From::Parameter:
+        return fillParameter(s, row, points, views);
     case From::Told: // tell()
-    case From::Nothing: std::fill_n(row, s.rows * stride, 0.f); return;
+    case From::Nothing:
+        std::fill_n(row, s.rows * stride, 0.f);
+        return;
     }
 }
 
@@ -358,7 +374,8 @@ ParameterRows::ParameterRows(const BatchPlan& plan, const ParameterBlock& block)
     }
 }
 
-/// By view, the numbers of a parameter, as many as it has components; absent ones are zero. The pointers are good until the next call.
+/// By view, the numbers of a parameter, as many as it has components; absent ones are zero. The pointers are good until the next
+/// call.
 void Batch::findParameter(const BatchPlan::Source& s, const Views& views) {
     const size_t size = size_t(s.components) * s.elements;
     numbers_.clear();
@@ -370,9 +387,11 @@ void Batch::findParameter(const BatchPlan::Source& s, const Views& views) {
         }
         numbers_.push_back(nullptr);
         found_.resize(views.views.size() * size, 0.f);
-        const auto at = v.parameters ? v.parameters->numbers.find(s.name.name) : std::map<std::string, std::vector<float>>::const_iterator{};
+        const auto at =
+            v.parameters ? v.parameters->numbers.find(s.name.name) : std::map<std::string, std::vector<float>>::const_iterator{};
         if (v.parameters && at != v.parameters->numbers.end())
-            std::copy_n(at->second.begin(), std::min(size, at->second.size()), found_.begin() + long((numbers_.size() - 1) * size));
+            std::copy_n(at->second.begin(), std::min(size, at->second.size()),
+                        found_.begin() + long((numbers_.size() - 1) * size));
     }
     for (size_t k = 0; k < numbers_.size() && !found_.empty(); ++k)
         if (!numbers_[k]) numbers_[k] = found_.data() + k * size;
@@ -381,7 +400,8 @@ void Batch::findParameter(const BatchPlan::Source& s, const Views& views) {
 void Batch::fillParameter(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views) {
     const int n = int(points.size()), np = s.parts, comps = s.components, count = s.scalar ? 1 : n;
     const size_t stride = size_t(call_.stride);
-    const bool moving = std::any_of(views.views.begin(), views.views.end(), [](const InstanceView& v) { return v.moving != nullptr; });
+    const bool moving =
+        std::any_of(views.views.begin(), views.views.end(), [](const InstanceView& v) { return v.moving != nullptr; });
     findParameter(s, views);
     bool overridden = false; // by a primitive variable of some shape
     const geometry::Shape* last = nullptr;
@@ -404,7 +424,8 @@ void Batch::fillParameter(const BatchPlan::Source& s, float* row, std::span<cons
             return std::bit_cast<uint32_t>(v) == std::bit_cast<uint32_t>(valueOf_[0]);
         });
         if (same) std::fill_n(to, count, valueOf_[0]);
-        else for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
+        else
+            for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
         for (int i = 0; moving && i < count; ++i)
             if (views[i].moving) to[i] += views[i].moving->change(s.name.name, size_t(c), points[i].shutter);
         if (!s.scalar)
@@ -420,7 +441,8 @@ void Batch::fillOverridden(const BatchPlan::Source& s, float* row, std::span<con
         return s.scalar ? row[component] : row[(size_t(component) * np + part) * stride + point];
     };
     if (s.scalar) std::fill_n(row, size_t(comps) * s.elements, 0.f);
-    else for (size_t r = 0; r < s.rows; ++r) std::fill_n(row + r * stride, n, 0.f);
+    else
+        for (size_t r = 0; r < s.rows; ++r) std::fill_n(row + r * stride, n, 0.f);
     std::vector<float> interpolated; // value, du, dv
     for (int i = 0; i < count; ++i) {
         if (points[i].shape) {
@@ -433,7 +455,10 @@ void Batch::fillOverridden(const BatchPlan::Source& s, float* row, std::span<con
                 points[i].shape->interpolate(v, points[i].surface, value, du, dv);
                 for (int c = 0; c < std::min(comps * s.elements, int(width)); ++c) {
                     at(c, 0, i) = value[c];
-                    if (np > 1) { at(c, 1, i) = du[c]; at(c, 2, i) = dv[c]; }
+                    if (np > 1) {
+                        at(c, 1, i) = du[c];
+                        at(c, 2, i) = dv[c];
+                    }
                 }
                 continue;
             }

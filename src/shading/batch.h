@@ -23,8 +23,8 @@ public:
     virtual bool matrix(const std::string& from, const std::string& to, Matrix& out) const = 0;
 };
 
-/// Shader space that moves: its matrices, and the parameters that were given in it, at times of the shutter (0 to 1); between them
-/// both are linear.
+/// Shader space that moves: its matrices, and the parameters that were given in it, at times of the shutter (0 to 1); between
+/// them both are linear.
 struct MovingSpace {
     std::vector<float> times;
     std::vector<Matrix> toCurrent;
@@ -39,7 +39,7 @@ struct MovingSpace {
 struct InstanceView {
     const ParameterBlock* parameters = nullptr;
     const Matrix* shaderToCurrent = nullptr;
-    const MovingSpace* moving = nullptr; ///< null: both are the same at all times
+    const MovingSpace* moving = nullptr;       ///< null: both are the same at all times
     const class ParameterRows* rows = nullptr; ///< the parameters again as the batch's kernel reads them; null: looked up by name
 };
 
@@ -65,14 +65,18 @@ private:
     struct Source {
         From from = From::Nothing;
         bool scalar = false;
-        bool varying = false;                  ///< a parameter that primitive variables may override
+        bool varying = false; ///< a parameter that primitive variables may override
         int components = 1, parts = 1, elements = 1;
-        size_t rows = 0, firstRow = 0;         ///< rows of `stride` floats
-        size_t firstNumber = 0;                ///< Parameter: of ParameterRows
-        int16_t offset[6] = {-1, -1, -1, -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three, -4: Ngs
+        size_t rows = 0, firstRow = 0; ///< rows of `stride` floats
+        size_t firstNumber = 0;        ///< Parameter: of ParameterRows
+        int16_t offset[6] = {-1, -1, -1,
+                             -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three, -4: Ngs
         rsl::InputName name;
         /// Told: outputs of the displacement shader's run that fill it, by element and part.
-        struct Heard { rsl::OutputName output; int element, part; };
+        struct Heard {
+            rsl::OutputName output;
+            int element, part;
+        };
         std::vector<Heard> heard;
     };
     std::vector<Source> inputs_;
@@ -83,8 +87,8 @@ private:
     uint32_t needs_ = 0, litNeeds_ = 0;
 };
 
-/// A ParameterBlock as one kernel reads it: numbers in the order of its plan, so that none is looked for by name while rendering. Only
-/// for batches of that plan, which must outlive it.
+/// A ParameterBlock as one kernel reads it: numbers in the order of its plan, so that none is looked for by name while rendering.
+/// Only for batches of that plan, which must outlive it.
 class ParameterRows {
 public:
     ParameterRows(const BatchPlan&, const ParameterBlock&);
@@ -100,12 +104,12 @@ class Batch {
 public:
     Batch() = default;
     /// views[i] belongs to points[i]; with `mixed` false they are all the same.
-    Batch(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points, std::span<const InstanceView> views,
-          const SpaceResolver&);
+    Batch(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
+          std::span<const InstanceView> views, const SpaceResolver&);
     Batch(const Batch&) = delete;
     Batch& operator=(const Batch&) = delete;
-    /// A new call in the memory of the last one. views[viewOf[i]] belongs to points[i]; viewOf empty: views[0] to all. What the call's
-    /// user and functions are is left as it was.
+    /// A new call in the memory of the last one. views[viewOf[i]] belongs to points[i]; viewOf empty: views[0] to all. What the
+    /// call's user and functions are is left as it was.
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
@@ -119,7 +123,9 @@ public:
     int output(std::string_view name) const { return plan_->output(name); }
     int output(const rsl::OutputName& name) const { return plan_->output(name); }
     float value(int output, int component, int point) const { return out_[output][size_t(component) * call_.stride + point]; }
-    Color color(int output, int point) const { return {value(output, 0, point), value(output, 1, point), value(output, 2, point)}; }
+    Color color(int output, int point) const {
+        return {value(output, 0, point), value(output, 1, point), value(output, 2, point)};
+    }
 
 private:
     struct Views {
@@ -134,14 +140,16 @@ private:
     void fillOverridden(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&);
     void fillVariables(std::span<const ShadePoint>);
     void pad(const BatchPlan::Source&, float* row);
-    struct Free { void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); } };
+    struct Free {
+        void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }
+    };
     std::shared_ptr<const rsl::CompiledKernel> kernel_;
     const BatchPlan* plan_ = nullptr;
     std::unique_ptr<float[], Free> storage_;
-    size_t capacity_ = 0; ///< floats
-    bool primvars_ = false; ///< some shape of the points has primitive variables
-    size_t padded_ = 0;   ///< points rounded up to whole strips of the kernel
-    std::vector<float> valueOf_;                     ///< by view: one component of it
+    size_t capacity_ = 0;               ///< floats
+    bool primvars_ = false;             ///< some shape of the points has primitive variables
+    size_t padded_ = 0;                 ///< points rounded up to whole strips of the kernel
+    std::vector<float> valueOf_;        ///< by view: one component of it
     std::vector<const float*> numbers_; ///< by view: the parameter that is filled in
     std::vector<float> found_;          ///< what numbers_ points to where it was looked up
     std::vector<const float*> in_;

@@ -6,10 +6,14 @@ namespace alpenglow::shading {
 
 const char* toString(RayType t) {
     switch (t) {
-    case RayType::Camera: return "camera";
-    case RayType::Diffuse: return "diffuse";
-    case RayType::Specular: return "specular";
-    default: return "transmission";
+    case RayType::Camera:
+        return "camera";
+    case RayType::Diffuse:
+        return "diffuse";
+    case RayType::Specular:
+        return "specular";
+    default:
+        return "transmission";
     }
 }
 
@@ -20,8 +24,8 @@ float Fade::at(double distance) const {
 }
 
 void setFootprint(ShadePoint& p, const Footprint& footprint, const Vec3& dir, float distance, float shadingRate) {
-    // Two steps across the ray, as long as the footprint is wide, are projected along the ray onto the tangent plane and expressed
-    // in dPdu, dPdv by least squares; the larger of the two steps counts.
+    // Two steps across the ray, as long as the footprint is wide, are projected along the ray onto the tangent plane and
+    // expressed in dPdu, dPdv by least squares; the larger of the two steps counts.
     float w = 2 * footprint.at(distance);
     const Vec3 &a = p.surface.dPdu, &b = p.surface.dPdv;
     Vec3 n = p.surface.n, d = dir;

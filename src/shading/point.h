@@ -1,4 +1,5 @@
-// What the renderer knows about a point that a shader is going to run at, and about the ray that found it. Camera space ("current").
+// What the renderer knows about a point that a shader is going to run at, and about the ray that found it. Camera space
+// ("current").
 #pragma once
 #include "accel/accel.h"
 #include "base/limits.h"
@@ -18,7 +19,7 @@ enum class HitMode : uint8_t { Default, Primitive, Shader };
 
 /// Whom a ray may meet, as its call says ("subset", "hitsides", "hitmode").
 struct RaySet {
-    const uint8_t* only = nullptr;    ///< by shape: 0 is passed through; null: all. Of the world, which outlives the ray
+    const uint8_t* only = nullptr; ///< by shape: 0 is passed through; null: all. Of the world, which outlives the ray
     accel::Sides sides = accel::Sides::Front;
     HitMode mode = HitMode::Default;
 };
@@ -29,7 +30,7 @@ struct Media {
     int16_t in[limits::kMedia] = {};
     float priority[limits::kMedia] = {}; ///< ascending
     int8_t count = 0;
-    bool lost = false;                ///< one more was entered than are known
+    bool lost = false; ///< one more was entered than are known
     int top() const { return count ? in[count - 1] : -1; }
     float topPriority() const { return count ? priority[count - 1] : 0; }
     bool has(int medium) const { return std::find(in, in + count, medium) != in + count; }
@@ -42,10 +43,10 @@ struct Media {
 /// What a ray is, beside where it goes: few are different, so each is kept once (Engine::kindOf) and rays point at it.
 struct RayKind {
     RayType type = RayType::Camera;
-    bool fromTrace = false;           ///< drawn by trace(), not by a lighting shadeop
+    bool fromTrace = false; ///< drawn by trace(), not by a lighting shadeop
     RaySet set;
-    int32_t label = 0;                ///< interned label of the trace() that sent it
-    bool gathersPhotons = false;      ///< of indirectdiffuse(): what it meets gives what its photon map says, where it has one
+    int32_t label = 0;           ///< interned label of the trace() that sent it
+    bool gathersPhotons = false; ///< of indirectdiffuse(): what it meets gives what its photon map says, where it has one
     bool operator==(const RayKind& o) const {
         return type == o.type && fromTrace == o.fromTrace && gathersPhotons == o.gathersPhotons && set.only == o.set.only &&
                set.sides == o.set.sides && set.mode == o.set.mode && label == o.label;
@@ -57,15 +58,15 @@ inline constexpr RayKind kCameraKind{};
 struct GridPoint; // shading/gridpoint.h
 /// What all rays of one camera sample have in common.
 struct PathSample {
-    int px = 0, py = 0;               ///< pixel and number of the sample: the key of its random numbers (design decision 10)
+    int px = 0, py = 0; ///< pixel and number of the sample: the key of its random numbers (design decision 10)
     uint32_t sample = 0;
-    int path = -1;                    ///< index in the call of Integrator::trace()
-    float time = 0;                   ///< as the shader sees it
-    float shutter = 0;                ///< the same as part of the time that the shutter is open
-    float level = 0.5f;               ///< for what fades between levels of detail
-    bool records = false;             ///< of a pass that finds the light that others interpolate (CameraRay::records)
+    int path = -1;        ///< index in the call of Integrator::trace()
+    float time = 0;       ///< as the shader sees it
+    float shutter = 0;    ///< the same as part of the time that the shutter is open
+    float level = 0.5f;   ///< for what fades between levels of detail
+    bool records = false; ///< of a pass that finds the light that others interpolate (CameraRay::records)
     render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0};
-    const GridPoint* grid = nullptr;  ///< not of the picture: this point is shaded, whatever lies before it (CameraRay::grid)
+    const GridPoint* grid = nullptr; ///< not of the picture: this point is shaded, whatever lies before it (CameraRay::grid)
 };
 
 /// How much of a surface counts that a ray meets far away ("falloff", rsl.md table 6.11).
@@ -82,9 +83,9 @@ struct Fade {
 struct FreeFlight {
     Vec3 origin, dir;
     float length = 0, t = 0;
-    int medium = -1;                  ///< of the world; -1: there is no such way
+    int medium = -1; ///< of the world; -1: there is no such way
     Color extinction{0};
-    double chance[3] = {};            ///< of the densities of the channels, with what makes them densities
+    double chance[3] = {}; ///< of the densities of the channels, with what makes them densities
     /// With which points are chosen, a unit of length.
     double density(float t) const;
     bool operator==(const FreeFlight&) const = default;
@@ -93,20 +94,20 @@ struct FreeFlight {
 /// What few rays carry. Where a ray has none, it is as here.
 struct RayExtra {
     Fade fade;
-    float way = 0;                    ///< of what fades: how far the ray has come before, behind surfaces
-    float kept = 1;                   ///< and what its weight has of `whole`
+    float way = 0;  ///< of what fades: how far the ray has come before, behind surfaces
+    float kept = 1; ///< and what its weight has of `whole`
     Color whole{0};
-    Color environment{0};             ///< of trace() with a map: the light where nothing is
-    Color part{0};                    ///< of a target with sums: the share of all rays that were asked for, of those and what goes on behind
-    int32_t share = -1;               ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
-    int32_t lit = -1;                 ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
-    FreeFlight flown;                 ///< on which it was scattered, where it begins
+    Color environment{0}; ///< of trace() with a map: the light where nothing is
+    Color part{0};        ///< of a target with sums: the share of all rays that were asked for, of those and what goes on behind
+    int32_t share = -1;   ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
+    int32_t lit = -1;     ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
+    FreeFlight flown;     ///< on which it was scattered, where it begins
     bool operator==(const RayExtra&) const = default;
 };
 
 /// How wide a ray is, as a cone (design decision 7).
 struct Footprint {
-    float width = 0, spread = 0;      ///< half width, and its growth with distance
+    float width = 0, spread = 0; ///< half width, and its growth with distance
     float at(float way) const { return width + spread * way; }
     /// The same, seen from so far on.
     Footprint after(float way) const { return {at(way), spread}; }
@@ -118,35 +119,35 @@ enum Trail : uint8_t {
     kTrailMirrored = 2 ///< behind the last of these: single directions alone, which photons can come along
 };
 
-/// A ray on its way, with what its hit needs: who pays for what it finds, which random numbers it may use, how it was made. Small,
-/// since each is written and read several times.
+/// A ray on its way, with what its hit needs: who pays for what it finds, which random numbers it may use, how it was made.
+/// Small, since each is written and read several times.
 struct PathRay {
-    Vec3 origin, dir;                 ///< dir: unit
+    Vec3 origin, dir; ///< dir: unit
     float maxDistance = 1e38f;
-    Color weight{1};                  ///< throughput since its target
+    Color weight{1}; ///< throughput since its target
     const PathSample* sample = nullptr;
     const RayKind* kind = &kCameraKind;
-    const Media* media = nullptr;     ///< where it is; null: in no volume
-    uint32_t vertex = 0;              ///< of its random numbers: hash of the path of call sites that led here; 0 = camera
+    const Media* media = nullptr; ///< where it is; null: in no volume
+    uint32_t vertex = 0;          ///< of its random numbers: hash of the path of call sites that led here; 0 = camera
     int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
-    int16_t layers = 0;               ///< transparent surfaces passed so far, since the camera; no bounces
+    int16_t layers = 0;      ///< transparent surfaces passed so far, since the camera; no bounces
     uint16_t path = 0;       ///< scene::LightPaths::State up to here; 0: what it brings is in no output by light path
-    int16_t scattered = 0;            ///< of `bounces`, and of `diffuseBounces`, those that were in a medium
+    int16_t scattered = 0;   ///< of `bounces`, and of `diffuseBounces`, those that were in a medium
     uint16_t asked = 1;      ///< the most rays that a waiting kernel on the way was known to ask for at one point
-    bool first : 1 = true;            ///< one of those that its target asked for: writes distance and transmission
-    bool counts : 1 = false;          ///< its hit writes opacity, depth and AOVs of its camera sample
-    bool quiet : 1 = false;           ///< of a gather that wants no light of it: only shaders run that its hit's outputs need
-    bool parted : 1 = false;          ///< passed a volume on its way, so that volumes have what lies before `origin`
-    bool passed : 1 = false;          ///< no camera ray, and went through a surface: it began at lobeOrigin
-    uint8_t trail = 0;                ///< Trail, as bits
+    bool first : 1 = true;   ///< one of those that its target asked for: writes distance and transmission
+    bool counts : 1 = false; ///< its hit writes opacity, depth and AOVs of its camera sample
+    bool quiet : 1 = false;  ///< of a gather that wants no light of it: only shaders run that its hit's outputs need
+    bool parted : 1 = false; ///< passed a volume on its way, so that volumes have what lies before `origin`
+    bool passed : 1 = false; ///< no camera ray, and went through a surface: it began at lobeOrigin
+    uint8_t trail = 0;       ///< Trail, as bits
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
     /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).
     float lobePdf = -1;
-    Vec3 lobeOrigin;                  ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
-    int lobeBinding = -1;             ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
-    Footprint footprint;              ///< at the origin
-    int32_t extra = -1;               ///< Engine::extras_; -1: none
-    float importance = 1;             ///< product of the weights that shaders gave to the calls on its way; for rayinfo("weight")
+    Vec3 lobeOrigin;      ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
+    int lobeBinding = -1; ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
+    Footprint footprint;  ///< at the origin
+    int32_t extra = -1;   ///< Engine::extras_; -1: none
+    float importance = 1; ///< product of the weights that shaders gave to the calls on its way; for rayinfo("weight")
     RayType type() const { return kind->type; }
     bool camera() const { return kind->type == RayType::Camera; }
     float time() const { return sample ? sample->time : 0; }
@@ -184,16 +185,16 @@ using Sched = Scheduler<PathRay>;
 struct ShadePoint {
     const geometry::Shape* shape = nullptr; ///< null for imagers and for lights without geometry
     geometry::SurfacePoint surface;
-    Vec3 P, N;                        ///< after displacement; N unit only if the surface's is
-    Vec3 I, E;                        ///< incident vector with its length, and the ray's origin
-    float du = 1, dv = 1;             ///< largest footprint over x and y (design decision 7)
-    float time = 0, dtime = 0;        ///< and the time covered from there on
-    float shutter = 0;                ///< 0 to 1: where all that moves stands
+    Vec3 P, N;                 ///< after displacement; N unit only if the surface's is
+    Vec3 I, E;                 ///< incident vector with its length, and the ray's origin
+    float du = 1, dv = 1;      ///< largest footprint over x and y (design decision 7)
+    float time = 0, dtime = 0; ///< and the time covered from there on
+    float shutter = 0;         ///< 0 to 1: where all that moves stands
     Vec3 dPdtime{0.f};
-    Color Ci{0}, Oi{0};               ///< volumes and imagers: on entry
+    Color Ci{0}, Oi{0}; ///< volumes and imagers: on entry
     float alpha = 0;
-    Vec3 Ps, Ns;                      ///< lights: the point being lit and its normal
-    Vec3 viewI;                       ///< lights: the incident vector at the lit point
+    Vec3 Ps, Ns;                                 ///< lights: the point being lit and its normal
+    Vec3 viewI;                                  ///< lights: the incident vector at the lit point
     const geometry::SurfacePoint* lit = nullptr; ///< lights: the surface at Ps; null when there is none or it is not known
     const PathRay* ray = nullptr;
 };

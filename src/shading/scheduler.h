@@ -1,10 +1,10 @@
 // The scheduler: coroutine shaders and rays without recursion (design decision 2).
 //
-// A unit of work is a Task (a ray to follow) or a Strip (a suspended kernel). A task adds what it finds to its Target. A strip that
-// suspends makes one target a lane, spawns tasks for them, and waits; when the last of them is complete the strip is ready. Work is
-// taken deepest first, tasks in slices of at most limits::kSliceRays, so memory grows with depth and not with the size of the image.
-// While no strip waits a slice is filled up with less deep tasks, so that the long tails of paths share batches with fresh ones.
-// Sums are exact (base/exactsum.h), so no order of work, slice or batch changes a bit.
+// A unit of work is a Task (a ray to follow) or a Strip (a suspended kernel). A task adds what it finds to its Target. A strip
+// that suspends makes one target a lane, spawns tasks for them, and waits; when the last of them is complete the strip is ready.
+// Work is taken deepest first, tasks in slices of at most limits::kSliceRays, so memory grows with depth and not with the size of
+// the image. While no strip waits a slice is filled up with less deep tasks, so that the long tails of paths share batches with
+// fresh ones. Sums are exact (base/exactsum.h), so no order of work, slice or batch changes a bit.
 //
 // One scheduler serves one thread. It knows no geometry and no shader: the RayService does; tests use a fake one.
 #pragma once
@@ -26,8 +26,8 @@ namespace alpenglow::shading {
 using TargetId = int32_t;
 inline constexpr TargetId kNoTarget = -1;
 
-/// What a request for light comes back with. `radiance` is a sum over all tasks that aim at the target; the rest is written at most
-/// once, by the task that was spawned first.
+/// What a request for light comes back with. `radiance` is a sum over all tasks that aim at the target; the rest is written at
+/// most once, by the task that was spawned first.
 struct TargetValue {
     Color radiance{0};
     Color transmission{1};
@@ -38,7 +38,7 @@ struct TargetValue {
 template <class Payload> class Scheduler {
 public:
     struct Task {
-        int depth = 0;              ///< 0 = camera
+        int depth = 0; ///< 0 = camera
         TargetId target = kNoTarget;
         Payload payload{};
     };
@@ -87,7 +87,10 @@ public:
     void add(TargetId id, const Color& c) {
         if (c.x == 0 && c.y == 0 && c.z == 0) return;
         Target& t = targets_[id];
-        if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) { ++nonFinite_; return; }
+        if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
+            ++nonFinite_;
+            return;
+        }
         if (c.x != 0) t.sum[0].add(c.x);
         if (c.y != 0) t.sum[1].add(c.y);
         if (c.z != 0) t.sum[2].add(c.z);
@@ -106,7 +109,8 @@ public:
     }
 
     /// Called by a strip (or whoever starts it) when it suspends: makes `count` targets, calls make(i, target) so that the caller
-    /// spawns the tasks of each, and keeps the strip until all are complete. A target for which nothing is spawned is complete at once.
+    /// spawns the tasks of each, and keeps the strip until all are complete. A target for which nothing is spawned is complete at
+    /// once.
     template <class Make> void wait(std::unique_ptr<Strip> strip, int count, Make make) {
         int slot = newStrip();
         Waiting& w = strips_[slot];
@@ -130,7 +134,10 @@ public:
         std::vector<Task> slice;
         while (queued_ > 0 || !ready_.empty() || service_.settle(*this)) {
             if (queued_ == 0 && ready_.empty()) continue;
-            if (stop_ && *stop_) { abandon(); return false; }
+            if (stop_ && *stop_) {
+                abandon();
+                return false;
+            }
             int rayDepth = queued_ > 0 ? deepestQueue() : -1;
             if (!ready_.empty() && ready_.rbegin()->first >= rayDepth) {
                 // All that are ready at this depth go on together, so that what they ask for next is one stream again.
@@ -138,7 +145,8 @@ public:
                 service_.followStrips(*this);
                 continue;
             }
-            // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is left.
+            // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is
+            // left.
             size_t most = frameBytes_ > frameLimit_ / 2 ? std::min(kStripRays, size_t(sliceRays_)) : size_t(sliceRays_);
             takeSlice(slice, most);
             size_t n = slice.size();
@@ -152,7 +160,10 @@ public:
             }
             for (const Task& t : slice) complete(t.target);
         }
-        if (stop_ && *stop_) { abandon(); return false; } // what kernels left early is void
+        if (stop_ && *stop_) {
+            abandon();
+            return false;
+        } // what kernels left early is void
         return true;
     }
 
@@ -261,7 +272,8 @@ private:
                     slice.swap(q);
                 } else {
                     const size_t take = std::min(q.size(), most - slice.size());
-                    slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)), std::make_move_iterator(q.end()));
+                    slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)),
+                                 std::make_move_iterator(q.end()));
                     q.resize(q.size() - take);
                 }
                 if (!q.empty()) break;
@@ -312,7 +324,8 @@ private:
 public:
     /// For Strip::resume: takes ownership of the strip that is being resumed, to hand it to wait() again.
     std::unique_ptr<Strip> takeResuming() { return std::move(resuming_); }
-    /// A strip that holds a task's target open until it ends: the task's own count is closed by run(), so the strip adds one more.
+    /// A strip that holds a task's target open until it ends: the task's own count is closed by run(), so the strip adds one
+    /// more.
     void hold(TargetId id) { ++open_[size_t(id)].pending; }
     void release(TargetId id) { complete(id); }
 

@@ -79,13 +79,14 @@ void look(const Texture& tex, int first, int count, float s, float t, const Foot
             t2[k] = step > 0 ? (after.t - before.t) / (2 * step) : Vec3();
         }
         for (int c = 0; c < count; ++c) { // three runs are read before six are written
-            const float ss = curves[c], st = curves[count + c], tt = curves[2 * count + c], ds = slopes[c], dt = slopes[count + c];
+            const float ss = curves[c], st = curves[count + c], tt = curves[2 * count + c], ds = slopes[c],
+                        dt = slopes[count + c];
             float run[6];
             int n = 0;
             for (int k = 0; k < 3; ++k)
                 for (int l = k; l < 3; ++l) {
-                    const float v = ss * by.s[k] * by.s[l] + st * (by.s[k] * by.t[l] + by.t[k] * by.s[l]) + tt * by.t[k] * by.t[l] +
-                                    0.5f * (ds * (s2[k][l] + s2[l][k]) + dt * (t2[k][l] + t2[l][k]));
+                    const float v = ss * by.s[k] * by.s[l] + st * (by.s[k] * by.t[l] + by.t[k] * by.s[l]) +
+                                    tt * by.t[k] * by.t[l] + 0.5f * (ds * (s2[k][l] + s2[l][k]) + dt * (t2[k][l] + t2[l][k]));
                     run[n++] = std::isfinite(v) ? v : 0;
                 }
             for (int r = 0; r < 6; ++r) curves[r * count + c] = run[r];
@@ -146,18 +147,23 @@ void environment(Handle h, const LatLong& map, int first, int count, const Vec3&
     if (!tex) return fillAll(count, o, out, slopes, curves);
     cubeDifferentiate(face, d, ddx, h->fovCotangent, dsdx, dtdx);
     cubeDifferentiate(face, d, ddy, h->fovCotangent, dsdy, dtdy);
-    const auto by = [&](const Vec3& at, const Vec3& c, float& a, float& b) { cubeDifferentiate(face, at, c, h->fovCotangent, a, b); };
+    const auto by = [&](const Vec3& at, const Vec3& c, float& a, float& b) {
+        cubeDifferentiate(face, at, c, h->fovCotangent, a, b);
+    };
     look(*tex, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, Wrap::Clamp, d, by, out, slopes, curves);
 }
 
-void environmentQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out, float* slopes, float* curves) {
+void environmentQuad(Handle h, const LatLong& map, int first, int count, const Vec3 d[4], const LookupOptions& o, float* out,
+                     float* slopes, float* curves) {
     if (!h || h->kind != Kind::Cube) return environmentLatLongQuad(h, map, first, count, d, o, out, slopes, curves);
     Vec3 mean = (d[0] + d[1] + d[2] + d[3]) * 0.25f;
     float s, t;
     int face = cubeFace(mean, h->fovCotangent, s, t);
     const Texture* tex = faceMap(h, face);
     if (!tex) return fillAll(count, o, out, slopes, curves);
-    const auto by = [&](const Vec3& at, const Vec3& c, float& ds, float& dt) { cubeDifferentiate(face, at, c, h->fovCotangent, ds, dt); };
+    const auto by = [&](const Vec3& at, const Vec3& c, float& ds, float& dt) {
+        cubeDifferentiate(face, at, c, h->fovCotangent, ds, dt);
+    };
     look(*tex, first, count, s, t, quadFootprint(d, mean, by), o, Wrap::Clamp, mean, by, out, slopes, curves);
 }
 

@@ -121,19 +121,15 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
     for (int i = 0; i < n; ++i) {
         float ps = s + positions[i] * dx, pt = t + positions[i] * dy;
         tex.levels[size_t(l)].addBilinear(ps, pt, swrap, twrap, first, count, weights[i] * (1 - f), out, o.asLight);
-        if (f > 0)
-            tex.levels[size_t(l + 1)].addBilinear(ps, pt, swrap, twrap, first, count, weights[i] * f, out, o.asLight);
+        if (f > 0) tex.levels[size_t(l + 1)].addBilinear(ps, pt, swrap, twrap, first, count, weights[i] * f, out, o.asLight);
         if (curves) {
-            tex.levels[size_t(l)].addCurves(ps, pt, swrap, twrap, first, count, weights[i] * (1 - f), dss, dst, dtt,
-                                            o.asLight);
+            tex.levels[size_t(l)].addCurves(ps, pt, swrap, twrap, first, count, weights[i] * (1 - f), dss, dst, dtt, o.asLight);
             if (f > 0)
-                tex.levels[size_t(l + 1)].addCurves(ps, pt, swrap, twrap, first, count, weights[i] * f, dss, dst, dtt,
-                                                    o.asLight);
+                tex.levels[size_t(l + 1)].addCurves(ps, pt, swrap, twrap, first, count, weights[i] * f, dss, dst, dtt, o.asLight);
         }
         if (!slopes) continue;
         tex.levels[size_t(l)].addSlopes(ps, pt, swrap, twrap, first, count, weights[i] * (1 - f), ds, dt, o.asLight);
-        if (f > 0)
-            tex.levels[size_t(l + 1)].addSlopes(ps, pt, swrap, twrap, first, count, weights[i] * f, ds, dt, o.asLight);
+        if (f > 0) tex.levels[size_t(l + 1)].addSlopes(ps, pt, swrap, twrap, first, count, weights[i] * f, ds, dt, o.asLight);
     }
     for (int i = 0; slopes && i < count; ++i) { // between infinite texels there is no slope
         ds[i] = finiteOr(ds[i], 0);
@@ -143,8 +139,8 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
         for (float* d : {dss, dst, dtt}) d[i] = finiteOr(d[i], 0);
 }
 
-void lookup(Handle h, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, float* out, float* slopes,
-          float* curves) {
+void lookup(Handle h, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, float* out,
+            float* slopes, float* curves) {
     const Texture* tex = h;
     if (tex && tex->kind != Kind::Cube && !tex->tiles.empty()) {
         // Tiles are numbered in rows of ten; outside them, and where none was found, there is nothing.
@@ -167,8 +163,8 @@ void lookup2D(Handle h, int first, int count, float s, float t, float dsdx, floa
     lookup(h, first, count, s, t, Footprint::sides(dsdx, dtdx, dsdy, dtdy), o, out, slopes, curves);
 }
 
-void lookupQuad(Handle h, int first, int count, const float s[4], const float t[4], const LookupOptions& o, float* out, float* slopes,
-          float* curves) {
+void lookupQuad(Handle h, int first, int count, const float s[4], const float t[4], const LookupOptions& o, float* out,
+                float* slopes, float* curves) {
     float ms = (s[0] + s[1] + s[2] + s[3]) / 4, mt = (t[0] + t[1] + t[2] + t[3]) / 4;
     // Corners of a parallelogram lie at +-a/2 +-b/2: the sum of their outer products is that of a and b.
     Footprint fp;
@@ -227,8 +223,11 @@ void lookInOne(const Texture& tex, int first, int count, bool asLight, LookupLan
         to.height = from.height;
         to.channels = from.channels;
     }
-    const LaneJob job{levels, int(n) - 1, first + skip, present, float(tex.width()), float(tex.height()), int(tex.swrap), int(tex.twrap),
-                      {varianceOf(Filter::Box), varianceOf(Filter::Triangle), varianceOf(Filter::Gaussian)}, &allProbes()};
+    const LaneJob job{
+        levels,         int(n) - 1,         first + skip,
+        present,        float(tex.width()), float(tex.height()),
+        int(tex.swrap), int(tex.twrap),     {varianceOf(Filter::Box), varianceOf(Filter::Triangle), varianceOf(Filter::Gaussian)},
+        &allProbes()};
     alignas(64) float found[LookupLanes::kLanes][4];
     look(job, l, found[0]);
     for (uint32_t left = l.mask; left; left &= left - 1) {

@@ -182,7 +182,8 @@ bool makeBrickMap(const std::vector<std::string>& names, const std::string& bric
         std::string outside;
         const auto found = findFile(name, o.searchPath, o.read, &outside);
         if (!found) {
-            if (outside.empty()) diags.report(Severity::Error, Rie::NoFile, o.place, "point cloud \"" + name + "\" was not found");
+            if (outside.empty())
+                diags.report(Severity::Error, Rie::NoFile, o.place, "point cloud \"" + name + "\" was not found");
             else diags.report(outsideMessage("point cloud", name, outside, o.place));
             return false;
         }

@@ -20,7 +20,8 @@ float position(float coordinate, int n, Wrap wrap) {
     if (wrap == Wrap::Periodic) coordinate -= std::floor(coordinate);
     if (wrap == Wrap::Mirror) coordinate -= 2 * std::floor(coordinate * 0.5f);
     float x = coordinate * float(n) - 0.5f;
-    return wrap == Wrap::Periodic || wrap == Wrap::Mirror ? x : std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
+    return wrap == Wrap::Periodic || wrap == Wrap::Mirror ? x
+                                                          : std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
 }
 
 /// The texel that texel i of an endless row shows; -1: none, black.

@@ -23,8 +23,8 @@ inline constexpr CodeTable kCodeValues = [] {
     return v;
 }();
 
-/// Numbers of a level, never changed once they are there: in memory of their own, or in a mapped scratch file (texture/scratch.h).
-/// kBeyond more may be read behind the last; they mean nothing. Copies share the numbers.
+/// Numbers of a level, never changed once they are there: in memory of their own, or in a mapped scratch file
+/// (texture/scratch.h). kBeyond more may be read behind the last; they mean nothing. Copies share the numbers.
 template <class T> class Texels {
 public:
     static constexpr size_t kBeyond = 4;
@@ -55,8 +55,8 @@ private:
 };
 
 /// One level. 8-bit pictures, and maps made of them, keep codes at level 0 (a quarter of the memory; the values k/255 are the
-/// same floats); reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file, and light.
-/// Each level holds means of either, since the light of a mean is not the mean of light.
+/// same floats); reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file,
+/// and light. Each level holds means of either, since the light of a mean is not the mean of light.
 struct Level {
     int width = 0, height = 0, channels = 0;
     Texels<float> values;
@@ -79,13 +79,13 @@ struct Level {
     /// centres are at ((i + 1/2) / width, (j + 1/2) / height); row 0 is t = 0, the top. s and t may be anything, also not finite.
     void addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum,
                      bool asLight = false) const;
-    /// Adds weight times the slopes of the same channels by s and by t (change over the whole map) to ds[0..count) and dt[0..count):
-    /// what addBilinear would give half a texel further, less what it would give half a texel before. So slopes go on from texel to
-    /// texel without a jump; they are exact on ramps, and exactly 0 where the map is flat.
+    /// Adds weight times the slopes of the same channels by s and by t (change over the whole map) to ds[0..count) and
+    /// dt[0..count): what addBilinear would give half a texel further, less what it would give half a texel before. So slopes go
+    /// on from texel to texel without a jump; they are exact on ramps, and exactly 0 where the map is flat.
     void addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt,
                    bool asLight = false) const;
-    /// Adds weight times the second derivatives by s twice, by s and t, by t twice: of addSlopes() in the same way, half a texel further
-    /// less half a texel before. Exact on parabolas.
+    /// Adds weight times the second derivatives by s twice, by s and t, by t twice: of addSlopes() in the same way, half a texel
+    /// further less half a texel before. Exact on parabolas.
     void addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st, float* tt,
                    bool asLight = false) const;
 };

@@ -102,7 +102,9 @@ Color overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& s
             if (h.deep) {
                 const Vec3d near = deepPart(h, s, t, z - bias - gap), far = deepPart(h, s, t, z - bias);
                 for (int c = 0; c < 3; ++c) left[c] *= near[c] < 1 ? (1 - far[c]) / (1 - near[c]) : 1;
-            } else blocked = std::max(blocked, part(h.levels[0], s, t, [&](double d) { return z - bias > d && z - bias - d <= gap; }));
+            } else
+                blocked =
+                    std::max(blocked, part(h.levels[0], s, t, [&](double d) { return z - bias > d && z - bias - d <= gap; }));
         }
         sum = sum + (h.deep ? Vec3d(1.0) - left : Vec3d(blocked));
     }

@@ -16,7 +16,11 @@ public:
     /// Null: all directions alike. `axes`: of maps that are no cubes.
     SkyDirections(Handle, const LatLong& axes);
     /// w: of length 1. density: per steradian, > 0. light: what the map shows there, as light.
-    struct Direction { Vec3 w; float density; Color light; };
+    struct Direction {
+        Vec3 w;
+        float density;
+        Color light;
+    };
     /// random: two numbers from 0 to 1; strata of them stay strata.
     Direction at(Vec2 random) const;
     /// The density with which at() gives a direction of length 1, and the light there.

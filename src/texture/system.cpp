@@ -1,9 +1,9 @@
 // TextureSystem: finding, loading and keeping maps.
 #include "base/exact.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/srgb.h"
 #include "display/imageio.h"
-#include "base/memory.h"
 #include "texture/lookup.h"
 #include "texture/scratch.h"
 #include "texture/texture.h"
@@ -313,8 +313,9 @@ std::shared_ptr<const Texture> TextureSystem::loadFaces(const std::string& name,
         const auto map = loadFile(one.replace(name.find(kFace), std::strlen(kFace), which), searchPath, place);
         if (!map) return {};
         if (map->levels.empty()) {
-            diags_.reportOnce("texture:" + name,
-                              {Severity::Error, Rie::BadFile, place, "cube map \"" + name + "\": face " + which + " is no picture", {}, {}});
+            diags_.reportOnce(
+                "texture:" + name,
+                {Severity::Error, Rie::BadFile, place, "cube map \"" + name + "\": face " + which + " is no picture", {}, {}});
             return {};
         }
         if (face == 0) {
@@ -365,7 +366,8 @@ bool TextureSystem::present(const std::string& name, const std::vector<std::stri
         }
     if (const size_t at = name.find(kFace); !there && at != std::string::npos) {
         there = true;
-        for (const char* which : kFaceNames) there = there && find(std::string(name).replace(at, std::strlen(kFace), which), searchPath);
+        for (const char* which : kFaceNames)
+            there = there && find(std::string(name).replace(at, std::strlen(kFace), which), searchPath);
     }
     return known->second = there;
 }

@@ -7,8 +7,9 @@
 // Filtering: the footprint is the parallelogram of the derivatives, as a matrix of squared widths; blur adds to it in quadrature
 // (convolution of boxes). Probes with trilinear interpolation lie along the major axis so that the variance of the whole kernel
 // is that of the filter over the footprint; the minor axis chooses the level. A kernel is never narrower than bilinear
-// interpolation. Slopes of a lookup: of the same probes and levels, each the central difference over one texel of its level; so they
-// are smooth across texels, as coarse as the value, and those of a map that is seen from afar fade as its value does. Not done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
+// interpolation. Slopes of a lookup: of the same probes and levels, each the central difference over one texel of its level; so
+// they are smooth across texels, as coarse as the value, and those of a map that is seen from afar fade as its value does. Not
+// done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/file.h"
@@ -43,9 +44,9 @@ struct Texture {
     /// By UDIM number, 1001 + floor(s) + 10 floor(t); faces of a cube by 0..5: px nx py ny pz nz.
     std::map<int, std::shared_ptr<const Texture>> tiles;
     std::shared_ptr<const display::DeepSamples> deep; ///< of a deep shadow map; levels[0] has its first surfaces
-    float fovCotangent = 1; ///< of a cube face: 1 / tan(fov / 2)
-    float gamma = 0;        ///< that the file declares; 0: none
-    std::shared_ptr<const ScratchFile> scratch; ///< where its levels lie, when not in memory
+    float fovCotangent = 1;                           ///< of a cube face: 1 / tan(fov / 2)
+    float gamma = 0;                                  ///< that the file declares; 0: none
+    std::shared_ptr<const ScratchFile> scratch;       ///< where its levels lie, when not in memory
     /// The tile of a UDIM set that (floor(s), floor(t)) lies on; null: none.
     const Texture* tileAt(float column, float row) const {
         if (!(column >= 0 && column < 10 && row >= 0 && row < 10)) return nullptr;
@@ -56,7 +57,8 @@ struct Texture {
     int height() const { return levels.empty() ? 0 : levels[0].height; }
     size_t bytes() const;
 };
-/// Null: the map is missing; every lookup gives the fill value (colourOfMissing() is what shaders see). Valid as long as the system is, or until forget().
+/// Null: the map is missing; every lookup gives the fill value (colourOfMissing() is what shaders see). Valid as long as the
+/// system is, or until forget().
 using Handle = const Texture*;
 
 /// By RISpec name; nothing when unknown.
@@ -68,8 +70,8 @@ struct LookupOptions {
     float sblur = 0, tblur = 0;   ///< as a fraction of the map
     Filter filter = Filter::Gaussian;
     bool asLight = false; ///< colours of maps whose numbers are a curve of light: as light (TextureSettings::light)
-    float fill = 0; ///< value of channels that the map does not have
-    float lerp = 0; ///< accepted; levels are always interpolated, a switch would show as an edge
+    float fill = 0;       ///< value of channels that the map does not have
+    float lerp = 0;       ///< accepted; levels are always interpolated, a switch would show as an edge
 };
 
 /// A footprint as squared widths in (s, t): the sum of the outer products of its two side vectors.
@@ -78,9 +80,10 @@ struct Footprint {
     static Footprint sides(float dsdx, float dtdx, float dsdy, float dtdy);
 };
 
-/// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count). When `slopes`
-/// is given: their derivatives by s into slopes[0..count), by t into slopes[count..2 count), per unit of s and t (a whole map), at
-/// a fixed footprint; 0 where there is no map or channel. `curves`, likewise: second derivatives by s twice, by s and t, by t twice.
+/// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count). When
+/// `slopes` is given: their derivatives by s into slopes[0..count), by t into slopes[count..2 count), per unit of s and t (a
+/// whole map), at a fixed footprint; 0 where there is no map or channel. `curves`, likewise: second derivatives by s twice, by s
+/// and t, by t twice.
 void lookup(Handle, int first, int count, float s, float t, const Footprint&, const LookupOptions&, float* out,
             float* slopes = nullptr, float* curves = nullptr);
 /// The same with the change of (s, t) from pixel to pixel (or sample to sample).
@@ -106,8 +109,9 @@ struct LatLong {
     Vec3 direction(float s, float t) const;
 };
 
-/// environment(): the form that the map has, cube faces or (also for pictures that are neither) latitude-longitude. When `slopes` is
-/// given: derivatives of the channels by x, y and z of the direction, in three runs of `count`; `curves`: by xx, xy, xz, yy, yz, zz, six runs.
+/// environment(): the form that the map has, cube faces or (also for pictures that are neither) latitude-longitude. When `slopes`
+/// is given: derivatives of the channels by x, y and z of the direction, in three runs of `count`; `curves`: by xx, xy, xz, yy,
+/// yz, zz, six runs.
 void environment(Handle, const LatLong&, int first, int count, const Vec3& direction, const Vec3& ddx, const Vec3& ddy,
                  const LookupOptions&, float* out, float* slopes = nullptr, float* curves = nullptr);
 /// environment() with four directions, in any order.
@@ -133,8 +137,8 @@ struct TextureInfo {
     bool floating = false;
     std::string type; ///< "texture", "environment", "shadow"
     Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;
-    float gamma = 1; ///< file value = light ^ gamma, as the file declares it
-    int faces = 0;   ///< 6: a cube map
+    float gamma = 1;                           ///< file value = light ^ gamma, as the file declares it
+    int faces = 0;                             ///< 6: a cube map
     std::optional<Matrix> viewing, projection; ///< world to camera, world to screen (x -1..1, y 1..-1) of the map
 };
 
@@ -145,9 +149,9 @@ struct TextureSettings {
     /// that declare sRGB or a gamma by that, of other pictures of 8 bits by sRGB. Alpha and depth are never changed.
     bool light = false;
     LatLong latLong;
-    ReadPolicy read{};            ///< where the names of maps may lead
+    ReadPolicy read{};                ///< where the names of maps may lead
     std::shared_ptr<ReadLog> reads{}; ///< gets every file that is read or missed; may be null
-    std::optional<Color> missing{}; ///< of maps that cannot be read; nothing: lookups give their fill value
+    std::optional<Color> missing{};   ///< of maps that cannot be read; nothing: lookups give their fill value
     /// Bytes that maps hold in memory; what is more lies in scratch files. 0: a quarter of what the machine has.
     size_t memory = 0;
 };
@@ -160,7 +164,8 @@ public:
     /// The map called name along a search path (base/file.h findFile: also with other case, backslashes, or by its base name,
     /// which is said). "UDIM" in the name opens tiles 1001 to 1100 that exist. A missing or damaged file is reported once; the
     /// handle is null. Other spellings of "UDIM": "<UDIM>", "<udim>", "%(UDIM)d", "_MAPID_".
-    /// "<FACE>" in a name stands for six pictures, px nx py ny pz nz, that are a cube map. Threads that ask for the same file wait for one load.
+    /// "<FACE>" in a name stands for six pictures, px nx py ny pz nz, that are a cube map. Threads that ask for the same file
+    /// wait for one load.
     Handle open(const std::string& name, const std::vector<std::string>& searchPath = {""}, const SourcePlace& = {});
     /// Whether open() finds a file of that name, or a tile. Says nothing.
     bool present(const std::string& name, const std::vector<std::string>& searchPath = {""});
@@ -189,20 +194,20 @@ private:
     std::shared_ptr<const Texture> loadTiles(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
     void trim();
-    /// Moves the levels of a map into a scratch file where they do not fit into memory. Where the disk has no room they stay, with
-    /// a warning.
+    /// Moves the levels of a map into a scratch file where they do not fit into memory. Where the disk has no room they stay,
+    /// with a warning.
     void settle(Texture&, const SourcePlace&);
     std::shared_ptr<const Texture> loadFaces(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
     Diagnostics& diags_;
     TextureSettings settings_;
     size_t limit_ = 0;
-    std::atomic<size_t> held_{0};          ///< bytes of maps in memory of their own
-    std::atomic<int> scratches_{0};        ///< scratch files
+    std::atomic<size_t> held_{0};   ///< bytes of maps in memory of their own
+    std::atomic<int> scratches_{0}; ///< scratch files
     std::atomic<size_t> filesAtTrim_{0};
-    mutable std::mutex trimming_;                ///< of what follows
+    mutable std::mutex trimming_; ///< of what follows
     std::vector<std::weak_ptr<const ScratchFile>> files_;
-    size_t handFile_ = 0, handByte_ = 0;   ///< where the next pages are given back
+    size_t handFile_ = 0, handByte_ = 0;  ///< where the next pages are given back
     std::map<std::string, bool> present_; ///< by name and search path
     mutable std::mutex mutex_;
     std::map<std::string, std::shared_ptr<Entry>> byRequest_, byPath_;

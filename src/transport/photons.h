@@ -27,8 +27,8 @@ class PhotonEmission {
 public:
     PhotonEmission(std::shared_ptr<const World>, const PhotonUse&, Diagnostics&);
     ~PhotonEmission();
-    bool lights() const; ///< whether some light emits
-    bool moves() const;  ///< whether anything moves that photons may meet or come from
+    bool lights() const;  ///< whether some light emits
+    bool moves() const;   ///< whether anything moves that photons may meet or come from
     double power() const; ///< of them all, luminance, about
     /// From now on more photons are sent where those went that came to rest, of `emitted` of a pass. Nobody emits meanwhile.
     void learn(std::span<const StoredPhoton>, uint32_t pass, uint32_t emitted);

@@ -25,26 +25,39 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 const char* phrase(int status) {
     switch (status) {
-    case 200: return "OK";
-    case 400: return "Bad Request";
-    case 403: return "Forbidden";
-    case 404: return "Not Found";
-    case 405: return "Method Not Allowed";
-    case 408: return "Request Timeout";
-    case 411: return "Length Required";
-    case 413: return "Content Too Large";
-    case 431: return "Request Header Fields Too Large";
-    case 503: return "Service Unavailable";
-    default: return "Error";
+    case 200:
+        return "OK";
+    case 400:
+        return "Bad Request";
+    case 403:
+        return "Forbidden";
+    case 404:
+        return "Not Found";
+    case 405:
+        return "Method Not Allowed";
+    case 408:
+        return "Request Timeout";
+    case 411:
+        return "Length Required";
+    case 413:
+        return "Content Too Large";
+    case 431:
+        return "Request Header Fields Too Large";
+    case 503:
+        return "Service Unavailable";
+    default:
+        return "Error";
     }
 }
 
 std::string headOf(const HttpResponse& r, bool close) {
     return "HTTP/1.1 " + std::to_string(r.status) + " " + phrase(r.status) + "\r\nContent-Type: " + r.type +
            "\r\nContent-Length: " + std::to_string(r.body.size()) +
-           "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\nReferrer-Policy: no-referrer\r\n"
+           "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\nReferrer-Policy: "
+           "no-referrer\r\n"
            "Cross-Origin-Resource-Policy: same-origin\r\nContent-Security-Policy: default-src 'none'; script-src 'self'; "
-           "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+           "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action "
+           "'none'; "
            "frame-ancestors 'none'\r\n" +
            (close ? "Connection: close\r\n\r\n" : "\r\n");
 }
@@ -136,11 +149,11 @@ struct HttpServer::Loop {
 int HttpServer::Loop::patience(double t) const {
     double least = 60;
     for (const Connection& c : connections) {
-        const double s = c.state == State::Waiting ? limits.waitSeconds
-                         : c.state == State::Writing ? limits.writeSeconds
+        const double s = c.state == State::Waiting    ? limits.waitSeconds
+                         : c.state == State::Writing  ? limits.writeSeconds
                          : c.state == State::Draining ? kDrainSeconds
-                         : c.begun                   ? limits.requestSeconds
-                                                     : limits.idleSeconds;
+                         : c.begun                    ? limits.requestSeconds
+                                                      : limits.idleSeconds;
         least = std::min(least, c.since + s - t);
     }
     return std::max(1, int(least * 1000) + 1);
@@ -330,9 +343,12 @@ bool HttpServer::Loop::write(Connection& c) {
 bool HttpServer::Loop::timeOut(Connection& c, double t) {
     const double spent = t - c.since;
     switch (c.state) {
-    case State::Waiting: return spent < limits.waitSeconds || ask(c, true);
-    case State::Writing: return spent < limits.writeSeconds;
-    case State::Draining: return spent < kDrainSeconds;
+    case State::Waiting:
+        return spent < limits.waitSeconds || ask(c, true);
+    case State::Writing:
+        return spent < limits.writeSeconds;
+    case State::Draining:
+        return spent < kDrainSeconds;
     case State::Reading:
         if (!c.begun) return spent < limits.idleSeconds;
         if (spent < limits.requestSeconds) return true;

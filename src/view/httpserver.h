@@ -11,8 +11,8 @@
 namespace alpenglow::view {
 
 struct HttpRequest {
-    std::string method; ///< "GET" or "POST"
-    std::string path;   ///< what stands before ?, as it was sent: nothing in it is decoded
+    std::string method;                           ///< "GET" or "POST"
+    std::string path;                             ///< what stands before ?, as it was sent: nothing in it is decoded
     std::map<std::string, std::string> arguments; ///< behind ?, decoded
     std::string body;
     std::string host, origin; ///< headers; "" when missing
@@ -26,19 +26,19 @@ struct HttpResponse {
 
 /// What a stranger may take of this process.
 struct HttpLimits {
-    size_t connections = 64;     ///< at a time; a further one takes the place of the oldest that has asked for nothing known
-    size_t headerBytes = 16384;  ///< of request line and headers
-    size_t bodyBytes = 1 << 16;  ///< of a request
-    double requestSeconds = 10;  ///< from a request's first byte to its last
-    double idleSeconds = 120;    ///< between two requests
-    double writeSeconds = 60;    ///< for an answer to be taken
-    double waitSeconds = 15;     ///< that an answer may be put off
+    size_t connections = 64;    ///< at a time; a further one takes the place of the oldest that has asked for nothing known
+    size_t headerBytes = 16384; ///< of request line and headers
+    size_t bodyBytes = 1 << 16; ///< of a request
+    double requestSeconds = 10; ///< from a request's first byte to its last
+    double idleSeconds = 120;   ///< between two requests
+    double writeSeconds = 60;   ///< for an answer to be taken
+    double waitSeconds = 15;    ///< that an answer may be put off
 };
 
 class HttpServer {
 public:
-    /// Runs on the server's thread. Nothing: not yet; it is asked again after wake(), and with `last` when the time is over, when it
-    /// must answer. *known: set where the request comes from somebody who may ask.
+    /// Runs on the server's thread. Nothing: not yet; it is asked again after wake(), and with `last` when the time is over, when
+    /// it must answer. *known: set where the request comes from somebody who may ask.
     using Handler = std::function<std::optional<HttpResponse>(const HttpRequest&, bool last, bool* known)>;
 
     /// Listens on 127.0.0.1; port 0: a free one. Null: *fault says why.

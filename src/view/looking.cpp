@@ -26,12 +26,13 @@ render::Imager imagerOf(const std::shared_ptr<const transport::World>& world, Di
 /// An imager, and a curve behind it.
 render::Imager exposedBehind(render::Imager imager, float gain, float gamma) {
     if (gain == 1 && gamma == 1) return imager;
-    return [imager = std::move(imager), gain, gamma](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
-        if (!imager(n, x, y, r, g, b, a)) return false;
-        for (float* c : {r, g, b})
-            for (int i = 0; i < n; ++i) c[i] = render::expose(c[i], gain, gamma);
-        return true;
-    };
+    return
+        [imager = std::move(imager), gain, gamma](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
+            if (!imager(n, x, y, r, g, b, a)) return false;
+            for (float* c : {r, g, b})
+                for (int i = 0; i < n; ++i) c[i] = render::expose(c[i], gain, gamma);
+            return true;
+        };
 }
 
 } // namespace
@@ -85,9 +86,9 @@ void Session::look(const render::Glance& g) {
         stop_ = 1;
     }
     if (!g.film) kept_.image.reset();
-    if (g.whole() && pass_.phase == Phase::Whole) kept_.image = std::make_shared<render::Image>(g.pixels(plan_->pictures.front()));
-    if (!g.there && pass_.phase == Phase::Whole)
-        savePending(*means_, g.film, [&] { return g.pixels(plan_->pictures.front()); });
+    if (g.whole() && pass_.phase == Phase::Whole)
+        kept_.image = std::make_shared<render::Image>(g.pixels(plan_->pictures.front()));
+    if (!g.there && pass_.phase == Phase::Whole) savePending(*means_, g.film, [&] { return g.pixels(plan_->pictures.front()); });
     stale_ |= g.grown;
     grew_ |= g.grown;
     if (g.there && (!grew_ || pass_.factor != 1)) return; // there is nothing yet, or all will be there at once
@@ -134,7 +135,8 @@ bool Session::shotIsDue() const {
 void Session::lookAtRest() {
     if (!kept_.means || (!kept_.film && !kept_.image)) return;
     const auto image = [&] {
-        return kept_.film ? render::filmImage(*kept_.film, kept_.means->plan, kept_.means->plan.pictures.front().depth) : *kept_.image;
+        return kept_.film ? render::filmImage(*kept_.film, kept_.means->plan, kept_.means->plan.pictures.front().depth)
+                          : *kept_.image;
     };
     savePending(*kept_.means, kept_.film.get(), image);
     bool missing = false;
@@ -167,7 +169,8 @@ void Session::shoot(const render::Glance& g, const Means& means) {
         const bool first = &s == &means.plan.pictures.front();
         if (!first && !wanted.contains(s.name) && !s.name.starts_with("light:")) continue;
         auto finished = render::finishedPicture(means.plan, s, means.facts, image, first ? imager : render::Imager{});
-        if (finished && (s.name.starts_with("light:") || s.name.starts_with("lpe:")) && finished->channels.size() == 3) finished->channels = {"r", "g", "b"};
+        if (finished && (s.name.starts_with("light:") || s.name.starts_with("lpe:")) && finished->channels.size() == 3)
+            finished->channels = {"r", "g", "b"};
         if (finished) picture->planes.push_back({s.name, std::make_shared<display::Image>(std::move(*finished))});
     }
     if (g.there && shownOf_) { // what was shown of the same before
@@ -177,13 +180,16 @@ void Session::shoot(const render::Glance& g, const Means& means) {
         }();
         if (before) fill(*picture, *g.there, *before);
     }
-    if (wanted.contains("noise") && g.film) picture->planes.push_back({"noise", std::make_shared<display::Image>(noisePlane(*g.film))});
+    if (wanted.contains("noise") && g.film)
+        picture->planes.push_back({"noise", std::make_shared<display::Image>(noisePlane(*g.film))});
     Figures& f = picture->figures;
     const bool whole = pass_.phase == Phase::Whole;
     f.seconds = (whole ? kept_.seconds : 0) + g.seconds;
     f.raysPerMS = f.seconds > 0 ? ((whole ? kept_.rays : 0) + double(g.rays)) / f.seconds / 1000 : 0;
     const scene::Options& o = round_.frame->options;
-    f.spp = g.film ? g.film->samplesPerPixel() : pass_.spp > 0 ? pass_.spp : std::round(std::max(1.f, o.pixelSamplesX)) * std::round(std::max(1.f, o.pixelSamplesY));
+    f.spp = g.film          ? g.film->samplesPerPixel()
+            : pass_.spp > 0 ? pass_.spp
+                            : std::round(std::max(1.f, o.pixelSamplesX)) * std::round(std::max(1.f, o.pixelSamplesY));
     if (g.film) {
         const render::NoiseFigures n = render::noiseFigures(*g.film);
         f.noiseRSE = n.noiseRSE;
@@ -286,8 +292,9 @@ bool Session::save(const Save& s, const Means& means, const render::Film* film, 
     }
     const bool fine = film && !mixes
                           ? render::writeFilm(*film, plan, means.facts, imager, false, *diags_)
-                          : render::writeOutputs(plan, means.facts, [&](const render::OutputSpec&) -> const render::Image& { return mixed; },
-                                                 imager, false, *diags_);
+                          : render::writeOutputs(
+                                plan, means.facts, [&](const render::OutputSpec&) -> const render::Image& { return mixed; },
+                                imager, false, *diags_);
     std::lock_guard lock(mutex_);
     if (fine) saved_.push_back(name);
     if (saved_.size() > 100) saved_.erase(saved_.begin());

@@ -50,7 +50,8 @@ public:
         if (!a) return a;
         const auto [at, fresh] = attributes_.try_emplace(a.get(), a);
         if (!fresh) return at->second;
-        const bool any = std::any_of(std::begin(kRoles), std::end(kRoles), [&](const auto& r) { return calls.contains(((*a).*r.second).get()); });
+        const bool any = std::any_of(std::begin(kRoles), std::end(kRoles),
+                                     [&](const auto& r) { return calls.contains(((*a).*r.second).get()); });
         if (!any) return a;
         auto copy = std::make_shared<Attributes>(*a);
         for (const auto& [role, member] : kRoles) (*copy).*member = (*this)((*a).*member);
@@ -89,7 +90,8 @@ std::shared_ptr<const scene::Frame> changed(const std::shared_ptr<const scene::F
         if (number >= uses.size() || params.empty()) continue;
         auto call = std::make_shared<ShaderCall>(*uses[number].call);
         for (const scene::Param& p : params) {
-            const auto same = std::find_if(call->params.begin(), call->params.end(), [&](const scene::Param& q) { return q.name == p.name; });
+            const auto same =
+                std::find_if(call->params.begin(), call->params.end(), [&](const scene::Param& q) { return q.name == p.name; });
             if (same == call->params.end()) call->params.push_back(p);
             else *same = p;
         }

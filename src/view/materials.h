@@ -18,6 +18,7 @@ std::vector<ShaderUse> shadersOf(const scene::Frame&, size_t most);
 /// By number in shadersOf(): parameters that take the place of the call's own of those names.
 using ParameterChanges = std::map<size_t, scene::ParamList>;
 /// The frame with these changes. What they do not reach is shared with it.
-std::shared_ptr<const scene::Frame> changed(const std::shared_ptr<const scene::Frame>&, const std::vector<ShaderUse>&, const ParameterChanges&);
+std::shared_ptr<const scene::Frame> changed(const std::shared_ptr<const scene::Frame>&, const std::vector<ShaderUse>&,
+                                            const ParameterChanges&);
 
 } // namespace alpenglow::view

@@ -5,7 +5,12 @@
 
 namespace alpenglow::view {
 
-struct PageFile { const char* name; const char* type; const char* text; size_t size; };
+struct PageFile {
+    const char* name;
+    const char* type;
+    const char* text;
+    size_t size;
+};
 /// Null: there is none of that name.
 const PageFile* pageFile(const std::string& name);
 

@@ -42,7 +42,8 @@ void overlay(Picture& onto, const Picture& from) {
         const size_t n = copy->channels.size();
         const int x0 = std::max(a.x0, b.x0), x1 = std::min(a.x1, b.x1);
         for (int y = std::max(a.y0, b.y0); y < std::min(a.y1, b.y1) && x0 < x1; ++y)
-            std::memcpy(copy->pixel(x0 - a.x0, y - a.y0), q->image->pixel(x0 - b.x0, y - b.y0), size_t(x1 - x0) * n * sizeof(float));
+            std::memcpy(copy->pixel(x0 - a.x0, y - a.y0), q->image->pixel(x0 - b.x0, y - b.y0),
+                        size_t(x1 - x0) * n * sizeof(float));
         p.image = std::move(copy);
     }
 }
@@ -75,7 +76,9 @@ display::Image dimmed(const Picture& picture, const std::map<std::string, double
     const size_t n = image.channels.size(), pixels = size_t(image.width) * size_t(image.height);
     for (const auto& [handle, factor] : dim) {
         const Plane* light = factor == 1 ? nullptr : picture.plane("light:" + handle);
-        if (!light || light->image->channels.size() != 3 || light->image->width != image.width || light->image->height != image.height) continue;
+        if (!light || light->image->channels.size() != 3 || light->image->width != image.width ||
+            light->image->height != image.height)
+            continue;
         const float by = float(factor - 1);
         for (size_t i = 0; i < pixels; ++i)
             for (size_t k = 0; k < 3; ++k) image.data[i * n + k] += by * light->image->data[i * 3 + k];
@@ -84,8 +87,9 @@ display::Image dimmed(const Picture& picture, const std::map<std::string, double
 }
 
 std::string halves(const Picture& picture, const Plane& plane, const std::map<std::string, double>& dim) {
-    const bool mix = &plane == &picture.planes.front() &&
-                     std::any_of(dim.begin(), dim.end(), [&](const auto& d) { return d.second != 1 && picture.plane("light:" + d.first); });
+    const bool mix = &plane == &picture.planes.front() && std::any_of(dim.begin(), dim.end(), [&](const auto& d) {
+        return d.second != 1 && picture.plane("light:" + d.first);
+    });
     const display::Image mixed = mix ? dimmed(picture, dim) : display::Image{};
     const display::Image& image = mix ? mixed : *plane.image;
     const size_t n = image.channels.size(), pixels = size_t(image.width) * size_t(image.height);
@@ -94,7 +98,10 @@ std::string halves(const Picture& picture, const Plane& plane, const std::map<st
     const float* p = image.data.data();
     char* to = bytes.data();
     for (size_t i = 0; i < pixels; ++i, p += n, to += 8) {
-        const uint16_t one[4] = {toHalf(p[0]), toHalf(n > 1 ? p[1] : p[0]), toHalf(n > 2 ? p[2] : n > 1 ? 0 : p[0]),
+        const uint16_t one[4] = {toHalf(p[0]), toHalf(n > 1 ? p[1] : p[0]),
+                                 toHalf(n > 2   ? p[2]
+                                        : n > 1 ? 0
+                                                : p[0]),
                                  alpha ? toHalf(p[3]) : uint16_t(0x3c00)};
         std::memcpy(to, one, 8);
     }

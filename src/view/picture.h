@@ -12,7 +12,7 @@ namespace alpenglow::view {
 
 /// What is looked at under one name. Planes of one picture have the same size; floats, linear, channels interleaved.
 struct Plane {
-    std::string name;  ///< "picture" (r g b a z), "noise", "light:HANDLE", or as a display's mode has it
+    std::string name; ///< "picture" (r g b a z), "noise", "light:HANDLE", or as a display's mode has it
     std::shared_ptr<const display::Image> image;
 };
 
@@ -25,10 +25,11 @@ struct Figures {
 struct Picture {
     int width = 0, height = 0; ///< of the whole picture
     render::Window window;     ///< that the planes cover, in their own pixels
-    double stepX = 1, stepY = 1; ///< pixels of the whole picture that one of the planes is wide and high: more than 1 for a coarse one
+    double stepX = 1,
+           stepY = 1; ///< pixels of the whole picture that one of the planes is wide and high: more than 1 for a coarse one
     std::vector<Plane> planes; ///< "picture" first
     Figures figures;
-    uint64_t number = 0;       ///< of all pictures of a session: no two have the same
+    uint64_t number = 0; ///< of all pictures of a session: no two have the same
     const Plane* plane(const std::string& name) const;
 };
 

@@ -27,8 +27,8 @@ Pose::Pose(const scene::Options& o) : home_(o.worldToCamera.first()), view_(home
 
 void Pose::orbit(double right, double down) {
     const Vec3d axis = transformVector(view_, up_);
-    view_ = view_ * translateMatrix(0, 0, -distance_) * rotateMatrix(-right, axis.x, axis.y, axis.z) * rotateMatrix(-down, 1, 0, 0) *
-            translateMatrix(0, 0, distance_);
+    view_ = view_ * translateMatrix(0, 0, -distance_) * rotateMatrix(-right, axis.x, axis.y, axis.z) *
+            rotateMatrix(-down, 1, 0, 0) * translateMatrix(0, 0, distance_);
     moved_ = true;
 }
 

@@ -11,7 +11,8 @@ class Pose {
 public:
     /// As the scene has it.
     explicit Pose(const scene::Options&);
-    /// Turns what is in front of the pivot about it: degrees to the right (about the world's axis that is upright at first), and down.
+    /// Turns what is in front of the pivot about it: degrees to the right (about the world's axis that is upright at first), and
+    /// down.
     void orbit(double right, double down);
     /// Nearer by a factor: 2 halves the distance to the pivot, or shows half as much under a projection without perspective.
     void dolly(double factor);

@@ -49,7 +49,8 @@ void Preview::show(const render::Glance& g, const render::OutputPlan& own) {
     for (size_t i = 0; i < plan_->pictures.size(); ++i) {
         const render::OutputSpec& s = plan_->pictures[i];
         if (s.map || s.deep || !wants(s)) continue;
-        if (const auto image = render::finishedPicture(*plan_, s, facts_, g.pixels(own.pictures[i]), imager)) show(s, facts_, *image);
+        if (const auto image = render::finishedPicture(*plan_, s, facts_, g.pixels(own.pictures[i]), imager))
+            show(s, facts_, *image);
     }
 }
 
@@ -79,8 +80,10 @@ Bytes shrunk(const display::Image& image, int width, int height) {
     uint8_t* to = out.rgb.data();
     for (int y = 0; y < out.height; ++y)
         for (int x = 0; x < out.width; ++x) {
-            const int x0 = int(int64_t(x) * image.width / out.width), x1 = std::max(x0 + 1, int(int64_t(x + 1) * image.width / out.width));
-            const int y0 = int(int64_t(y) * image.height / out.height), y1 = std::max(y0 + 1, int(int64_t(y + 1) * image.height / out.height));
+            const int x0 = int(int64_t(x) * image.width / out.width),
+                      x1 = std::max(x0 + 1, int(int64_t(x + 1) * image.width / out.width));
+            const int y0 = int(int64_t(y) * image.height / out.height),
+                      y1 = std::max(y0 + 1, int(int64_t(y + 1) * image.height / out.height));
             double sum[3] = {0, 0, 0};
             for (int py = y0; py < y1; ++py)
                 for (int px = x0; px < x1; ++px)
@@ -88,7 +91,8 @@ Bytes shrunk(const display::Image& image, int width, int height) {
                         const float v = image.pixel(px, py)[n >= 3 ? k : 0];
                         sum[k] += std::isfinite(v) ? std::clamp(double(v), 0.0, 1e6) : 0;
                     }
-            for (double s : sum) *to++ = uint8_t(std::lround(std::clamp(double(srgbEncode(float(s / ((x1 - x0) * (y1 - y0))))), 0.0, 1.0) * 255));
+            for (double s : sum)
+                *to++ = uint8_t(std::lround(std::clamp(double(srgbEncode(float(s / ((x1 - x0) * (y1 - y0))))), 0.0, 1.0) * 255));
         }
     return out;
 }

@@ -50,7 +50,10 @@ public:
 // --- the terminal ---
 
 /// Bytes to look at, rows from the top.
-struct Bytes { int width = 0, height = 0; std::vector<uint8_t> rgb; };
+struct Bytes {
+    int width = 0, height = 0;
+    std::vector<uint8_t> rgb;
+};
 /// The red, green and blue of a picture, each pixel the mean of what it covers, as sRGB.
 Bytes shrunk(const display::Image&, int width, int height);
 /// Two pixels a character, the upper half block in 24-bit colours: lines, each with its end.
@@ -66,7 +69,9 @@ std::optional<TerminalKind> terminalKindByName(const std::string&);
 /// What the terminal of this process can do: by its variables, and by asking it for its attributes.
 TerminalKind terminalKind();
 
-struct TerminalSize { int columns = 80, rows = 24, cellWidth = 8, cellHeight = 16; };
+struct TerminalSize {
+    int columns = 80, rows = 24, cellWidth = 8, cellHeight = 16;
+};
 /// Of standard error; defaults where it is no terminal.
 TerminalSize terminalSize();
 
@@ -74,7 +79,8 @@ TerminalSize terminalSize();
 class TerminalPreview final : public Preview {
 public:
     using Sink = std::function<void(const std::string&)>;
-    TerminalPreview(Diagnostics& d, TerminalKind k, TerminalSize s, Sink sink) : Preview(d), kind_(k), size_(s), sink_(std::move(sink)) {}
+    TerminalPreview(Diagnostics& d, TerminalKind k, TerminalSize s, Sink sink)
+        : Preview(d), kind_(k), size_(s), sink_(std::move(sink)) {}
     /// Something else was printed: the next picture comes below it.
     void scrolled() { shown_ = 0; }
 
@@ -92,7 +98,8 @@ private:
 /// Packets of tev's protocol (github.com/Tom94/tev): a count of bytes, a kind, little-endian.
 std::string tevCreate(const std::string& name, int width, int height, const std::vector<std::string>& channels);
 /// Rectangle of an image; floats interleaved by channel.
-std::string tevUpdate(const std::string& name, int x, int y, int width, int height, const std::vector<std::string>& channels, const std::vector<float>&);
+std::string tevUpdate(const std::string& name, int x, int y, int width, int height, const std::vector<std::string>& channels,
+                      const std::vector<float>&);
 
 class TevPreview final : public Preview {
 public:

@@ -10,9 +10,9 @@
 namespace alpenglow::view {
 namespace {
 
-constexpr double kCoarseSeconds = 0.06;    ///< what a coarse picture may take
-constexpr double kCoarsePixels = 6000;     ///< of it, as long as nobody knows how long they take
-constexpr uint32_t kCropSamples = 256;     ///< of what is rendered first, where the whole goes on for ever
+constexpr double kCoarseSeconds = 0.06; ///< what a coarse picture may take
+constexpr double kCoarsePixels = 6000;  ///< of it, as long as nobody knows how long they take
+constexpr uint32_t kCropSamples = 256;  ///< of what is rendered first, where the whole goes on for ever
 
 std::string keyOf(const Pose& p) {
     char text[64];
@@ -134,7 +134,8 @@ std::vector<Session::Pass> Session::passes() const {
     const uint32_t have = kept_.film ? kept_.film->samplesPerPixel() : 0;
     const uint32_t first = path ? std::min(wanted(), kCropSamples) : round_.wishes.continuous ? 0 : round_.wishes.spp;
     const bool cropped = crop_ && cropOf_ == round_.wishes.crop && crop_->figures.spp >= first;
-    if (round_.wishes.crop && !cropped && (path ? have < first : !kept_.image)) all.push_back({Phase::Crop, 1, first, round_.wishes.crop});
+    if (round_.wishes.crop && !cropped && (path ? have < first : !kept_.image))
+        all.push_back({Phase::Crop, 1, first, round_.wishes.crop});
     if (path && have < wanted()) all.push_back({Phase::Whole, 1, wanted(), {}});
     if (!path && !kept_.image) {
         if (fresh) all.push_back({Phase::Coarse, 1, 1, {}});

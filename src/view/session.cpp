@@ -153,7 +153,8 @@ bool Session::readScene() {
     if (*stop) return false;
     if (!keeper.frame) {
         diags_->report(Severity::Error, Rie::MissingData, {options_.scene},
-                       options_.frame ? "the scene has no frame " + std::to_string(*options_.frame) : "there is no picture in the scene");
+                       options_.frame ? "the scene has no frame " + std::to_string(*options_.frame)
+                                      : "there is no picture in the scene");
         return false;
     }
     auto loaded = std::make_shared<Loaded>();
@@ -200,7 +201,9 @@ void Session::run() {
             }
             setPhase(Phase::Idle);
             tell(); // that all is done
-        } catch (const std::bad_alloc&) { giveUp("out of memory"); } catch (const std::exception& e) { giveUp(e.what()); }
+        } catch (const std::bad_alloc&) { giveUp("out of memory"); } catch (const std::exception& e) {
+            giveUp(e.what());
+        }
 }
 
 /// What was begun is over; what is asked for next may fit.
@@ -293,7 +296,8 @@ Json Session::askSave(const Json& j) {
     s.gain = j.value("gain", 1.f);
     s.gamma = j.value("gamma", 1.f);
     s.srgb = j.value("srgb", false);
-    if (!(s.gain > 0 && s.gain < 1e9f && s.gamma >= 0.01f && s.gamma <= 100)) return failed("gain and gamma are positive numbers");
+    if (!(s.gain > 0 && s.gain < 1e9f && s.gamma >= 0.01f && s.gamma <= 100))
+        return failed("gain and gamma are positive numbers");
     if (saves_.size() > 20) return failed("pictures are still being saved");
     saves_.push_back(s);
     work_.notify_all();
@@ -316,7 +320,8 @@ Json Session::act(const Json& j) try {
         else if (what == "save") answer = askSave(j);
         else if (what == "parameter") {
             if (!scene_) return failed("there is no scene yet");
-            if (const std::string fault = takeParameter(j, scene_->shaders, wishes_.parameters); !fault.empty()) return failed(fault);
+            if (const std::string fault = takeParameter(j, scene_->shaders, wishes_.parameters); !fault.empty())
+                return failed(fault);
             interrupt();
         } else if (what == "reload") {
             reload_ = true;
@@ -330,22 +335,32 @@ Json Session::act(const Json& j) try {
 Json Session::state(size_t messages, size_t points) const {
     std::lock_guard lock(mutex_);
     static constexpr const char* kPhases[] = {"reading", "building", "coarse", "crop", "whole", "idle"};
-    Json j{{"serial", serial_},         {"generation", generation_}, {"scene", sceneSerial_}, {"phase", kPhases[size_t(phase_)]},
-           {"wishes", wishes_.json()},  {"file", options_.scene},    {"watch", options_.watch}, {"saved", saved_},
-           {"width", width_},           {"height", height_},         {"lost", messagesLost_}};
+    Json j{{"serial", serial_},        {"generation", generation_}, {"scene", sceneSerial_},   {"phase", kPhases[size_t(phase_)]},
+           {"wishes", wishes_.json()}, {"file", options_.scene},    {"watch", options_.watch}, {"saved", saved_},
+           {"width", width_},          {"height", height_},         {"lost", messagesLost_}};
     j["done"] = phase_ == Phase::Idle && done_ == generation_ && !reload_ && saves_.empty();
     j["moved"] = pose_ && pose_->moved();
     j["curve"] = {{"gain", curveAtFirst_[0]}, {"gamma", curveAtFirst_[1]}, {"srgb", curveAtFirst_[2] != 0}};
     if (picture_) {
         const Figures& f = picture_->figures;
-        j["figures"] = {{"seconds", f.seconds},         {"spp", f.spp},           {"raysPerMS", f.raysPerMS},     {"noiseRSE", f.noiseRSE},
-                        {"noiseRSE999", f.noiseRSE999}, {"efficiency", f.efficiency}, {"noise", f.noise}, {"noiseAtMost", f.noiseAtMost}};
+        j["figures"] = {{"seconds", f.seconds},
+                        {"spp", f.spp},
+                        {"raysPerMS", f.raysPerMS},
+                        {"noiseRSE", f.noiseRSE},
+                        {"noiseRSE999", f.noiseRSE999},
+                        {"efficiency", f.efficiency},
+                        {"noise", f.noise},
+                        {"noiseAtMost", f.noiseAtMost}};
     }
     Json& list = j["messages"] = Json::array();
     for (size_t i = messages; i < messages_.size(); ++i) {
         const Diagnostic& d = messages_[i].diagnostic;
-        list.push_back({{"severity", severityName(d.severity)}, {"text", d.message}, {"hint", d.hint}, {"line", d.sourceLine},
-                        {"place", placeJson(d.place)}, {"notes", d.notes}});
+        list.push_back({{"severity", severityName(d.severity)},
+                        {"text", d.message},
+                        {"hint", d.hint},
+                        {"line", d.sourceLine},
+                        {"place", placeJson(d.place)},
+                        {"notes", d.notes}});
     }
     j["messageCount"] = messages_.size();
     j["curveOf"] = curveOf_;
@@ -393,8 +408,12 @@ Json Session::scene() {
                 descriptions_[u.call->name] = about;
             }
         }
-        shaders.push_back({{"role", u.role}, {"name", u.call->name}, {"place", placeJson(u.call->place)}, {"primitives", u.primitives},
-                           {"values", values}, {"about", about}});
+        shaders.push_back({{"role", u.role},
+                           {"name", u.call->name},
+                           {"place", placeJson(u.call->place)},
+                           {"primitives", u.primitives},
+                           {"values", values},
+                           {"about", about}});
     }
     return j;
 }

@@ -24,13 +24,13 @@ namespace alpenglow::view {
 struct ViewOptions {
     render::RenderSettings settings;
     ri::ReaderOptions reader;
-    std::string scene;           ///< a file
-    std::optional<int> frame;    ///< by its number; nothing: the first with a picture
-    bool watch = false;          ///< read again when a file of the scene changes
+    std::string scene;                        ///< a file
+    std::optional<int> frame;                 ///< by its number; nothing: the first with a picture
+    bool watch = false;                       ///< read again when a file of the scene changes
     std::function<void(ri::RibReader&)> read; ///< hands the scene to the reader
     /// What a shader is (alpenglow info --json), found in these folders; null: nobody knows.
     std::function<nlohmann::json(const std::string& name, const std::vector<std::string>& folders)> describe;
-    Diagnostics::Handler print;  ///< gets every message too
+    Diagnostics::Handler print; ///< gets every message too
 };
 
 /// A message for the page, which may stand for several that are alike.
@@ -82,7 +82,11 @@ private:
         double seconds = 0;
         double rays = 0;
     };
-    struct Save { std::string type; float gain = 1, gamma = 1; bool srgb = false; };
+    struct Save {
+        std::string type;
+        float gain = 1, gamma = 1;
+        bool srgb = false;
+    };
     /// A scene that was read.
     struct Loaded {
         std::shared_ptr<const scene::Frame> frame;
@@ -104,7 +108,12 @@ private:
 
     // rounds.cpp: rendering
     void render();
-    struct Pass { Phase phase; double factor = 1; uint32_t spp = 1; std::optional<std::array<double, 4>> crop; };
+    struct Pass {
+        Phase phase;
+        double factor = 1;
+        uint32_t spp = 1;
+        std::optional<std::array<double, 4>> crop;
+    };
     bool renderPass(const Pass&);
     std::vector<Pass> passes() const;
     std::shared_ptr<const scene::Frame> frameFor() const;
@@ -156,17 +165,17 @@ private:
     std::vector<std::string> saved_;
     std::map<std::string, Clock::time_point> viewers_; ///< planes, and when somebody last looked
     std::shared_ptr<const Loaded> scene_;
-    std::vector<std::string> outputs_;       ///< that shaders have, as far as is known
+    std::vector<std::string> outputs_; ///< that shaders have, as far as is known
     std::vector<std::string> shaderFolders_;
     std::array<double, 3> curveAtFirst_{1, 1, 1}; ///< how render would show the picture: gain, gamma, whether as sRGB
-    int width_ = 0, height_ = 0;             ///< of the picture
+    int width_ = 0, height_ = 0;                  ///< of the picture
     std::map<std::string, nlohmann::json> descriptions_;
 
     // The rendering thread's own.
     std::unique_ptr<Diagnostics> diags_;
     std::shared_ptr<ReadLog> reads_;
-    uint64_t done_ = 0;       ///< the generation that was rendered to its end
-    struct Round {            ///< what is being rendered
+    uint64_t done_ = 0; ///< the generation that was rendered to its end
+    struct Round {      ///< what is being rendered
         Wishes wishes;
         std::optional<Pose> pose;
         bool dragging = false;
@@ -179,19 +188,19 @@ private:
     std::shared_ptr<const transport::World> world_;
     std::string worldKey_, filmKey_;
     std::optional<Pose> worldPose_;
-    std::shared_ptr<const Means> means_;            ///< of the pass under way
-    const render::OutputPlan* plan_ = nullptr;      ///< the renderer's own, for Glance::pixels
-    double passSeconds_ = 0, passRays_ = 0;         ///< of the pass under way
-    double sampleSeconds_ = 0;                      ///< that a sample of a pixel took last; 0: not known
+    std::shared_ptr<const Means> means_;       ///< of the pass under way
+    const render::OutputPlan* plan_ = nullptr; ///< the renderer's own, for Glance::pixels
+    double passSeconds_ = 0, passRays_ = 0;    ///< of the pass under way
+    double sampleSeconds_ = 0;                 ///< that a sample of a pixel took last; 0: not known
     Kept kept_;
-    std::shared_ptr<const Picture> crop_;           ///< what was rendered first, for as long as it has more samples
-    std::optional<std::array<double, 4>> cropOf_;   ///< which part that is
-    double shotSeconds_ = 0;                        ///< what the last shot cost
-    uint64_t pictures_ = 0;                         ///< that were made
+    std::shared_ptr<const Picture> crop_;         ///< what was rendered first, for as long as it has more samples
+    std::optional<std::array<double, 4>> cropOf_; ///< which part that is
+    double shotSeconds_ = 0;                      ///< what the last shot cost
+    uint64_t pictures_ = 0;                       ///< that were made
     Clock::time_point lastShot_{}, lastFileLook_{};
-    bool stale_ = true;                             ///< there is more than was shown
-    bool grew_ = false;                             ///< tiles of the pass under way are there
-    std::optional<Phase> shownOf_;                  ///< what the last shot of this round was of
+    bool stale_ = true;            ///< there is more than was shown
+    bool grew_ = false;            ///< tiles of the pass under way are there
+    std::optional<Phase> shownOf_; ///< what the last shot of this round was of
     std::set<std::string> shotPlanes_;
 };
 

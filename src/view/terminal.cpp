@@ -21,7 +21,8 @@ std::string base64(const std::vector<uint8_t>& bytes) {
     static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     for (size_t i = 0; i < bytes.size(); i += 3) {
-        const uint32_t b = bytes[i] << 16 | (i + 1 < bytes.size() ? bytes[i + 1] << 8 : 0) | (i + 2 < bytes.size() ? bytes[i + 2] : 0);
+        const uint32_t b =
+            bytes[i] << 16 | (i + 1 < bytes.size() ? bytes[i + 1] << 8 : 0) | (i + 2 < bytes.size() ? bytes[i + 2] : 0);
         for (int k = 0; k < 4; ++k) text += i + size_t(k) > bytes.size() ? '=' : kDigits[b >> (18 - 6 * k) & 63];
     }
     return text;
@@ -74,7 +75,8 @@ std::string halfBlocks(const Bytes& b) {
 
 std::string sixels(const Bytes& b) {
     std::string out = "\x1bP0;1q\"1;1;" + number(b.width) + ";" + number(b.height);
-    for (int c = 0; c < 216; ++c) out += "#" + number(c) + ";2;" + number(c / 36 * 20) + ";" + number(c / 6 % 6 * 20) + ";" + number(c % 6 * 20);
+    for (int c = 0; c < 216; ++c)
+        out += "#" + number(c) + ";2;" + number(c / 36 * 20) + ";" + number(c / 6 % 6 * 20) + ";" + number(c % 6 * 20);
     std::array<std::string, 216> rows;
     for (int y = 0; y < b.height; y += 6) {
         for (std::string& r : rows) r.clear();
@@ -177,7 +179,8 @@ void TerminalPreview::show(const render::OutputSpec&, const render::PictureFacts
     const double aspect = std::max(1e-3, double(image.width) * double(f.pixelAspect) / std::max(1, image.height));
     const bool blocks = kind_ == TerminalKind::Blocks;
     const double cellWidth = blocks ? 1 : size_.cellWidth, cellHeight = blocks ? 2 : size_.cellHeight;
-    const double most = std::max(1.0, (size_.columns - 1) * cellWidth), high = std::max(cellHeight, (size_.rows - 2) * cellHeight);
+    const double most = std::max(1.0, (size_.columns - 1) * cellWidth),
+                 high = std::max(cellHeight, (size_.rows - 2) * cellHeight);
     const double width = std::min({most, high * aspect, double(image.width) * (blocks ? 1 : 2)});
     const Bytes b = shrunk(image, std::max(1, int(width)), std::max(1, int(width / aspect)));
     const int lines = std::max(1, int(std::ceil(b.height / cellHeight)));
@@ -187,7 +190,12 @@ void TerminalPreview::show(const render::OutputSpec&, const render::PictureFacts
     else { // room first, so that the screen does not roll under the picture
         for (int i = 0; shown_ == 0 && i < lines; ++i) out += "\n";
         if (shown_ == 0) out += "\x1b[" + number(lines) + "A";
-        out += "\x1b" "7" + (kind_ == TerminalKind::Kitty ? kittyGraphics(b) : sixels(b)) + "\x1b" "8\x1b[" + number(lines) + "B";
+        out += "\x1b"
+               "7" +
+               (kind_ == TerminalKind::Kitty ? kittyGraphics(b) : sixels(b)) +
+               "\x1b"
+               "8\x1b[" +
+               number(lines) + "B";
     }
     shown_ = lines;
     sink_(out);

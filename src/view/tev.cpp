@@ -37,7 +37,8 @@ private:
 /// tev calls red, green, blue and alpha by capitals.
 std::vector<std::string> tevNames(const std::vector<std::string>& channels) {
     std::vector<std::string> names;
-    for (const std::string& c : channels) names.push_back(c == "r" ? "R" : c == "g" ? "G" : c == "b" ? "B" : c == "a" ? "A" : c == "z" ? "Z" : c);
+    for (const std::string& c : channels)
+        names.push_back(c == "r" ? "R" : c == "g" ? "G" : c == "b" ? "B" : c == "a" ? "A" : c == "z" ? "Z" : c);
     return names;
 }
 
@@ -77,8 +78,8 @@ std::string tevUpdate(const std::string& name, int x, int y, int width, int heig
     p.put(int32_t(channels.size()));
     for (const std::string& c : channels) p.put(c);
     for (int v : {x, y, width, height}) p.put(int32_t(v));
-    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(i));                   // where each channel begins,
-    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(channels.size()));     // and how far its pixels are apart
+    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(i));               // where each channel begins,
+    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(channels.size())); // and how far its pixels are apart
     p.raw(data.data(), data.size() * sizeof(float));
     return std::move(p).whole();
 }
@@ -88,14 +89,16 @@ std::unique_ptr<TevPreview> TevPreview::connect(const std::string& host, int por
     addrinfo wanted{}, *all = nullptr;
     wanted.ai_socktype = SOCK_STREAM;
     if (const int fault = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &all); fault != 0) {
-        diags.report(Severity::Warning, Rie::System, {}, "--display tev:" + where + ": " + gai_strerror(fault) + "; rendering goes on without it");
+        diags.report(Severity::Warning, Rie::System, {},
+                     "--display tev:" + where + ": " + gai_strerror(fault) + "; rendering goes on without it");
         return nullptr;
     }
     int s = -1;
     for (const addrinfo* a = all; a && s < 0; a = a->ai_next) s = connectTo(*a);
     freeaddrinfo(all);
     if (s < 0) {
-        diags.report(Severity::Warning, Rie::System, {}, "--display tev:" + where + ": nobody listens there; rendering goes on without it",
+        diags.report(Severity::Warning, Rie::System, {},
+                     "--display tev:" + where + ": nobody listens there; rendering goes on without it",
                      "start tev first; it listens at 127.0.0.1:14158");
         return nullptr;
     }
@@ -119,7 +122,8 @@ void TevPreview::send(const std::string& bytes) {
         if ((errno == EAGAIN || errno == EINTR) && ::poll(&p, 1, kSendMs) == 1) continue;
         ::close(socket_);
         socket_ = -1;
-        diagnostics_.report(Severity::Warning, Rie::System, {}, "tev at " + where_ + " takes no more pictures; rendering goes on without it");
+        diagnostics_.report(Severity::Warning, Rie::System, {},
+                            "tev at " + where_ + " takes no more pictures; rendering goes on without it");
     }
 }
 

@@ -5,7 +5,8 @@
 
 namespace alpenglow::view {
 
-ViewEnd view(ViewOptions options, int port, const StopFlag* stop, const std::function<void(const std::string&)>& announce, std::string* fault) {
+ViewEnd view(ViewOptions options, int port, const StopFlag* stop, const std::function<void(const std::string&)>& announce,
+             std::string* fault) {
     const bool watch = options.watch;
     options.settings.stop = stop;
     const std::unique_ptr<HttpServer> http = HttpServer::listen(port, fault);

@@ -6,6 +6,7 @@ namespace alpenglow::view {
 
 enum class ViewEnd { Done, PortTaken, NoScene };
 /// Serves the page until *stop is set. `announce` gets the address once it is there. port 0: a free one.
-ViewEnd view(ViewOptions, int port, const StopFlag* stop, const std::function<void(const std::string&)>& announce, std::string* fault);
+ViewEnd view(ViewOptions, int port, const StopFlag* stop, const std::function<void(const std::string&)>& announce,
+             std::string* fault);
 
 } // namespace alpenglow::view

@@ -51,7 +51,8 @@ std::optional<HttpResponse> ViewServer::answer(const HttpRequest& r, bool last, 
     if (name == "picture") return picture(r, last);
     if (name == "pixel") return pixel(r);
     if (name == "scene") return json(session_.scene());
-    if (const PageFile* f = pageFile(name.empty() ? "index.html" : name)) return HttpResponse{200, f->type, std::string(f->text, f->size)};
+    if (const PageFile* f = pageFile(name.empty() ? "index.html" : name))
+        return HttpResponse{200, f->type, std::string(f->text, f->size)};
     return refused(404, "There is nothing of that name.\n");
 }
 
@@ -67,15 +68,24 @@ std::optional<HttpResponse> ViewServer::picture(const HttpRequest& r, bool last)
         const Plane* there = p.plane(plane);
         const Plane& shown = there ? *there : p.planes.front();
         // Who has them, and only figures are new, need not get them again.
-        const auto tag = std::to_string(p.number) + "." +
-                         std::to_string(std::hash<std::string>()(textOf(Json(shot.dim)))) + "." + shown.name;
+        const auto tag =
+            std::to_string(p.number) + "." + std::to_string(std::hash<std::string>()(textOf(Json(shot.dim)))) + "." + shown.name;
         if (word(r, "tag") != tag) pixels = halves(p, shown, shot.dim);
         state["tag"] = tag;
         Json names = Json::array();
         for (const Plane& q : p.planes) names.push_back(q.name);
-        state["picture"] = {{"width", p.width}, {"height", p.height}, {"stepX", p.stepX}, {"stepY", p.stepY}, {"x0", p.window.x0}, {"y0", p.window.y0},
-                            {"w", shown.image->width}, {"h", shown.image->height}, {"plane", shown.name}, {"planes", names},
-                            {"channels", shown.image->channels}, {"pixels", !pixels.empty()}};
+        state["picture"] = {{"width", p.width},
+                            {"height", p.height},
+                            {"stepX", p.stepX},
+                            {"stepY", p.stepY},
+                            {"x0", p.window.x0},
+                            {"y0", p.window.y0},
+                            {"w", shown.image->width},
+                            {"h", shown.image->height},
+                            {"plane", shown.name},
+                            {"planes", names},
+                            {"channels", shown.image->channels},
+                            {"pixels", !pixels.empty()}};
     }
     state["serial"] = shot.serial;
     std::string text = textOf(state);
@@ -91,12 +101,14 @@ HttpResponse ViewServer::pixel(const HttpRequest& r) {
     Json j{{"x", number(r, "x")}, {"y", number(r, "y")}};
     if (!shot.picture) return json(j);
     const Picture& p = *shot.picture;
-    const int x = int(double(number(r, "x") & 0xfffff) / p.stepX) - p.window.x0, y = int(double(number(r, "y") & 0xfffff) / p.stepY) - p.window.y0;
+    const int x = int(double(number(r, "x") & 0xfffff) / p.stepX) - p.window.x0,
+              y = int(double(number(r, "y") & 0xfffff) / p.stepY) - p.window.y0;
     Json& values = j["values"] = Json::object();
     for (const Plane& q : p.planes) {
         const display::Image& image = *q.image;
         if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
-        for (size_t k = 0; k < image.channels.size(); ++k) values[q.name + "/" + image.channels[k]] = double(image.pixel(x, y)[k]);
+        for (size_t k = 0; k < image.channels.size(); ++k)
+            values[q.name + "/" + image.channels[k]] = double(image.pixel(x, y)[k]);
     }
     return json(j);
 }

@@ -36,7 +36,8 @@ bool cropOf(const Json& j, std::optional<std::array<double, 4>>* to) {
 /// A name as a display's mode has it, or a light path expression ("lpe:C<RD>L").
 bool isChannelName(const std::string& s) {
     if (s.starts_with("lpe:"))
-        return s.size() > 4 && s.size() <= 200 && std::all_of(s.begin(), s.end(), [](unsigned char c) { return c > ' ' && c < 127 && c != '"'; });
+        return s.size() > 4 && s.size() <= 200 &&
+               std::all_of(s.begin(), s.end(), [](unsigned char c) { return c > ' ' && c < 127 && c != '"'; });
     return !s.empty() && s.size() <= 200 && std::all_of(s.begin(), s.end(), [](unsigned char c) {
         return std::isalnum(c) || c == '_' || c == ':' || c == '.' || c == '[' || c == ']';
     });
@@ -96,8 +97,9 @@ std::string Wishes::take(const Json& j) {
 }
 
 Json Wishes::json() const {
-    Json j{{"continuous", continuous}, {"paused", paused}, {"spp", spp},   {"depth", depth},       {"direct", direct}, {"indirect", indirect},
-           {"factor", factor},         {"clamp", clamp},   {"hider", hider}, {"channels", channels}, {"lights", lights}, {"dim", dim}};
+    Json j{{"continuous", continuous}, {"paused", paused},     {"spp", spp},       {"depth", depth},
+           {"direct", direct},         {"indirect", indirect}, {"factor", factor}, {"clamp", clamp},
+           {"hider", hider},           {"channels", channels}, {"lights", lights}, {"dim", dim}};
     j["crop"] = crop ? Json(*crop) : Json();
     return j;
 }
@@ -132,8 +134,10 @@ std::string takeParameter(const Json& j, const std::vector<ShaderUse>& uses, Par
     p.numbers.clear();
     p.strings.clear();
     for (const Json& v : j["value"]) {
-        if (p.type == scene::Type::String && v.is_string() && v.get<std::string>().size() <= 4096) p.strings.push_back(v.get<std::string>());
-        else if (p.type != scene::Type::String && v.is_number() && std::isfinite(v.get<double>())) p.numbers.push_back(float(v.get<double>()));
+        if (p.type == scene::Type::String && v.is_string() && v.get<std::string>().size() <= 4096)
+            p.strings.push_back(v.get<std::string>());
+        else if (p.type != scene::Type::String && v.is_number() && std::isfinite(v.get<double>()))
+            p.numbers.push_back(float(v.get<double>()));
         else return "\"" + p.name + "\" cannot be that";
     }
     const size_t n = p.type == scene::Type::String ? 1 : size_t(scene::componentCount(p.type));

@@ -1,9 +1,9 @@
 // Stage connect: what lobes give back of the light that lights send them. Lobes of a vertex share the sample of a light, and so
 // the way to it: one shadow ray carries what all of them give.
-#include "world/emitterfootprint.h"
+#include "lobes/sampling.h"
 #include "wave/gather.h"
 #include "wave/medium.h"
-#include "lobes/sampling.h"
+#include "world/emitterfootprint.h"
 
 namespace alpenglow::transport {
 

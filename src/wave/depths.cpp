@@ -26,11 +26,15 @@ std::vector<float> hazeSteps(const Color& left) {
 }
 
 /// A part of a camera ray within a medium; its sample, and its number among those that are on their way.
-struct HazyWay { int medium; size_t sample, going; Vec3 from, to; };
+struct HazyWay {
+    int medium;
+    size_t sample, going;
+    Vec3 from, to;
+};
 
 /// A way through a medium up to a hit.
 void enterMedia(const Engine& e, const shading::Media* m, const Vec3& begin, const accel::Hit& h, size_t sample, size_t going,
-                        std::vector<HazyWay>& ways) {
+                std::vector<HazyWay>& ways) {
     if (!m || m->top() < 0) return;
     const geometry::SurfacePoint at = e.world().accel_->point(h);
     ways.push_back({m->top(), sample, going, begin, at.displaced ? at.displacedP : at.P});
@@ -78,7 +82,13 @@ void seeHaze(Engine& e, std::span<const HazyWay> ways, std::span<const ShadowRay
 /// Surfaces are those that camera rays meet; what each takes is the opacity that it has for shadow rays. Shaders that give it
 /// run for all rays that have come to one, wave by wave.
 bool Engine::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult> out) {
-    struct Going { accel::Ray ray; size_t index; const shading::Media* media; Vec3 begin; Color left{1}; };
+    struct Going {
+        accel::Ray ray;
+        size_t index;
+        const shading::Media* media;
+        Vec3 begin;
+        Color left{1};
+    };
     samples_.resize(rays.size());
     std::vector<PathRay> paths(rays.size());
     std::vector<ShadowRay> asked(rays.size());
@@ -102,7 +112,10 @@ bool Engine::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult>
         if (opacity != Color(0)) out[g.index].left.push_back({z, g.left});
         return maxComponent(g.left) > 0;
     };
-    struct Waiting { size_t going; float z; };
+    struct Waiting {
+        size_t going;
+        float z;
+    };
     std::vector<Waiting> waiting;
     const bool media = !world_->media_.empty();
     std::vector<HazyWay> ways;
@@ -111,8 +124,7 @@ bool Engine::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult>
         next.clear(), met.clear(), waiting.clear(), ways.clear();
         std::vector<accel::Hit> hits(now.size());
         for (size_t i = 0; i < now.size(); ++i)
-            if (meet(now[i].ray, hits[i]) && media)
-                enterMedia(*this, now[i].media, now[i].begin, hits[i], now[i].index, i, ways);
+            if (meet(now[i].ray, hits[i]) && media) enterMedia(*this, now[i].media, now[i].begin, hits[i], now[i].index, i, ways);
         if (!ways.empty()) {
             hazy.clear();
             for (const HazyWay& w : ways) hazy.push_back(now[w.going].left);

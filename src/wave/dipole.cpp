@@ -1,7 +1,7 @@
 // Diffusion in place of walks: points of the surface about the shaded one.
-#include "wave/subsurface.h"
 #include "lobes/dipole.h"
 #include "lobes/sampling.h"
+#include "wave/subsurface.h"
 
 namespace alpenglow::transport {
 

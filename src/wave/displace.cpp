@@ -38,7 +38,10 @@ void Engine::takeDisplacement(BatchContext& c) {
     const int dnu = d->batch->output(OutputName::du("N")), dnv = d->batch->output(OutputName::dv("N"));
     for (size_t k = 0; k < c.points.size(); ++k) {
         ShadePoint& p = c.points[k];
-        if (po >= 0) { p.P = d->batch->color(po, int(k)); p.I = p.P - c.rays[k].begin(); }
+        if (po >= 0) {
+            p.P = d->batch->color(po, int(k));
+            p.I = p.P - c.rays[k].begin();
+        }
         const float turn = turnedOver(*p.shape) && !p.shape->givesNormals() ? -1.f : 1.f;
         if (no >= 0) p.N = Vec3(d->batch->color(no, int(k))) * turn;
         // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.

@@ -129,8 +129,8 @@ EmissionDraw EmissionPlan::draw(const render::SampleNumbers& n) const {
     EmissionDraw d;
     if (!lights_.empty()) {
         const float u = n.get1(0, kUseLight, 0);
-        const auto at = std::upper_bound(lights_.begin(), lights_.end() - 1, double(u),
-                                         [](double x, const Light& l) { return x < l.until; });
+        const auto at =
+            std::upper_bound(lights_.begin(), lights_.end() - 1, double(u), [](double x, const Light& l) { return x < l.until; });
         d.light = int(at - lights_.begin());
         d.chance = float(at->share);
     }

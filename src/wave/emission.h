@@ -7,13 +7,13 @@ namespace alpenglow::transport {
 /// A photon before its first ray.
 struct EmissionStart {
     EmissionDraw drawn;
-    Vec3 origin, dir;           ///< dir: unit; zero: this draw brings nothing
+    Vec3 origin, dir;               ///< dir: unit; zero: this draw brings nothing
     geometry::SurfacePoint surface; ///< Area
     const geometry::Shape* shape = nullptr;
-    float factor = 0;           ///< of what the light's kernel says, before `length`
-    float length = 0;           ///< of the way to what it meets first; 0: nothing
-    float kept = 1;             ///< LightValue::kept() of rays of highlights, where the photon arrives first
-    bool front = false;         ///< Area: on the side of n
+    float factor = 0;   ///< of what the light's kernel says, before `length`
+    float length = 0;   ///< of the way to what it meets first; 0: nothing
+    float kept = 1;     ///< LightValue::kept() of rays of highlights, where the photon arrives first
+    bool front = false; ///< Area: on the side of n
 };
 
 /// Fills what follows from `drawn`, for photons of one light.

@@ -1,8 +1,8 @@
 // How each kind of light emits photons. What a light's shader says where a photon arrives decides its power: so the light that
 // falls on what it meets first is that of the same shader at the same point, also where it does not fall off with the square of
 // the distance, or falls through a slide.
-#include "wave/emission.h"
 #include "lobes/sampling.h"
+#include "wave/emission.h"
 
 namespace alpenglow::transport {
 
@@ -109,7 +109,9 @@ void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light
     if (moves) startMoving(e, plan, l, starts);
     for (EmissionStart& s : starts) {
         switch (l.light->kind) {
-        case LightKind::Area: startArea(e.world(), l, s); break;
+        case LightKind::Area:
+            startArea(e.world(), l, s);
+            break;
         case LightKind::Point:
             s.dir = evenDirection(s.drawn.way);
             if (!moves) s.origin = l.place;
@@ -120,7 +122,8 @@ void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light
             s.origin = onDisc(plan, s.dir, s.drawn.place);
             s.factor = 4 * kPiF * kPiF * plan.radius * plan.radius;
             break;
-        default: break;
+        default:
+            break;
         }
         s.factor /= s.drawn.chance * s.drawn.density;
     }

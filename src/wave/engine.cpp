@@ -1,7 +1,7 @@
 // The engine of a thread: calls of trace(), and what rays and batches share.
+#include "base/memory.h"
 #include "wave/gather.h"
 #include "wave/medium.h"
-#include "base/memory.h"
 #include <algorithm>
 #include <limits>
 
@@ -10,11 +10,22 @@ namespace alpenglow::transport {
 void Counters::operator+=(const Counters& o) {
     reflected += o.reflected;
     refracted += o.refracted;
-    camera += o.camera; diffuse += o.diffuse; specular += o.specular; transmission += o.transmission; shadow += o.shadow;
-    points += o.points; batches += o.batches; lanesUsed += o.lanesUsed; lanesRun += o.lanesRun;
-    nonFinite += o.nonFinite; overLimit += o.overLimit; depthCap += o.depthCap;
-    depthSum += o.depthSum; paths += o.paths;
-    records += o.records; interpolated += o.interpolated;
+    camera += o.camera;
+    diffuse += o.diffuse;
+    specular += o.specular;
+    transmission += o.transmission;
+    shadow += o.shadow;
+    points += o.points;
+    batches += o.batches;
+    lanesUsed += o.lanesUsed;
+    lanesRun += o.lanesRun;
+    nonFinite += o.nonFinite;
+    overLimit += o.overLimit;
+    depthCap += o.depthCap;
+    depthSum += o.depthSum;
+    paths += o.paths;
+    records += o.records;
+    interpolated += o.interpolated;
     depthMax = std::max(depthMax, o.depthMax);
     peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
 }
@@ -69,10 +80,14 @@ BatchContext::~BatchContext() {
 
 uint64_t& Engine::raysOf(RayType t) {
     switch (t) {
-    case RayType::Camera: return counters.camera;
-    case RayType::Diffuse: return counters.diffuse;
-    case RayType::Specular: return counters.specular;
-    default: return counters.transmission;
+    case RayType::Camera:
+        return counters.camera;
+    case RayType::Diffuse:
+        return counters.diffuse;
+    case RayType::Specular:
+        return counters.specular;
+    default:
+        return counters.transmission;
     }
 }
 
@@ -125,8 +140,10 @@ void Engine::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     r.origin = c.origin;
     r.dir = c.direction;
     PathSample& sample = samples_[i];
-    sample = {c.px, c.py, c.sample, int(i), c.time, c.shutter, 0.5f, c.records,
-              render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample), c.grid};
+    sample = {c.px,   c.py,      c.sample,
+              int(i), c.time,    c.shutter,
+              0.5f,   c.records, render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample),
+              c.grid};
     r.sample = &sample;
     r.footprint = {c.width, c.spread};
     r.setStart(c.start);

@@ -27,7 +27,6 @@ struct Rules {
           emissionCounts(pickOne) {}
 };
 
-
 class Engine final : public Sched::RayService, public Tracer {
 public:
     Engine(std::shared_ptr<const WorldImpl>, Diagnostics&);
@@ -87,14 +86,14 @@ public:
     uint16_t pathEvent(uint16_t path, int32_t symbol) const { return path ? lightPaths_->next(path, symbol) : 0; }
     int labelOf(const std::string&) const;
     void prepareLightPaths();
-    const scene::LightPaths* lightPaths_ = nullptr; ///< Settings::lightPaths, under path
-    std::vector<int32_t> lightSymbols_; ///< by light
+    const scene::LightPaths* lightPaths_ = nullptr;                                         ///< Settings::lightPaths, under path
+    std::vector<int32_t> lightSymbols_;                                                     ///< by light
     int32_t straight_ = 0, volume_ = 0, object_ = 0, map_ = 0, loopLight_ = 0, mirror_ = 0; ///< events without labels
     int loopLabel_ = -1;
     mutable std::unordered_map<int32_t, int> labelOfRays_; ///< by interned text
     mutable std::unordered_map<const LobeKind*, int> labelOfLobe_;
     std::vector<TargetId> partTargets_; ///< by camera sample and part
-    std::vector<uint16_t> straights_; ///< by shadow ray, surfaces that it went straight through; where somebody asks
+    std::vector<uint16_t> straights_;   ///< by shadow ray, surfaces that it went straight through; where somebody asks
     // lights.cpp
     /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out,
@@ -129,14 +128,17 @@ public:
     std::optional<Color> recorded(const BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                   const RayKind* kind, uint32_t occurrence);
     void sendRecord(const BatchContext&, int point, uint32_t call, uint32_t occurrence, Recording&);
-    void followRecords(Sched&);         ///< sends the rays of those that were begun
+    void followRecords(Sched&); ///< sends the rays of those that were begun
     void blockedRecord(Recording&);
-    void keepRecordings(const Sched&);  ///< once all rays are followed
+    void keepRecordings(const Sched&); ///< once all rays are followed
     void forgetRecordings();
     std::vector<Recording> recordings_;
     size_t recordsSent_ = 0;
     /// What the attributes of a shape say: samples, and the bias, < 0 where there is none.
-    struct OfShape { int samples; float bias; };
+    struct OfShape {
+        int samples;
+        float bias;
+    };
     const OfShape& ofShape(const geometry::Shape*);
     std::unordered_map<const scene::Attributes*, OfShape> ofShapes_;
     // gatherloop.cpp
@@ -184,7 +186,11 @@ public:
     void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*,
                         const SurfaceBinding*);
     /// A part of a shadow ray inside a medium.
-    struct MediumPart { int medium; size_t ray; Vec3 from, to; };
+    struct MediumPart {
+        int medium;
+        size_t ray;
+        Vec3 from, to;
+    };
     /// Takes from `out`, by ray, what the media leave of light.
     void dim(std::span<const MediumPart>, std::span<const ShadowRay>, std::span<Color> out);
     // manylights.cpp
@@ -203,10 +209,16 @@ public:
     /// For the camera's points of a batch that is filled: runs for the outputs that light reaches.
     std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&);
     /// A lobe of a batch, and the pair that it came from.
-    struct AskedLobe { int lobe, record, lane; };
+    struct AskedLobe {
+        int lobe, record, lane;
+    };
     void requestPairs(BatchContext&, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched&); // shadegroup.cpp
     /// A pair of an output that shares no lobe of Ci, or not in all components.
-    struct AskedAside { BatchContext* run; int record, lane; Color weight; };
+    struct AskedAside {
+        BatchContext* run;
+        int record, lane;
+        Color weight;
+    };
     /// Gives the lobes of a batch their shares; what is left is returned. The asides have run.
     std::vector<AskedAside> shareLight(const BatchContext&, std::span<const AskedLobe>,
                                        std::span<const std::shared_ptr<BatchContext>>, Sched&);
@@ -268,11 +280,11 @@ public:
     }
     std::unordered_map<TargetId, TraceSums> traceSums_;
     std::vector<Share> shares_;
-    std::vector<TargetId> lightTargets_; ///< by camera sample, WorldImpl::lightOutputs_
+    std::vector<TargetId> lightTargets_;    ///< by camera sample, WorldImpl::lightOutputs_
     TargetId nowhere_ = shading::kNoTarget; ///< nobody reads it
-    std::vector<int> litBy_;           ///< RayExtra::lit of the queries of a light
-    std::vector<LitValues> litValues_; ///< of what runs now; only where lights ask for outputs of surfaces
-    std::vector<SampleResult*> results; ///< of the call of trace()
+    std::vector<int> litBy_;                ///< RayExtra::lit of the queries of a light
+    std::vector<LitValues> litValues_;      ///< of what runs now; only where lights ask for outputs of surfaces
+    std::vector<SampleResult*> results;     ///< of the call of trace()
     // subsurface.cpp
     /// The lobe of a subsurface(): its rays walk below the surface.
     void requestSubsurface(BatchContext&, const SiteInfo&, const ShadePoint&, const std::function<float(int)>& row, LobeVertex&);
@@ -284,11 +296,11 @@ public:
     std::map<const scene::Attributes*, std::shared_ptr<const SubsurfaceOfShape>> subsurfaces_;
     std::map<std::string, int> groups_;
     HalfSpaces halfSpaces_;
-    std::vector<Below> below_; ///< of `lobes`
+    std::vector<Below> below_;     ///< of `lobes`
     std::vector<WalkAsked> walks_; ///< that the lobes of a batch have asked for; taken where these are done
     /// Follows the walks below surfaces that a batch has asked for. subsurface.cpp
     void walk(BatchContext&, Sched&);
-    std::vector<int> spoiled_;         ///< PathSample::path of samples that notFinite() has seen; some twice
+    std::vector<int> spoiled_; ///< PathSample::path of samples that notFinite() has seen; some twice
     std::vector<LobeVertex> lobes;
     LobeColumns lobeRows_; ///< of `lobes`
     std::vector<ShadowRay> shadows;
@@ -298,10 +310,10 @@ public:
     void takeGlobalMaps(BatchContext&, Sched&);
     const photons::PhotonMap* globalMapOf(int binding);
     std::unordered_map<int, const photons::PhotonMap*> globalMaps_; ///< by binding
-    void beginTrace();                  ///< nothing waits and nothing is spoiled
-    void endTrace(const Sched&);        ///< counts what the scheduler saw, and forgets
-    accel::Ray rayOf(const PathRay&) const; ///< as the tree follows it
-    void beginRay(const CameraRay&, size_t i, PathRay&); ///< the i-th of a call
+    void beginTrace();                                              ///< nothing waits and nothing is spoiled
+    void endTrace(const Sched&);                                    ///< counts what the scheduler saw, and forgets
+    accel::Ray rayOf(const PathRay&) const;                         ///< as the tree follows it
+    void beginRay(const CameraRay&, size_t i, PathRay&);            ///< the i-th of a call
     /// What is left of light along camera rays, behind each surface that they meet: SampleResult::left. depths.cpp
     bool seeThrough(std::span<const CameraRay>, std::span<SampleResult>);
     bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
@@ -320,10 +332,10 @@ private:
         std::vector<accel::Hit> hits;
         std::vector<PathRay> rays;
         std::vector<TargetId> targets;
-        bool waits = false;                    ///< its kernel waits for rays; then
-        size_t room = 0;                       ///< so many of its points may be shaded now
+        bool waits = false; ///< its kernel waits for rays; then
+        size_t room = 0;    ///< so many of its points may be shaded now
     };
-    std::vector<HitQueue> hitQueues_;          ///< by SurfaceBinding::group, then for rays that take primitives as they are
+    std::vector<HitQueue> hitQueues_; ///< by SurfaceBinding::group, then for rays that take primitives as they are
     std::vector<size_t> groupsWithHits_;
     size_t hitsWaiting_ = 0;
     void cast(std::span<const Sched::Task>);
@@ -334,19 +346,24 @@ private:
     // flight.cpp: what happens on the way. Flights that are over leave the batch, or the list.
     void fly(BatchContext&, Sched&);
     void fly(std::vector<const Sched::Task*>& missed, Sched&);
-    std::vector<FlightEvent*> events_; std::vector<Flight> flights_;
+    std::vector<FlightEvent*> events_;
+    std::vector<Flight> flights_;
     void shine(const BatchContext&, Sched&);
     std::vector<class KernelStrip*> waiting_; ///< whose requests nobody has followed yet
-    std::vector<PathSample> samples_; PathSample noSample_; ///< of the call of trace()
-    std::vector<RayExtra> extras_; std::vector<int32_t> freeExtras_;
+    std::vector<PathSample> samples_;
+    PathSample noSample_; ///< of the call of trace()
+    std::vector<RayExtra> extras_;
+    std::vector<int32_t> freeExtras_;
     const RayExtra noExtra_;
     std::unordered_map<uint64_t, std::deque<RayKind>> kinds_; ///< by hash
     const RayKind* lastKind_ = nullptr;
     std::deque<shading::Media> media_;
-    friend class KernelStrip; friend class Gather;
-    friend class MediumFlights; friend class Walks;
+    friend class KernelStrip;
+    friend class Gather;
+    friend class MediumFlights;
+    friend class Walks;
     std::unique_ptr<FlightEvent> flightsInMedia_; ///< where the world has media that scatter, or priorities
-    int leaks_ = 0; ///< rays that left the scene inside of such a medium
+    int leaks_ = 0;                               ///< rays that left the scene inside of such a medium
     /// For rays that met a light: `of`, by query, is RayExtra::lit. It must outlive the result.
     LitSurface litBy(std::span<const int> of) const;
     /// Contexts and their memory are used again: a slice makes several, of some hundred kilobytes.
@@ -355,11 +372,12 @@ private:
     std::vector<std::shared_ptr<BatchContext>> pool_;
     std::unique_ptr<class Gather> gather_; ///< its memory is used again
     std::vector<accel::Ray> rays_, shadowRays_;
-    std::vector<accel::Hit> hits_; std::vector<geometry::HitRef> run_;
+    std::vector<accel::Hit> hits_;
+    std::vector<geometry::HitRef> run_;
     std::vector<uint8_t> blocked_;
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_, occurrence_;
-    std::vector<int> slotOf_;                  ///< by binding: its place in views_, else -1
+    std::vector<int> slotOf_; ///< by binding: its place in views_, else -1
     bool traceAll(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     void forget(); ///< what a trace() that has ended, or was given up, leaves behind
     /// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core. Fewer once a
@@ -377,7 +395,11 @@ private:
     void gatherOfLight(BatchContext&, const SiteInfo&, int first, std::span<uint32_t> asked);
     void followGather(std::span<struct GatherSent>);
     void misses(std::span<const Sched::Task* const>, Sched&);
-    struct Met { int light; TargetId target; const ShadePoint* point; };
+    struct Met {
+        int light;
+        TargetId target;
+        const ShadePoint* point;
+    };
     /// Light that emitters send along the rays that met them; sorted by light.
     void emission(std::span<const Met>, Sched&);
     /// Goes on behind a point. `chance`: with which it was chosen to; `asked`: rays that a waiting kernel has asked for there.

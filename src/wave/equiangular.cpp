@@ -1,8 +1,8 @@
 // Lights with a place inside of media or near them: their light falls off with the square of the distance, which points that are
 // chosen by how far rays come do not know.
 #include "base/exact.h"
-#include "wave/medium.h"
 #include "lobes/sampling.h"
+#include "wave/medium.h"
 
 namespace alpenglow::transport {
 
@@ -158,8 +158,7 @@ void MediumFlights::nearLights(Engine& e, std::span<Flight> flights, std::span<c
             if (!q) continue;
             const float t = q->at(e.random(*f.ray).one(vertex, kLightPoint + uint32_t(light), 0));
             const double density = q->density(t) * chance;
-            const float share =
-                how == MediumSampling::Equiangular ? 1 : misWeight(float(density), float(x.way.density(t)));
+            const float share = how == MediumSampling::Equiangular ? 1 : misWeight(float(density), float(x.way.density(t)));
             if (density > 0 && share > 0) near[light].push_back({&x.way, &f, &x.weight, t, float(share / density)});
         }
     }

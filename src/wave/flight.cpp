@@ -61,7 +61,7 @@ void Engine::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {
 
 void Engine::divert(Flight& f, PathRay next, Sched& sched, float way) {
     next.trail = photonTrace_ ? shading::kTrailSpread : 0; // photons do not come this way
-    RayExtra extra = extraOf(*f.ray); // each ray has its own
+    RayExtra extra = extraOf(*f.ray);                      // each ray has its own
     if (extra.fade.fades()) extra.way += way;
     next.extra = newExtra(extra);
     sched.spawn(next.bounces + next.layers, f.target, next);

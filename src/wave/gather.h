@@ -20,7 +20,11 @@ public:
 
 private:
     /// A lobe that light of a query reaches from direction w. `turn`: how many queries have reached it before.
-    struct Reached { int query, lobe, turn; Vec3 w; LobeValue value; };
+    struct Reached {
+        int query, lobe, turn;
+        Vec3 w;
+        LobeValue value;
+    };
     /// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
     /// `vertex`: of that ray; `dice`: the number of its roulette; `drawn`: beside a light.
     /// `back`, of photons along narrow lobes: what the other way gives back, over the density, in the place of weight and value.
@@ -37,11 +41,11 @@ private:
     };
     /// What lights are asked for at points of the batch, one kernel call; row by row a query.
     struct LightQueries {
-        std::vector<ShadePoint> at;          ///< the light's point; the first `count` are used
-        std::vector<int> point;              ///< of the batch
+        std::vector<ShadePoint> at; ///< the light's point; the first `count` are used
+        std::vector<int> point;     ///< of the batch
         std::vector<const BoundLight*> light;
-        std::vector<float> chance;           ///< that the light is sampled there
-        std::vector<float> spread;           ///< of the lobes that it is for; < 0: for all of its point
+        std::vector<float> chance; ///< that the light is sampled there
+        std::vector<float> spread; ///< of the lobes that it is for; < 0: for all of its point
         std::vector<Emitter::Sample> drawn;
         std::vector<LightValue> value;
         size_t count = 0;
@@ -63,9 +67,7 @@ private:
     /// Where a ray of a lobe starts.
     Vec3 origin(const LobeVertex&, const Vec3& w) const;
     /// A waiting kernel's result goes to the target of its own that has no shares; what it makes of it has those of its ray.
-    int32_t shareOf(const LobeVertex& l) const {
-        return l.ownsTarget ? -1 : l.share >= 0 ? l.share : e_.extraOf(rayOf(l)).share;
-    }
+    int32_t shareOf(const LobeVertex& l) const { return l.ownsTarget ? -1 : l.share >= 0 ? l.share : e_.extraOf(rayOf(l)).share; }
 
     // choose.cpp
     void choose();
@@ -134,21 +136,28 @@ private:
     BatchContext* c_ = nullptr;
     std::vector<int> begin_, order_,
         next_; ///< of point p the lobes order_[begin_[p]] to order_[begin_[p + 1]], as they were asked for
-    std::vector<float> indirectScale_; ///< by point: of the rays of lighting shadeops
-    std::vector<int> aimed_;           ///< lobes with a light beside their rays
-    std::vector<float> passes_;        ///< by point: the chance that its ray goes on behind it
+    std::vector<float> indirectScale_;                         ///< by point: of the rays of lighting shadeops
+    std::vector<int> aimed_;                                   ///< lobes with a light beside their rays
+    std::vector<float> passes_;                                ///< by point: the chance that its ray goes on behind it
     std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances
-    std::vector<int> chosen_;               ///< places in the list that have some
-    std::vector<std::vector<int>> ofGroup_; ///< many lights: by group, places in the list
+    std::vector<int> chosen_;                                  ///< places in the list that have some
+    std::vector<std::vector<int>> ofGroup_;                    ///< many lights: by group, places in the list
     LightQueries queries_;
     render::NumberRows numbers_;
-    struct Wanted { const BoundLight* light; int point; float chance; };
+    struct Wanted {
+        const BoundLight* light;
+        int point;
+        float chance;
+    };
     std::vector<Wanted> wanted_; ///< points that ask for a light, and the chance that it was chosen there
     std::vector<Reached> reached_;
-    std::vector<int> turns_;   ///< by lobe: queries that have reached it
-    int lastQuery_ = -1; ///< that of the shadow ray sent last, which other lobes of its point may share
+    std::vector<int> turns_; ///< by lobe: queries that have reached it
+    int lastQuery_ = -1;     ///< that of the shadow ray sent last, which other lobes of its point may share
     std::vector<Sent> sent_;
-    struct Near { Vec3 from; Color light; }; ///< radiance times steradians
+    struct Near {
+        Vec3 from;
+        Color light;
+    };                       ///< radiance times steradians
     std::vector<Near> near_; ///< photons about a point
 };
 

@@ -219,15 +219,19 @@ bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t before, uint32_t
     const PathRay& from = *a.point().ray;
     const uint32_t all = a.c.light ? uint32_t(count) : before + many;
     sent.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, all), 0xffff));
-    const float q = a.c.light ? rouletteOfLight(from.bounces, sent.asked)
-                              : rouletteWaiting(from.bounces, from.asked, before, many);
+    const float q =
+        a.c.light ? rouletteOfLight(from.bounces, sent.asked) : rouletteWaiting(from.bounces, from.asked, before, many);
     if (q < 1 && !(a.e.random(from).one(sent.vertex, kRoulette, 0) < q)) return false;
     sent.weight = sent.weight / q;
     return true;
 }
 
 /// A ray of a gather that has met something whose shaders may have to run.
-struct GatherMet { PathRay ray; float* row; accel::Hit hit; };
+struct GatherMet {
+    PathRay ray;
+    float* row;
+    accel::Hit hit;
+};
 
 /// Of the rays of turns begin to end of `turns` those whose hits are shaded. All are cast before the first of them is chosen: how
 /// many have met something is known for all. `asked`: rays of the kernel before, and behind the call with these.
@@ -272,8 +276,7 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
     const ShadePoint& p = a.point();
     const bool cast = g.category == GatherSite::Category::Rays && e.world().accel_;
     RayKind kind{RayType::Specular, true, {}, 0};
-    kind.set = e.raySetOf(
-        a.s, [&](int row) { return a.f(row); }, p.shape, kind.type, kind.label);
+    kind.set = e.raySetOf(a.s, [&](int row) { return a.f(row); }, p.shape, kind.type, kind.label);
     const RayKind* const kept = e.kindOf(kind);
     const bool deep = a.tooDeep(kind.type);
     const float far = std::min(a.number(r.maxDistance, 1e38f), a.number(r.maxHit, 1e38f)), reach = far >= 0 ? far : 1e38f;

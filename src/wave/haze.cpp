@@ -97,7 +97,12 @@ void hazeOfPhotons(Engine& e, BatchContext& c) {
     const WorldImpl& world = e.world();
     c.haze.clear();
     // Where each way is seen to begin and end, by the volume that it is in.
-    struct Way { const Medium* medium; int binding; size_t point; Vec3 end; };
+    struct Way {
+        const Medium* medium;
+        int binding;
+        size_t point;
+        Vec3 end;
+    };
     std::vector<Way> ways;
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];

@@ -160,8 +160,8 @@ bool Engine::agree(std::vector<ShadowRay>& rays, size_t begin, HemisphereRays& o
         for (ShadowRay& r : first) r.contribution = r.contribution == Color(0) ? Color(0) : weight * share;
     }
     for (size_t k = 0; k < first.size(); ++k)
-        settled_.push_back({first[k].target, openLight(first[k], left[k], sumsOf(first[k].target)), LightEvent::Sampled,
-                            first[k].ray});
+        settled_.push_back(
+            {first[k].target, openLight(first[k], left[k], sumsOf(first[k].target)), LightEvent::Sampled, first[k].ray});
     rays.resize(begin);
     return same;
 }

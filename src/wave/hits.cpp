@@ -8,7 +8,7 @@
 namespace alpenglow::transport {
 
 namespace {
-constexpr size_t kBatchPoints = 256; ///< hits of a group that are shaded without waiting for more
+constexpr size_t kBatchPoints = 256;  ///< hits of a group that are shaded without waiting for more
 constexpr size_t kWaitingHits = 4096; ///< of all groups, at most: their memory stays in the cache of a core
 } // namespace
 
@@ -156,7 +156,7 @@ void Engine::shadeHits(size_t group, Sched& sched) {
     if (photonTrace_) tiltPhotons(*c);
     const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
     c->binding = &world_->bindings_[size_t(c->bindings[0])];
-    c->bound = group >= size_t(world_->groups_)           ? &world_->primitiveHit_
+    c->bound = group >= size_t(world_->groups_)       ? &world_->primitiveHit_
                : same && !c->binding->usesObjectSpace ? &c->binding->surfaceS
                                                       : &c->binding->surfaceV;
     shadeGroup(c, sched);
@@ -179,8 +179,8 @@ void Engine::placePoints(HitQueue& q, BatchContext& c) {
         const uint32_t shape = q.hits[i].shape;
         run.clear();
         for (; i < n && q.hits[i].shape == shape; ++i)
-            run.push_back({q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface,
-                           world_->shadesAtOpen_ ? 0 : q.hits[i].time});
+            run.push_back(
+                {q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface, world_->shadesAtOpen_ ? 0 : q.hits[i].time});
         world_->shapes_[shape]->points(run, world_->bindings_[size_t(world_->bindingOf_[shape])].pointNeeds);
     }
     for (size_t i = 0; i < n; ++i) {

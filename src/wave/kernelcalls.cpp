@@ -10,8 +10,7 @@ namespace {
 // trace() and transmission() always ask for rays; the lobe shadeops only where the engine estimates them.
 bool isRequest(SiteKind k, bool path) {
     return k == SiteKind::Trace || k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Subsurface ||
-           k == SiteKind::Gather ||
-           (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
+           k == SiteKind::Gather || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
 }
 
 // The callbacks of generated code: C functions that find their engine through KernelCall::user.
@@ -64,7 +63,11 @@ void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, in
     if (site == rsl::kSiteRescale) { // rows: mark, factor (3), end mark
         uint32_t begin = 0, end = uint32_t(c.emits.size());
         for (int i = 0; i < lanes; ++i)
-            if (mask >> i & 1) { begin = uint32_t(in[i]); end = uint32_t(in[size_t(4) * lanes + i]); break; }
+            if (mask >> i & 1) {
+                begin = uint32_t(in[i]);
+                end = uint32_t(in[size_t(4) * lanes + i]);
+                break;
+            }
         for (uint32_t e = begin; e < end && e < c.emits.size(); ++e) {
             EmitRecord& r = c.emits[e];
             for (int k = 0; k < 3; ++k)

@@ -48,9 +48,9 @@ uint16_t Engine::atLobe(const LobeVertex& l, const ShadePoint& p, const PathRay&
     if (ray.path == 0 || l.ownsTarget) return 0;
     if (p.surface.n == Vec3(0)) return pathEvent(ray.path, volume_); // a medium: there are no sides
     using scene::PathScattering;
-    const PathScattering how = l.delta                             ? PathScattering::Singular
+    const PathScattering how = l.delta                            ? PathScattering::Singular
                                : l.rays->type == RayType::Diffuse ? PathScattering::Diffuse
-                                                                   : PathScattering::Glossy;
+                                                                  : PathScattering::Glossy;
     int ofRays = -1, ofLobe = -1;
     if (lightPaths_->hasLabels()) {
         auto known = labelOfLobe_.find(l.kind);

@@ -64,8 +64,7 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
             ray.extra = -1; // that of the batch, which may be gone before what waits here
             run->bindings.push_back(c.bindings[of[k]]);
             const size_t outputs = world_->lightOutputs_.size();
-            run->targets.push_back(
-                ray.counts ? lightTargets_[size_t(ray.sample->path) * outputs + size_t(o.number)] : nowhere_);
+            run->targets.push_back(ray.counts ? lightTargets_[size_t(ray.sample->path) * outputs + size_t(o.number)] : nowhere_);
             run->points[k] = c.points[of[k]];
             run->points[k].ray = &run->rays.back();
         }
@@ -88,8 +87,8 @@ void Engine::finishAside(BatchContext& c, int first, int lanes, Sched& sched) {
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[size_t(i)];
         if (!ray.counts) continue;
-        const Color light = triple ? ray.weight * c.batch->color(output, i)
-                                   : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0);
+        const Color light =
+            triple ? ray.weight * c.batch->color(output, i) : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0);
         deposit(sched, {c.targets[size_t(i)], light, LightEvent::Output, &ray});
     }
 }
@@ -110,8 +109,7 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
             const int same = calls.own[size_t(e.site)];
             for (int lane = 0; lane < e.lanes; ++lane) {
                 const int point = e.first + lane;
-                if (!(e.mask >> lane & 1) || point >= int(run->points.size()) || !run->rays[size_t(point)].counts)
-                    continue;
+                if (!(e.mask >> lane & 1) || point >= int(run->points.size()) || !run->rays[size_t(point)].counts) continue;
                 Color weight = weightOf(*run, e, lane);
                 if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) {
                     ++counters.nonFinite;

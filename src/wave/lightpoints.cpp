@@ -1,8 +1,8 @@
 // Stage light: every light for every point with lobes that want it, a kernel call a light. Of many lights some are chosen at each
 // point (manylights.cpp), and those of one program share a call.
+#include "wave/gather.h"
 #include "world/emitterfootprint.h"
 #include "world/skytable.h"
-#include "wave/gather.h"
 
 namespace alpenglow::transport {
 

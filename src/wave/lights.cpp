@@ -1,7 +1,7 @@
 // Lights: their kernels run in batches for the points they light.
-#include "wave/strips.h"
-#include "wave/gatherloop.h"
 #include "lobes/sampling.h"
+#include "wave/gatherloop.h"
+#include "wave/strips.h"
 
 namespace alpenglow::transport {
 
@@ -337,8 +337,7 @@ void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first,
         const Vec3 w = to / far;
         const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
         const bool anywhere = light.kind == LightKind::Distant;
-        const float distance =
-            anywhere ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
+        const float distance = anywhere ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
         rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.shutter, lit.ray});
         rays.back().media = mediaTowards(c, first + laneOf[i], w);
         of.push_back(i);

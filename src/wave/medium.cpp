@@ -99,8 +99,7 @@ void MediumFlights::pass(Engine& e, Flight& f, Sched& sched) {
         at[0].Ci = at[0].Oi = Color(0);
         Haze h;
         e.haze(e.world().media_[size_t(medium)], e.world().bindings_[size_t(f.binding)], at, {&h, 1}, true);
-        if (isFinite(h.shown))
-            e.deposit(sched, {f.target, r.weight * h.shown, LightEvent::Surface, &ray, e.extraOf(ray).share});
+        if (isFinite(h.shown)) e.deposit(sched, {f.target, r.weight * h.shown, LightEvent::Surface, &ray, e.extraOf(ray).share});
         if (ray.counts && isFinite(h.opacity)) addOpacity(e, ray, h.opacity);
         for (int k = 0; k < 3; ++k) r.weight[k] *= std::isfinite(h.slope[k]) ? std::max(h.slope[k], 0.f) : 0;
     }

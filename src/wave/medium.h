@@ -11,7 +11,7 @@ class Equiangular {
 public:
     /// Nothing where the light has no place that is known, or so far away that all of the way has about the same of its light.
     static std::optional<Equiangular> of(const FreeFlight&, const BoundLight&, MediumSampling);
-    float at(float u) const;      ///< a point for a number of [0, 1), as a length of the way
+    float at(float u) const;       ///< a point for a number of [0, 1), as a length of the way
     double density(float t) const; ///< a unit of length
 
 private:
@@ -37,7 +37,12 @@ public:
     static Vec3 besideLight(const Engine&, const Medium&, const PathRay&, const Vec3& from, float* away = nullptr);
 
 private:
-    struct Crossing { size_t flight; FreeFlight way; Color weight; bool stops = false; }; ///< weight: of the ray where it begins
+    struct Crossing {
+        size_t flight;
+        FreeFlight way;
+        Color weight;
+        bool stops = false;
+    }; ///< weight: of the ray where it begins
     static std::optional<Crossing> cross(Engine&, Flight&, size_t number, Sched&);
     static void pass(Engine&, Flight&, Sched&);
     static void scatter(Engine&, std::span<Flight>, std::span<const Crossing>, Sched&);

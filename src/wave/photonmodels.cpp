@@ -30,7 +30,7 @@ void Engine::takeModels(BatchContext& c, bool all) {
     };
     std::erase_if(lobes, [&](const LobeVertex& l) { return modelAt(size_t(l.point)) != PhotonModel::Shader; });
     static const LobeKind *const diffuse = findLobe("diffuse"), *const mirror = findLobe("uniform"),
-                                *const specular = findLobe("specular");
+                                 *const specular = findLobe("specular");
     for (size_t i = 0; i < c.points.size(); ++i) {
         const PhotonModel model = modelAt(i);
         if (model == PhotonModel::Shader || model == PhotonModel::Transparent) continue;
@@ -75,11 +75,14 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
     for (size_t i = 0; i < n; ++i) {
         const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
         if (b.photons.model == PhotonModel::Shader || !photonTrace_->job->models)
-            diagnostics_.reportOnce("photonwaits:" + b.surface->name,
-                                    {Severity::Info, Rie::NoError, b.surface->place,
-                                     "surface \"" + b.surface->name +
-                                         "\" decides on what its rays bring: photons come off it as off a matte surface",
-                                     "Attribute \"photon\" \"string shadingmodel\" says what it is", {}});
+            diagnostics_.reportOnce(
+                "photonwaits:" + b.surface->name,
+                {Severity::Info,
+                 Rie::NoError,
+                 b.surface->place,
+                 "surface \"" + b.surface->name + "\" decides on what its rays bring: photons come off it as off a matte surface",
+                 "Attribute \"photon\" \"string shadingmodel\" says what it is",
+                 {}});
     }
     takeModels(c, true);
     c.clear.assign(n, Color(0));
@@ -95,8 +98,8 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
     gather(c, sched);
     for (size_t i = 0; i < n; ++i)
         if (maxComponent(c.clear[i]) > 0 && c.passes[i] > 0)
-            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], c.clear[i],
-                        c.passes[i], 0, sched);
+            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], c.clear[i], c.passes[i],
+                        0, sched);
 }
 
 const photons::PhotonMap* Engine::globalMapOf(int binding) {
@@ -114,12 +117,12 @@ void Engine::takeGlobalMaps(BatchContext& c, Sched& sched) {
             const PathRay& r = c.rays[i];
             const ShadePoint& p = c.points[i];
             const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
-            const Color light = map->radiance({p.surface.displaced ? p.surface.displacedP : p.surface.P,
-                                               dot(n, r.dir) > 0 ? -n : n,
-                                               world_->bindings_[size_t(c.bindings[i])].photons.estimator, 0});
+            const Color light =
+                map->radiance({p.surface.displaced ? p.surface.displacedP : p.surface.P, dot(n, r.dir) > 0 ? -n : n,
+                               world_->bindings_[size_t(c.bindings[i])].photons.estimator, 0});
             tellAsker(c, int(i), Color(1), sched);
-            deposit(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, extraOf(r).share, nullptr,
-                            atPhotons(r.path)});
+            deposit(sched,
+                    {c.targets[i], r.weight * light, LightEvent::Photons, &r, extraOf(r).share, nullptr, atPhotons(r.path)});
             freeExtra(r);
             sched.release(c.targets[i]);
             continue;

@@ -116,8 +116,15 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         const float most = maxComponent(t.power[i]);
         if (!(most > 0) || !std::isfinite(most)) continue;
         PathSample& sample = samples_[i];
-        sample = {int(job.pass >> 24), int(job.pass & 0xffffffu), first + i,   int(i), world_->timeAt(s.drawn.time),
-                  s.drawn.time,        0.5f,                      false,         job.numbers(first + i)};
+        sample = {int(job.pass >> 24),
+                  int(job.pass & 0xffffffu),
+                  first + i,
+                  int(i),
+                  world_->timeAt(s.drawn.time),
+                  s.drawn.time,
+                  0.5f,
+                  false,
+                  job.numbers(first + i)};
         PathRay& r = sched.spawn(0, root).payload;
         r.origin = s.origin;
         r.dir = s.dir;

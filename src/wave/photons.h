@@ -10,8 +10,8 @@ struct PhotonJob;
 
 /// The numbers of one photon before it meets anything.
 struct EmissionDraw {
-    int light = -1; ///< of EmissionPlan::lights(); -1: there is none
-    float chance = 0; ///< with which this light was drawn
+    int light = -1;        ///< of EmissionPlan::lights(); -1: there is none
+    float chance = 0;      ///< with which this light was drawn
     Vec2 place, way, cone; ///< each evenly in the square; `way` is guided
     float choose = 0, side = 0, time = 0;
     float density = 1; ///< of `way`
@@ -23,13 +23,13 @@ public:
     /// A light that emits. Camera space.
     struct Light {
         const BoundLight* light = nullptr;
-        int number = -1;       ///< in WorldImpl::lights_
-        double power = 0;      ///< luminance, about
+        int number = -1;             ///< in WorldImpl::lights_
+        double power = 0;            ///< luminance, about
         double share = 0, until = 0; ///< of the photons; sum up to and with this one
-        Vec3 place;            ///< LightKind::Point
-        float front = .5f;     ///< Area: of its photons, those that leave on the side of n
-        std::vector<float> guide; ///< kBins x kBins: densities of `way` by row; empty: even
-        std::vector<float> rows;  ///< of the guide: share of each row of bins
+        Vec3 place;                  ///< LightKind::Point
+        float front = .5f;           ///< Area: of its photons, those that leave on the side of n
+        std::vector<float> guide;    ///< kBins x kBins: densities of `way` by row; empty: even
+        std::vector<float> rows;     ///< of the guide: share of each row of bins
     };
     static constexpr int kBins = 32;
 
@@ -68,11 +68,11 @@ struct PhotonJob {
     const EmissionPlan* plan = nullptr;
     const uint8_t* met = nullptr; ///< by shape
     uint64_t seed = 0;
-    uint32_t pass = 0;            ///< other passes have other photons
-    bool caustics = false;        ///< only photons that mirrors and glass sent are kept, and none goes on behind other lobes
-    double scale = 1;             ///< of their power: one over how many are emitted
-    bool models = true;           ///< Attribute "photon" "shadingmodel" counts
-    float width = 0;              ///< caustics: lobes whose spread is below, in radians, count as mirrors
+    uint32_t pass = 0;     ///< other passes have other photons
+    bool caustics = false; ///< only photons that mirrors and glass sent are kept, and none goes on behind other lobes
+    double scale = 1;      ///< of their power: one over how many are emitted
+    bool models = true;    ///< Attribute "photon" "shadingmodel" counts
+    float width = 0;       ///< caustics: lobes whose spread is below, in radians, count as mirrors
     render::SampleNumbers numbers(uint32_t photon) const {
         return {render::Sampler(render::SeedKey(seed ^ 0x70686f746f6e7331ull), int(pass >> 24), int(pass & 0xffffffu)), photon};
     }
@@ -81,13 +81,16 @@ struct PhotonJob {
 /// Photons on their way.
 struct PhotonTrace {
     const PhotonJob* job = nullptr;
-    uint32_t first = 0;           ///< number of the photon of PathSample::path 0
-    std::vector<Color> power;     ///< by path: of a ray of weight 1, in units of job->scale
-    struct From { int light = -1; float kept = 1; }; ///< number in WorldImpl::lights_; EmissionStart::kept
-    std::vector<From> from;       ///< by path
+    uint32_t first = 0;       ///< number of the photon of PathSample::path 0
+    std::vector<Color> power; ///< by path: of a ray of weight 1, in units of job->scale
+    struct From {
+        int light = -1;
+        float kept = 1;
+    };                      ///< number in WorldImpl::lights_; EmissionStart::kept
+    std::vector<From> from; ///< by path
     std::vector<StoredPhoton>* out = nullptr;
     RayKind diffuse, specular;
-    float fastest = 0;            ///< how far surfaces that photons have met move while the shutter is open
+    float fastest = 0; ///< how far surfaces that photons have met move while the shutter is open
 };
 
 /// How many lobes of either kind those surfaces leave to a photon for caustics that have sent it on (Attribute "trace"

@@ -6,9 +6,9 @@
 // K times the cosine of the way on over that of the way here, both with the normal of the geometry, over the density of the draw
 // (Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders takes energy for
 // radiance, without the factor for the change of solid angle: the way round has its inverse.
+#include "lobes/sampling.h"
 #include "wave/gather.h"
 #include "wave/photons.h"
-#include "lobes/sampling.h"
 
 namespace alpenglow::transport {
 
@@ -53,9 +53,7 @@ float narrowBelow(const Engine& e, const PathRay& ray) {
 /// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
 // On surfaces alone.
 bool Gather::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow && !c_->between && seesAll(l); }
-bool Gather::mirrors(const LobeVertex& l) const {
-    return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l);
-}
+bool Gather::mirrors(const LobeVertex& l) const { return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l); }
 /// By what both a photon and a path know of it: the roughness, and that the lobe is the same seen along any of its ways. So are
 /// those of facets, and highlights about the mirrored direction; what is thrown about another direction, as by refraction, is
 /// not: there are ways that only one of both finds. Shaders that move P are not asked twice (lookBack()).

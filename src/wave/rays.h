@@ -6,7 +6,6 @@
 
 namespace alpenglow::transport {
 
-
 using shading::FreeFlight;
 using shading::PathRay;
 using shading::PathSample;
@@ -18,8 +17,7 @@ using shading::TargetId;
 
 /// Rays that most vertices send.
 inline constexpr RayKind kDiffuseKind{RayType::Diffuse, false, {}, 0}, kSpecularKind{RayType::Specular, false, {}, 0};
-inline constexpr RayKind kShadowKind{
-    RayType::Transmission, false, {nullptr, accel::Sides::Both, shading::HitMode::Default}, 0};
+inline constexpr RayKind kShadowKind{RayType::Transmission, false, {nullptr, accel::Sides::Both, shading::HitMode::Default}, 0};
 
 /// A visibility question: adds contribution * transmittance to the target.
 struct ShadowRay {
@@ -29,13 +27,13 @@ struct ShadowRay {
     TargetId target;
     float time;
     const PathRay* ray = nullptr;
-    bool areaLight = false; ///< of a trace() that asks how much area lights give
-    const RayKind* kind = &kShadowKind;     ///< whose visibility counts
+    bool areaLight = false;                ///< of a trace() that asks how much area lights give
+    const RayKind* kind = &kShadowKind;    ///< whose visibility counts
     const shading::Media* media = nullptr; ///< where it begins
-    int32_t share = -1;     ///< RayExtra::share
-    int32_t more = -1;      ///< Engine::moreLight_: what else goes the same way; -1: nothing
-    uint16_t path = 0;      ///< PathRay::path behind its vertex
-    int32_t light = 0;      ///< and the event at its other end (Engine::LightEvents)
+    int32_t share = -1;                    ///< RayExtra::share
+    int32_t more = -1;                     ///< Engine::moreLight_: what else goes the same way; -1: nothing
+    uint16_t path = 0;                     ///< PathRay::path behind its vertex
+    int32_t light = 0;                     ///< and the event at its other end (Engine::LightEvents)
     int32_t hemisphere = -1; ///< Engine::hemispheres_: of an occlusion(), which takes the mean of the channels; -1: another
 };
 
@@ -53,27 +51,37 @@ struct Deposit {
     TargetId target = shading::kNoTarget;
     Color light;
     LightEvent event = LightEvent::Surface;
-    const PathRay* path = nullptr;        ///< that brings it, up to its last vertex; may be null
-    int32_t share = -1;                   ///< Engine::shares_
-    const ShaderInstance* of = nullptr;   ///< that made it; null: not known
-    uint16_t end = 0;                     ///< PathRay::path behind the light: which outputs by light path have it; 0: none
+    const PathRay* path = nullptr;      ///< that brings it, up to its last vertex; may be null
+    int32_t share = -1;                 ///< Engine::shares_
+    const ShaderInstance* of = nullptr; ///< that made it; null: not known
+    uint16_t end = 0;                   ///< PathRay::path behind the light: which outputs by light path have it; 0: none
 };
 
 /// An occlusion() whose rays are among the shadow rays.
 struct HemisphereRays {
     const TraceSite* site = nullptr;
-    float share = 1;        ///< of one of its rays
-    shading::Fade fade;     ///< how much a surface blocks that a ray meets far away
-    float spread = 0;       ///< of the rays, for the map
+    float share = 1;    ///< of one of its rays
+    shading::Fade fade; ///< how much a surface blocks that a ray meets far away
+    float spread = 0;   ///< of the rays, for the map
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does
 /// not block.
-struct Way { Vec3 origin, dir; float distance = 0; };
+struct Way {
+    Vec3 origin, dir;
+    float distance = 0;
+};
 Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 
 /// Light beside that of a ShadowRay, and the next of the same.
-struct MoreLight { Color contribution; TargetId target; int32_t share; bool areaLight; uint16_t path; int32_t more; };
+struct MoreLight {
+    Color contribution;
+    TargetId target;
+    int32_t share;
+    bool areaLight;
+    uint16_t path;
+    int32_t more;
+};
 
 /// What a trace() that asks for it is told beside its result. Sums are exact: order does not matter.
 struct TraceSums {
@@ -87,10 +95,19 @@ struct TraceSums {
 };
 
 /// A surface that a shadow ray met, whose opacity its shader must tell.
-struct OpacityQuery { int binding; accel::Hit hit; const ShadowRay* ray; const BoundKernel* kernel; };
+struct OpacityQuery {
+    int binding;
+    accel::Hit hit;
+    const ShadowRay* ray;
+    const BoundKernel* kernel;
+};
 
 /// A part of what is added to a target that an output has as well, and the next one of the same light.
-struct Share { TargetId target; Color ratio; int32_t next; };
+struct Share {
+    TargetId target;
+    Color ratio;
+    int32_t next;
+};
 
 /// Shadow rays that are followed together, about: what many samples of many points ask for does not fit into memory at once.
 inline constexpr size_t kShadowsAtOnce = size_t(1) << 16;

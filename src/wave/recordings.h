@@ -10,13 +10,13 @@ struct Recording {
     int rings = 1, turns = 1;
     float pixel = 0, most = 0, reach = 1e38f, bias = -1;
     shading::Fade fade;
-    Color tint{1};                  ///< of the environment map
+    Color tint{1}; ///< of the environment map
     const RayKind* kind = nullptr;
     const TraceSite* site = nullptr;
-    bool blocks = false;            ///< of an occlusion()
-    std::vector<PathRay> rays;      ///< not yet sent
-    std::vector<TargetId> targets;  ///< by ray, once sent
-    std::vector<Color> seen;        ///< and what came of it
+    bool blocks = false;           ///< of an occlusion()
+    std::vector<PathRay> rays;     ///< not yet sent
+    std::vector<TargetId> targets; ///< by ray, once sent
+    std::vector<Color> seen;       ///< and what came of it
     std::vector<float> ways;
 };
 

@@ -1,8 +1,8 @@
 // Requests of kernels: what a call asks for at a point (design decisions 2 and 3). What becomes of lobes is in gather.h.
-#include "wave/gather.h"
-#include "texture/lookup.h"
-#include "world/raysets.h"
 #include "lobes/sampling.h"
+#include "texture/lookup.h"
+#include "wave/gather.h"
+#include "world/raysets.h"
 
 namespace alpenglow::transport {
 
@@ -62,8 +62,8 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
             RayKind kind = kShadowKind;
             kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
             if (const auto open = recorded(c, s, point, f, kindOf(kind), occurrence)) {
-                settled_.push_back({target, weight * *open, LightEvent::Sampled, p.ray,
-                                    owns || !p.ray ? -1 : extraOf(*p.ray).share});
+                settled_.push_back(
+                    {target, weight * *open, LightEvent::Sampled, p.ray, owns || !p.ray ? -1 : extraOf(*p.ray).share});
                 return;
             }
         }
@@ -146,8 +146,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         params.wo = unit(vector(s.rowWo, params.wo), params.wo);
         params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
         l.trace = s.trace.get();
-        if ((params.hasHorizon = s.rowHorizon >= 0))
-            params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
+        if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
         l.rays = raysOfTrace(s, f, p);
         l.lights = number(s.rowLights, 0) != 0;
         l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);
@@ -167,7 +166,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         if (s.trace->hemisphere) l.samples = samplesOf(number(s.rays->samples, 0), p.shape, s, c);
         else l.samples = samplesOf(std::max(1.f, number(s.rays->samples, 1)), p.shape, s, c);
         break;
-    default: break;
+    default:
+        break;
     }
     const DistributionParams more = l.kind->distribution ? distributionOf(s, f) : DistributionParams();
     l.place = lobeRows_.add(*l.kind, params, l.kind->distribution ? &more : nullptr);

@@ -42,12 +42,15 @@ struct CameraRay {
 };
 
 /// Light from the eye that is left behind a surface at this depth (camera-space z), channel by channel, 0 to 1.
-struct DepthStep { float z; Color left; };
+struct DepthStep {
+    float z;
+    Color left;
+};
 
 struct SampleResult {
-    Color color{0}, opacity{0};  ///< premultiplied; color includes light seen through
+    Color color{0}, opacity{0};       ///< premultiplied; color includes light seen through
     float z = 1e38f, zSecond = 1e38f; ///< camera depth of the first and second surface; 1e38 = none
-    std::vector<float> aovs;     ///< flattened in the order of Settings::outputs
+    std::vector<float> aovs;          ///< flattened in the order of Settings::outputs
     std::vector<DepthStep> left; ///< of a ray that asks for it: behind each surface, in order; before the first all of it is left
     std::vector<Color> parts;    ///< of `color`, by Settings::lightPaths; empty: none are asked for
     Color albedo{0};             ///< with Settings::firstSeen: what the lobes of the surfaces seen give back of even light

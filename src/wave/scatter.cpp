@@ -1,8 +1,8 @@
 // Stage scatter: rays of lobes. Where one ray goes on from a vertex (Rules::pickOne) one of its lobes is followed; elsewhere all
 // are.
-#include "world/emitterfootprint.h"
-#include "wave/gather.h"
 #include "lobes/sampling.h"
+#include "wave/gather.h"
+#include "world/emitterfootprint.h"
 
 namespace alpenglow::transport {
 
@@ -36,7 +36,7 @@ bool Gather::picks(size_t point) const {
 void Gather::pick(size_t point, float number) {
     const auto list = lobesOf(point);
     const bool mayPass = passes_[point] < 1; // then lobes have the rest of the chance
-    if (list.size() == 1 && !mayPass) { // what most vertices are
+    if (list.size() == 1 && !mayPass) {      // what most vertices are
         const LobeVertex& l = e_.lobes[size_t(list[0])];
         if (!(l.chosen > 0) || !l.followed) return;
         const bool one = rules_.pickOne && !l.ownsTarget;

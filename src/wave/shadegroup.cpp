@@ -24,8 +24,9 @@ Color Engine::leftBehind(const BatchContext& c, int i) const {
     if (world_->media_.empty() || c.haze.empty() || !c.haze[size_t(i)].on) return Color(1);
     const PathRay& ray = c.rays[size_t(i)];
     const SurfaceBinding& binding = world_->bindings_[size_t(c.bindings[size_t(i)])];
-    const bool ends = ray.medium() >= 0 || binding.beyond(ray.media ? *ray.media : shading::Media(),
-                                                          c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0;
+    const bool ends =
+        ray.medium() >= 0 ||
+        binding.beyond(ray.media ? *ray.media : shading::Media(), c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0;
     return ends ? c.haze[size_t(i)].slope : Color(1);
 }
 
@@ -99,9 +100,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
         if (!isFinite(opacity)) notFinite(&ray, "Oi", binding.surface.get());
         const bool hazed = !c.haze.empty() && c.haze[size_t(i)].on; // then what it gives and what the volume adds are told apart
         if (isFinite(shown))
-            deposit(sched,
-                    {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share, binding.surface.get(),
-                     hazed ? uint16_t(0) : pathEvent(ray.path, object_)});
+            deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, extraOf(ray).share,
+                            binding.surface.get(), hazed ? uint16_t(0) : pathEvent(ray.path, object_)});
         else notFinite(&ray, "Ci", binding.surface.get());
         if (hazed && ray.path && isFinite(shown))
             depositThroughVolume(sched, ray, binding.matte && ray.camera() ? shown : c.haze[size_t(i)].slope * color, shown);
@@ -237,8 +237,8 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
             if (weight == Color(0) || c.rays[size_t(point)].quiet) continue;
             if (world_->bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
             const float* args = rows + size_t(3) * e.lanes;
-            if (photonTrace_ && (s.kind == SiteKind::LightVisibility || s.kind == SiteKind::Transmission ||
-                                 s.kind == SiteKind::Occlusion))
+            if (photonTrace_ &&
+                (s.kind == SiteKind::LightVisibility || s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion))
                 continue; // nobody asks what photons see
             if (s.kind == SiteKind::LightVisibility) {
                 const size_t had = shadows.size();

@@ -1,9 +1,9 @@
 // Shadow rays: what lies on the way takes the share that its shader's Oi says. Where Oi is Os or a constant that was known when
 // the world was built no shader runs; elsewhere the kernel that gives Oi alone runs for all rays that met it, wave by wave.
 #include "base/exact.h"
+#include "lobes/sampling.h"
 #include "wave/engine.h"
 #include "world/raysets.h"
-#include "lobes/sampling.h"
 #include <limits>
 
 namespace alpenglow::transport {
@@ -178,10 +178,17 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
         out[i] *= Color(1) - opacity;
     };
     if (world_->allOpaque_ && !media && !fading) return blockedByAll(rays, out);
-    struct Going { accel::Ray ray; size_t index; int layers; const shading::Media* media; Vec3 begin; };
+    struct Going {
+        accel::Ray ray;
+        size_t index;
+        int layers;
+        const shading::Media* media;
+        Vec3 begin;
+    };
     const auto medium = [](const Going& g) { return g.media ? g.media->top() : -1; };
     std::vector<MediumPart> parts;
-    std::vector<Going> now, next; std::vector<OpacityQuery> met;
+    std::vector<Going> now, next;
+    std::vector<OpacityQuery> met;
     blockedByOpaque(rays, out);
     for (size_t i = 0; i < rays.size(); ++i) {
         if (!meetsOpaqueAlone(rays[i])) {
@@ -202,7 +209,11 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
                         parts.push_back({medium(g), g.index, g.begin, rays[g.index].origin + g.ray.dir * end});
                     break;
                 }
-                if (g.layers >= limits::kShadowLayers) { t = Color(0); ++counters.depthCap; break; }
+                if (g.layers >= limits::kShadowLayers) {
+                    t = Color(0);
+                    ++counters.depthCap;
+                    break;
+                }
                 int binding = world_->bindingOf_[h.shape];
                 const SurfaceBinding& b = world_->bindings_[size_t(binding)];
                 world_->goOn(g.ray, h);

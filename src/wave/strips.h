@@ -14,7 +14,9 @@ class KernelStrip final : public Sched::Strip {
 public:
     KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth)
         : c_(std::move(c)), handle_(handle), first_(first), depth_(depth), bytes_(c_->frame) {}
-    ~KernelStrip() override { if (handle_) c_->bound->kernel->destroy(handle_); }
+    ~KernelStrip() override {
+        if (handle_) c_->bound->kernel->destroy(handle_);
+    }
     int depth() const override { return depth_; }
     /// Its frame, and about what its points take.
     size_t frameBytes() const override { return bytes_ + gatherBytes_ + 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
@@ -39,7 +41,7 @@ private:
     float* out_ = nullptr;
     std::vector<float> in_;
     std::vector<int> laneOf_;
-    std::vector<TargetId> ids_; ///< by laneOf_; of a gather, by `sent_`
+    std::vector<TargetId> ids_;    ///< by laneOf_; of a gather, by `sent_`
     GatherRows* gather_ = nullptr; ///< the gather that it waits for; null: another request
     std::vector<GatherSent> sent_;
     size_t gatherBytes_ = 0;

@@ -69,9 +69,7 @@ void Walks::run(Sched& sched) {
         if (below_[size_t(asked_[i].below)].model == SubsurfaceSite::Model::Walk) start(int(i));
         else probe(int(i));
     while (!walkers_.empty() && !(e_.stop && *e_.stop)) step();
-    const auto list = [&](const Exit& x) {
-        return e_.world().bindings_[size_t(e_.world().bindingOf_[x.shape])].lightList;
-    };
+    const auto list = [&](const Exit& x) { return e_.world().bindings_[size_t(e_.world().bindingOf_[x.shape])].lightList; };
     std::stable_sort(exits_.begin(), exits_.end(), [&](const Exit& a, const Exit& b) { return list(a) < list(b); });
     for (size_t first = 0, end; first < exits_.size(); first = end) {
         for (end = first; end < exits_.size() && list(exits_[end]) == list(exits_[first]);) ++end;

@@ -23,9 +23,9 @@ struct WalkAsked {
     int32_t below = -1;
     Color weight;
     TargetId target = shading::kNoTarget;
-    uint32_t vertex = 0;    ///< of its random numbers
-    int32_t share = -1;     ///< Engine::shares_
-    float indirect = 1;     ///< LobeVertex::indirect where it comes out
+    uint32_t vertex = 0; ///< of its random numbers
+    int32_t share = -1;  ///< Engine::shares_
+    float indirect = 1;  ///< LobeVertex::indirect where it comes out
 };
 
 /// A lobe at a point that light shall be gathered over.
@@ -33,37 +33,37 @@ struct LobeVertex {
     int point = 0;
     const LobeKind* kind = nullptr;
     LobeColumns::Place place; ///< in Engine::lobeRows_
-    Color weight;          ///< of the request alone, before the ray's throughput
+    Color weight;             ///< of the request alone, before the ray's throughput
     TargetId target = shading::kNoTarget;
     const RayKind* rays = &kDiffuseKind;
-    bool lights = true;    ///< estimate lights here
-    bool deltaLights = true; ///< point, spot and distant ones too (lighting shadeops, not trace())
+    bool lights = true;       ///< estimate lights here
+    bool deltaLights = true;  ///< point, spot and distant ones too (lighting shadeops, not trace())
     bool lobeOfShader = true; ///< a lighting shadeop: counts for the energy rule and may be chosen among
     uint32_t site = 0, occurrence = 0;
-    uint32_t before = 0;   ///< rays that the same waiting kernel has asked for at this point before
+    uint32_t before = 0; ///< rays that the same waiting kernel has asked for at this point before
     float maxDistance = 1e38f;
     int samples = 1;
     bool ownsTarget = false; ///< a suspended request: the target also gets distance and transmission
-    bool followed = true;  ///< its ray may be sent
-    bool delta = false;    ///< kind->isDelta(params)
-    bool narrow = false;   ///< no delta, but photons follow it as if it were one
-    bool elsewhere = false; ///< trace() from a point that is not that of the surface: `from`
+    bool followed = true;    ///< its ray may be sent
+    bool delta = false;      ///< kind->isDelta(params)
+    bool narrow = false;     ///< no delta, but photons follow it as if it were one
+    bool elsewhere = false;  ///< trace() from a point that is not that of the surface: `from`
     Vec3 from;
-    float bias = -1;       ///< < 0: the hit's own error bound
-    float base = 0;        ///< "samplebase": rays start on this part of the footprint
-    int lit = -1;          ///< of Engine::litValues_
-    int32_t share = -1;    ///< Engine::shares_: outputs that hold this request too; -1: none
-    float importance = 1;  ///< its "weight", for rayinfo()
-    Color tint{1};         ///< of the environment map
+    float bias = -1;      ///< < 0: the hit's own error bound
+    float base = 0;       ///< "samplebase": rays start on this part of the footprint
+    int lit = -1;         ///< of Engine::litValues_
+    int32_t share = -1;   ///< Engine::shares_: outputs that hold this request too; -1: none
+    float importance = 1; ///< its "weight", for rayinfo()
+    Color tint{1};        ///< of the environment map
     const TraceSite* trace = nullptr;
-    shading::Fade fade;    ///< of what its rays meet
-    int32_t below = -1;    ///< Engine::below_: of a subsurface(), whose rays walk there; -1: another
+    shading::Fade fade;      ///< of what its rays meet
+    int32_t below = -1;      ///< Engine::below_: of a subsurface(), whose rays walk there; -1: another
     bool directOnly = false; ///< light is sampled, no ray is sent
-    float indirect = 1;    ///< factor of its rays
-    float albedo = 0;      ///< kind->albedo(params)
-    float chosen = 1;      ///< probability that the indirect ray of this lobe is followed
-    Vec3 beside;           ///< unit, toward a light that its rays may pass in a medium
-    float besideShare = 0; ///< of its rays that are drawn evenly in the angle to it
+    float indirect = 1;      ///< factor of its rays
+    float albedo = 0;        ///< kind->albedo(params)
+    float chosen = 1;        ///< probability that the indirect ray of this lobe is followed
+    Vec3 beside;             ///< unit, toward a light that its rays may pass in a medium
+    float besideShare = 0;   ///< of its rays that are drawn evenly in the angle to it
 };
 
 } // namespace alpenglow::transport

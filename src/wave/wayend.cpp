@@ -1,7 +1,7 @@
 // Where a ray ends without a shader of its own: light of emitters and sky, and what goes on through surfaces.
+#include "lobes/sampling.h"
 #include "wave/medium.h"
 #include "world/skytable.h"
-#include "lobes/sampling.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
@@ -49,7 +49,10 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     r.parted |= ray.medium() >= 0 || r.medium() >= 0;
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
     ++r.layers;
-    if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) { ++counters.depthCap; return; }
+    if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) {
+        ++counters.depthCap;
+        return;
+    }
     if (ray.extra >= 0) {
         RayExtra extra = extraOf(ray);
         extra.part = extra.part * t / chosen;
@@ -108,8 +111,8 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
                     weight *= world_->settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
                 }
                 const Color light = r.weight * value[i].Cl * weight;
-                deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, extraOf(r).share, l.instance.get(),
-                                atLight(r.path, l)});
+                deposit(sched,
+                        {of[i]->target, light, LightEvent::Sky, &r, extraOf(r).share, l.instance.get(), atLight(r.path, l)});
             }
     }
 }
@@ -164,9 +167,8 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             if (const FreeFlight& flown = extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)
                 weight *= MediumFlights::shareOfDistance(*this, flown, light);
             if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
-            deposit(sched,
-                    {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get(),
-                     atLight(r.path, light)});
+            deposit(sched, {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, extraOf(r).share, light.instance.get(),
+                            atLight(r.path, light)});
             if (TraceSums* sums = sumsOf(met[i].target); sums && maxComponent(extraOf(r).part) > 0)
                 sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }

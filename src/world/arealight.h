@@ -35,7 +35,7 @@ public:
 
     struct Sample {
         const geometry::Shape* shape = nullptr;
-        float pdf = 0; ///< per steradian as seen from the lit point; > 0
+        float pdf = 0;  ///< per steradian as seen from the lit point; > 0
         Vec3 direction; ///< unit, from the lit point to the light
         float distance = 0;
         uint32_t visibility = ~0u; ///< kinds of rays that could have met this shape by chance
@@ -65,7 +65,9 @@ private:
         uint32_t visibility = ~0u;
         int facets = -1; ///< facets_, of one that is displaced
     };
-    struct Facets { std::vector<double> cumulative; }; ///< areas
+    struct Facets {
+        std::vector<double> cumulative;
+    }; ///< areas
     /// A point for a lit one.
     void place(const Entry&, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint&, uint32_t needs) const;
     /// Density per area of place().

@@ -1,12 +1,12 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
 #include "shadeops/specular.h"
-#include "world/unknownfilter.h"
 #include "world/cloudsite.h"
+#include "world/gathersite.h"
 #include "world/photonattributes.h"
 #include "world/pointsite.h"
 #include "world/ptexsite.h"
-#include "world/gathersite.h"
 #include "world/raysets.h"
+#include "world/unknownfilter.h"
 
 namespace alpenglow::transport {
 
@@ -73,13 +73,15 @@ SiteKind kindOf(const std::string& op) {
 
 /// Records hold the light of whole hemispheres about a normal, nothing else: a call with other outputs or directions has none.
 RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& world) {
-    const auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+    const auto row = [&](const char* name) {
+        auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
     RecordSite r{row("maxvariation"), row("maxpixeldist")};
     if (r.variation < 0 || i.resultRows.size() > 1 || row("horizon") >= 0 || row("axis") >= 0) return r;
     world.interpolates_ = true;
-    r.call = std::max<uint64_t>(
-        1, std::hash<std::string>{}(s.op + ":" + std::to_string(s.place.file) + ":" + std::to_string(s.place.line) + ":" +
-                                    std::to_string(s.place.column)));
+    r.call = std::max<uint64_t>(1, std::hash<std::string>{}(s.op + ":" + std::to_string(s.place.file) + ":" +
+                                                            std::to_string(s.place.line) + ":" + std::to_string(s.place.column)));
     return r;
 }
 
@@ -89,8 +91,14 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     auto t = std::make_shared<TraceSite>();
     const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
                             s.place.column};
-    auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
-    auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+    auto row = [&](const char* name) {
+        auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
+    auto text = [&](const char* name) {
+        auto f = i.text.find(name);
+        return f == i.text.end() ? std::string() : f->second;
+    };
     auto said = [&](const std::string& what, const std::string& message) {
         world.diagnostics_->reportOnce("trace:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, s.op + "(): " + message, {}, {}});
@@ -120,9 +128,8 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         t->map = world.textures_->open(map, world.settings_.texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
     }
-    for (const char* name :
-         {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution", "unshadowedarealight",
-          "environmentdir"})
+    for (const char* name : {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution",
+                             "unshadowedarealight", "environmentdir"})
         t->sums |= i.resultRows.count(name) > 0;
     t->onlyLights =
         !i.resultRows.empty() &&
@@ -137,7 +144,10 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
 
 std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& world) {
     auto o = std::make_shared<OcclusionSite>();
-    auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+    auto row = [&](const char* name) {
+        auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
     o->cone = row("coneangle");
     o->axis = row("axis");
     o->fade = {row("falloff"), row("falloffmode")};
@@ -263,8 +273,12 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
 } // namespace
 
 Diagnostic unknownFilter(const std::string& name, const std::string& op, const SourcePlace& place) {
-    return {Severity::Warning, Rie::BadToken, place, op + "(): there is no filter \"" + name + "\"; \"gaussian\" is used",
-            "filters of maps are box, triangle, gaussian and those of RISpec that are near one of them", {}};
+    return {Severity::Warning,
+            Rie::BadToken,
+            place,
+            op + "(): there is no filter \"" + name + "\"; \"gaussian\" is used",
+            "filters of maps are box, triangle, gaussian and those of RISpec that are near one of them",
+            {}};
 }
 
 size_t rowsOf(const SiteInfo& i, int row) {
@@ -407,7 +421,10 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
         if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
         i.exponent = s.op == "specularstd" || world->rispecSpecular_ ? kRispecExponent : kSpecularExponent;
-        auto rowOf = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+        auto rowOf = [&](const char* name) {
+            auto f = i.named.find(name);
+            return f == i.named.end() ? -1 : f->second;
+        };
         i.rowWo = rowOf("wo");
         i.rowExponent = rowOf("exponent");
         i.rowCone = rowOf("samplecone");

@@ -17,7 +17,8 @@ std::vector<std::string> outputsOf(const rsl::ir::KernelFacts& f, const std::vec
     for (size_t k = 0; k < f.blocks.size(); ++k) {
         const auto add = [&](const char* name) { names.push_back(OutputName::ofBlock(name, int(k)).text()); };
         if (f.blocks[k] == rsl::kBlockOutside) add("Cl");
-        else for (const char* n : {"L", "Cl", "Ol", "lit"}) add(n);
+        else
+            for (const char* n : {"L", "Cl", "Ol", "lit"}) add(n);
     }
     if (f.blocks.empty()) names = {"Cl", "Ol"};
     names.insert(names.end(), extra.begin(), extra.end());
@@ -55,8 +56,13 @@ void readLightAttributes(BoundLight& l, bool path, Diagnostics& d) {
         p && !p->strings.empty()) {
         if (p->strings[0] == "trace") l.strategy = LightStrategy::Trace;
         else if (p->strings[0] == "illuminance") l.strategy = LightStrategy::Illuminance;
-        else d.reportOnce("samplingstrategy:" + p->strings[0], {Severity::Warning, Rie::BadToken, p->place,
-                          "unknown sampling strategy \"" + p->strings[0] + "\"", "\"illuminance\" and \"trace\" are known", {}});
+        else
+            d.reportOnce("samplingstrategy:" + p->strings[0], {Severity::Warning,
+                                                               Rie::BadToken,
+                                                               p->place,
+                                                               "unknown sampling strategy \"" + p->strings[0] + "\"",
+                                                               "\"illuminance\" and \"trace\" are known",
+                                                               {}});
     }
 }
 
@@ -94,8 +100,8 @@ BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, Diagnostics& d) 
         for (const auto& p : light.program->parameters())
             if (p.name == name) extra.push_back(OutputName::parameterOf(name).text());
     for (const auto& p : light.program->parameters())
-        if (const std::string name = OutputName::parameterOf(p.name).text(); p.output && p.type.base != rsl::Base::String &&
-                                                        std::find(extra.begin(), extra.end(), name) == extra.end())
+        if (const std::string name = OutputName::parameterOf(p.name).text();
+            p.output && p.type.base != rsl::Base::String && std::find(extra.begin(), extra.end(), name) == extra.end())
             extra.push_back(name);
     // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
     for (const OutputName& name : wanted_)
@@ -113,7 +119,7 @@ BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, Diagnostics& d) 
 /// Where the outputs of one statement of a light lie, and its values.
 void WorldImpl::bindLightOutputs(BoundLight& part, int block) {
     const auto aovsOf = [&](const OutputName& name) { // by number; measureOutputs() makes the place of its first number of them
-        std::vector<int> all; // "list[1]" is also one of "list"
+        std::vector<int> all;                         // "list[1]" is also one of "list"
         for (size_t i = 0; i < wanted_.size(); ++i)
             if (wanted_[i] == name || wanted_[i] == OutputName::of(name.name)) all.push_back(int(i));
         return all;

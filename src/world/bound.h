@@ -11,9 +11,9 @@ struct ShaderInstance {
     std::string name;
     std::shared_ptr<const rsl::CompiledShader> program;
     shading::ParameterBlock parameters;
-    std::set<std::string> given; ///< parameters that have no default: the scene gave them
-    std::map<std::string, SourcePlace> handlePlaces; ///< of those of type `shader` that the scene gave: where
-    std::vector<rsl::CoShader> coShaders; ///< those of the attributes under which the shader was named
+    std::set<std::string> given;                        ///< parameters that have no default: the scene gave them
+    std::map<std::string, SourcePlace> handlePlaces;    ///< of those of type `shader` that the scene gave: where
+    std::vector<rsl::CoShader> coShaders;               ///< those of the attributes under which the shader was named
     Matrix toCurrent;                                   ///< when the shutter opens
     std::shared_ptr<const shading::MovingSpace> moving; ///< null: shader space stands still
     shading::InstanceView view() const { return {&parameters, &toCurrent, moving.get()}; }
@@ -46,33 +46,33 @@ struct BoundLight {
     }; ///< aov: where an outputchannel() lies among the AOVs
     std::vector<Value> values;
     int valueWidth = 0;
-    bool asksSurface = false;                  ///< its kernel asks for parameters of the surface that it lights
-    bool channels = false;                     ///< some of `values` are AOVs
-    bool cone = false;                         ///< Distant: solar() with an angle, which path samples
+    bool asksSurface = false; ///< its kernel asks for parameters of the surface that it lights
+    bool channels = false;    ///< some of `values` are AOVs
+    bool cone = false;        ///< Distant: solar() with an angle, which path samples
     /// Of a light that sends through generateSamples(): where in `values` the ways and the light of its samples begin; -1:
     /// another light.
     int sentL = -1, sentCl = -1;
-    bool shadows = false;                      ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
+    bool shadows = false; ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
     /// Kernels for strings that a surface sends: by SiteInfo::sentKey of the loop.
     std::map<std::string, BoundKernel> variants;
-    int nonDiffuse = -1, nonSpecular = -1;     ///< outputs, or -1
+    int nonDiffuse = -1, nonSpecular = -1; ///< outputs, or -1
     std::string handle;
     int samples = 1;
     const scene::Light* source = nullptr;
-    std::vector<int> parts;                    ///< lights of the further blocks of the same shader
+    std::vector<int> parts; ///< lights of the further blocks of the same shader
     LightStrategy strategy = LightStrategy::Both;
-    float intensityScale = 0;                  ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
-    bool mean = false; ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
-    bool hazy = false;                         ///< Area, path: some of its shapes lie in an atmosphere
-    uint32_t pointNeeds = geometry::kNeedAll;  ///< geometry::PointNeed of the points of an emitter
-    bool placed = false;                       ///< Point, Area: `place` is where it stands; `extent`: half its size
+    float intensityScale = 0; ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
+    bool mean = false;        ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
+    bool hazy = false;        ///< Area, path: some of its shapes lie in an atmosphere
+    uint32_t pointNeeds = geometry::kNeedAll; ///< geometry::PointNeed of the points of an emitter
+    bool placed = false;                      ///< Point, Area: `place` is where it stands; `extent`: half its size
     Vec3 place;
     float extent = 0;
     // For the choice among many lights: brightness at distance 1 (Distant: anywhere; Area: radiance times area / pi).
     float power = 0;
     Vec3 centre;
     float radius = 0;
-    int group = -1;                            ///< WorldImpl::lightGroups_; -1: none
+    int group = -1;                                     ///< WorldImpl::lightGroups_; -1: none
     std::shared_ptr<const shading::ParameterRows> rows; ///< for the kernel of its group
 };
 
@@ -110,7 +110,7 @@ struct Medium {
     InstanceRef shader;
     BoundKernel kernel;
     std::shared_ptr<const Homogeneous> homogeneous; ///< path: light is scattered in it in closed form, and no shader runs
-    float priority = 0;                        ///< output float __priority: where media overlap the highest counts
+    float priority = 0;                             ///< output float __priority: where media overlap the highest counts
     const geometry::Shape* shape =
         nullptr; ///< inside and outside: the first primitive, and its binding, for rays that meet nothing
     int binding = -1;
@@ -121,17 +121,20 @@ struct Medium {
 struct LightOutput {
     /// `own`, `main`: by site of this kernel and of the surface's, the first site of the surface's that is the same call; -1:
     /// none.
-    struct Kernel { BoundKernel bound; std::vector<int> own, main; };
-    int number = 0;                            ///< WorldImpl::lightOutputs_
-    rsl::OutputName slot;                      ///< as kernels call it: "d", of an array "list[1]"
+    struct Kernel {
+        BoundKernel bound;
+        std::vector<int> own, main;
+    };
+    int number = 0;       ///< WorldImpl::lightOutputs_
+    rsl::OutputName slot; ///< as kernels call it: "d", of an array "list[1]"
     std::vector<std::string> outputs;
-    Kernel S, V;                               ///< as SurfaceBinding::surfaceS, surfaceV
+    Kernel S, V; ///< as SurfaceBinding::surfaceS, surfaceV
 };
 /// Where it lies among the AOVs.
 struct LightOutputPlace {
     rsl::OutputName slot;
-    int aov = 0, component = 0, size = 3;      ///< which AOV; numbers of it before this output; 1 or 3
-    int first = -1;                            ///< of all numbers of a sample; -1: beyond the width of the AOV
+    int aov = 0, component = 0, size = 3; ///< which AOV; numbers of it before this output; 1 or 3
+    int first = -1;                       ///< of all numbers of a sample; -1: beyond the width of the AOV
 };
 
 /// What surfaces do to photons: what their shaders' lobes do to light, or what Attribute "photon" "shadingmodel" names.
@@ -142,18 +145,18 @@ struct PhotonBinding {
     std::string globalMap, causticMap; ///< Attribute "photon"; "": none
     int estimator = 50;                ///< photons of a lookup
     PhotonModel model = PhotonModel::Shader;
-    bool meets = true;                 ///< Attribute "visibility" "photon"; unset: met by diffuse or by specular rays
-    bool meetsBoth = true;             ///< met by both, so that photons can go wherever rays of lobes come from
+    bool meets = true;     ///< Attribute "visibility" "photon"; unset: met by diffuse or by specular rays
+    bool meetsBoth = true; ///< met by both, so that photons can go wherever rays of lobes come from
 };
 
 /// Shapes with the same surface, atmosphere and light list are shaded together.
 struct SurfaceBinding {
     InstanceRef surface, displacement, interior, exterior; ///< the last two are asked by messages
     BoundKernel surfaceS;
-    BoundKernel surfaceV;                      ///< only where batches of the scene need it: several bindings, or different spaces
+    BoundKernel surfaceV; ///< only where batches of the scene need it: several bindings, or different spaces
     BoundKernel displacementS;
-    Medium atmosphere;                         ///< no shader: none
-    int inside = -1, outside = -1;             ///< WorldImpl::media_ of Interior and Exterior; -1: none
+    Medium atmosphere;             ///< no shader: none
+    int inside = -1, outside = -1; ///< WorldImpl::media_ of Interior and Exterior; -1: none
     float insidePriority = 0, outsidePriority = 0;
     /// Whether the surface bounds nothing where a ray is: a medium that counts for more than its inside is on both sides of it.
     bool overruled(const shading::Media* at) const {
@@ -164,28 +167,28 @@ struct SurfaceBinding {
     bool displacementTells = false; ///< displacementS gives the outputs of its shader, for those who ask by displacement()
     BoundKernel moveS; ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
     std::vector<LightOutput> lightOutputs;
-    std::vector<char> aside;                   ///< by AOV: `lightOutputs` give it; empty: none
-    scene::LightSet lights;                    ///< that are on, with the parts of their shaders: WorldImpl::eachLight()
-    int group = 0;                             ///< equal: same program and light list, so that points are shaded in one batch
-    int program = 0;                           ///< equal: the same kernel, so that points may share a V batch
-    int lightList = 0;                         ///< equal: the same lights; WorldImpl::lightLists_
-    bool usesObjectSpace = false;              ///< the kernel reads "object" or "shader" matrices that differ inside the binding
-    int areaLight = -1;                        ///< the light whose geometry this is
+    std::vector<char> aside;      ///< by AOV: `lightOutputs` give it; empty: none
+    scene::LightSet lights;       ///< that are on, with the parts of their shaders: WorldImpl::eachLight()
+    int group = 0;                ///< equal: same program and light list, so that points are shaded in one batch
+    int program = 0;              ///< equal: the same kernel, so that points may share a V batch
+    int lightList = 0;            ///< equal: the same lights; WorldImpl::lightLists_
+    bool usesObjectSpace = false; ///< the kernel reads "object" or "shader" matrices that differ inside the binding
+    int areaLight = -1;           ///< the light whose geometry this is
     bool explicitSurface = true;
-    Opacity opacity;                           ///< as the attributes say
-    Opacity primitiveOpacity, shaderOpacity;   ///< for rays with a "hitmode"; only where there are some
+    Opacity opacity;                         ///< as the attributes say
+    Opacity primitiveOpacity, shaderOpacity; ///< for rays with a "hitmode"; only where there are some
     const Opacity& opacityFor(shading::HitMode m) const {
         return m == shading::HitMode::Default ? opacity : m == shading::HitMode::Primitive ? primitiveOpacity : shaderOpacity;
     }
-    uint32_t primitiveFor = 0;                 ///< visibility bits of rays that take the primitive as it is (Attribute "shade")
+    uint32_t primitiveFor = 0; ///< visibility bits of rays that take the primitive as it is (Attribute "shade")
     bool asPrimitive(shading::HitMode m, RayType t) const {
         return m == shading::HitMode::Primitive || (m == shading::HitMode::Default && (primitiveFor & visibilityBit(t)));
     }
     bool matte = false;
     float shadingRate = 1;
     int maxDiffuse = -1, maxSpecular = -1;
-    float bias = 0;                            ///< Attribute "trace" "bias"; 0: the hit's own error bound
-    uint32_t pointNeeds = geometry::kNeedAll;  ///< geometry::PointNeed of hits
+    float bias = 0;                           ///< Attribute "trace" "bias"; 0: the hit's own error bound
+    uint32_t pointNeeds = geometry::kNeedAll; ///< geometry::PointNeed of hits
     scene::AttributesRef attributes;
     PhotonBinding photons;
 };

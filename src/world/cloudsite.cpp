@@ -37,9 +37,12 @@ bool isOption(const std::string& name) {
 
 void noteString(const std::string& name, const SourcePlace& at, const WorldImpl& world) {
     world.diagnostics_->reportOnce("bakedstring:" + name + at.file + std::to_string(at.line),
-                                   {Severity::Warning, Rie::BadToken, at,
+                                   {Severity::Warning,
+                                    Rie::BadToken,
+                                    at,
                                     "bake3d(): \"" + name + "\" is a string; it is not written",
-                                    "channels are floats, colours, points, vectors, normals and matrices", {}});
+                                    "channels are floats, colours, points, vectors, normals and matrices",
+                                    {}});
 }
 
 } // namespace

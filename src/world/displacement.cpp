@@ -1,6 +1,6 @@
 // Displacement when shapes are diced: by displacement shaders, by classes that are both, and by surface shaders that move P.
-#include "rsl/ir/edit.h"
 #include "geometry/dice.h"
+#include "rsl/ir/edit.h"
 #include "world/impl.h"
 #include "world/turned.h"
 

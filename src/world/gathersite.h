@@ -36,10 +36,10 @@ struct GatherSite {
     bool cosine = false; ///< "distribution"; else uniform
     int threshold = -1;  ///< row of "othreshold"
     std::vector<Output> outputs;
-    int width = 1;       ///< rows of a ray: whether it hit, then the outputs
-    bool shades = false; ///< shaders must run where a ray hits
-    bool light = false;  ///< and what arrives from there counts
-    bool opacity = false, asks = false; ///< surface:Oi; parameters and outputs of shaders
+    int width = 1;                               ///< rows of a ray: whether it hit, then the outputs
+    bool shades = false;                         ///< shaders must run where a ray hits
+    bool light = false;                          ///< and what arrives from there counts
+    bool opacity = false, asks = false;          ///< surface:Oi; parameters and outputs of shaders
     const texture::SkyDirections* sky = nullptr; ///< the world's
 };
 

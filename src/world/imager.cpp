@@ -54,7 +54,9 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
                 int at = begin + p;
                 if (ci >= 0) {
                     Color v = batch.color(ci, p);
-                    r[at] = v.x; g[at] = v.y; b[at] = v.z;
+                    r[at] = v.x;
+                    g[at] = v.y;
+                    b[at] = v.z;
                 }
                 if (opacityOnly && oi >= 0) {
                     const Color v = batch.color(oi, p);

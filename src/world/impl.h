@@ -1,10 +1,10 @@
 // The inside of World, for the rooms of transport only: what hits, shaders and lights are bound to.
 #pragma once
-#include "texture/irradiance.h"
-#include "texture/skydirections.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
 #include "scene/motion.h"
+#include "texture/irradiance.h"
+#include "texture/skydirections.h"
 #include "world/bound.h"
 #include "world/evaluator.h"
 #include "world/lightchooser.h"
@@ -113,21 +113,21 @@ public:
     void groupLights(Diagnostics&);
 
     std::shared_ptr<const scene::Frame> frame_;
-    MakeEvaluator evaluators_;                 ///< kept for the imager
+    MakeEvaluator evaluators_; ///< kept for the imager
     Settings settings_;
-    bool rispecSpecular_ = false;              ///< specular() has RISpec's exponent (shadeops/specular.h)
-    std::map<const scene::ShaderCall*, InstanceRef> coShaders_;              ///< instances, one a request
-    std::map<std::vector<const void*>, InstanceRef> withCoShaders_;          ///< by shader, then the requests of its co-shaders
+    bool rispecSpecular_ = false;                                   ///< specular() has RISpec's exponent (shadeops/specular.h)
+    std::map<const scene::ShaderCall*, InstanceRef> coShaders_;     ///< instances, one a request
+    std::map<std::vector<const void*>, InstanceRef> withCoShaders_; ///< by shader, then the requests of its co-shaders
     Facts facts_;
     std::vector<geometry::ShapeRef> shapes_;
     /// Index into shapes_; of a placed geometry, its first place.
     std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_;
     /// What numbers of a shape are drawn by: its own, or where procedurals wait, what does not depend on which were made.
     uint32_t keyOfShape(uint32_t shape) const { return keysOfShapes_.empty() ? shape : keysOfShapes_[shape]; }
-    std::vector<uint32_t> keysOfShapes_;       ///< empty: their numbers
-    std::unique_ptr<Unmade> unmade_;           ///< null: the frame has no procedurals that wait
-    geometry::Bounds procedurals_;             ///< around all that wait or have waited
-    void findProcedurals();                    ///< fills these two
+    std::vector<uint32_t> keysOfShapes_; ///< empty: their numbers
+    std::unique_ptr<Unmade> unmade_;     ///< null: the frame has no procedurals that wait
+    geometry::Bounds procedurals_;       ///< around all that wait or have waited
+    void findProcedurals();              ///< fills these two
     /// Encloses everything, and does not depend on which procedurals were made.
     geometry::Bounds bounds() const {
         geometry::Bounds b = accel_->bounds();
@@ -135,8 +135,8 @@ public:
         return b;
     }
     scene::Shutter shutter_;
-    bool moves_ = false;                       ///< some shape does
-    bool shadesAtOpen_ = false;                ///< surfaces are shaded where they are when the shutter opens, and send rays then
+    bool moves_ = false;        ///< some shape does
+    bool shadesAtOpen_ = false; ///< surfaces are shaded where they are when the shutter opens, and send rays then
     float timeAt(float shutter) const { return float(shutter_.at(double(shutter))); }
     /// time and dtime of a point at its shutter: the whole shutter where surfaces are shaded as it opens, else an instant.
     void tellTime(shading::ShadePoint& p) const {
@@ -149,23 +149,23 @@ public:
     Vec3 pointsVelocity(const geometry::Shape& s, const geometry::SurfacePoint& p) const {
         return shutter_.opens() ? s.velocity(p) / float(shutter_.close - shutter_.open) : Vec3(0.f);
     }
-    bool traceSubsets_ = false;                ///< some shape has Attribute "grouping" "tracesubset"
-    std::vector<int> bindingOf_;               ///< by shape
+    bool traceSubsets_ = false;  ///< some shape has Attribute "grouping" "tracesubset"
+    std::vector<int> bindingOf_; ///< by shape
     std::vector<SurfaceBinding> bindings_;
-    std::vector<Medium> media_;                ///< of Interior and Exterior
-    shading::Media eye_;                       ///< where camera rays begin
-    bool scatters_ = false;                    ///< some of media_ do
-    void findEye();                            ///< fills eye_; once rays can be sent
+    std::vector<Medium> media_; ///< of Interior and Exterior
+    shading::Media eye_;        ///< where camera rays begin
+    bool scatters_ = false;     ///< some of media_ do
+    void findEye();             ///< fills eye_; once rays can be sent
     /// Fills what a medium's shader says of it by its outputs.
     void bindHomogeneous(Medium&, Evaluator&, Diagnostics&);
-    void placeLights(Evaluator&);              ///< finds where lights stand that scattering media may be near; after all is bound
+    void placeLights(Evaluator&); ///< finds where lights stand that scattering media may be near; after all is bound
     void goOn(accel::Ray&, const accel::Hit&) const; ///< behind what it met
-    int groups_ = 0;                           ///< number of different SurfaceBinding::group
+    int groups_ = 0;                                 ///< number of different SurfaceBinding::group
     std::vector<BoundLight> lights_;
     std::unique_ptr<accel::Accel> accel_;
     Matrix worldToCamera_, cameraToWorld_;
     Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
-    std::vector<rsl::OutputName> wanted_;      ///< Settings::outputs
+    std::vector<rsl::OutputName> wanted_; ///< Settings::outputs
     std::vector<int> outputWidths_;
     std::vector<std::string> missingOutputs_;
     /// All shaders that could give an output.
@@ -177,29 +177,33 @@ public:
     mutable rsl::PrintLog prints_;
     texture::IrradianceTables irradiance_;
     texture::SkyDirectionTables skyMaps_;
-    std::shared_ptr<PhotonStore> photons_;     ///< changes between passes only, when nobody follows rays
-    std::shared_ptr<CloudStore> clouds_;       ///< point clouds that are read, and what is baked; keeps itself safe
-    std::shared_ptr<PtexStore> ptex_;          ///< Ptex files that are read; keeps itself safe
-    bool globalMaps_ = false;                  ///< some surface has a global photon map, and some indirectdiffuse() may meet it
+    std::shared_ptr<PhotonStore> photons_; ///< changes between passes only, when nobody follows rays
+    std::shared_ptr<CloudStore> clouds_;   ///< point clouds that are read, and what is baked; keeps itself safe
+    std::shared_ptr<PtexStore> ptex_;      ///< Ptex files that are read; keeps itself safe
+    bool globalMaps_ = false;              ///< some surface has a global photon map, and some indirectdiffuse() may meet it
     mutable LightRecords records_;
-    bool interpolates_ = false;                ///< some call may want records
+    bool interpolates_ = false; ///< some call may want records
     mutable std::mutex imagerMutex_;
-    struct BoundImager { bool bound = false; InstanceRef shader; BoundKernel kernel; };
-    BoundImager imager_;                       ///< by runImager(), under the lock
-    bool built_ = false;                       ///< threads read the world now
-    std::vector<std::string> lightMessages_;   ///< parameters of surfaces that lights and atmospheres ask for, sorted
+    struct BoundImager {
+        bool bound = false;
+        InstanceRef shader;
+        BoundKernel kernel;
+    };
+    BoundImager imager_;                     ///< by runImager(), under the lock
+    bool built_ = false;                     ///< threads read the world now
+    std::vector<std::string> lightMessages_; ///< parameters of surfaces that lights and atmospheres ask for, sorted
     std::set<std::string>
         lightDisplacements_; ///< outputs of displacement shaders that lights ask for; "": of names made when they run
-    bool lightsAsk_ = false;                   ///< some light asks about the surface that it lights (BoundLight::asksSurface)
+    bool lightsAsk_ = false; ///< some light asks about the surface that it lights (BoundLight::asksSurface)
     bool lightsAsk() const { return lightsAsk_; }
     int maxDepth_ = 32;
     /// The most trace() calls of lights that shading a point brings, about: of limits::kLightsSampled lights, for each loop over
     /// lights and lighting shadeop of the surface that has most of them.
     int lightTraces_ = 0;
     void countLightTraces();
-    bool lightChannels_ = false;               ///< lights give AOVs by outputchannel()
-    bool footprints_ = false;                  ///< some kernel reads du or dv
-    bool allOpaque_ = true;                    ///< no opacity below 1: shadow rays need no shading
+    bool lightChannels_ = false; ///< lights give AOVs by outputchannel()
+    bool footprints_ = false;    ///< some kernel reads du or dv
+    bool allOpaque_ = true;      ///< no opacity below 1: shadow rays need no shading
     /// Where that is not so, by shape, what rays without a "hitmode" may be asked to meet alone: shapes that block all light, and
     /// the others; and a box about those.
     struct ByOpacity {
@@ -209,34 +213,36 @@ public:
     void sortByOpacity();
     /// What surfaces are to photons that are visible to rays as `visibility` says, by shape. photonattributes.cpp
     void bindPhotons(std::span<const uint32_t> visibility);
-    bool fades_ = false;                       ///< some shape is between levels of detail
-    bool hitModes_ = false;                    ///< some call has a "hitmode"
-    BoundKernel primitiveHit_;                 ///< shows primitives as they are; only where some ray may want that
+    bool fades_ = false;       ///< some shape is between levels of detail
+    bool hitModes_ = false;    ///< some call has a "hitmode"
+    BoundKernel primitiveHit_; ///< shows primitives as they are; only where some ray may want that
     ShapeSubsets subsets_;
     /// Lights that surfaces have in common.
     struct LightList {
         scene::LightSet lights;
         /// Those that get samples, in order. With `ofAll`: not listed, they are those of allSampled_ that are in `lights`.
         std::vector<int> sampled;
-        LightChooser chooser;                  ///< over `sampled`; empty where each of them is sampled at every vertex
+        LightChooser chooser; ///< over `sampled`; empty where each of them is sampled at every vertex
         bool ofAll = false;
     };
-    std::vector<LightList> lightLists_;        ///< by SurfaceBinding::lightList
+    std::vector<LightList> lightLists_; ///< by SurfaceBinding::lightList
     /// Where lists would take too much room together, the later ones share one list and its chooser.
     std::vector<int> allSampled_;
     LightChooser allChooser_;
-    size_t listed_ = 0;                        ///< numbers in LightList::sampled of all lists
+    size_t listed_ = 0; ///< numbers in LightList::sampled of all lists
     bool getsSamples(const BoundLight&) const;
     const std::vector<int>& sampledOf(const LightList& l) const { return l.ofAll ? allSampled_ : l.sampled; }
     const LightChooser& chooserOf(const LightList& l) const { return l.ofAll ? allChooser_ : l.chooser; }
-    std::vector<int> skies_;                   ///< what rays see that meet nothing: lights of kind Environment and Ambient
+    std::vector<int> skies_; ///< what rays see that meet nothing: lights of kind Environment and Ambient
     /// Finds where skies are bright (BoundLight::sky). Before surfaces are bound.
     void tabulateSkies(Evaluator&);
     /// Lights of one program that one kernel call evaluates for points that ask for different ones of them.
-    struct LightGroup { BoundKernel kernel; };
+    struct LightGroup {
+        BoundKernel kernel;
+    };
     std::vector<LightGroup> lightGroups_;
     std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere -> their binding
-    float clipNear_ = 0, clipFar_ = 1;         ///< of the request Clipping, for depth()
+    float clipNear_ = 0, clipFar_ = 1;                             ///< of the request Clipping, for depth()
     std::vector<std::pair<Vec3d, Vec3d>>
         clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the normal's side
 };

@@ -59,7 +59,11 @@ size_t LightChooser::split(std::span<int> order, std::span<const LightBound> lig
         return order.size() / 2;
     };
     if (!(extent[axis] > 0) || !std::isfinite(extent[axis]) || order.size() <= 4) return middle();
-    struct Bin { geometry::Bounds box; double power = 0; size_t count = 0; };
+    struct Bin {
+        geometry::Bounds box;
+        double power = 0;
+        size_t count = 0;
+    };
     std::array<Bin, kBins> bins;
     const auto binOf = [&](int i) {
         return std::clamp(int((lights[size_t(i)].centre[axis] - centres.lo[axis]) / extent[axis] * kBins), 0, kBins - 1);
@@ -143,9 +147,7 @@ LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
     return c;
 }
 
-double LightChooser::probability(double share, const Node& n) const {
-    return wanted_ * ((1 - kBlind) * share + n.blind);
-}
+double LightChooser::probability(double share, const Node& n) const { return wanted_ * ((1 - kBlind) * share + n.blind); }
 
 inline std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
     // Of the children's importances only the ratio matters: each is taken times both squared distances, for one division.
@@ -164,7 +166,10 @@ void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
     // One without a tooth can have no leaf with one; a certain one is certain in its leaves. All go down together, a level a
     // turn:
     // the work on one does not wait for another's.
-    struct Entered { int node; double share, begin, teeth; };
+    struct Entered {
+        int node;
+        double share, begin, teeth;
+    };
     Entered entered[kMost + kCut + 4];
     int size = 0;
     const double random = double(u);

@@ -52,20 +52,27 @@ public:
 private:
     struct alignas(64) Node {
         Vec3 centre;
-        int left = -1;         ///< its children: left, left + 1; -1: a leaf
+        int left = -1; ///< its children: left, left + 1; -1: a leaf
         double power = 0;
-        double radius2 = 0;    ///< squared, and not zero
-        double blind = 0;      ///< kBlind times its part of all lights
+        double radius2 = 0; ///< squared, and not zero
+        double blind = 0;   ///< kBlind times its part of all lights
         float radius = 0;
-        int count = 1;         ///< lights below it
-        int light = -1;        ///< of a leaf
+        int count = 1;  ///< lights below it
+        int light = -1; ///< of a leaf
         int parent = -1;
         bool everywhere = false;
     };
     /// A node of the cut, and its share of importance in the whole.
-    struct Part { int node; double importance; };
+    struct Part {
+        int node;
+        double importance;
+    };
     static constexpr int kCut = 32; ///< nodes of the cut at most
-    struct Cut { Part part[kCut]; int size = 0; double total = 0; };
+    struct Cut {
+        Part part[kCut];
+        int size = 0;
+        double total = 0;
+    };
 
     void build(int node, std::span<int> order, std::span<const LightBound> lights);
     size_t split(std::span<int> order, std::span<const LightBound> lights) const;

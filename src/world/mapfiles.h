@@ -12,10 +12,10 @@ struct MapFiles {
 
 /// What messages say of the maps of a kind.
 struct MapKind {
-    const char* name;        ///< "point cloud"
-    const char* missing;     ///< follows `there is no <NAME>; `: what is done without it
-    const char* hint;        ///< what makes such maps
-    bool byBaseName = true;  ///< a file of the same name in another folder of the path serves
+    const char* name;         ///< "point cloud"
+    const char* missing;      ///< follows `there is no <NAME>; `: what is done without it
+    const char* hint;         ///< what makes such maps
+    bool byBaseName = true;   ///< a file of the same name in another folder of the path serves
     const char* names = name; ///< all that may bear the name: "point cloud or brick map"
 };
 

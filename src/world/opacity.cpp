@@ -74,8 +74,7 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     std::vector<ShadePoint> point(1);
     point[0].shape = &shape;
     Color o;
-    evaluator.run(k, nullptr, point, b.surface->view(),
-                  [&](const shading::Batch& batch) { o = batch.color(k.plan->Oi, 0); });
+    evaluator.run(k, nullptr, point, b.surface->view(), [&](const shading::Batch& batch) { o = batch.color(k.plan->Oi, 0); });
     for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
     return result;
 }

@@ -1,6 +1,6 @@
 // Outputs of shaders as displays ask for them: which there are, and how many numbers each has.
-#include "world/impl.h"
 #include "world/outputs.h"
+#include "world/impl.h"
 
 namespace alpenglow::transport {
 

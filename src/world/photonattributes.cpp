@@ -14,15 +14,19 @@ PhotonModel modelOf(const scene::Attributes& a, Diagnostics& d) {
     const scene::Param* p = textOf(a, "photon:shadingmodel");
     if (!p) return PhotonModel::Shader;
     static const std::pair<const char*, PhotonModel> kModels[] = {
-        {"matte", PhotonModel::Matte},      {"plastic", PhotonModel::Plastic},  {"glass", PhotonModel::Glass},
-        {"dielectric", PhotonModel::Glass}, {"water", PhotonModel::Water},      {"chrome", PhotonModel::Chrome},
+        {"matte", PhotonModel::Matte},      {"plastic", PhotonModel::Plastic},
+        {"glass", PhotonModel::Glass},      {"dielectric", PhotonModel::Glass},
+        {"water", PhotonModel::Water},      {"chrome", PhotonModel::Chrome},
         {"conductor", PhotonModel::Chrome}, {"transparent", PhotonModel::Transparent}};
     for (const auto& [name, model] : kModels)
         if (p->strings[0] == name) return model;
     d.reportOnce("photonmodel:" + p->strings[0],
-                 {Severity::Warning, Rie::BadToken, p->place,
+                 {Severity::Warning,
+                  Rie::BadToken,
+                  p->place,
                   "unknown shading model of photons \"" + p->strings[0] + "\"; the lobes of the surface shader are used",
-                  "matte, plastic, glass, dielectric, water, chrome, conductor and transparent are known", {}});
+                  "matte, plastic, glass, dielectric, water, chrome, conductor and transparent are known",
+                  {}});
     return PhotonModel::Shader;
 }
 
@@ -48,9 +52,9 @@ PhotonBinding photonsOf(const scene::Attributes& a, Diagnostics& d) {
 
 std::string photonKey(const scene::Attributes& a) {
     std::string key;
-    for (const char* name : {"photon:globalmap", "photon:causticmap", "photon:shadingmodel", "photon:estimator",
-                             "visibility:photon", "visibility:diffuse", "visibility:specular", "visibility:trace",
-                             "render:visibility"})
+    for (const char* name :
+         {"photon:globalmap", "photon:causticmap", "photon:shadingmodel", "photon:estimator", "visibility:photon",
+          "visibility:diffuse", "visibility:specular", "visibility:trace", "render:visibility"})
         if (const scene::Param* p = a.value(name)) {
             key += name;
             if (!p->strings.empty()) key += ' ' + p->strings[0];
@@ -73,7 +77,10 @@ void WorldImpl::bindPhotons(std::span<const uint32_t> visibility) {
 std::shared_ptr<const PhotonSite> photonSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
     auto p = std::make_shared<PhotonSite>();
     const rsl::ir::Site& s = *i.site;
-    const auto row = [&](const char* name) { const auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
+    const auto row = [&](const char* name) {
+        const auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
     p->caustic = s.op == "caustic";
     size_t next = 0;
     if (!p->caustic) {
@@ -94,9 +101,12 @@ std::shared_ptr<const PhotonSite> photonSite(const SiteInfo& i, const rsl::Compi
                             s.place.column};
     if (word != i.text.end() && word->second != "radiance" && word->second != "irradiance")
         world.diagnostics_->reportOnce("photonlookup:" + word->second,
-                                       {Severity::Warning, Rie::BadToken, place,
+                                       {Severity::Warning,
+                                        Rie::BadToken,
+                                        place,
                                         "photonmap(): unknown lookuptype \"" + word->second + "\"; irradiance is looked up",
-                                        "\"irradiance\" and \"radiance\" are known", {}});
+                                        "\"irradiance\" and \"radiance\" are known",
+                                        {}});
     if (p->caustic) world.photons_->asksCaustics = true;
     else world.photons_->asks(p->name, place);
     return p;

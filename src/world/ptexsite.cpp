@@ -8,8 +8,8 @@ std::shared_ptr<const PtexSite> ptexSite(const SiteInfo& i, const rsl::CompiledK
     auto p = std::make_shared<PtexSite>();
     const rsl::ir::Site& s = *i.site;
     if (!world.ptex_)
-        world.ptex_ = std::make_shared<PtexStore>(MapFiles{world.settings_.texturePaths, world.settings_.read},
-                                                  *world.diagnostics_);
+        world.ptex_ =
+            std::make_shared<PtexStore>(MapFiles{world.settings_.texturePaths, world.settings_.read}, *world.diagnostics_);
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
         return f == i.named.end() ? -1 : f->second;

@@ -88,8 +88,14 @@ const uint8_t* ShapeSubsets::find(const WorldImpl& world, const std::string& wan
 std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, const SourcePlace& place) {
     auto r = std::make_shared<RaySite>();
     const std::string op = i.site->op;
-    auto row = [&](const char* name) { auto f = i.named.find(name); return f == i.named.end() ? -1 : f->second; };
-    auto text = [&](const char* name) { auto f = i.text.find(name); return f == i.text.end() ? std::string() : f->second; };
+    auto row = [&](const char* name) {
+        auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
+    auto text = [&](const char* name) {
+        auto f = i.text.find(name);
+        return f == i.text.end() ? std::string() : f->second;
+    };
     auto unknown = [&](const char* name, const std::string& word, const char* known) {
         world.diagnostics_->reportOnce("rays:" + std::string(name) + word + place.file + std::to_string(place.line),
                                        {Severity::Warning,

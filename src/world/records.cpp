@@ -64,7 +64,10 @@ void LightRecord::take(const std::array<Vec3, 3>& axes, int rings, int turns, co
 
 namespace {
 
-struct Cube { int32_t x, y, z, level; bool operator==(const Cube&) const = default; };
+struct Cube {
+    int32_t x, y, z, level;
+    bool operator==(const Cube&) const = default;
+};
 struct CubeHash {
     size_t operator()(const Cube& c) const {
         uint64_t h = 0;

@@ -44,13 +44,18 @@ public:
     size_t size() const { return records_.size(); }
 
 private:
-    struct Cell { int32_t x, y, z, level; bool operator==(const Cell&) const = default; };
-    struct CellHash { size_t operator()(const Cell&) const; };
+    struct Cell {
+        int32_t x, y, z, level;
+        bool operator==(const Cell&) const = default;
+    };
+    struct CellHash {
+        size_t operator()(const Cell&) const;
+    };
     static Cell cellOf(const Vec3&, int level);
     std::mutex mutex_;
     std::vector<LightRecord> added_, records_;
     std::unordered_map<Cell, std::vector<uint32_t>, CellHash> cells_; ///< records that reach into a cube of side 2^level
-    std::vector<int> levels_;                                        ///< that have some, ascending
+    std::vector<int> levels_;                                         ///< that have some, ascending
 };
 
 } // namespace alpenglow::transport

@@ -1,10 +1,10 @@
 // Shader calls of the scene made into programs with values, and those into kernels.
-#include "rsl/ir/build.h"
 #include "base/limits.h"
 #include "rsl/front/visit.h"
+#include "rsl/ir/build.h"
 #include "world/fitparameter.h"
-#include "world/lightobjects.h"
 #include "world/impl.h"
+#include "world/lightobjects.h"
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -32,12 +32,21 @@ void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) 
     for (size_t i = 0; i + 2 < v.size() && base != rsl::Base::Matrix; i += 3) {
         Vec3d p(v[i], v[i + 1], v[i + 2]);
         switch (base) {
-        case rsl::Base::Point: p = transformPoint(m, p); break;
-        case rsl::Base::Vector: p = transformVector(m, p); break;
-        case rsl::Base::Normal: p = transformNormal(m, p); break;
-        default: return;
+        case rsl::Base::Point:
+            p = transformPoint(m, p);
+            break;
+        case rsl::Base::Vector:
+            p = transformVector(m, p);
+            break;
+        case rsl::Base::Normal:
+            p = transformNormal(m, p);
+            break;
+        default:
+            return;
         }
-        v[i] = float(p.x); v[i + 1] = float(p.y); v[i + 2] = float(p.z);
+        v[i] = float(p.x);
+        v[i + 1] = float(p.y);
+        v[i + 2] = float(p.z);
     }
     if (base == rsl::Base::Matrix) // given relative to shader space
         for (size_t i = 0; i + 15 < v.size(); i += 16) {
@@ -191,9 +200,12 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
         if (!p) {
             std::string near = nearestName(given.name, names);
             d.reportOnce("parameter:" + call.name + ":" + given.name,
-                         {Severity::Warning, Rie::BadToken, given.place.file.empty() ? call.place : given.place,
+                         {Severity::Warning,
+                          Rie::BadToken,
+                          given.place.file.empty() ? call.place : given.place,
                           "shader \"" + call.name + "\" has no parameter \"" + given.name + "\"; it is ignored",
-                          near.empty() ? "" : "did you mean \"" + near + "\"?", {}});
+                          near.empty() ? "" : "did you mean \"" + near + "\"?",
+                          {}});
             continue;
         }
         auto value = fitParameter(given, *p, call.name, call.place, d);
@@ -230,9 +242,12 @@ void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::strin
         const std::string near = nearestName(handle, handles);
         const SourcePlace& at = place->second;
         d.reportOnce("handle:" + handle + at.file + ":" + std::to_string(at.line) + key,
-                     {Severity::Error, Rie::BadHandle, at,
+                     {Severity::Error,
+                      Rie::BadHandle,
+                      at,
                       "there is no co-shader \"" + handle + "\": \"" + key + "\" of shader \"" + of.name + "\" is null",
-                      near.empty() ? "Shader \"name\" \"" + handle + "\" makes one" : "did you mean \"" + near + "\"?", {}});
+                      near.empty() ? "Shader \"name\" \"" + handle + "\" makes one" : "did you mean \"" + near + "\"?",
+                      {}});
         handle.clear();
     }
 }

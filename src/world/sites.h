@@ -18,10 +18,14 @@ class WorldImpl;
 /// The kind of a ray as visibility masks know it.
 inline uint32_t visibilityBit(RayType t) {
     switch (t) {
-    case RayType::Camera: return accel::kCamera;
-    case RayType::Diffuse: return accel::kDiffuse;
-    case RayType::Specular: return accel::kSpecular;
-    default: return accel::kTransmission;
+    case RayType::Camera:
+        return accel::kCamera;
+    case RayType::Diffuse:
+        return accel::kDiffuse;
+    case RayType::Specular:
+        return accel::kSpecular;
+    default:
+        return accel::kTransmission;
     }
 }
 
@@ -31,15 +35,16 @@ struct RaySite {
     int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1,
         type = -1; ///< strings that are known only when the shader runs
     std::string subsetText, excludeText;
-    int32_t subsetId = 0, excludeId = 0;  ///< the same, interned
-    shading::RaySet set;                  ///< what is known beforehand
+    int32_t subsetId = 0, excludeId = 0; ///< the same, interned
+    shading::RaySet set;                 ///< what is known beforehand
     RayType rays = RayType::Specular;
-    bool fixed = false;                   ///< nothing of the set, the label and the type is known only when the shader runs
+    bool fixed = false; ///< nothing of the set, the label and the type is known only when the shader runs
 };
 
-
 /// "falloff" and "falloffmode" of a hemisphere: rows, or -1.
-struct FadeSite { int strength = -1, mode = -1; };
+struct FadeSite {
+    int strength = -1, mode = -1;
+};
 
 /// Whether light of a hemisphere may be interpolated between records (world/records.h). Rows, or -1.
 struct RecordSite {
@@ -50,14 +55,14 @@ struct RecordSite {
 /// Where the rarer parameters of a trace() lie.
 struct TraceSite {
     int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, tint = -1, weight = -1; ///< rows, or -1
-    std::vector<std::pair<int, int>> eta; ///< row, components
-    std::vector<int> lobes;               ///< rows of the elements of "lobeparameters"
-    int part = -1;                        ///< of the form that gives an array
-    texture::Handle map = nullptr;        ///< "environmentmap"
-    Matrix toMap;                         ///< current to "environmentspace"
-    bool sums = false;                    ///< it asks for transmission or for parts of the result
-    bool onlyLights = false;              ///< for nothing but what area lights send
-    bool hemisphere = false;              ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
+    std::vector<std::pair<int, int>> eta;                                                    ///< row, components
+    std::vector<int> lobes;        ///< rows of the elements of "lobeparameters"
+    int part = -1;                 ///< of the form that gives an array
+    texture::Handle map = nullptr; ///< "environmentmap"
+    Matrix toMap;                  ///< current to "environmentspace"
+    bool sums = false;             ///< it asks for transmission or for parts of the result
+    bool onlyLights = false;       ///< for nothing but what area lights send
+    bool hemisphere = false;       ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
     FadeSite fade;
     RecordSite records;
 };
@@ -67,14 +72,14 @@ struct OcclusionSite {
     int cone = -1, axis = -1, adaptive = -1, least = -1; ///< least: "minsamples"
     FadeSite fade;
     RecordSite records;
-    bool uniform = false;                 ///< "distribution" "uniform"
+    bool uniform = false; ///< "distribution" "uniform"
 };
 /// What subsurface() says of what lies below. Rows, or -1: Attribute "subsurface" says it.
 struct SubsurfaceSite {
     int samples = -1, scattering = -1, absorption = -1, path = -1, diffusePath = -1, reflectance = -1, index = -1, scale = -1,
         anisotropy = -1;
     enum class Model : uint8_t { Walk, Dipole, BetterDipole } model = Model::Walk;
-    std::string group;                    ///< "": the attribute's
+    std::string group; ///< "": the attribute's
 };
 struct GatherSite; // world/gathersite.h
 struct CloudSite;  // world/cloudsite.h
@@ -83,25 +88,25 @@ struct PtexSite;   // world/ptexsite.h
 
 /// What a photonmap() or caustic() asks. Rows, or -1.
 struct PhotonSite {
-    std::string name;            ///< of the map; "" where `computed`, or there is none
-    bool computed = false;       ///< each point names its map, in row 0
-    bool caustic = false;        ///< that of the surface's attributes
+    std::string name;      ///< of the map; "" where `computed`, or there is none
+    bool computed = false; ///< each point names its map, in row 0
+    bool caustic = false;  ///< that of the surface's attributes
     bool radiance = false;
     int point = -1, normal = -1, estimator = -1, minBounces = -1, lookup = -1;
 };
 
 /// What a texture() or environment() asks of a map. Rows of `in`, or -1.
 struct TextureSite {
-    std::string name;                     ///< of the map; "" where `computed`, or there is none
-    bool computed = false;                ///< each point names its map, in row 0
-    texture::LookupOptions options;       ///< what is the same for all points
+    std::string name;               ///< of the map; "" where `computed`, or there is none
+    bool computed = false;          ///< each point names its map, in row 0
+    texture::LookupOptions options; ///< what is the same for all points
     int filter = -1, channel = -1, fill = -1, width = -1, swidth = -1, twidth = -1, blur = -1, sblur = -1, tblur = -1;
     /// shadow(): -1 where the call does not say, then the options of the frame hold; `source`: corners of an area light.
     int samples = -1, bias = -1, bias0 = -1, bias1 = -1, gapbias = -1, source[4] = {-1, -1, -1, -1};
     float shadowSamples = 16, shadowBias0 = .225f, shadowBias1 = .225f;
-    int count = 0;                        ///< numbers of the result
-    int slopes = 0, firsts = 0;           ///< derivatives that are wanted, the first ones of them (rsl/passes/gradients.h)
-    std::vector<int> rows;                ///< of the coordinates
+    int count = 0;              ///< numbers of the result
+    int slopes = 0, firsts = 0; ///< derivatives that are wanted, the first ones of them (rsl/passes/gradients.h)
+    std::vector<int> rows;      ///< of the coordinates
     /// The map that is the same for all points, opened when first asked for. `place`: gives the SourcePlace of the call.
     template <class Place> texture::Handle map(const class WorldImpl&, Place&& place) const;
 
@@ -159,10 +164,10 @@ enum class SiteKind : uint8_t {
 struct SiteInfo {
     SiteKind kind = SiteKind::Unknown;
     const rsl::ir::Site* site = nullptr;
-    std::vector<int> rows;                     ///< first row of each argument in `in` (after the weight for Emit)
-    std::map<std::string, int> named;          ///< row of an optional pair's value
-    std::map<std::string, std::string> text;   ///< constant string pairs
-    std::map<std::string, int> resultRows;     ///< "" and output names -> first row of `out`
+    std::vector<int> rows;                   ///< first row of each argument in `in` (after the weight for Emit)
+    std::map<std::string, int> named;        ///< row of an optional pair's value
+    std::map<std::string, std::string> text; ///< constant string pairs
+    std::map<std::string, int> resultRows;   ///< "" and output names -> first row of `out`
     int resultRowCount = 0;
     /// Of `resultRows`, those of requests; -1: not asked for.
     struct Results {
@@ -171,27 +176,30 @@ struct SiteInfo {
         int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1;
     } results;
     bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == rsl::Base::Float; }
-    const LobeKind* lobe = nullptr;            ///< Trace: the distribution; the lobe of a lighting shadeop
-    float exponent = 1;                        ///< Specular: this over the roughness (shadeops/specular.h)
+    const LobeKind* lobe = nullptr; ///< Trace: the distribution; the lobe of a lighting shadeop
+    float exponent = 1;             ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
-    std::shared_ptr<const struct TraceSite> trace; ///< Trace: what only some calls use
-    std::shared_ptr<const OcclusionSite> occlusion; ///< Occlusion, which has `trace` for its map, too
+    std::shared_ptr<const struct TraceSite> trace;                                   ///< Trace: what only some calls use
+    std::shared_ptr<const OcclusionSite> occlusion;   ///< Occlusion, which has `trace` for its map, too
     std::shared_ptr<const SubsurfaceSite> subsurface; ///< Subsurface
-    std::shared_ptr<const GatherSite> gather;  ///< Gather, GatherTurn
-    std::shared_ptr<const RaySite> rays;       ///< Trace, Transmission, Occlusion, Gather
-    std::shared_ptr<const TextureSite> map;    ///< Texture, Environment
-    std::shared_ptr<const PhotonSite> photons; ///< Photons
-    std::shared_ptr<const CloudSite> cloud;    ///< Bake, Bake3d, Texture3d
-    std::shared_ptr<const PointSite> points;   ///< PointHemisphere, PointSubsurface
-    std::shared_ptr<const PtexSite> ptex;      ///< Ptexture
-    bool setUp = false, refresh = false;       ///< loops: they have a setup; "lightcache" "refresh"
-    bool outside = false;                      ///< queries: outside of loops over lights
-    bool once = false;                         ///< printf: in construct()
-    bool uniform = false;                      ///< queries: the variable that takes the answer is uniform
-    bool open = false, array = false;          ///< and it is an array of a length that can change; an array
-    int rowCategory = -1;                      ///< LightSetup: of "category", in the setup's arguments
+    std::shared_ptr<const GatherSite> gather;         ///< Gather, GatherTurn
+    std::shared_ptr<const RaySite> rays;              ///< Trace, Transmission, Occlusion, Gather
+    std::shared_ptr<const TextureSite> map;           ///< Texture, Environment
+    std::shared_ptr<const PhotonSite> photons;        ///< Photons
+    std::shared_ptr<const CloudSite> cloud;           ///< Bake, Bake3d, Texture3d
+    std::shared_ptr<const PointSite> points;          ///< PointHemisphere, PointSubsurface
+    std::shared_ptr<const PtexSite> ptex;             ///< Ptexture
+    bool setUp = false, refresh = false;              ///< loops: they have a setup; "lightcache" "refresh"
+    bool outside = false;                             ///< queries: outside of loops over lights
+    bool once = false;                                ///< printf: in construct()
+    bool uniform = false;                             ///< queries: the variable that takes the answer is uniform
+    bool open = false, array = false;                 ///< and it is an array of a length that can change; an array
+    int rowCategory = -1;                             ///< LightSetup: of "category", in the setup's arguments
     /// LightSetup: values for parameters of the lights, rows of its arguments; element: of an array that is sent, else -1.
-    struct Sent { std::string parameter; int element, row, size; };
+    struct Sent {
+        std::string parameter;
+        int element, row, size;
+    };
     std::vector<Sent> sent;
     /// The same of strings, and all of them as one key of BoundLight::variants, with its hash: "name\1value\2" of each; "" and 0:
     /// none.
@@ -199,14 +207,20 @@ struct SiteInfo {
     std::string sentKey;
     uint64_t sentHash = 0;
     /// LightSetup: its arguments that lights can see: rows from `first` to `end`, and what tells them apart.
-    struct Shown { int first, end; uint64_t salt; };
+    struct Shown {
+        int first, end;
+        uint64_t salt;
+    };
     std::vector<Shown> shown;
-    int rowN = -1;                             ///< LightSetup: of "N"
-    int32_t nameId = 0;                        ///< the first string of the call, interned; 0: none, or known only when it runs
+    int rowN = -1;      ///< LightSetup: of "N"
+    int32_t nameId = 0; ///< the first string of the call, interned; 0: none, or known only when it runs
     /// Outputs of the surface that lights ask for: row, numbers.
-    struct Output { rsl::OutputName name; int row, size; };
+    struct Output {
+        rsl::OutputName name;
+        int row, size;
+    };
     std::vector<Output> outputs;
-    int32_t label = 0;                         ///< of its rays: interned, for rayinfo()
+    int32_t label = 0; ///< of its rays: interned, for rayinfo()
 };
 
 /// How many rows the argument of a call has that begins at `row`.
@@ -218,7 +232,7 @@ struct BoundKernel {
     std::shared_ptr<const shading::BatchPlan> plan;
     std::vector<SiteInfo> sites;
     bool mixed = false;
-    bool path = false;                         ///< lobe shadeops are requests; else they are answered at once
+    bool path = false; ///< lobe shadeops are requests; else they are answered at once
     explicit operator bool() const { return kernel != nullptr; }
 };
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);

@@ -151,8 +151,7 @@ void WorldImpl::tabulateSkies(Evaluator& evaluator) {
     for (const int i : skies_) {
         BoundLight& l = lights_[size_t(i)];
         if (l.kind != LightKind::Environment || !l.importance || l.asksSurface || l.sentCl >= 0) continue;
-        if (l.kernel.kernel->facts().suspends)
-            continue;
+        if (l.kernel.kernel->facts().suspends) continue;
         const int widest = widestMap(l.kernel, *this);
         if (widest == 0) { // nothing but arithmetic: most such skies are even
             const std::vector<float> few = luminanceOf(l, 2 * kCoarse, kCoarse, 1, evaluator);

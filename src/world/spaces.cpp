@@ -1,7 +1,7 @@
 // Coordinate systems: the camera's own, named ones, and the matrices between them.
 #include "base/exact.h"
-#include "world/lightobjects.h"
 #include "world/impl.h"
+#include "world/lightobjects.h"
 #include <set>
 
 namespace alpenglow::transport {
@@ -17,7 +17,10 @@ void screenWindow(const scene::Options& o, double w[4]) {
     double pa = o.pixelAspect > 0 ? o.pixelAspect : 1, a = o.frameAspect ? *o.frameAspect : o.xres * pa / std::max(o.yres, 1);
     if (!(a > 0)) a = 1;
     double x = a >= 1 ? a : 1, y = a >= 1 ? 1 : 1 / a;
-    w[0] = -x; w[1] = x; w[2] = -y; w[3] = y;
+    w[0] = -x;
+    w[1] = x;
+    w[2] = -y;
+    w[3] = y;
 }
 
 } // namespace
@@ -64,12 +67,27 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
             return true;
         }
     auto toCurrent = [&](const std::string& name, Matrix& m) {
-        if (name == "current" || name == "camera" || name == "eye") { m = Matrix{}; return true; }
+        if (name == "current" || name == "camera" || name == "eye") {
+            m = Matrix{};
+            return true;
+        }
         if (placeOf(name, m)) return true;
-        if (name == "world") { m = worldToCamera_; return true; }
-        if (name == "screen") { m = inverse(cameraToScreen_); return true; }
-        if (name == "NDC") { m = inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
-        if (name == "raster") { m = inverse(ndcToRaster_) * inverse(screenToNdc_) * inverse(cameraToScreen_); return true; }
+        if (name == "world") {
+            m = worldToCamera_;
+            return true;
+        }
+        if (name == "screen") {
+            m = inverse(cameraToScreen_);
+            return true;
+        }
+        if (name == "NDC") {
+            m = inverse(screenToNdc_) * inverse(cameraToScreen_);
+            return true;
+        }
+        if (name == "raster") {
+            m = inverse(ndcToRaster_) * inverse(screenToNdc_) * inverse(cameraToScreen_);
+            return true;
+        }
         if (auto i = frame_->coordinateSystems.find(name); i != frame_->coordinateSystems.end()) {
             m = scene::at(i->second, shutter_.open) * worldToCamera_;
             return true;
@@ -78,7 +96,10 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
             m = scene::at(i->second, shutter_.open);
             return true;
         }
-        if (name == "object" || name == "shader") { m = worldToCamera_; return true; } // no object here (imagers, lights): world
+        if (name == "object" || name == "shader") {
+            m = worldToCamera_;
+            return true;
+        } // no object here (imagers, lights): world
         return false;
     };
     Matrix a, b;

@@ -1,8 +1,8 @@
 #include "world/surfaces.h"
-#include "world/photonattributes.h"
-#include "world/gathersite.h"
 #include "rsl/front/leftmembers.h"
 #include "shading/faceindex.h"
+#include "world/gathersite.h"
+#include "world/photonattributes.h"
 #include "world/told.h"
 #include <set>
 
@@ -205,7 +205,9 @@ std::string SurfaceBinder::keyOf(const SurfaceBinding& b, const geometry::Shape&
     for (const auto& [first, last] : a.lights.runs()) add(first), add(last);
     add(-1);
     add(a.areaLight);
-    add(a.opacity.x); add(a.opacity.y); add(a.opacity.z);
+    add(a.opacity.x);
+    add(a.opacity.y);
+    add(a.opacity.z);
     add(a.matte);
     add(a.shadingRate);
     add(attributeNumber(a, "trace:maxdiffusedepth", -1));
@@ -301,7 +303,7 @@ SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
     std::set<std::string> asked;
     if (path_)
         asked.insert(world_.lightMessages_.begin(),
-                     world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
+                     world_.lightMessages_.end());    // lighting shadeops: lights run when the surface's kernel is done
     asked.insert(gathered_.begin(), gathered_.end()); // gathers run when the surface's kernel is done, too
     const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
     for (const auto& p : b.surface->program->parameters())
@@ -442,8 +444,7 @@ bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
         if (o.S.bound) kernels.push_back(&o.S.bound);
     }
     for (const BoundKernel* k : kernels)
-        for (const auto& in : k->kernel->inputs())
-            b.usesObjectSpace |= isObjectSpace(in);
+        for (const auto& in : k->kernel->inputs()) b.usesObjectSpace |= isObjectSpace(in);
     asked_.push_back({std::move(outputs), std::move(varying), {}});
     return true;
 }
@@ -501,8 +502,10 @@ static bool asksForLight(const BoundKernel& k) {
         case SiteKind::Depth:
         case SiteKind::Transform:
         case SiteKind::Random:
-        case SiteKind::Text: return false;
-        default: return true;
+        case SiteKind::Text:
+            return false;
+        default:
+            return true;
         }
     });
 }

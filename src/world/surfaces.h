@@ -69,7 +69,7 @@ private:
     bool path_ = false;
     InstanceRef fallback_;
     std::map<std::tuple<const scene::ShaderCall*, int, bool>, InstanceRef>
-        instances_;                                                   ///< by kind, and by how derivatives are taken
+        instances_; ///< by kind, and by how derivatives are taken
     std::map<std::pair<const void*, const void*>, InstanceRef>
         told_;                                 ///< surfaces that know the outputs of a displacement; by both
     std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not

@@ -48,9 +48,9 @@ std::optional<Told> primitiveVariable(const geometry::Shape& shape, const geomet
             t.texts = {shape.stringValue(v, at)};
             return t;
         }
-        t.kind = variable.type == scene::Type::Matrix ? Kind::Matrix
+        t.kind = variable.type == scene::Type::Matrix                                           ? Kind::Matrix
                  : variable.type == scene::Type::Float || variable.type == scene::Type::Integer ? Kind::Float
-                                                                                                 : Kind::Triple;
+                                                                                                : Kind::Triple;
         t.numbers.resize(size_t(variable.outWidth()));
         shape.interpolate(v, at, t.numbers.data(), nullptr, nullptr);
         return t;

@@ -8,8 +8,8 @@ namespace alpenglow::transport {
 struct Told {
     /// Of an element; none: as many numbers or texts as there are, for a variable of that size.
     std::optional<rsl::ir::Kind> kind;
-    int elements = 0;                  ///< 0: no array. Not used where the kind is not known
-    bool varying = false;              ///< does not fit a uniform variable
+    int elements = 0;     ///< 0: no array. Not used where the kind is not known
+    bool varying = false; ///< does not fit a uniform variable
     std::vector<float> numbers;
     std::vector<std::string> texts;
     Told() = default;

@@ -1,11 +1,11 @@
 // From a frame's description to something that can be traced.
 #include "base/file.h"
+#include "base/hash.h"
 #include "geometry/build.h"
 #include "geometry/placed.h"
 #include "rsl/front/headers.h"
 #include "scene/numbers.h"
 #include "scene/unmade.h"
-#include "base/hash.h"
 #include "world/cloudstore.h"
 #include "world/surfaces.h"
 #include <chrono>
@@ -191,8 +191,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
     w->settings_.shaderPaths.push_back(shippedShaders());
-    w->photons_ = std::make_shared<PhotonStore>(
-        MapFiles{settings.texturePaths, settings.read}, w->worldToCamera_, d);
+    w->photons_ = std::make_shared<PhotonStore>(MapFiles{settings.texturePaths, settings.read}, w->worldToCamera_, d);
     w->clouds_ = std::make_shared<CloudStore>(MapFiles{settings.texturePaths, settings.read}, d);
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->numberShapes();

@@ -1,6 +1,6 @@
 // T12: leaks, self-hits, agreement with brute force, ties, visibility, Sides; at sizes that run in seconds.
-#include "accel/accel.h"
 #include "../geometry/make.h"
+#include "accel/accel.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -252,7 +252,9 @@ TEST(Threads, SameBitsForAnyOrder) {
     std::vector<Hit> one(rays.size()), two(rays.size());
     a.accel->intersect(std::span<const Ray>(rays), one);
     size_t half = rays.size() / 2;
-    std::thread t([&] { for (size_t i = rays.size(); i-- > half;) b.accel->intersect(rays[i], two[i]); });
+    std::thread t([&] {
+        for (size_t i = rays.size(); i-- > half;) b.accel->intersect(rays[i], two[i]);
+    });
     for (size_t i = half; i-- > 0;) b.accel->intersect(rays[i], two[i]);
     t.join();
     for (size_t i = 0; i < rays.size(); ++i) {

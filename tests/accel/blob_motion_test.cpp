@@ -1,5 +1,5 @@
-// Blobbies whose numbers move: at each time they are the blobby of the numbers of that time, met by rays, lit and evaluated as that one is;
-// their points move as their blobs do.
+// Blobbies whose numbers move: at each time they are the blobby of the numbers of that time, met by rays, lit and evaluated as
+// that one is; their points move as their blobs do.
 #include "../geometry/make.h"
 #include "../statistics/nightly.h"
 #include "accel/accel.h"
@@ -100,8 +100,8 @@ void near(const Vec3& a, const Vec3& b, double e, const char* what) {
 
 } // namespace
 
-// Against the blobby that has the numbers of the time, at keys and between them. Its numbers are rounded to single, those of the moving one not: an
-// ulp of a number moves the surface by about 1e-6.
+// Against the blobby that has the numbers of the time, at keys and between them. Its numbers are rounded to single, those of the
+// moving one not: an ulp of a number moves the surface by about 1e-6.
 TEST(BlobMotion, IsAtEachTimeWhatStandsThere) {
     Numbers n{std::mt19937(3)};
     const std::vector<PrimitivePtr> keys = {crowd(n), crowd(n), crowd(n)};
@@ -129,7 +129,8 @@ TEST(BlobMotion, IsAtEachTimeWhatStandsThere) {
             near(p.P, q.P, 4e-4, "P");
             if (std::fabs(dot(p.n, normalize(r.dir))) < .05) continue;
             near(p.n, q.n, 2e-3, "n");
-            if (std::fabs(p.u - q.u) > .01f || std::fabs(dot(p.dPdu, q.dPdu) / dot(q.dPdu, q.dPdu) - 1) > .01) continue; // another axis
+            if (std::fabs(p.u - q.u) > .01f || std::fabs(dot(p.dPdu, q.dPdu) / dot(q.dPdu, q.dPdu) - 1) > .01)
+                continue; // another axis
             near(p.dNdu, q.dNdu, 2e-2 * (1 + length(q.dNdu)), "dNdu");
             float ca[3], cb[3], ua[3], va[3], ub[3], vb[3], fa, fb;
             w.shape().interpolate(w.shape().findPrimvar("tint"), p, ca, ua, va);
@@ -248,7 +249,8 @@ TEST(BlobMotion, KeysOfOtherCodeAreSaid) {
     std::vector<float> two;
     add(two, Matrix());
     add(two, translateMatrix(1, 0, 0));
-    const World w(moving({ball({0, 0, 0}, .5), blobby(2, {1001, 0, 1001, 16, 0, 2, 0, 1}, two)}, {0, 1})), still(ball({0, 0, 0}, .5));
+    const World w(moving({ball({0, 0, 0}, .5), blobby(2, {1001, 0, 1001, 16, 0, 2, 0, 1}, two)}, {0, 1})),
+        still(ball({0, 0, 0}, .5));
     ASSERT_EQ(w.shapes.size(), 1u);
     bool said = false;
     for (const Diagnostic& d : w.diag.all()) said |= d.message.find("not made of the same pieces") != std::string::npos;

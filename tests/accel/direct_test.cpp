@@ -1,7 +1,7 @@
 // Tiny scenes are looked through without a tree: no triangle is overlooked, and the answer is the tree's.
-#include "accel/direct.h"
 #include "../geometry/make.h"
 #include "accel/accel.h"
+#include "accel/direct.h"
 #include "geometry/dice.h"
 #include <cmath>
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ TEST(DirectTriangles, NoneIsOverlooked) {
     Rng rng(5);
     size_t met = 0, asked = 0, candidates = 0;
     for (int scene = 0; scene < 400; ++scene) {
-        float size = std::pow(10.f, uniform(rng, -3, 4)), away = scene % 3 == 0 ? 100 * size : 0, thin = scene % 5 == 0 ? 1e-4f : 1;
+        float size = std::pow(10.f, uniform(rng, -3, 4)), away = scene % 3 == 0 ? 100 * size : 0,
+              thin = scene % 5 == 0 ? 1e-4f : 1;
         Vec3 centre = within(rng, away);
         DirectTriangles triangles;
         size_t n = 1 + rng() % DirectTriangles::kMost;
@@ -41,8 +42,8 @@ TEST(DirectTriangles, NoneIsOverlooked) {
             uint32_t found = triangles.candidates(r, near);
             for (size_t i = 0; i < n; ++i) {
                 double at, b1, b2, outside;
-                bool hit = meetTriangle(r.org, r.dir, triangles[i].a, triangles[i].b, triangles[i].c, at, b1, b2, outside) && outside <= 0 &&
-                           at > r.tnear && at < r.tfar;
+                bool hit = meetTriangle(r.org, r.dir, triangles[i].a, triangles[i].b, triangles[i].c, at, b1, b2, outside) &&
+                           outside <= 0 && at > r.tnear && at < r.tfar;
                 ++asked;
                 met += hit;
                 candidates += found >> i & 1;

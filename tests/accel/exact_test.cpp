@@ -1,6 +1,6 @@
 // Exact shapes of many primitives: the same as so many shapes.
-#include "accel/accel.h"
 #include "../geometry/make.h"
+#include "accel/accel.h"
 #include "geometry/solve.h"
 #include <cmath>
 #include <gtest/gtest.h>
@@ -103,7 +103,10 @@ TEST(ExactPrims, AreMetLikeSoManyShapes) {
                 ++met;
                 ASSERT_EQ(x.distance, y.distance);
                 const uint32_t behind = uint32_t(each.size()) - 1;
-                ASSERT_EQ(y.shape, x.shape == 0 ? 0 : x.shape == 2 ? behind : 1 + x.prim) << count << " ray " << i << " hit " << k;
+                ASSERT_EQ(y.shape, x.shape == 0   ? 0
+                                   : x.shape == 2 ? behind
+                                                  : 1 + x.prim)
+                    << count << " ray " << i << " hit " << k;
                 if (x.shape == 1) ASSERT_EQ(x.b1, double(x.prim));
                 for (auto [ray, at] : {std::pair(&r, &x), std::pair(&s, &y)}) {
                     ray->excludeShape = at->shape;

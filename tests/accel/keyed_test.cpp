@@ -40,10 +40,14 @@ struct Kind {
     bool normals, round;
 };
 constexpr Kind kKinds[] = {
-    {"ribbons that face the ray", true, "cubic", false, false}, {"ribbons with N", true, "cubic", true, false},
-    {"tubes", true, "cubic", false, true},                      {"linear ribbons", true, "linear", false, false},
-    {"linear tubes", true, "linear", false, true},              {"discs", false, "particle", false, false},
-    {"discs with N", false, "particle", true, false},           {"balls", false, "sphere", false, false},
+    {"ribbons that face the ray", true, "cubic", false, false},
+    {"ribbons with N", true, "cubic", true, false},
+    {"tubes", true, "cubic", false, true},
+    {"linear ribbons", true, "linear", false, false},
+    {"linear tubes", true, "linear", false, true},
+    {"discs", false, "particle", false, false},
+    {"discs with N", false, "particle", true, false},
+    {"balls", false, "sphere", false, false},
     {"squares", false, "patch", false, false},
 };
 
@@ -165,10 +169,12 @@ TEST(Keyed, WhatMovesIsAtEachTimeWhatStandsThere) {
                     if (!a.valid()) continue;
                     ++hits;
                     const SurfacePoint p = moving.accel->point(a), q = still.accel->point(b);
-                    for (auto v : {&SurfacePoint::P, &SurfacePoint::n, &SurfacePoint::N}) EXPECT_LT(length(p.*v - q.*v), 2e-5f) << k.name << quarter;
+                    for (auto v : {&SurfacePoint::P, &SurfacePoint::n, &SurfacePoint::N})
+                        EXPECT_LT(length(p.*v - q.*v), 2e-5f) << k.name << quarter;
                     // Where u is 0 on a tube is turned from one axis at all times.
                     for (auto v : {&SurfacePoint::dPdu, &SurfacePoint::dPdv})
-                        if (!k.round || v == &SurfacePoint::dPdu) EXPECT_LT(length(p.*v - q.*v), 1e-4f * (1 + length(q.*v))) << k.name;
+                        if (!k.round || v == &SurfacePoint::dPdu)
+                            EXPECT_LT(length(p.*v - q.*v), 1e-4f * (1 + length(q.*v))) << k.name;
                     EXPECT_EQ(p.time, r.time);
                     float x[3], y[3];
                     const ShapeRef &s = moving.shapes[0], &t = still.shapes[0];
@@ -223,7 +229,8 @@ TEST(Keyed, VelocitiesAreSlopes) {
             const SurfacePoint p = w.accel->point(h);
             const auto place = [&](float time) {
                 SurfacePoint q;
-                const double b1 = facing ? 2 * std::floor(h.b1 / 2) + .5 : h.b1, b2 = !facing || k.curves ? h.b2 : 2 * std::floor(h.b2 / 2) + .5;
+                const double b1 = facing ? 2 * std::floor(h.b1 / 2) + .5 : h.b1,
+                             b2 = !facing || k.curves ? h.b2 : 2 * std::floor(h.b2 / 2) + .5;
                 const HitRef ref{h.prim, b1, b2, &q, time};
                 geometry->points({&ref, 1}, kNeedAll);
                 return Vec3d(q.P);

@@ -1,5 +1,5 @@
-// T12: of a million rays from within a closed form none leaves it, whatever it is made of, still and moving, and what leaves a convex form outwards
-// does not meet it again. Some thousand rays a case on every change, the million nightly.
+// T12: of a million rays from within a closed form none leaves it, whatever it is made of, still and moving, and what leaves a
+// convex form outwards does not meet it again. Some thousand rays a case on every change, the million nightly.
 #include "../geometry/make.h"
 #include "../statistics/nightly.h"
 #include "accel/accel.h"
@@ -150,7 +150,12 @@ const Form kForms[] = {
     {"a torus", [](double s) { return quadric("Torus", {float(s), float(.4 * s), 0, 360, 360}); }, {1, 0, 0}, .2, false},
     {"a displaced cube of Catmull and Clark", [](double s) { return cage("catmull-clark", s); }, {0, 0, 0}, .3, false, true},
     {"a displaced torus of NURBS", [](double s) { return turned(s, .4 * s, 9, 0); }, {1, 0, 0}, .15, false, true},
-    {"a displaced sphere", [](double s) { return quadric("Sphere", {float(s), float(-s), float(s), 360}); }, {0, 0, 0}, .5, false, true},
+    {"a displaced sphere",
+     [](double s) { return quadric("Sphere", {float(s), float(-s), float(s), 360}); },
+     {0, 0, 0},
+     .5,
+     false,
+     true},
 };
 
 enum How { Still, Goes, Deforms, Both, Instance, Instances };
@@ -167,7 +172,8 @@ struct World {
         auto a = std::make_shared<scene::Attributes>();
         a->sides = 2;
         a->values["dice:roundcurve"] = param("dice:roundcurve", Class::Constant, Type::Integer, {1});
-        constexpr double spline[4][4] = {{-1. / 6, .5, -.5, 1. / 6}, {.5, -1, .5, 0}, {-.5, 0, .5, 0}, {1. / 6, 2. / 3, 1. / 6, 0}};
+        constexpr double spline[4][4] = {
+            {-1. / 6, .5, -.5, 1. / 6}, {.5, -1, .5, 0}, {-.5, 0, .5, 0}, {1. / 6, 2. / 3, 1. / 6, 0}};
         for (scene::Basis* b : {&a->ubasis, &a->vbasis}) {
             for (int i = 0; i < 16; ++i) b->m[i / 4][i % 4] = spline[i / 4][i % 4];
             b->step = 1;
@@ -183,7 +189,8 @@ struct World {
         scene::Transform place(skewed());
         if (how != Still && how != Deforms) {
             place.times = {0, .3f, 1};
-            place.keys = {skewed(), rotateMatrix(20, 1, 2, 3) * skewed() * translateMatrix(.4, 0, 1), rotateMatrix(35, 1, 2, 3) * skewed() * translateMatrix(.4, 1, 0)};
+            place.keys = {skewed(), rotateMatrix(20, 1, 2, 3) * skewed() * translateMatrix(.4, 0, 1),
+                          rotateMatrix(35, 1, 2, 3) * skewed() * translateMatrix(.4, 1, 0)};
         }
         if (how >= Instance) {
             f.objects.push_back({"it", {p}});
@@ -204,7 +211,8 @@ struct World {
         o.camera.pixelsPerUnit = 40;
         o.displaces = [&](const Shape&) { return form.displaced; };
         o.displace = [](const Shape&, DiceGrid& g) {
-            for (size_t i = 0; i < g.points.size(); ++i) g.P[i] = g.P[i] + g.points[i].n * (0.05f * std::sin(11 * g.points[i].P.x));
+            for (size_t i = 0; i < g.points.size(); ++i)
+                g.P[i] = g.P[i] + g.points[i].n * (0.05f * std::sin(11 * g.points[i].P.x));
         };
         diceShapes(shapes, o, diag);
         accel = std::make_unique<accel::Accel>(shapes, std::vector<uint32_t>{}, diag);
@@ -308,8 +316,8 @@ TEST(Leaks, WhatLeavesAConvexFormDoesNotMeetItAgain) {
         }
 }
 
-// Two moving instances that share a geometry, and two copies: the same points, but for the rounding of two spaces (coordinates up to 110, which
-// normals of small facets feel), and but for rays along edges.
+// Two moving instances that share a geometry, and two copies: the same points, but for the rounding of two spaces (coordinates up
+// to 110, which normals of small facets feel), and but for rays along edges.
 TEST(Placed, InstancesOfEveryFormAreCopies) {
     for (const Form& form : kForms) {
         const World shared(form, Instance), copies(form, Instance, SIZE_MAX);
@@ -342,8 +350,9 @@ TEST(Placed, InstancesOfEveryFormAreCopies) {
     }
 }
 
-// Linear between two keys: at each time the form that has the points of that time, but for facets that stray by a twentieth of a pixel (here an
-// 800th, both of them), and but for rays that graze. Subdivision surfaces, patches and curves are linear in their points.
+// Linear between two keys: at each time the form that has the points of that time, but for facets that stray by a twentieth of a
+// pixel (here an 800th, both of them), and but for rays that graze. Subdivision surfaces, patches and curves are linear in their
+// points.
 TEST(Placed, WhatDeformsIsAtEachTimeWhatStandsThere) {
     for (const Form& form : kForms) {
         if (form.displaced) continue;
@@ -371,8 +380,8 @@ TEST(Placed, WhatDeformsIsAtEachTimeWhatStandsThere) {
                 moves.shapes[a.shape]->points({&ra, 1}, kNeedAll);
                 stands.shapes[b.shape]->points({&rb, 1}, kNeedAll);
                 const double cosine = std::fabs(dot(Vec3d(q.n), normalize(Vec3d(r.dir))));
-                differ += std::fabs(a.distance - b.distance) * double(length(r.dir)) * cosine > 3e-3 || length(p.P - q.P) * cosine > 5e-3f ||
-                          (cosine > .2 && length(p.n - q.n) > .05f);
+                differ += std::fabs(a.distance - b.distance) * double(length(r.dir)) * cosine > 3e-3 ||
+                          length(p.P - q.P) * cosine > 5e-3f || (cosine > .2 && length(p.n - q.n) > .05f);
                 // And as an instance that has moved: the same ray from there.
                 const Matrix there = inverse(skewed()) * placed.placeAt(t);
                 Ray s = r;

@@ -34,7 +34,8 @@ std::shared_ptr<scene::Primitive> ball(int n) {
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i < 2 * n; ++i) {
             const double theta = kPi * j / n, phi = kPi * i / n, r = bump(rng);
-            P.insert(P.end(), {float(r * std::sin(theta) * std::cos(phi)), float(r * std::sin(theta) * std::sin(phi)), float(r * std::cos(theta))});
+            P.insert(P.end(), {float(r * std::sin(theta) * std::cos(phi)), float(r * std::sin(theta) * std::sin(phi)),
+                               float(r * std::cos(theta))});
             V.insert(V.end(), {bump(rng), bump(rng), bump(rng)});
         }
     for (int j = 0; j < n; ++j)
@@ -100,8 +101,8 @@ void expectNear(const Vec3& a, const Vec3& b, float room, const char* what) {
 
 } // namespace
 
-// The vertices of copies are rounded once in camera space, those of instances once in the space that they share: coordinates up to 30
-// and sizes of about 1 make that 30 * 2^-24 * 2, and a facet of size 0.2 turns by ten times that.
+// The vertices of copies are rounded once in camera space, those of instances once in the space that they share: coordinates up
+// to 30 and sizes of about 1 make that 30 * 2^-24 * 2, and a facet of size 0.2 turns by ten times that.
 TEST(Placed, InstancesAreCopies) {
     for (int sides : {2, 1}) {
         const scene::Frame f = manyBalls(sides);
@@ -227,7 +228,8 @@ TEST(Placed, DeformingMesh) {
     for (float t : {0.f, .3f, 1.f}) {
         scene::Frame g;
         auto p = ball(8);
-        for (size_t i = 0; i < to.size(); ++i) p->params[0].numbers[i] = float((1 - double(t)) * p->params[0].numbers[i] + double(t) * to[i]);
+        for (size_t i = 0; i < to.size(); ++i)
+            p->params[0].numbers[i] = float((1 - double(t)) * p->params[0].numbers[i] + double(t) * to[i]);
         p->toWorld = first->toWorld;
         g.primitives = {p};
         World still(g, 0);
@@ -236,10 +238,16 @@ TEST(Placed, DeformingMesh) {
             Hit a, b;
             w.accel->intersect(x, a);
             still.accel->intersect(x, b);
-            if (a.valid() != b.valid()) { ++differ; continue; }
+            if (a.valid() != b.valid()) {
+                ++differ;
+                continue;
+            }
             if (!a.valid()) continue;
             ++hits;
-            if (std::fabs(a.distance - b.distance) > 1e-4) { ++differ; continue; } // another cut of a bent quadrilateral: only at t = 0 the same
+            if (std::fabs(a.distance - b.distance) > 1e-4) {
+                ++differ;
+                continue;
+            } // another cut of a bent quadrilateral: only at t = 0 the same
             const SurfacePoint p = w.accel->point(a), q = still.accel->point(b);
             expectNear(p.P, q.P, 2e-4f, "P");
             if (a.prim != b.prim) continue;
@@ -304,7 +312,8 @@ TEST(Placed, NothingLeaks) {
         for (int i = 0; i < 200000; ++i) {
             Ray r;
             r.time = time(rng);
-            const Vec3d at = w.shapes[0]->placed()->fromGeometry(r.time).point(transformPoint(w.shapes[0]->toCamera(), Vec3d(0.0)));
+            const Vec3d at =
+                w.shapes[0]->placed()->fromGeometry(r.time).point(transformPoint(w.shapes[0]->toCamera(), Vec3d(0.0)));
             r.org = Vec3(at);
             r.dir = Vec3(u(rng), u(rng), u(rng));
             ASSERT_TRUE(w.accel->occluded(r)) << i << " " << deforms;
@@ -335,8 +344,8 @@ Hit slowly(const Accel::Impl& in, const Ray& r) {
 }
 } // namespace
 
-// What a ray meets depends on nothing but itself: one by one, all together, in another order, on an older processor, mixed with rays that
-// end at once; and it is what looking at every triangle finds. Shadow rays meet something where nearest hits are.
+// What a ray meets depends on nothing but itself: one by one, all together, in another order, on an older processor, mixed with
+// rays that end at once; and it is what looking at every triangle finds. Shadow rays meet something where nearest hits are.
 TEST(Placed, CompanyChangesNoBit) {
     scene::Frame f = manyBalls(2);
     f.options.shutterClose = 1;
@@ -346,7 +355,8 @@ TEST(Placed, CompanyChangesNoBit) {
     bent->motionKeys = {to};
     bent->motionTimes = {0, 1};
     bent->toWorld.times = {0, 1};
-    bent->toWorld.keys = {scaleMatrix(3, 3, 3) * translateMatrix(3, 0, 20), scaleMatrix(3, 4, 3) * rotateMatrix(50, 1, 1, 0) * translateMatrix(0, 3, 20)};
+    bent->toWorld.keys = {scaleMatrix(3, 3, 3) * translateMatrix(3, 0, 20),
+                          scaleMatrix(3, 4, 3) * rotateMatrix(50, 1, 1, 0) * translateMatrix(0, 3, 20)};
     f.primitives = {still, bent};
     World w(f, 0);
     auto r = rays(3000);

@@ -1,7 +1,8 @@
-// Solids: volumes against closed forms, boundaries against intervals worked out by hand, faces in common, the side that they look to.
+// Solids: volumes against closed forms, boundaries against intervals worked out by hand, faces in common, the side that they look
+// to.
 #include "../geometry/make.h"
-#include "accel/accel.h"
 #include "../statistics/nightly.h"
+#include "accel/accel.h"
 #include "geometry/placed.h"
 #include "scene/solids.h"
 #include <algorithm>
@@ -23,8 +24,8 @@ namespace {
 using Rng = std::mt19937;
 double uniform(Rng& r) { return r() / 4294967296.0; }
 
-constexpr float kPart = float(SolidOperation::Part), kUnion = float(SolidOperation::Union), kIntersection = float(SolidOperation::Intersection),
-                kDifference = float(SolidOperation::Difference);
+constexpr float kPart = float(SolidOperation::Part), kUnion = float(SolidOperation::Union),
+                kIntersection = float(SolidOperation::Intersection), kDifference = float(SolidOperation::Difference);
 
 scene::Attributes at(std::vector<float> path, int sides = 2) {
     scene::Attributes a;
@@ -48,7 +49,9 @@ struct Scene {
     Diagnostics diag;
     std::vector<ShapeRef> shapes;
     std::unique_ptr<Accel> accel;
-    void add(const std::shared_ptr<scene::Primitive>& p, const Matrix& m, scene::Attributes a) { shapes.push_back(build(p, m, diag, a)); }
+    void add(const std::shared_ptr<scene::Primitive>& p, const Matrix& m, scene::Attributes a) {
+        shapes.push_back(build(p, m, diag, a));
+    }
     void ready() {
         accel = std::make_unique<Accel>(shapes, std::vector<uint32_t>(), diag);
         accel->makeSolids(diag);
@@ -218,7 +221,8 @@ TEST(Solids, InstancesAreSolidsOfTheirOwn) {
     for (int instance = 0; instance < 2; ++instance)
         for (int part = 0; part < 2; ++part) {
             auto a = std::make_shared<scene::Attributes>(at({1, kDifference, 0, float(2 + part), kPart, float(part)}));
-            s.shapes.push_back(buildShape(ball(part ? 0.5f : 1), a, translateMatrix(0, 0, 5 + 0.25 * instance), instance, s.diag));
+            s.shapes.push_back(
+                buildShape(ball(part ? 0.5f : 1), a, translateMatrix(0, 0, 5 + 0.25 * instance), instance, s.diag));
         }
     s.ready();
     Ray r;
@@ -230,7 +234,8 @@ namespace {
 
 /// Of each part its pieces, of several kinds, at a place that may move.
 struct Parts : Scene {
-    void part(int number, float operation, std::vector<std::shared_ptr<scene::Primitive>> pieces, const Matrix& m, const Matrix* last = nullptr) {
+    void part(int number, float operation, std::vector<std::shared_ptr<scene::Primitive>> pieces, const Matrix& m,
+              const Matrix* last = nullptr) {
         for (const auto& p : pieces) {
             ShapeRef s = build(p, m, diag, at({1, operation, 0, float(2 + number), kPart, float(number)}));
             if (last) {
@@ -250,12 +255,17 @@ std::vector<std::shared_ptr<scene::Primitive>> rod(float r, float h) {
 
 } // namespace
 
-// Lines through a ball around a solid, in all directions: the mean of what of them lies within is the volume over the ball's disc. Each goes in as
-// often as it comes out, a million of them nightly. Rods that cross: two make 16/3 r^3, three 8 (2 - sqrt 2) r^3 (Steinmetz).
+// Lines through a ball around a solid, in all directions: the mean of what of them lies within is the volume over the ball's
+// disc. Each goes in as often as it comes out, a million of them nightly. Rods that cross: two make 16/3 r^3, three 8 (2 - sqrt
+// 2) r^3 (Steinmetz).
 TEST(Solids, VolumesByMonteCarlo) {
-    const double r = 0.5, h = 1.5, two = 16. / 3 * r * r * r, three = 8 * (2 - std::sqrt(2.)) * r * r * r, whole = kPi * r * r * 2 * h;
-    const Matrix about = rotateMatrix(25, 1, 0.4, -0.3), x = rotateMatrix(90, 0, 1, 0) * about, y = rotateMatrix(90, 1, 0, 0) * about;
-    const auto slid = [&](const Matrix& m) { return translateMatrix(0, 0, 0.7) * m; }; // along itself: the crossing stays the same
+    const double r = 0.5, h = 1.5, two = 16. / 3 * r * r * r, three = 8 * (2 - std::sqrt(2.)) * r * r * r,
+                 whole = kPi * r * r * 2 * h;
+    const Matrix about = rotateMatrix(25, 1, 0.4, -0.3), x = rotateMatrix(90, 0, 1, 0) * about,
+                 y = rotateMatrix(90, 1, 0, 0) * about;
+    const auto slid = [&](const Matrix& m) {
+        return translateMatrix(0, 0, 0.7) * m;
+    }; // along itself: the crossing stays the same
     struct Case {
         const char* what;
         float operation;
@@ -263,10 +273,11 @@ TEST(Solids, VolumesByMonteCarlo) {
         bool moves;
         double volume;
     };
-    const Case cases[] = {{"two rods", kIntersection, 2, false, two},       {"three rods", kIntersection, 3, false, three},
-                          {"a cross", kUnion, 2, false, 2 * whole - two},   {"a bored rod", kDifference, 2, false, whole - two},
-                          {"sliding rods", kIntersection, 3, true, three},  {"a sliding drill", kDifference, 2, true, whole - two},
-                          {"a sliding cross", kUnion, 2, true, 2 * whole - two}};
+    const Case cases[] = {
+        {"two rods", kIntersection, 2, false, two},           {"three rods", kIntersection, 3, false, three},
+        {"a cross", kUnion, 2, false, 2 * whole - two},       {"a bored rod", kDifference, 2, false, whole - two},
+        {"sliding rods", kIntersection, 3, true, three},      {"a sliding drill", kDifference, 2, true, whole - two},
+        {"a sliding cross", kUnion, 2, true, 2 * whole - two}};
     for (const Case& c : cases) {
         Parts s;
         const Matrix places[] = {about, x, y};
@@ -281,7 +292,8 @@ TEST(Solids, VolumesByMonteCarlo) {
         double sum = 0, squares = 0;
         int odd = 0;
         for (int i = 0; i < n; ++i) {
-            const double z = 2 * uniform(rng) - 1, a = 2 * kPi * uniform(rng), b = 2 * kPi * uniform(rng), q = R * std::sqrt(uniform(rng));
+            const double z = 2 * uniform(rng) - 1, a = 2 * kPi * uniform(rng), b = 2 * kPi * uniform(rng),
+                         q = R * std::sqrt(uniform(rng));
             const Vec3d d(std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z);
             const Vec3d u = normalize(cross(d, std::fabs(d.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), v = cross(d, u);
             Ray ray;
@@ -301,11 +313,12 @@ TEST(Solids, VolumesByMonteCarlo) {
     }
 }
 
-// From within a solid each ray comes to its boundary: a ball with a hole through it and a moving bite, through what is left of it.
+// From within a solid each ray comes to its boundary: a ball with a hole through it and a moving bite, through what is left of
+// it.
 TEST(Solids, NothingLeaks) {
     Parts s;
-    const Matrix m = rotateMatrix(40, 1, 2, 0.5) * scaleMatrix(1.5, 1, 0.8) * translateMatrix(300, -20, 50), bite = translateMatrix(0.2, 0.9, 0.3) * m,
-                 bitten = translateMatrix(-0.3, 0.8, -0.3) * m;
+    const Matrix m = rotateMatrix(40, 1, 2, 0.5) * scaleMatrix(1.5, 1, 0.8) * translateMatrix(300, -20, 50),
+                 bite = translateMatrix(0.2, 0.9, 0.3) * m, bitten = translateMatrix(-0.3, 0.8, -0.3) * m;
     s.part(0, kDifference, {ball(1)}, m);
     s.part(1, kDifference, rod(0.3f, 1.5f), m);
     s.part(2, kDifference, {ball(0.6f)}, bite, &bitten);

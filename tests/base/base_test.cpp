@@ -1,7 +1,7 @@
-#include "base/printable.h"
 #include "base/diagnostics.h"
 #include "base/limits.h"
 #include "base/matrix.h"
+#include "base/printable.h"
 #include <gtest/gtest.h>
 
 using namespace alpenglow;
@@ -65,7 +65,10 @@ TEST(Diagnostics, TextHasPlaceCaretAndHint) {
 TEST(Diagnostics, ControlCharactersAreShownByTheirBytes) {
     EXPECT_EQ(printable("a\tb\nc"), "a\tb\nc");
     EXPECT_EQ(printable("\x1b[31mred\x07\x7f\r"), "\\x1b[31mred\\x07\\x7f\\x0d");
-    EXPECT_EQ(printable("\xC2\x9B""31m \x9B""31m"), "\\xc2\\x9b31m \\x9b31m"); // the one-byte CSI, as UTF-8 and by itself
+    EXPECT_EQ(printable("\xC2\x9B"
+                        "31m \x9B"
+                        "31m"),
+              "\\xc2\\x9b31m \\x9b31m"); // the one-byte CSI, as UTF-8 and by itself
     EXPECT_EQ(printable("gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9"),
               "gr\xC3\xBC\xC3\x9F \xE2\x82\xAC \xF0\x9F\x8C\x84 caf\xE9");
     EXPECT_EQ(printable(std::string("\0x", 2)), "\\x00x");

@@ -6,15 +6,47 @@
 using namespace alpenglow;
 
 TEST(Category, Expressions) {
-    const struct { const char* expression; const char* categories; bool in; } cases[] = {
-        {"", "", true}, {"", "a", true}, {"  ", "a", true},
-        {"a", "a", true}, {"a", "b", false}, {"a", "", false}, {"a", "b,a", true}, {"a", "b, a ,c", true}, {"a", "ab", false},
-        {"-a", "a", false}, {"-a", "b", true}, {"-a", "", true}, {"!a", "a", false}, {"--a", "a", true},
-        {"a|b", "a", true}, {"a|b", "b", true}, {"a|b", "c", false}, {"a | b", "b", true},
-        {"a&b", "a", false}, {"a&b", "a,b", true}, {"a&-b", "a", true}, {"a&-b", "a,b", false},
-        {"a|b&c", "a", true}, {"a|b&c", "b", false}, {"(a|b)&c", "a", false}, {"(a|b)&c", "b,c", true}, {"-(a|b)", "c", true}, {"-(a|b)", "b", false},
-        {"a,b", "b", true}, {"a,b", "c", false}, {"a,-b", "a", true}, {"a,-b", "a,b", false}, {"-a,-b", "c", true}, {"-a,-b", "b", false}, {"a,-b", "c", false},
-        {"my-light", "my-light", true}, {"key light", "key light", true}};
+    const struct {
+        const char* expression;
+        const char* categories;
+        bool in;
+    } cases[] = {{"", "", true},
+                 {"", "a", true},
+                 {"  ", "a", true},
+                 {"a", "a", true},
+                 {"a", "b", false},
+                 {"a", "", false},
+                 {"a", "b,a", true},
+                 {"a", "b, a ,c", true},
+                 {"a", "ab", false},
+                 {"-a", "a", false},
+                 {"-a", "b", true},
+                 {"-a", "", true},
+                 {"!a", "a", false},
+                 {"--a", "a", true},
+                 {"a|b", "a", true},
+                 {"a|b", "b", true},
+                 {"a|b", "c", false},
+                 {"a | b", "b", true},
+                 {"a&b", "a", false},
+                 {"a&b", "a,b", true},
+                 {"a&-b", "a", true},
+                 {"a&-b", "a,b", false},
+                 {"a|b&c", "a", true},
+                 {"a|b&c", "b", false},
+                 {"(a|b)&c", "a", false},
+                 {"(a|b)&c", "b,c", true},
+                 {"-(a|b)", "c", true},
+                 {"-(a|b)", "b", false},
+                 {"a,b", "b", true},
+                 {"a,b", "c", false},
+                 {"a,-b", "a", true},
+                 {"a,-b", "a,b", false},
+                 {"-a,-b", "c", true},
+                 {"-a,-b", "b", false},
+                 {"a,-b", "c", false},
+                 {"my-light", "my-light", true},
+                 {"key light", "key light", true}};
     for (const auto& c : cases) {
         EXPECT_EQ(inCategory(c.expression, c.categories), c.in) << c.expression << " of " << c.categories;
         EXPECT_EQ(categoryError(c.expression), "") << c.expression;

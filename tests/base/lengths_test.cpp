@@ -25,10 +25,11 @@ struct Function {
     int line = 0, lines = 0;
 };
 
-/// Functions outside of classes, as the sources are formatted: they begin at the first column, their body ends with "}" there, and
-/// nothing between does.
+/// Functions outside of classes, as the sources are formatted: they begin at the first column, their body ends with "}" there,
+/// and nothing between does.
 std::vector<Function> functionsIn(const std::vector<std::string>& lines) {
-    static const std::vector<std::string> kOther = {"namespace", "struct", "class", "enum", "union", "using", "extern", "typedef"};
+    static const std::vector<std::string> kOther = {"namespace", "struct", "class",  "enum",
+                                                    "union",     "using",  "extern", "typedef"};
     std::vector<Function> found;
     std::string head;
     int begin = -1;
@@ -62,9 +63,10 @@ std::vector<std::string> linesOf(const fs::path& p) {
 }
 
 TEST(Lengths, FunctionsAreFound) {
-    const std::vector<Function> f = functionsIn({"namespace a {", "struct B {", "    int f() {", "    }", "};", "int f();", "template <class T>",
-                                                 "static int g(int a,", "             int b) {", "    if (a) {", "    }", "    return b;", "}",
-                                                 "int h() { return 1; }", "void C::d() {", "}", "} // namespace a"});
+    const std::vector<Function> f =
+        functionsIn({"namespace a {", "struct B {", "    int f() {", "    }", "};", "int f();", "template <class T>",
+                     "static int g(int a,", "             int b) {", "    if (a) {", "    }", "    return b;", "}",
+                     "int h() { return 1; }", "void C::d() {", "}", "} // namespace a"});
     ASSERT_EQ(f.size(), 2u);
     EXPECT_EQ(f[0].line, 9);
     EXPECT_EQ(f[0].lines, 5);
@@ -80,8 +82,7 @@ TEST(Lengths, RoomsOfTransport) {
             if (ext != ".cpp" && ext != ".h" && ext != ".inc") continue;
             const std::string file = fs::relative(e.path(), src).string();
             const std::vector<std::string> lines = linesOf(e.path());
-            for (size_t i = 0; i < lines.size(); ++i)
-                EXPECT_LE(columns(lines[i]), kColumns) << file << ":" << i + 1;
+            for (size_t i = 0; i < lines.size(); ++i) EXPECT_LE(columns(lines[i]), kColumns) << file << ":" << i + 1;
             for (const Function& f : functionsIn(lines)) {
                 ++functions;
                 EXPECT_LE(f.lines, kLines) << file << ":" << f.line << " " << f.head;

@@ -7,7 +7,11 @@ using namespace alpenglow::render;
 
 namespace {
 
-struct Asked { SampleNumbers numbers; uint32_t vertex, site, occurrence; bool pair; };
+struct Asked {
+    SampleNumbers numbers;
+    uint32_t vertex, site, occurrence;
+    bool pair;
+};
 
 std::vector<Asked> someRequests(size_t count) {
     std::vector<Asked> all;

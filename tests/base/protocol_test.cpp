@@ -13,9 +13,10 @@ namespace {
 /// Text literals of a source that are, or begin as, names of the protocol. Comments are left out.
 std::vector<std::string> namesIn(const std::string& source) {
     static const std::regex comment(R"(//[^\n]*)"), literal(R"re("((?:[^"\\\n]|\\.)*)")re"),
-        name(R"(^(param:|Du:|Dv:|given:|slope:|space:|displacement:|send:light:|surface:|light#|length |begin\(\)|opacity\(\)).*)"
-             R"(|^.*this->.*|^__(setup|outside|part|once|uniform|gather|hemisphere|nondiffuse|nonspecular|category|group|sentL|sentCl|sentShadows)$)"
-             R"(|^__displacementbound_(sphere|coordinatesystem)$)");
+        name(
+            R"(^(param:|Du:|Dv:|given:|slope:|space:|displacement:|send:light:|surface:|light#|length |begin\(\)|opacity\(\)).*)"
+            R"(|^.*this->.*|^__(setup|outside|part|once|uniform|gather|hemisphere|nondiffuse|nonspecular|category|group|sentL|sentCl|sentShadows)$)"
+            R"(|^__displacementbound_(sphere|coordinatesystem)$)");
     std::vector<std::string> found;
     const std::string code = std::regex_replace(source, comment, "");
     for (std::sregex_iterator i(code.begin(), code.end(), literal), end; i != end; ++i)
@@ -26,7 +27,9 @@ std::vector<std::string> namesIn(const std::string& source) {
 TEST(Protocol, TheScannerFindsNames) {
     EXPECT_EQ(namesIn(R"(x = "param:" + n; if (t.rfind("space:", 0) == 0) f("__nondiffuse");)").size(), 3u);
     EXPECT_EQ(namesIn(R"(report("the space: none"); // "param:Kd"
- f("light:samples"), g("spaces"), h("displacementbound:sphere");)").size(), 0u);
+ f("light:samples"), g("spaces"), h("displacementbound:sphere");)")
+                  .size(),
+              0u);
 }
 
 TEST(Protocol, NamesAreWrittenInOnePlace) {
@@ -43,7 +46,8 @@ TEST(Protocol, NamesAreWrittenInOnePlace) {
         ++files;
         std::ifstream in(e.path());
         const std::string text(std::istreambuf_iterator<char>(in), {});
-        for (const std::string& name : namesIn(text)) ADD_FAILURE() << file << " writes \"" << name << "\": rsl/front/protocol.h makes such names";
+        for (const std::string& name : namesIn(text))
+            ADD_FAILURE() << file << " writes \"" << name << "\": rsl/front/protocol.h makes such names";
     }
     EXPECT_GT(files, 200);
 }

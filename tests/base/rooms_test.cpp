@@ -1,4 +1,5 @@
-// The include table of docs/architecture.md, checked: nothing lower knows anything higher, and foreign headers stay behind one door.
+// The include table of docs/architecture.md, checked: nothing lower knows anything higher, and foreign headers stay behind one
+// door.
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -26,22 +27,28 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"photons", {"base"}},
     {"ptex", {"base"}},
     {"clouds", {"base"}},
-    {"world", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "ptex"}},
-    {"answers", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "ptex", "world"}},
+    {"world",
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "ptex"}},
+    {"answers",
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "ptex",
+      "world"}},
     {"wave",
-     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "ptex", "world", "answers"}},
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "ptex",
+      "world", "answers"}},
     {"transport", {"base", "scene", "geometry", "shading", "clouds", "photons", "world", "wave"}},
     {"render",
-     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "transport", "display"}},
-    {"cli", {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "clouds", "photons", "ptex", "world", "answers", "wave", "transport", "display",
-             "render", "ri", "view"}},
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "transport",
+      "display"}},
+    {"cli", {"base",    "scene", "geometry", "accel",   "rsl",  "shadeops",  "texture", "shading", "lobes", "clouds",
+             "photons", "ptex",  "world",    "answers", "wave", "transport", "display", "render",  "ri",    "view"}},
     {"view",
-     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "transport", "display", "render", "ri"}},
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "transport", "display",
+      "render", "ri"}},
 };
 
 // Header prefix -> the only folders that may include it.
 const std::map<std::string, std::set<std::string>> kForeign = {
-    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}}, {"embree3", {}},  {"OpenImageIO", {"texture"}},
+    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},  {"embree3", {}},        {"OpenImageIO", {"texture"}},
     {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
     {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},
 };
@@ -65,7 +72,8 @@ TEST(Rooms, IncludeTable) {
             if (close == std::string::npos) continue;
             std::string header = line.substr(10, close - 10), first = header.substr(0, header.find('/'));
             if (open == '"' && header.find('/') != std::string::npos && kAllowed.count(first)) {
-                EXPECT_TRUE(first == room || kAllowed.at(room).count(first)) << relative << ":" << n << " may not include " << header;
+                EXPECT_TRUE(first == room || kAllowed.at(room).count(first))
+                    << relative << ":" << n << " may not include " << header;
             }
             if (auto f = kForeign.find(first); open == '<' && f != kForeign.end()) {
                 bool ok = false;

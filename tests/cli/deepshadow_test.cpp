@@ -24,8 +24,9 @@ protected:
     std::string panes() const {
         std::string s;
         for (const auto& [z, opacity] : {std::pair{4, "1 0 0"}, {6, ".5 .5 0"}, {8, "0 .25 .25"}})
-            s += fmt::format("AttributeBegin Surface \"constant\" Opacity {} Polygon \"P\" [-2 -2 {} -2 2 {} 2 2 {} 2 -2 {}] AttributeEnd\n",
-                             std::string("[") + opacity + "]", z, z, z, z);
+            s += fmt::format(
+                "AttributeBegin Surface \"constant\" Opacity {} Polygon \"P\" [-2 -2 {} -2 2 {} 2 2 {} 2 -2 {}] AttributeEnd\n",
+                std::string("[") + opacity + "]", z, z, z, z);
         return s;
     }
     void scene(const std::string& options, const std::string& hider) const {
@@ -34,13 +35,17 @@ protected:
         write("alike.sl", "surface alike(string map = \"\";) { Oi = 1; Ci = float shadow(map, P, \"bias\", .01); }\n");
         std::string s = "Option \"statistics\" \"endofframe\" 0\n" + options +
                         "Format 32 32 1\nPixelSamples 2 2\nProjection \"orthographic\"\nScreenWindow -4 4 -4 4\n"
-                        "FrameBegin 1\nHider \"" + hider + "\"\nDisplay \"lamp.dsm\" \"deepshad\" \"deepopacity\"\nWorldBegin\nSides 2\n" + panes() +
+                        "FrameBegin 1\nHider \"" +
+                        hider + "\"\nDisplay \"lamp.dsm\" \"deepshad\" \"deepopacity\"\nWorldBegin\nSides 2\n" + panes() +
                         "Surface \"constant\"\nPolygon \"P\" [-9 -9 10 -9 9 10 9 9 10 9 -9 10]\nWorldEnd\nFrameEnd\n"
                         "MakeShadow \"lamp.dsm\" \"lamp.shd\"\n";
         int frame = 2;
-        for (const char* shader : {"\"asks\" \"at\" -5", "\"asks\" \"at\" -3", "\"asks\" \"at\" -1", "\"asks\" \"at\" 1", "\"alike\""}) {
-            s += fmt::format("FrameBegin {}\nDisplay \"f{}.exr\" \"openexr\" \"rgb\"\nWorldBegin\nSurface {} \"string map\" \"lamp.shd\"\n"
-                             "Polygon \"P\" [-9 -9 10 -9 9 10 9 9 10 9 -9 10]\nWorldEnd\nFrameEnd\n", frame, frame, shader);
+        for (const char* shader :
+             {"\"asks\" \"at\" -5", "\"asks\" \"at\" -3", "\"asks\" \"at\" -1", "\"asks\" \"at\" 1", "\"alike\""}) {
+            s += fmt::format(
+                "FrameBegin {}\nDisplay \"f{}.exr\" \"openexr\" \"rgb\"\nWorldBegin\nSurface {} \"string map\" \"lamp.shd\"\n"
+                "Polygon \"P\" [-9 -9 10 -9 9 10 9 9 10 9 -9 10]\nWorldEnd\nFrameEnd\n",
+                frame, frame, shader);
             ++frame;
         }
         write("s.rib", s);
@@ -71,10 +76,11 @@ TEST_F(DeepShadows, TransparentColouredPanes) {
 
 // The same whatever the number of threads, and a moving edge covers what it covers.
 TEST_F(DeepShadows, MovingThingsAndThreads) {
-    write("s.rib", "Format 40 4 1\nPixelSamples 8 8\nProjection \"orthographic\"\nScreenWindow -5 5 -.5 .5\nShutter 0 1\n"
-                   "Option \"limits\" \"float deepshadowerror\" 0\nDisplay \"a.dsm\" \"dsm\" \"deepopacity\"\nWorldBegin\nSides 2\n"
-                   "MotionBegin [0 1]\nTranslate 0 0 0\nTranslate 4 0 0\nMotionEnd\nSurface \"constant\"\n"
-                   "Polygon \"P\" [-5 -9 3 -5 9 3 0 9 3 0 -9 3]\nWorldEnd\n");
+    write("s.rib",
+          "Format 40 4 1\nPixelSamples 8 8\nProjection \"orthographic\"\nScreenWindow -5 5 -.5 .5\nShutter 0 1\n"
+          "Option \"limits\" \"float deepshadowerror\" 0\nDisplay \"a.dsm\" \"dsm\" \"deepopacity\"\nWorldBegin\nSides 2\n"
+          "MotionBegin [0 1]\nTranslate 0 0 0\nTranslate 4 0 0\nMotionEnd\nSurface \"constant\"\n"
+          "Polygon \"P\" [-5 -9 3 -5 9 3 0 9 3 0 -9 3]\nWorldEnd\n");
     run("render --progress none --threads 1 s.rib", "2>err");
     ASSERT_EQ(status, 0) << text("err");
     const std::string one = text("a.dsm");
@@ -93,18 +99,23 @@ TEST_F(DeepShadows, MovingThingsAndThreads) {
     }
 }
 
-// A box of fog between lamp and floor: what is left at a depth is exp(-extinction times the way through it), and below the fog what a
-// traced ray finds.
+// A box of fog between lamp and floor: what is left at a depth is exp(-extinction times the way through it), and below the fog
+// what a traced ray finds.
 TEST_F(DeepShadows, FogIsSeenByItsDepth) {
-    const std::string fog = "AttributeBegin Interior \"murk\" Surface \"clear\" Opacity [0 0 0]\n"
-                            "TransformBegin Translate 0 0 6 Polygon \"P\" [-2 -2 -2 -2 2 -2 2 2 -2 2 -2 -2] Polygon \"P\" [-2 -2 2 2 -2 2 2 2 2 -2 2 2]\n"
-                            "Polygon \"P\" [-2 -2 -2 -2 -2 2 -2 2 2 -2 2 -2] Polygon \"P\" [2 -2 -2 2 2 -2 2 2 2 2 -2 2]\n"
-                            "Polygon \"P\" [-2 -2 -2 2 -2 -2 2 -2 2 -2 -2 2] Polygon \"P\" [-2 2 -2 -2 2 2 2 2 2 2 2 -2] TransformEnd AttributeEnd\n";
+    const std::string fog =
+        "AttributeBegin Interior \"murk\" Surface \"clear\" Opacity [0 0 0]\n"
+        "TransformBegin Translate 0 0 6 Polygon \"P\" [-2 -2 -2 -2 2 -2 2 2 -2 2 -2 -2] Polygon \"P\" [-2 -2 2 2 -2 2 2 2 2 -2 2 "
+        "2]\n"
+        "Polygon \"P\" [-2 -2 -2 -2 -2 2 -2 2 2 -2 2 -2] Polygon \"P\" [2 -2 -2 2 2 -2 2 2 2 2 -2 2]\n"
+        "Polygon \"P\" [-2 -2 -2 2 -2 -2 2 -2 2 -2 -2 2] Polygon \"P\" [-2 2 -2 -2 2 2 2 2 2 2 2 -2] TransformEnd AttributeEnd\n";
     write("clear.sl", "surface clear() { Oi = 0; Ci = 0; }\n");
-    write("murk.sl", "volume murk(color density = color(.2, .5, 1);) { color t = color(exp(-length(I) * comp(density, 0)), exp(-length(I) * comp(density, 1)), exp(-length(I) * comp(density, 2)));\n"
-                    "    Ci = Ci * t; Oi = 1 - (1 - Oi) * t; }\n");
-    write("s.rib", "Format 16 16 1\nPixelSamples 2 2\nProjection \"orthographic\"\nScreenWindow -4 4 -4 4\nDisplay \"fog.dsm\" \"deepshad\" \"deepopacity\"\n"
-                   "Option \"limits\" \"float deepshadowerror\" 0\nWorldBegin\nSides 2\n" + fog + "WorldEnd\n");
+    write("murk.sl", "volume murk(color density = color(.2, .5, 1);) { color t = color(exp(-length(I) * comp(density, 0)), "
+                     "exp(-length(I) * comp(density, 1)), exp(-length(I) * comp(density, 2)));\n"
+                     "    Ci = Ci * t; Oi = 1 - (1 - Oi) * t; }\n");
+    write("s.rib", "Format 16 16 1\nPixelSamples 2 2\nProjection \"orthographic\"\nScreenWindow -4 4 -4 4\nDisplay \"fog.dsm\" "
+                   "\"deepshad\" \"deepopacity\"\n"
+                   "Option \"limits\" \"float deepshadowerror\" 0\nWorldBegin\nSides 2\n" +
+                       fog + "WorldEnd\n");
     run("render --progress none s.rib", "2>err");
     ASSERT_EQ(status, 0) << text("err");
     const display::Image m = read("fog.dsm");
@@ -126,11 +137,20 @@ TEST_F(DeepShadows, HairTakesWhatItCovers) {
     std::string hairs;
     for (int layer = 0; layer < 3; ++layer) {
         std::string points;
-        for (int i = 0; i < 16; ++i) points += fmt::format("{} -5 {} {} 5 {} ", -4 + .5 * i + .125, 3 + layer, -4 + .5 * i + .125, 3 + layer);
-        hairs += "Curves \"linear\" [" + [] { std::string n; for (int i = 0; i < 16; ++i) n += "2 "; return n; }() + "] \"nonperiodic\" \"P\" [" + points + "] \"constantwidth\" [.25]\n";
+        for (int i = 0; i < 16; ++i)
+            points += fmt::format("{} -5 {} {} 5 {} ", -4 + .5 * i + .125, 3 + layer, -4 + .5 * i + .125, 3 + layer);
+        hairs += "Curves \"linear\" [" +
+                 [] {
+                     std::string n;
+                     for (int i = 0; i < 16; ++i) n += "2 ";
+                     return n;
+                 }() +
+                 "] \"nonperiodic\" \"P\" [" + points + "] \"constantwidth\" [.25]\n";
     }
-    write("s.rib", "Format 16 16 1\nPixelSamples 8 8\nProjection \"orthographic\"\nScreenWindow -4 4 -4 4\nDisplay \"hair.dsm\" \"deepshad\" \"deepopacity\"\n"
-                   "WorldBegin\nSides 2\nSurface \"constant\" Opacity [.4 .4 .4]\n" + hairs + "WorldEnd\n");
+    write("s.rib", "Format 16 16 1\nPixelSamples 8 8\nProjection \"orthographic\"\nScreenWindow -4 4 -4 4\nDisplay \"hair.dsm\" "
+                   "\"deepshad\" \"deepopacity\"\n"
+                   "WorldBegin\nSides 2\nSurface \"constant\" Opacity [.4 .4 .4]\n" +
+                       hairs + "WorldEnd\n");
     run("render --progress none s.rib", "2>err");
     ASSERT_EQ(status, 0) << text("err");
     const display::Image m = read("hair.dsm");
@@ -148,26 +168,34 @@ TEST_F(DeepShadows, HairTakesWhatItCovers) {
 // A point light's six faces, one map each: shadow() of the face that looks there is what a ray finds.
 TEST_F(DeepShadows, SixFacesOfAPointLight) {
     // The light stands at the origin in a ring of balls, one before each face and a bit beside its middle.
-    const char* turn[] = {"Rotate -90 0 1 0", "Rotate 90 0 1 0", "Rotate 90 1 0 0", "Rotate -90 1 0 0", "Rotate 0 1 0 0", "Rotate 180 0 1 0"};
+    const char* turn[] = {"Rotate -90 0 1 0", "Rotate 90 0 1 0", "Rotate 90 1 0 0",
+                          "Rotate -90 1 0 0", "Rotate 0 1 0 0",  "Rotate 180 0 1 0"};
     const char* axis[] = {"2 .3 0", "-2 .3 0", ".3 2 0", ".3 -2 0", "0 .3 2", "0 .3 -2"};
     std::string balls;
     for (const char* a : axis) balls += std::string("TransformBegin Translate ") + a + " Sphere .4 -.4 .4 360 TransformEnd\n";
     const std::string room = "TransformBegin ReverseOrientation Sphere 4 -4 4 360 TransformEnd\n";
     std::string s = "Option \"statistics\" \"endofframe\" 0\n";
     for (int f = 0; f < 6; ++f)
-        s += fmt::format("FrameBegin {}\nFormat 128 128 1\nPixelSamples 2 2\nProjection \"perspective\" \"fov\" 95\nDisplay \"face{}.dsm\" \"deepshad\" \"deepopacity\"\n{}\nWorldBegin\nSides 2\nSurface \"constant\"\n{}WorldEnd\nFrameEnd\n",
-                         f + 1, f, turn[f], balls);
-    write("six.sl", "surface six(float traced = 0;) {\n"
-                    "    point Q = transform(\"world\", P); float x = abs(xcomp(Q)), y = abs(ycomp(Q)), z = abs(zcomp(Q)), dark = 0;\n"
-                    "    if (traced != 0) dark = 1 - comp(transmission(P, point \"world\" (0, 0, 0), \"samplecone\", 0), 0);\n"
-                    "    else if (x >= y && x >= z) { if (xcomp(Q) > 0) dark = shadow(\"face0.dsm\", P, \"bias\", .05); else dark = shadow(\"face1.dsm\", P, \"bias\", .05); }\n"
-                    "    else if (y >= z) { if (ycomp(Q) > 0) dark = shadow(\"face2.dsm\", P, \"bias\", .05); else dark = shadow(\"face3.dsm\", P, \"bias\", .05); }\n"
-                    "    else { if (zcomp(Q) > 0) dark = shadow(\"face4.dsm\", P, \"bias\", .05); else dark = shadow(\"face5.dsm\", P, \"bias\", .05); }\n"
-                    "    Oi = 1; Ci = dark;\n}\n");
+        s += fmt::format(
+            "FrameBegin {}\nFormat 128 128 1\nPixelSamples 2 2\nProjection \"perspective\" \"fov\" 95\nDisplay \"face{}.dsm\" "
+            "\"deepshad\" \"deepopacity\"\n{}\nWorldBegin\nSides 2\nSurface \"constant\"\n{}WorldEnd\nFrameEnd\n",
+            f + 1, f, turn[f], balls);
+    write("six.sl",
+          "surface six(float traced = 0;) {\n"
+          "    point Q = transform(\"world\", P); float x = abs(xcomp(Q)), y = abs(ycomp(Q)), z = abs(zcomp(Q)), dark = 0;\n"
+          "    if (traced != 0) dark = 1 - comp(transmission(P, point \"world\" (0, 0, 0), \"samplecone\", 0), 0);\n"
+          "    else if (x >= y && x >= z) { if (xcomp(Q) > 0) dark = shadow(\"face0.dsm\", P, \"bias\", .05); else dark = "
+          "shadow(\"face1.dsm\", P, \"bias\", .05); }\n"
+          "    else if (y >= z) { if (ycomp(Q) > 0) dark = shadow(\"face2.dsm\", P, \"bias\", .05); else dark = "
+          "shadow(\"face3.dsm\", P, \"bias\", .05); }\n"
+          "    else { if (zcomp(Q) > 0) dark = shadow(\"face4.dsm\", P, \"bias\", .05); else dark = shadow(\"face5.dsm\", P, "
+          "\"bias\", .05); }\n"
+          "    Oi = 1; Ci = dark;\n}\n");
     int frame = 7;
     for (int traced = 0; traced < 2; ++traced)
         for (int view = 0; view < 6; ++view, ++frame)
-            s += fmt::format("FrameBegin {}\nFormat 40 40 1\nPixelSamples 3 3\nProjection \"perspective\" \"fov\" 90\nDisplay \"v{}{}.exr\" \"openexr\" \"rgb\"\n{}\nWorldBegin\nSides 2\nSurface \"six\" \"traced\" {}\n{}"
+            s += fmt::format("FrameBegin {}\nFormat 40 40 1\nPixelSamples 3 3\nProjection \"perspective\" \"fov\" 90\nDisplay "
+                             "\"v{}{}.exr\" \"openexr\" \"rgb\"\n{}\nWorldBegin\nSides 2\nSurface \"six\" \"traced\" {}\n{}"
                              "Surface \"constant\" Attribute \"visibility\" \"int camera\" 0\n{}WorldEnd\nFrameEnd\n",
                              frame, traced, view, turn[view], traced, room, balls);
     write("s.rib", s);
@@ -186,8 +214,9 @@ TEST_F(DeepShadows, SixFacesOfAPointLight) {
 }
 
 TEST_F(DeepShadows, WrongNumbersAreSaid) {
-    write("s.rib", "Format 4 4 1\nOption \"limits\" \"float deepshadowerror\" 7\nDisplay \"a.dsm\" \"dsm\" \"deepopacity\"\nWorldBegin\n"
-                   "Translate 0 0 5\nSphere 1 -1 1 360\nWorldEnd\n");
+    write("s.rib",
+          "Format 4 4 1\nOption \"limits\" \"float deepshadowerror\" 7\nDisplay \"a.dsm\" \"dsm\" \"deepopacity\"\nWorldBegin\n"
+          "Translate 0 0 5\nSphere 1 -1 1 360\nWorldEnd\n");
     run("render --progress none s.rib", "2>err");
     EXPECT_NE(text("err").find("deepshadowerror"), std::string::npos);
     EXPECT_TRUE(read("a.dsm").deep);
@@ -195,16 +224,18 @@ TEST_F(DeepShadows, WrongNumbersAreSaid) {
 
 class DepthMaps : public DeepShadows {};
 
-// Between the two nearest surfaces, whether light comes through the first or not; nothing where there is but one. From the left: a wall
-// alone at 2, the same with another at 4 behind it, and a ball of radius .4 about 6.
+// Between the two nearest surfaces, whether light comes through the first or not; nothing where there is but one. From the left:
+// a wall alone at 2, the same with another at 4 behind it, and a ball of radius .4 about 6.
 TEST_F(DepthMaps, InTheMiddleOfTwoSurfaces) {
     for (const char* opacity : {"1 1 1", ".5 .5 .5"})
         for (const char* hider : {"hidden", "raytrace"}) {
-            write("m.rib", fmt::format("Format 16 16 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nProjection \"orthographic\"\n"
-                                       "Hider \"{}\" \"string depthfilter\" \"midpoint\" \"jitter\" 0\nDisplay \"m.exr\" \"openexr\" \"z\"\n"
-                                       "WorldBegin\nSurface \"constant\"\nOpacity {}\nPolygon \"P\" [-1 -1 2 0 -1 2 0 1 2 -1 1 2]\n"
-                                       "Polygon \"P\" [-.5 -1 4 0 -1 4 0 1 4 -.5 1 4]\nTranslate .5625 .0625 6\nSphere .4 -.4 .4 360\nWorldEnd\n",
-                                       hider, opacity));
+            write("m.rib",
+                  fmt::format(
+                      "Format 16 16 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nProjection \"orthographic\"\n"
+                      "Hider \"{}\" \"string depthfilter\" \"midpoint\" \"jitter\" 0\nDisplay \"m.exr\" \"openexr\" \"z\"\n"
+                      "WorldBegin\nSurface \"constant\"\nOpacity {}\nPolygon \"P\" [-1 -1 2 0 -1 2 0 1 2 -1 1 2]\n"
+                      "Polygon \"P\" [-.5 -1 4 0 -1 4 0 1 4 -.5 1 4]\nTranslate .5625 .0625 6\nSphere .4 -.4 .4 360\nWorldEnd\n",
+                      hider, opacity));
             run("render --progress none m.rib", "2>err");
             ASSERT_EQ(status, 0) << text("err");
             const display::Image m = read("m.exr");

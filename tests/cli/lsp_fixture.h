@@ -14,7 +14,9 @@
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-inline std::string framed(const std::string& body) { return "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body; }
+inline std::string framed(const std::string& body) {
+    return "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+}
 
 inline Json span(int line, int begin, int end) {
     return {{"start", {{"line", line}, {"character", begin}}}, {"end", {{"line", line}, {"character", end}}}};
@@ -67,8 +69,8 @@ protected:
                {{"textDocument", {{"uri", uri(name)}, {"languageId", "rsl"}, {"version", 1}, {"text", text}}}});
     }
     int ask(const std::string& method, const std::string& name, int line, int character) {
-        return request("textDocument/" + method, {{"textDocument", {{"uri", uri(name)}}},
-                                                  {"position", {{"line", line}, {"character", character}}}});
+        return request("textDocument/" + method,
+                       {{"textDocument", {{"uri", uri(name)}}}, {"position", {{"line", line}, {"character", character}}}});
     }
     void end() {
         request("shutdown", nullptr);

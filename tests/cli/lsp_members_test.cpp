@@ -3,9 +3,11 @@
 
 namespace {
 
-const std::string kClass = "class c(float k = 1;) {\n    public float gain = 2;\n    float own = 1;\n    public color ask(float x) { return x; }\n"
-                           "    public void surface(output color Ci, Oi) { ";
-const std::string kStruct = "/* A ray. */\nstruct Ray { point o; vector d[2]; float len() { return 1; } };\nsurface a() {\n    Ray q; ";
+const std::string kClass =
+    "class c(float k = 1;) {\n    public float gain = 2;\n    float own = 1;\n    public color ask(float x) { return x; }\n"
+    "    public void surface(output color Ci, Oi) { ";
+const std::string kStruct =
+    "/* A ray. */\nstruct Ray { point o; vector d[2]; float len() { return 1; } };\nsurface a() {\n    Ray q; ";
 
 std::string hoverText(const Json& j) { return j.is_object() ? j["contents"]["value"].get<std::string>() : ""; }
 
@@ -22,7 +24,8 @@ TEST_F(Server, MembersOfAHandleArePublic) {
     EXPECT_EQ(l, (std::vector<std::string>{"ask", "gain", "k", "surface"}));
 }
 TEST_F(Server, HoverOfAMethodBehindAHandle) {
-    EXPECT_NE(hoverText(ask("hover", kClass + "shader h = getshader(\"x\"); Ci = h->as|k(1); }\n}\n")).find("color ask(float x)"), std::string::npos);
+    EXPECT_NE(hoverText(ask("hover", kClass + "shader h = getshader(\"x\"); Ci = h->as|k(1); }\n}\n")).find("color ask(float x)"),
+              std::string::npos);
 }
 TEST_F(Server, DefinitionOfAMethodBehindAHandle) {
     const Json d = ask("definition", kClass + "shader h = getshader(\"x\"); Ci = h->as|k(1); }\n}\n");
@@ -37,7 +40,8 @@ TEST_F(Server, HoverOfAMemberOfAStructure) {
     EXPECT_NE(t.find("member of Ray"), std::string::npos) << t;
 }
 TEST_F(Server, HoverOfAStructure) {
-    const std::string t = hoverText(ask("hover", "/* A ray. */\nstruct Ray { point o; vector d[2]; };\nsurface a() { R|ay q; q->o = P; Ci = 1; }\n"));
+    const std::string t = hoverText(
+        ask("hover", "/* A ray. */\nstruct Ray { point o; vector d[2]; };\nsurface a() { R|ay q; q->o = P; Ci = 1; }\n"));
     EXPECT_NE(t.find("struct Ray {\n    point o;\n    vector[2] d;\n}"), std::string::npos) << t;
     EXPECT_NE(t.find("A ray."), std::string::npos) << t;
 }
@@ -45,8 +49,10 @@ TEST_F(Server, DefinitionOfAStructure) {
     const Json d = ask("definition", "struct Ray { point o; };\nsurface a() { R|ay q; q->o = P; Ci = 1; }\n");
     EXPECT_EQ(d["range"], span(0, 7, 10));
 }
-// The members themselves, not the structure around them; those of a structure that is a member, and those that are inherited, too.
-const std::string kNested = "struct Seed {\n    float at;\n};\nstruct Tree : Seed {\n    Seed inner;\n    color leaf = 1;\n    float height() { return 2; }\n};\n";
+// The members themselves, not the structure around them; those of a structure that is a member, and those that are inherited,
+// too.
+const std::string kNested = "struct Seed {\n    float at;\n};\nstruct Tree : Seed {\n    Seed inner;\n    color leaf = 1;\n    "
+                            "float height() { return 2; }\n};\n";
 TEST_F(Server, DefinitionOfAMemberOfAStructure) {
     EXPECT_EQ(ask("definition", kNested + "surface a() { Tree t; Ci = t->le|af; }\n")["range"], span(5, 10, 14));
 }
@@ -59,18 +65,25 @@ TEST_F(Server, DefinitionOfAMethodOfAStructure) {
 TEST_F(Server, TheDotIsAlsoTheDotProduct) { EXPECT_TRUE(has(labels(ask("completion", "surface a() { Ci = P.|N; }")), "N")); }
 TEST_F(Server, NothingBehindAComparison) { EXPECT_TRUE(ask("completion", "surface a() { if (u >| 1) Ci = 1; }").empty()); }
 TEST_F(Server, HandlesAreOfTypeShader) {
-    EXPECT_NE(hoverText(ask("hover", "surface a(shader co = null;) { float x = c|o->gain; Ci = x; }")).find("uniform shader co"), std::string::npos);
+    EXPECT_NE(hoverText(ask("hover", "surface a(shader co = null;) { float x = c|o->gain; Ci = x; }")).find("uniform shader co"),
+              std::string::npos);
 }
 
 // Names beside an error, in the statement with it, and in a shader whose structure is broken.
 TEST_F(Server, HoverBesideAnError) {
-    EXPECT_NE(hoverText(ask("hover", "surface a(float rough = 1;) {\n    float q = ro|ugh;\n    Ci = ((;\n}\n")).find("uniform float rough"), std::string::npos);
+    EXPECT_NE(hoverText(ask("hover", "surface a(float rough = 1;) {\n    float q = ro|ugh;\n    Ci = ((;\n}\n"))
+                  .find("uniform float rough"),
+              std::string::npos);
 }
 TEST_F(Server, HoverInAStatementWithAnError) {
-    EXPECT_NE(hoverText(ask("hover", "surface a(float rough = 1;) {\n    float q = rough;\n    Ci = nosuch(|q) + ;\n}\n")).find("float q"), std::string::npos);
+    EXPECT_NE(hoverText(ask("hover", "surface a(float rough = 1;) {\n    float q = rough;\n    Ci = nosuch(|q) + ;\n}\n"))
+                  .find("float q"),
+              std::string::npos);
 }
 TEST_F(Server, HoverInAShaderThatDoesNotEnd) {
-    EXPECT_NE(hoverText(ask("hover", "surface a(float rough = 1;) {\n    if (ro|ugh {\n    Ci = 1;\n")).find("uniform float rough"), std::string::npos);
+    EXPECT_NE(
+        hoverText(ask("hover", "surface a(float rough = 1;) {\n    if (ro|ugh {\n    Ci = 1;\n")).find("uniform float rough"),
+        std::string::npos);
 }
 TEST_F(Server, DefinitionInAStatementWithAnError) {
     const Json d = ask("definition", "surface a(float rough = 1;) {\n    Ci = nosuch(1) + |rough +;\n}\n");

@@ -44,9 +44,9 @@ std::string edited(std::string text, const Json& edits) {
 class Navigation : public Server {
 protected:
     Json rename(const std::string& name, int line, int character, const std::string& to, std::vector<Json>* all = nullptr) {
-        const int id = request("textDocument/rename", {{"textDocument", {{"uri", uri(name)}}},
-                                                       {"position", {{"line", line}, {"character", character}}},
-                                                       {"newName", to}});
+        const int id = request(
+            "textDocument/rename",
+            {{"textDocument", {{"uri", uri(name)}}}, {"position", {{"line", line}, {"character", character}}}, {"newName", to}});
         end();
         const auto out = run();
         if (all) *all = out;
@@ -133,12 +133,16 @@ TEST_F(Navigation, RenameReachesHeadersAndOtherTexts) {
 }
 
 TEST_F(Navigation, RenameThatWouldBreakIsRefused) {
-    struct Case { int line, character; const char* to; const char* why; };
-    for (const Case& c : {Case{5, 20, "n", "belongs to the language"},          // noise
-                          Case{5, 4, "x2", "belongs to the language"},           // Ci
-                          Case{4, 9, "2x", "is no name"}, Case{4, 9, "float", "belongs to the language"},
-                          Case{4, 9, "P", "belongs to the language"}, Case{4, 9, "x", "is used already"},
-                          Case{5, 31, "y", "no name here"}}) {
+    struct Case {
+        int line, character;
+        const char* to;
+        const char* why;
+    };
+    for (const Case& c :
+         {Case{5, 20, "n", "belongs to the language"}, // noise
+          Case{5, 4, "x2", "belongs to the language"}, // Ci
+          Case{4, 9, "2x", "is no name"}, Case{4, 9, "float", "belongs to the language"},
+          Case{4, 9, "P", "belongs to the language"}, Case{4, 9, "x", "is used already"}, Case{5, 31, "y", "no name here"}}) {
         input.clear();
         ids = 0;
         begin();

@@ -29,13 +29,11 @@ TEST_F(Server, DiagnosticsAsOneTypes) {
     begin();
     open("a.sl", "surface a()\n{\n    Ci = nois(P);\n}\n");
     const int hover = ask("hover", "a.sl", 0, 0); // an answer between, so that both states are looked at
-    notify("textDocument/didChange",
-           {{"textDocument", {{"uri", uri("a.sl")}, {"version", 2}}},
-            {"contentChanges", {{{"range", span(2, 9, 13)}, {"text", "noize"}}}}});
-    const int actions = request("textDocument/codeAction",
-                                {{"textDocument", {{"uri", uri("a.sl")}}},
-                                 {"range", span(2, 0, 0)},
-                                 {"context", {{"diagnostics", Json::array()}}}});
+    notify("textDocument/didChange", {{"textDocument", {{"uri", uri("a.sl")}, {"version", 2}}},
+                                      {"contentChanges", {{{"range", span(2, 9, 13)}, {"text", "noize"}}}}});
+    const int actions = request(
+        "textDocument/codeAction",
+        {{"textDocument", {{"uri", uri("a.sl")}}}, {"range", span(2, 0, 0)}, {"context", {{"diagnostics", Json::array()}}}});
     end();
     const auto all = run();
     answer(all, hover);
@@ -208,8 +206,8 @@ TEST_F(Server, FaultsOfAnIncludeStandAtIt) {
 }
 
 TEST_F(Server, Symbols) {
-    const Json s = ask("documentSymbol",
-                       "float half(float x) { return x / 2; }\n|surface a(float Kd = 1;)\n{\n    Ci = half(Kd);\n}\n");
+    const Json s =
+        ask("documentSymbol", "float half(float x) { return x / 2; }\n|surface a(float Kd = 1;)\n{\n    Ci = half(Kd);\n}\n");
     ASSERT_EQ(s.size(), 2u);
     const Json& shader = s[0]["name"] == "a" ? s[0] : s[1];
     const Json& function = s[0]["name"] == "a" ? s[1] : s[0];
@@ -232,7 +230,8 @@ TEST_F(Server, SignatureHelp) {
     EXPECT_EQ(s["signatures"][0]["label"], "float f(float a; color b)");
     EXPECT_EQ(s["signatures"][0]["parameters"][1]["label"], (Json{17, 24}));
     input.clear(), ids = 0;
-    s = ask("signatureHelp", "struct S { float a; public float g(S b; float c[]) { return a; } }\nsurface a() { S s; Ci = s->g(s, |1); }");
+    s = ask("signatureHelp",
+            "struct S { float a; public float g(S b; float c[]) { return a; } }\nsurface a() { S s; Ci = s->g(s, |1); }");
     ASSERT_EQ(s["signatures"].size(), 1u) << s;
     EXPECT_EQ(s["signatures"][0]["label"], "float S->g(S b; float c[])");
     EXPECT_EQ(s["activeParameter"], 1);
@@ -271,9 +270,9 @@ TEST_F(Server, GarbageIsAnswered) {
 
 TEST_F(Server, RandomTextsAndPlacesDoNoHarm) {
     std::mt19937 random(20261121);
-    const std::string words[] = {"surface ", "a", "(", ")", "{", "}", ";", "float ", "color ", "\"", "/*", "*/", "//", "\n",
-                                 "#define X(", "#include \"", "=", "+", "noise", "texture", "if", "[", "]", ",", "1", "\\",
-                                 "\xC3", "\xFF", "extern "};
+    const std::string words[] = {"surface ", "a",  "(",  ")",  "{",          "}",           ";",    "float ", "color ", "\"",
+                                 "/*",       "*/", "//", "\n", "#define X(", "#include \"", "=",    "+",      "noise",  "texture",
+                                 "if",       "[",  "]",  ",",  "1",          "\\",          "\xC3", "\xFF",   "extern "};
     begin();
     for (int k = 0; k < 60; ++k) {
         std::string text;

@@ -30,25 +30,31 @@ protected:
                 const float* p = &image->data[(size_t(y) * size_t(image->width) + size_t(x)) * size_t(image->channelCount())];
                 if (!(p[0] > 3.5f * p[1])) continue; // the floor beside it is lit red as well
                 ++s.count;
-                s.left = std::min(s.left, x), s.right = std::max(s.right, x), s.top = std::min(s.top, y), s.bottom = std::max(s.bottom, y);
+                s.left = std::min(s.left, x), s.right = std::max(s.right, x), s.top = std::min(s.top, y),
+                s.bottom = std::max(s.bottom, y);
                 s.darkest = std::min(s.darkest, p[0]), s.brightest = std::max(s.brightest, p[0]);
             }
         return s;
     }
 };
 
-struct Box { double at[3], size[3]; };
+struct Box {
+    double at[3], size[3];
+};
 /// Its corners, x fastest.
 std::string corners(const Box& b, const char* before, const char* behind) {
     std::ostringstream s;
-    for (int k = 0; k < 8; ++k) s << before << b.at[0] + (k & 1 ? b.size[0] : 0) << " " << b.at[1] + (k & 2 ? b.size[1] : 0) << " "
-                                  << b.at[2] + (k & 4 ? b.size[2] : 0) << behind << "\n";
+    for (int k = 0; k < 8; ++k)
+        s << before << b.at[0] + (k & 1 ? b.size[0] : 0) << " " << b.at[1] + (k & 2 ? b.size[1] : 0) << " "
+          << b.at[2] + (k & 4 ? b.size[2] : 0) << behind << "\n";
     return s.str();
 }
 const int kFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
 std::string ply(const Box& b) {
-    std::string s = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 6\n"
-                    "property list uchar int vertex_indices\nend_header\n" + corners(b, "", " 220 20 20");
+    std::string s = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty "
+                    "uchar red\nproperty uchar green\nproperty uchar blue\nelement face 6\n"
+                    "property list uchar int vertex_indices\nend_header\n" +
+                    corners(b, "", " 220 20 20");
     for (auto& f : kFaces) {
         s += "4";
         for (int i : f) s += " " + std::to_string(i);
@@ -77,7 +83,8 @@ TEST_F(Models, AreShownWholeAndLit) {
             write(name, std::string(name) == "box.ply" ? ply(b) : obj(b));
             EXPECT_EQ(draw(name, "p.exr"), 0) << err;
             const Seen s = red("p.exr");
-            // All of it, with room around it, and no smaller than the ball about it must be: a flat box is at least a quarter high.
+            // All of it, with room around it, and no smaller than the ball about it must be: a flat box is at least a quarter
+            // high.
             EXPECT_GT(s.left, 0) << name;
             EXPECT_GT(s.top, 0) << name;
             EXPECT_LT(s.right, 47) << name;
@@ -94,7 +101,10 @@ TEST_F(Models, AreShownWholeAndLit) {
 
 TEST_F(Models, WhatIsWrongWithThemIsSaid) {
     const std::string whole = ply(kBoxes[0]);
-    const struct { const char *name, *text, *said; int status; } cases[] = {
+    const struct {
+        const char *name, *text, *said;
+        int status;
+    } cases[] = {
         {"cut.ply", "", "the file ends early", 1},
         {"no.ply", "hello\n", "no.ply:1:1: error: the file is no PLY", 1},
         {"empty.ply", "", "error: the file is no PLY", 1},

@@ -44,9 +44,10 @@ TEST_F(PluginTools, TheSearchPathOfAScene) {
 }
 
 TEST_F(PluginTools, ALibraryOfProceduralsFindsTheBindingInTheProgram) {
-    std::ofstream(dir / "b.rib") << "Hider \"hidden\"\nFormat 8 8 1\nPixelSamples 1 1\nDisplay \"b.tif\" \"file\" \"rgb\"\n"
-                                    "Projection \"orthographic\"\nTranslate 0 0 5\nWorldBegin\nColor [0.5 0 0]\nSurface \"constant\"\n"
-                                    "Procedural \"DynamicLoad\" [\"facets\" \"halves .5\"] [-1 1 -1 1 -1 1]\nWorldEnd\n";
+    std::ofstream(dir / "b.rib")
+        << "Hider \"hidden\"\nFormat 8 8 1\nPixelSamples 1 1\nDisplay \"b.tif\" \"file\" \"rgb\"\n"
+           "Projection \"orthographic\"\nTranslate 0 0 5\nWorldBegin\nColor [0.5 0 0]\nSurface \"constant\"\n"
+           "Procedural \"DynamicLoad\" [\"facets\" \"halves .5\"] [-1 1 -1 1 -1 1]\nWorldEnd\n";
     const std::string folder = (fs::path(ALPENGLOW_PROGRAM).parent_path().parent_path() / "procedurals").string();
     EXPECT_NE(run("render b.rib --pixel 4,4").find("it needs --allow-exec"), std::string::npos);
     const std::string pixel = run("render -q b.rib --allow-exec --searchpath '" + folder + "' --pixel 4,4");

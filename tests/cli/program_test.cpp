@@ -169,9 +169,9 @@ TEST_F(Program, StatsHaveTheFixedKeys) {
     ASSERT_EQ(run("render -q --spp 16 -o a.exr --stats s.json r.rib").status, 0) << read("err");
     auto j = nlohmann::json::parse(read("s.json"));
     for (const char* key :
-         {"width",    "height",      "spp",        "renderSec", "cpuSec",  "raysPerMS",       "noiseRSE", "noise", "noiseAtMost",
-          "coverage", "noiseRSE999", "efficiency", "noiseQMC",  "threads", "peakMemoryBytes", "parseSec", "compileSec",
-          "buildSec", "nonFinite",   "rays",       "shading",   "depth",   "errors",          "warnings"})
+         {"width",       "height",   "spp",         "renderSec",  "cpuSec",   "raysPerMS", "noiseRSE",        "noise",
+          "noiseAtMost", "coverage", "noiseRSE999", "efficiency", "noiseQMC", "threads",   "peakMemoryBytes", "parseSec",
+          "compileSec",  "buildSec", "nonFinite",   "rays",       "shading",  "depth",     "errors",          "warnings"})
         EXPECT_TRUE(j.contains(key)) << key;
     for (const char* key : {"camera", "diffuse", "specular", "transmission", "shadow"})
         EXPECT_TRUE(j["rays"].contains(key)) << key;
@@ -212,8 +212,8 @@ TEST_F(Program, SameBitsForThreadsLanesAndParts) {
     EXPECT_EQ(run("diff whole.exr none.exr").status, 3);
 }
 
-// An imager with a co-shader, a space of the scene, an attribute, an option, and the shader found along a path of the scene: merging
-// runs it as the whole render did, wherever the scene is by then.
+// An imager with a co-shader, a space of the scene, an attribute, an option, and the shader found along a path of the scene:
+// merging runs it as the whole render did, wherever the scene is by then.
 TEST_F(Program, MergingRunsTheImager) {
     fs::create_directory(dir / "far");
     write("far/grade.sl", "class grade(color by = color(1, 2, 4);) { public void tone(output color c) { c *= by; } }\n");
@@ -229,8 +229,10 @@ TEST_F(Program, MergingRunsTheImager) {
 }
 )");
     std::string scene = kRoom;
-    const std::string head = "Option \"searchpath\" \"string shader\" [\"far\"]\nOption \"user\" \"string stock\" [\"fast\"]\nAttribute \"user\" \"uniform float lens\" 3\n"
-                             "TransformBegin\nTranslate 5 0 0\nCoordinateSystem \"stage\"\nTransformEnd\nShader \"grade\" \"look\" \"color by\" [2 3 5]\nImager \"finish\" \"gain\" .5\n";
+    const std::string head = "Option \"searchpath\" \"string shader\" [\"far\"]\nOption \"user\" \"string stock\" "
+                             "[\"fast\"]\nAttribute \"user\" \"uniform float lens\" 3\n"
+                             "TransformBegin\nTranslate 5 0 0\nCoordinateSystem \"stage\"\nTransformEnd\nShader \"grade\" "
+                             "\"look\" \"color by\" [2 3 5]\nImager \"finish\" \"gain\" .5\n";
     scene.insert(scene.find("WorldBegin"), head);
     write("r.rib", scene);
     ASSERT_EQ(run("render -q --spp 6 -o whole.exr r.rib").status, 0) << read("err");

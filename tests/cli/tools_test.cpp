@@ -86,18 +86,22 @@ TEST_F(Tools, WarningsOnlyWhenAsked) {
 
 // Which co-shaders stand behind a handle, only a scene knows.
 TEST_F(Tools, HandlesAreNotNullWithoutAScene) {
-    write("a.sl", "class a() { public void surface(output color Ci, Oi) { shader h = getshader(\"x\"); h->put(Ci); Oi = h->get(); } }\n");
+    write("a.sl",
+          "class a() { public void surface(output color Ci, Oi) { shader h = getshader(\"x\"); h->put(Ci); Oi = h->get(); } }\n");
     const Json j = Json::parse(run("compile --json a.sl"));
     EXPECT_EQ(j["shaders"][0]["ok"], true);
     EXPECT_TRUE(j["diagnostics"].empty()) << j.dump();
 }
 
 TEST_F(Tools, DialectsOfEverySubcommand) {
-    write("a.sl", "#ifdef BMRT\nsurface a(float b = 1;) { Ci = b; Oi = 1; }\n#else\nsurface a(float d = 1;) { Ci = d; Oi = 1; }\n#endif\n");
+    write(
+        "a.sl",
+        "#ifdef BMRT\nsurface a(float b = 1;) { Ci = b; Oi = 1; }\n#else\nsurface a(float d = 1;) { Ci = d; Oi = 1; }\n#endif\n");
     EXPECT_NE(run("info --json a.sl").find("\"d\""), std::string::npos);
     EXPECT_NE(run("info --json --dialect bmrt a.sl").find("\"b\""), std::string::npos);
     EXPECT_EQ(status, 0);
-    write("a.rib", "Format 8 8 1\nProjection \"perspective\"\nWorldBegin\nSurface \"a\" \"float b\" [.5]\nTranslate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n");
+    write("a.rib", "Format 8 8 1\nProjection \"perspective\"\nWorldBegin\nSurface \"a\" \"float b\" [.5]\nTranslate 0 0 "
+                   "3\nSphere 1 -1 1 360\nWorldEnd\n");
     run("render a.rib -o a.exr");
     EXPECT_NE(errors().find("has no parameter \"b\""), std::string::npos) << errors();
     run("render --dialect bmrt a.rib -o a.exr");
@@ -214,8 +218,10 @@ TEST_F(Tools, Info) {
 }
 
 TEST_F(Tools, InfoOfAClass) {
-    write("c.sl", "class c(float w[] = {}; shader layers[] = {}; shader base = null; string n = \"a\";) {\n    public float gain = 2;\n    float own = 1;\n"
-                  "    public void surface(output color Ci, Oi) { Ci = gain * own; }\n    public color ask(float x;) { return x; }\n}\n");
+    write("c.sl",
+          "class c(float w[] = {}; shader layers[] = {}; shader base = null; string n = \"a\";) {\n    public float gain = 2;\n  "
+          "  float own = 1;\n"
+          "    public void surface(output color Ci, Oi) { Ci = gain * own; }\n    public color ask(float x;) { return x; }\n}\n");
     const Json j = Json::parse(run("info --json c.sl"));
     EXPECT_EQ(j["class"], true);
     ASSERT_EQ(j["members"].size(), 2u);
@@ -230,15 +236,18 @@ TEST_F(Tools, InfoOfAClass) {
     EXPECT_EQ(j["parameters"][2]["type"], "shader");
     EXPECT_EQ(j["parameters"][3]["type"], "string");
     const std::string text = run("info c.sl");
-    for (const char* part : {"surface \"c\"  (class, ", "uniform shader base = null", "member: public varying float gain\n", "method: public color ask(float x)"})
+    for (const char* part : {"surface \"c\"  (class, ", "uniform shader base = null", "member: public varying float gain\n",
+                             "method: public color ask(float x)"})
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
 // What a default is, as it is written and as a number; what only a scene can say is not shown as a number.
 TEST_F(Tools, InfoOfDefaults) {
-    write("a.sl", "surface a(float k = 0.5 * 2; float twice = k * 2; color c = color \"hsv\" (0.5, 1, 1); point p = transform(\"world\", point(1, 2, 3));\n"
-                  "    color list[2] = {0, color \"hsv\" (0, 1, 1)}; vector v = normalize(vector(3, 0, 4)); string s = \"a\\\"b\";)\n"
-                  "{ Ci = k + twice + c + color p + list[1] + color v; if (s == \"\") Ci = 0; }\n");
+    write("a.sl",
+          "surface a(float k = 0.5 * 2; float twice = k * 2; color c = color \"hsv\" (0.5, 1, 1); point p = transform(\"world\", "
+          "point(1, 2, 3));\n"
+          "    color list[2] = {0, color \"hsv\" (0, 1, 1)}; vector v = normalize(vector(3, 0, 4)); string s = \"a\\\"b\";)\n"
+          "{ Ci = k + twice + c + color p + list[1] + color v; if (s == \"\") Ci = 0; }\n");
     const Json j = Json::parse(run("info --json a.sl"));
     const Json& p = j["parameters"];
     ASSERT_EQ(p.size(), 7u);
@@ -269,17 +278,20 @@ TEST_F(Tools, InfoShowsWhatWasWrittenNotWhatTheCompilerMadeOfIt) {
     const Json j = Json::parse(run("info --json l.sl"));
     EXPECT_EQ(j["types"][0], "light");
     ASSERT_EQ(j["parameters"].size(), 1u) << j["parameters"];
-    EXPECT_EQ(j["methods"], Json::array({"void generateSamples(string domain; output __radiancesample samples[])",
-                                         "void light(output vector L; output color Cl)", "S mine(S one; output S two[3]; float k)"}));
+    EXPECT_EQ(j["methods"],
+              Json::array({"void generateSamples(string domain; output __radiancesample samples[])",
+                           "void light(output vector L; output color Cl)", "S mine(S one; output S two[3]; float k)"}));
     EXPECT_EQ(j["publicMethods"], Json::array({"generateSamples", "light", "mine"}));
 }
 
 TEST_F(Tools, InfoOfAClassOfSeveralKinds) {
-    write("c.sl", "#pragma annotation \"author\" \"x\"\n#pragma annotation \"tag\" \"1\"\n#pragma annotation \"tag\" \"2\"\n"
-                  "struct Ray { point from; vector d[2]; float size() { return 1; } };\n"
-                  "class c(string __category = \"key,fill\"; float k = 1;) {\n    public constant float gain = 2;\n    uniform Ray own;\n"
-                  "    public void displacement(output point P; output normal N) { P += k * N * gain; }\n"
-                  "    public void opacity(output color Oi) { Oi = own->from[0]; }\n    float mine(shader who; output string list[];) { return 1; }\n}\n");
+    write("c.sl",
+          "#pragma annotation \"author\" \"x\"\n#pragma annotation \"tag\" \"1\"\n#pragma annotation \"tag\" \"2\"\n"
+          "struct Ray { point from; vector d[2]; float size() { return 1; } };\n"
+          "class c(string __category = \"key,fill\"; float k = 1;) {\n    public constant float gain = 2;\n    uniform Ray own;\n"
+          "    public void displacement(output point P; output normal N) { P += k * N * gain; }\n"
+          "    public void opacity(output color Oi) { Oi = own->from[0]; }\n    float mine(shader who; output string list[];) { "
+          "return 1; }\n}\n");
     const Json j = Json::parse(run("info --json c.sl"));
     EXPECT_EQ(j["types"], Json::array({"surface", "displacement"}));
     ASSERT_EQ(j["kinds"].size(), 2u);
@@ -297,8 +309,8 @@ TEST_F(Tools, InfoOfAClassOfSeveralKinds) {
     EXPECT_EQ(j["structs"][0]["members"][1]["type"], "vector[2]");
     EXPECT_EQ(j["structs"][0]["methods"], Json::array({"size"}));
     const std::string text = run("info c.sl");
-    for (const char* part : {"surface, displacement \"c\"", "struct Ray { point from; vector[2] d; }", "displacement writes:", "categories: key fill",
-                             "(run by the renderer)", "member: public constant float gain"})
+    for (const char* part : {"surface, displacement \"c\"", "struct Ray { point from; vector[2] d; }", "displacement writes:",
+                             "categories: key fill", "(run by the renderer)", "member: public constant float gain"})
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
@@ -379,11 +391,13 @@ TEST_F(Tools, ManualIsUpToDate) {
     EXPECT_TRUE(page == run("info --shadeops --markdown")) << "make it again: cmake --build ... --target shadeops_manual";
 }
 
-// A file of several shaders: each is compiled, a fault in one is its own, and info tells about all of them, beginning with the one
-// that has the file's name.
+// A file of several shaders: each is compiled, a fault in one is its own, and info tells about all of them, beginning with the
+// one that has the file's name.
 TEST_F(Tools, AFileOfSeveralShaders) {
-    write("wood.sl", "float ring(float x) { return mod(x, 1); }\nlight lamp(float k = 2;) { solar() { Cl = k; } }\nsurface wood(float rings = 3;) { Ci = ring(rings * u); Oi = 1; }\n"
-                     "class grain(float fine = 4;) { public void surface(output color Ci, Oi) { Ci = fine; } public void displacement(output point P; output normal N) { P += fine * N; } }\n");
+    write("wood.sl", "float ring(float x) { return mod(x, 1); }\nlight lamp(float k = 2;) { solar() { Cl = k; } }\nsurface "
+                     "wood(float rings = 3;) { Ci = ring(rings * u); Oi = 1; }\n"
+                     "class grain(float fine = 4;) { public void surface(output color Ci, Oi) { Ci = fine; } public void "
+                     "displacement(output point P; output normal N) { P += fine * N; } }\n");
     Json j = Json::parse(run("compile --json wood.sl"));
     EXPECT_EQ(status, 0) << j;
     ASSERT_EQ(j["shaders"].size(), 3u) << j;

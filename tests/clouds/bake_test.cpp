@@ -1,4 +1,5 @@
-// Baking as a user has it: baked, read back, compared with what the shader says directly; the same bits for any number of threads.
+// Baking as a user has it: baked, read back, compared with what the shader says directly; the same bits for any number of
+// threads.
 #include "cli/command_folder.h"
 #include "clouds/bakefile.h"
 #include "clouds/bakelog.h"
@@ -19,7 +20,9 @@ protected:
     std::string header(const std::string& name, const std::string& hider = "hidden") const {
         return "Format 48 48 1\nPixelSamples 2 2\nHider \"" + hider + "\"\nDisplay \"" + name + "\" \"openexr\" \"rgba\"\n";
     }
-    void writeShader(const std::string& name, const std::string& body) const { write(name + ".sl", "surface " + name + "() { Oi = 1; Ci = Cs; " + body + " }\n"); }
+    void writeShader(const std::string& name, const std::string& body) const {
+        write(name + ".sl", "surface " + name + "() { Oi = 1; Ci = Cs; " + body + " }\n");
+    }
     std::string bytes(const std::string& name) const {
         std::ifstream f(dir / name, std::ios::binary);
         return {std::istreambuf_iterator<char>(f), {}};
@@ -60,7 +63,8 @@ protected:
 
 // All of the ball, its far side too: places, normals, values and the area of the surface.
 TEST_F(Bake, WholeSpheres) {
-    writeShader("baker", "point p = transform(\"world\", P); normal n = normalize(N); float ok = bake3d(\"ball.ptc\", \"\", P, n, \"_x\", xcomp(p), \"_p\", P); Ci = ok;");
+    writeShader("baker", "point p = transform(\"world\", P); normal n = normalize(N); float ok = bake3d(\"ball.ptc\", \"\", P, "
+                         "n, \"_x\", xcomp(p), \"_p\", P); Ci = ok;");
     for (const char* hider : {"hidden", "raytrace", "path"}) {
         write("a.rib", header("a.exr", hider) + begin + ball);
         quiet("render a.rib -t 2");
@@ -73,7 +77,8 @@ TEST_F(Bake, WholeSpheres) {
             EXPECT_NEAR(l, 1, 1e-5);
             EXPECT_NEAR(std::fabs(dot(c.P[i], c.N[i])), 1, 1e-4);
             EXPECT_NEAR(c.valuesOf(i)[0], c.P[i].x, 1e-6);
-            for (int k = 0; k < 3; ++k) EXPECT_NEAR(c.valuesOf(i)[1 + size_t(k)], c.P[i][k], 1e-6) << "points are written in the space of the file";
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(c.valuesOf(i)[1 + size_t(k)], c.P[i][k], 1e-6) << "points are written in the space of the file";
             area += double(c.valuesOf(i)[size_t(c.offsetOf("_area"))]);
             far = std::max(far, double(c.P[i].z));
             lo = std::min(lo, c.P[i].y), hi = std::max(hi, c.P[i].y);
@@ -92,8 +97,11 @@ TEST_F(Bake, WholeSpheres) {
 }
 
 TEST_F(Bake, CornersAndMiddlesOfPolygons) {
-    writeShader("baker", "bake3d(\"c.ptc\", \"\", P, N, \"coordsystem\", \"object\"); bake3d(\"m.ptc\", \"\", P, N, \"interpolate\", 1, \"radius\", .25, \"radiusscale\", 2);");
-    write("a.rib", header("a.exr") + begin + "Translate 0 0 1 Surface \"baker\" PointsPolygons [4 4] [0 1 2 3 2 1 4 5] \"P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 0 2 -1 0 2 1 0] WorldEnd\n");
+    writeShader("baker", "bake3d(\"c.ptc\", \"\", P, N, \"coordsystem\", \"object\"); bake3d(\"m.ptc\", \"\", P, N, "
+                         "\"interpolate\", 1, \"radius\", .25, \"radiusscale\", 2);");
+    write("a.rib", header("a.exr") + begin +
+                       "Translate 0 0 1 Surface \"baker\" PointsPolygons [4 4] [0 1 2 3 2 1 4 5] \"P\" [-1 -1 0 1 -1 0 1 1 0 -1 "
+                       "1 0 2 -1 0 2 1 0] WorldEnd\n");
     run("render a.rib", "2>&1");
     const clouds::PointCloud corners = cloud("c.ptc"), middles = cloud("m.ptc");
     double area[2] = {0, 0};
@@ -112,10 +120,14 @@ TEST_F(Bake, CornersAndMiddlesOfPolygons) {
 }
 
 TEST_F(Bake, SameBitsForAllThreads) {
-    writeShader("baker", "float o = occlusion(P, N, 16); bake3d(\"o.ptc\", \"\", P, N, \"_o\", o); bake(\"o.bake\", s, t, color(o, s, t));");
+    writeShader(
+        "baker",
+        "float o = occlusion(P, N, 16); bake3d(\"o.ptc\", \"\", P, N, \"_o\", o); bake(\"o.bake\", s, t, color(o, s, t));");
     writeShader("hairs", "bake3d(\"o.ptc\", \"\", P, 0, \"_v\", v);");
-    const std::string scene = "Surface \"hairs\" Curves \"linear\" [4 4] \"nonperiodic\" \"P\" [-1 -1 -1.5 -1 0 -1.5 -1 .5 -1.5 -1 1 -1.5 1 -1 -1.5 1 0 -1.5 1 .5 -1.5 1 1 -1.5] \"constantwidth\" [.2]\n"
-                              "Surface \"baker\" Polygon \"P\" [-2 -2 2 2 -2 2 2 2 2 -2 2 2]\n" + ball;
+    const std::string scene = "Surface \"hairs\" Curves \"linear\" [4 4] \"nonperiodic\" \"P\" [-1 -1 -1.5 -1 0 -1.5 -1 .5 -1.5 "
+                              "-1 1 -1.5 1 -1 -1.5 1 0 -1.5 1 .5 -1.5 1 1 -1.5] \"constantwidth\" [.2]\n"
+                              "Surface \"baker\" Polygon \"P\" [-2 -2 2 2 -2 2 2 2 2 -2 2 2]\n" +
+                              ball;
     for (const char* hider : {"hidden", "path"}) {
         std::string first[2];
         for (const char* threads : {"1", "2", "8"}) {
@@ -146,12 +158,15 @@ TEST_F(Bake, TexturesInOneStream) {
         writeShader("direct", "Ci = " + f + ";");
         writeShader("looked", "Ci = color texture(\"f.tex\", s, t, s, t, s, t, s, t);"); // no filter
         const std::string dice = "ShadingRate .25\nSurface ";
-        write("a.rib", "FrameBegin 1\n" + header("a.exr") + begin + dice + "\"baker\"\n" + wall + "FrameEnd\nMakeTexture \"f.bake" + suffix +
-                           "\" \"f.tex\" \"clamp\" \"clamp\" \"box\" 1 1\nFrameBegin 2\n" + header("b.exr") + begin + "Surface \"looked\"\n" + wall +
-                           "FrameEnd\nFrameBegin 3\n" + header("c.exr") + begin + "Surface \"direct\"\n" + wall + "FrameEnd\n");
+        write("a.rib", "FrameBegin 1\n" + header("a.exr") + begin + dice + "\"baker\"\n" + wall +
+                           "FrameEnd\nMakeTexture \"f.bake" + suffix +
+                           "\" \"f.tex\" \"clamp\" \"clamp\" \"box\" 1 1\nFrameBegin 2\n" + header("b.exr") + begin +
+                           "Surface \"looked\"\n" + wall + "FrameEnd\nFrameBegin 3\n" + header("c.exr") + begin +
+                           "Surface \"direct\"\n" + wall + "FrameEnd\n");
         quiet("render a.rib");
-        // 64 pixels on a side, h = 1/64, and a second derivative of 18: between pixels 18 h^2 / 8, by the fit over two pixels less than
-        // 18 h^2 / 2, half floats 2^-11. Beyond the outer pixels' middles, half a pixel at a slope of 3, the texture is clamped.
+        // 64 pixels on a side, h = 1/64, and a second derivative of 18: between pixels 18 h^2 / 8, by the fit over two pixels
+        // less than 18 h^2 / 2, half floats 2^-11. Beyond the outer pixels' middles, half a pixel at a slope of 3, the texture is
+        // clamped.
         EXPECT_LT(worst("b.exr", "c.exr", 14), .0035) << suffix;
         EXPECT_LT(worst("b.exr", "c.exr"), .03) << suffix;
     }
@@ -171,25 +186,30 @@ TEST_F(Bake, CloudsAndBricksReadBack) {
     writeShader("baker", at + "bake3d(\"f.ptc\", \"\", P, normalize(N), \"_f\", " + f + ");");
     writeShader("direct", at + "Ci = " + f + ";");
     for (const char* name : {"ptc", "bkm"})
-        writeShader(std::string("read") + name, at + "color c = 0; float ok = texture3d(\"f." + name + "\", P, normalize(N), \"_f\", c); Ci = ok * c;");
+        writeShader(std::string("read") + name,
+                    at + "color c = 0; float ok = texture3d(\"f." + name + "\", P, normalize(N), \"_f\", c); Ci = ok * c;");
     const auto frame = [&](const std::string& number, const std::string& picture, const std::string& shader) {
-        return "FrameBegin " + number + "\n" + header(picture) + begin + "ShadingRate .5\nSurface \"" + shader + "\"\nRotate 90 1 0 0\nSphere 1 -1 1 360\nWorldEnd\nFrameEnd\n";
+        return "FrameBegin " + number + "\n" + header(picture) + begin + "ShadingRate .5\nSurface \"" + shader +
+               "\"\nRotate 90 1 0 0\nSphere 1 -1 1 360\nWorldEnd\nFrameEnd\n";
     };
-    write("a.rib", frame("1", "a.exr", "baker") + "MakeBrickMap [\"f.ptc\"] \"f.bkm\"\n" + frame("2", "b.exr", "readptc") + frame("3", "c.exr", "readbkm") +
-                       frame("4", "d.exr", "direct"));
+    write("a.rib", frame("1", "a.exr", "baker") + "MakeBrickMap [\"f.ptc\"] \"f.bkm\"\n" + frame("2", "b.exr", "readptc") +
+                       frame("3", "c.exr", "readbkm") + frame("4", "d.exr", "direct"));
     quiet("render a.rib");
-    // Means within h = R + 2 r, about .06 + .05, of a second derivative of 8: 8 h^2 / 16, and as much for what pixels are filtered.
-    // At the silhouette filters are wider, up to 20 pixels long by setFootprint(); the poles lie there, too.
+    // Means within h = R + 2 r, about .06 + .05, of a second derivative of 8: 8 h^2 / 16, and as much for what pixels are
+    // filtered. At the silhouette filters are wider, up to 20 pixels long by setFootprint(); the poles lie there, too.
     for (const char* picture : {"b.exr", "c.exr"}) {
         EXPECT_LT(worst(picture, "d.exr", 14), .01) << picture;
         EXPECT_LT(worst(picture, "d.exr"), .03) << picture;
     }
 }
 
-// Channels that a shader gives by several calls are those of the same points; where only some points have a channel, that is said.
+// Channels that a shader gives by several calls are those of the same points; where only some points have a channel, that is
+// said.
 TEST_F(Bake, SeveralCallsForOneFile) {
-    writeShader("baker", "bake3d(\"f.ptc\", \"\", P, N, \"_x\", 3); bake3d(\"f.ptc\", \"\", P, N, \"_c\", color(1, .5, 0)); bake3d(\"g.ptc\", \"\", P, N, \"_x\", 3);"
-                         "bake3d(\"h.ptc\", \"\", P, N, \"_x\", 1, \"_name\", \"a\"); bake3d(\"h.ptc\", \"\", P + N, N, \"_y\", 1);");
+    writeShader("baker",
+                "bake3d(\"f.ptc\", \"\", P, N, \"_x\", 3); bake3d(\"f.ptc\", \"\", P, N, \"_c\", color(1, .5, 0)); "
+                "bake3d(\"g.ptc\", \"\", P, N, \"_x\", 3);"
+                "bake3d(\"h.ptc\", \"\", P, N, \"_x\", 1, \"_name\", \"a\"); bake3d(\"h.ptc\", \"\", P + N, N, \"_y\", 1);");
     for (const char* hider : {"hidden", "path"}) {
         write("a.rib", header("a.exr", hider) + begin + ball);
         const std::string said = run("render a.rib", "2>&1");
@@ -209,7 +229,8 @@ TEST_F(Bake, SeveralCallsForOneFile) {
 }
 
 TEST_F(Bake, WhatCannotBe) {
-    writeShader("baker", "float ok = bake3d(\"../../out.ptc\", \"\", P, N); float x = 5; float r = texture3d(\"none.ptc\", P, N, \"_x\", x); Ci = color(ok, r, x / 10);");
+    writeShader("baker", "float ok = bake3d(\"../../out.ptc\", \"\", P, N); float x = 5; float r = texture3d(\"none.ptc\", P, N, "
+                         "\"_x\", x); Ci = color(ok, r, x / 10);");
     write("a.rib", header("a.exr") + begin + ball);
     const std::string said = run("render a.rib", "2>&1");
     EXPECT_NE(said.find("no point cloud or brick map \"none.ptc\""), std::string::npos) << said;
@@ -254,7 +275,8 @@ TEST_F(Bake, ThePtcCommand) {
     EXPECT_EQ(status, 2);
 }
 
-// Samples that are averaged take the room of one point afterwards, and what is forgotten takes none: the limit is for what is written.
+// Samples that are averaged take the room of one point afterwards, and what is forgotten takes none: the limit is for what is
+// written.
 TEST(BakeLogs, KeepNoCountOfWhatIsGone) {
     clouds::BakeLog log;
     clouds::BakeLayout layout;
@@ -280,8 +302,8 @@ TEST(BakeLogs, KeepNoCountOfWhatIsGone) {
     EXPECT_EQ(log.bytes(), 2 * one);
 }
 
-// A loop that bakes at one point: what it bakes twice is kept once, in time that does not grow with the square of its turns (which
-// was minutes here).
+// A loop that bakes at one point: what it bakes twice is kept once, in time that does not grow with the square of its turns
+// (which was minutes here).
 TEST(BakeLogs, LoopsThatBake) {
     constexpr int kTurns = 200'000;
     clouds::BakeLog log;

@@ -70,7 +70,8 @@ TEST_F(Clouds, BrickMapsOfSeveralCloudsThatDoNotFit) {
     ASSERT_EQ(merge(from, all), "");
     ASSERT_TRUE(saveCloud(path("a.ptc"), from[0], policy(), d) && saveCloud(path("b.ptc"), from[1], policy(), d));
     ASSERT_TRUE(saveBrickMap(path("whole.bkm"), all, policy(), d));
-    ASSERT_TRUE(brickMapOfFiles(std::vector{path("a.ptc"), path("b.ptc")}, path("parts.bkm"), policy(), d, {}, size_t(200) << 10));
+    ASSERT_TRUE(
+        brickMapOfFiles(std::vector{path("a.ptc"), path("b.ptc")}, path("parts.bkm"), policy(), d, {}, size_t(200) << 10));
     const auto whole = openMap(path("whole.bkm"), d), parts = openMap(path("parts.bkm"), d);
     ASSERT_TRUE(whole && parts);
     EXPECT_EQ(whole->channels(), parts->channels());

@@ -1,7 +1,7 @@
 // Files of point clouds: what is written comes back; what is cut short or damaged is refused with a reason.
-#include "clouds/make.h"
 #include "clouds/bakefile.h"
 #include "clouds/limits.h"
+#include "clouds/make.h"
 #include <random>
 
 using namespace alpenglow;
@@ -52,7 +52,8 @@ TEST_F(Clouds, CutShortAtEvery64thByte) {
         for (size_t n = 0; n < all.size(); n += 64) {
             write("cut", all.substr(0, n));
             Diagnostics d;
-            const bool read = std::string(name) == "a.bake" ? loadBaked(path("cut"), d).has_value() : loadCloud(path("cut"), d).has_value();
+            const bool read =
+                std::string(name) == "a.bake" ? loadBaked(path("cut"), d).has_value() : loadCloud(path("cut"), d).has_value();
             EXPECT_FALSE(read) << name << " at " << n;
             EXPECT_EQ(d.errors(), 1) << said(d);
         }
@@ -79,7 +80,8 @@ TEST_F(Clouds, DamagedTwoThousandTimes) {
         const std::string all = bytes(name);
         for (int turn = 0; turn < 500; ++turn) {
             std::string hurt = all;
-            for (int k = 0; k < 1 + turn % 4; ++k) hurt[random() % (turn % 2 ? std::min<size_t>(hurt.size(), 300) : hurt.size())] = char(random());
+            for (int k = 0; k < 1 + turn % 4; ++k)
+                hurt[random() % (turn % 2 ? std::min<size_t>(hurt.size(), 300) : hurt.size())] = char(random());
             write("hurt", hurt);
             Diagnostics d;
             if (isBaked(path("hurt"))) {
@@ -97,7 +99,8 @@ TEST_F(Clouds, DamagedTwoThousandTimes) {
 TEST_F(Clouds, AHeaderThatPromisesTooMuch) {
     Diagnostics d;
     saveCloud(path("a.ptc"), square(3), policy(), d);
-    std::string many = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    std::string many = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float "
+                       "y\nproperty float z\nend_header\n";
     write("b.ply", many);
     EXPECT_FALSE(loadCloud(path("b.ply"), d));
     EXPECT_NE(said(d).find("more than " + std::to_string(limits::kCloudPoints)), std::string::npos) << said(d);
@@ -115,9 +118,11 @@ TEST_F(Clouds, AHeaderThatPromisesTooMuch) {
 
 TEST_F(Clouds, PlyOfOthers) {
     Diagnostics d;
-    write("a.ply", "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nelement vertex 2\r\nproperty double x\r\nproperty float y\r\nproperty int z\r\n"
-                   "property uchar red\r\nproperty uchar green\r\nproperty uchar blue\r\nproperty float heat\r\nelement face 1\r\n"
-                   "property list uchar int vertex_indices\r\nend_header\r\n1 2 3 255 0 51 .5\r\n-1 -2.5 -3 0 0 0 1e2\r\n3 0 1 1\r\n");
+    write("a.ply",
+          "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nelement vertex 2\r\nproperty double x\r\nproperty float y\r\nproperty "
+          "int z\r\n"
+          "property uchar red\r\nproperty uchar green\r\nproperty uchar blue\r\nproperty float heat\r\nelement face 1\r\n"
+          "property list uchar int vertex_indices\r\nend_header\r\n1 2 3 255 0 51 .5\r\n-1 -2.5 -3 0 0 0 1e2\r\n3 0 1 1\r\n");
     const auto c = loadCloud(path("a.ply"), d);
     ASSERT_TRUE(c) << said(d);
     EXPECT_EQ(c->channels, (std::vector<Channel>{{"color", ChannelType::Color}, {"heat", ChannelType::Float}}));
@@ -138,8 +143,8 @@ TEST_F(Clouds, BakedTextIsReadable) {
         EXPECT_EQ(back->rows, b.rows);
         EXPECT_EQ(back->type, b.type);
     }
-    for (const char* wrong : {"# bake 1 string\n0 0 1\n", "# bake 1 float\n0 0\n", "# bake 1 float\n0 0 1 2\n", "# bake 1 float\n0 0 x\n",
-                              "# bake 1 float\n0 0 nan\n", "# bake 1 float\n0 0 1"}) {
+    for (const char* wrong : {"# bake 1 string\n0 0 1\n", "# bake 1 float\n0 0\n", "# bake 1 float\n0 0 1 2\n",
+                              "# bake 1 float\n0 0 x\n", "# bake 1 float\n0 0 nan\n", "# bake 1 float\n0 0 1"}) {
         write("w.bake", wrong);
         Diagnostics w;
         EXPECT_FALSE(loadBaked(path("w.bake"), w)) << wrong;

@@ -33,7 +33,8 @@ PointCloud scattered(int n, unsigned seed) {
     c.channels = {{"a", ChannelType::Float}, {"b", ChannelType::Vector}};
     for (int i = 0; i < n; ++i) {
         Vec3 v(u(random), u(random), u(random));
-        c.add({u(random), u(random), u(random)}, i % 5 ? normalize(v) : Vec3(0.f), .05f * (1 + u(random)), std::vector<float>{u(random), v.x, v.y, v.z});
+        c.add({u(random), u(random), u(random)}, i % 5 ? normalize(v) : Vec3(0.f), .05f * (1 + u(random)),
+              std::vector<float>{u(random), v.x, v.y, v.z});
     }
     return c;
 }
@@ -46,7 +47,8 @@ TEST(CloudMaps, LookupIsTheSumThatIsDescribed) {
     std::uniform_real_distribution<float> u(-1, 1);
     int found = 0;
     for (int i = 0; i < 300; ++i) {
-        const Query q{{u(random), u(random), u(random)}, i % 3 ? normalize(Vec3(u(random), u(random), u(random))) : Vec3(0.f), 1e-6f, -1};
+        const Query q{
+            {u(random), u(random), u(random)}, i % 3 ? normalize(Vec3(u(random), u(random), u(random))) : Vec3(0.f), 1e-6f, -1};
         std::vector<double> want;
         std::vector<float> have(4, -1);
         const bool any = slow(c, q, want);

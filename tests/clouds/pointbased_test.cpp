@@ -48,8 +48,8 @@ double cornerFactor(double a, double b, double h) {
     return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
 }
 
-// A square straight above: four corners of a known factor. Clusters are squares of up to .1 steradian at the default, which do not fit
-// together exactly: up to .03 is between them; a fifth of that angle has a third of it.
+// A square straight above: four corners of a known factor. Clusters are squares of up to .1 steradian at the default, which do
+// not fit together exactly: up to .03 is between them; a fifth of that angle has a third of it.
 TEST(PointBased, ARectangleHasItsFormFactor) {
     for (const float height : {.3f, 1.f, 3.f}) {
         PointCloud c;
@@ -66,7 +66,8 @@ TEST(PointBased, ARectangleHasItsFormFactor) {
     }
 }
 
-// From inside of a closed ball nothing is open, but for what is between clusters (.05); and with sides the other way nothing blocks.
+// From inside of a closed ball nothing is open, but for what is between clusters (.05); and with sides the other way nothing
+// blocks.
 TEST(PointBased, AClosedBallClosesAll) {
     PointCloud c;
     c.channels = {{"_area", clouds::ChannelType::Float}, {"_radiosity", clouds::ChannelType::Color}};
@@ -95,8 +96,8 @@ TEST(PointBased, AClosedBallClosesAll) {
     }
 }
 
-// More parts of clusters than a sorted lookup keeps (limits::kCloudFragments): neighbours become one, and what is near still hides
-// what is behind. The part that is hidden is the form factor of a square, two of which look alike large here.
+// More parts of clusters than a sorted lookup keeps (limits::kCloudFragments): neighbours become one, and what is near still
+// hides what is behind. The part that is hidden is the form factor of a square, two of which look alike large here.
 TEST(PointBased, SortedLookupsOfManyPointsAreBounded) {
     constexpr int kSide = 800;
     static_assert(size_t(2 * kSide * kSide) > limits::kCloudFragments);
@@ -114,7 +115,8 @@ TEST(PointBased, SortedLookupsOfManyPointsAreBounded) {
     EXPECT_NEAR(seen.light.y, 0, .03);
 }
 
-// The same with many layers, each of which hides what is behind it: what lies behind the first three is seen nowhere, however many.
+// The same with many layers, each of which hides what is behind it: what lies behind the first three is seen nowhere, however
+// many.
 TEST(PointBased, SortedLookupsOfManyLayersShowTheFirst) {
     const auto shells = [](int count) {
         PointCloud c;
@@ -178,7 +180,8 @@ TEST(PointBased, ParametersDoWhatTheySay) {
     q.fall = 0;
     q.cone = 1.57079633f;
     q.axis = {1, 0, 0};
-    EXPECT_NEAR(look(one, q).blocked, look(one, HemisphereQuery{.N = {0, 0, 1}}).blocked, .02) << "half of it, which is like the other";
+    EXPECT_NEAR(look(one, q).blocked, look(one, HemisphereQuery{.N = {0, 0, 1}}).blocked, .02)
+        << "half of it, which is like the other";
 }
 
 TEST(PointBased, WhatIsNoPoint) {
@@ -200,7 +203,8 @@ TEST(PointBased, WhatIsNoPoint) {
     const PointOctree left(same, "");
     EXPECT_EQ(left.leftOut(), 2u);
     EXPECT_TRUE(std::isfinite(left.nodes()[0].centre.x) && std::isfinite(left.nodes()[0].area));
-    for (const Vec3& far : {Vec3(1e25f, 1e25f, 1e25f), Vec3(0, 0, 3e38f), Vec3(1e19f, 0, 2e19f)}) { // as one point, and as one of many
+    for (const Vec3& far :
+         {Vec3(1e25f, 1e25f, 1e25f), Vec3(0, 0, 3e38f), Vec3(1e19f, 0, 2e19f)}) { // as one point, and as one of many
         HemisphereQuery q;
         q.N = {0, 0, 1};
         PointCloud one;
@@ -220,7 +224,8 @@ std::string quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return s + "]\n";
 }
 std::string box(float x0, float y0, float z0, float x1, float y1, float z1) {
-    const Vec3 p[] = {{x0, y0, z0}, {x1, y0, z0}, {x1, y1, z0}, {x0, y1, z0}, {x0, y0, z1}, {x1, y0, z1}, {x1, y1, z1}, {x0, y1, z1}};
+    const Vec3 p[] = {{x0, y0, z0}, {x1, y0, z0}, {x1, y1, z0}, {x0, y1, z0},
+                      {x0, y0, z1}, {x1, y0, z1}, {x1, y1, z1}, {x0, y1, z1}};
     const int f[6][4] = {{0, 1, 2, 3}, {5, 4, 7, 6}, {4, 0, 3, 7}, {1, 5, 6, 2}, {3, 2, 6, 7}, {4, 5, 1, 0}};
     std::string s;
     for (const auto& q : f) s += quad(p[q[0]], p[q[1]], p[q[2]], p[q[3]]);
@@ -228,29 +233,35 @@ std::string box(float x0, float y0, float z0, float x1, float y1, float z1) {
 }
 std::string ball(float x, float y, float z, float r) {
     const std::string t = std::to_string(r);
-    return "TransformBegin Translate " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + " Sphere " + t + " -" + t + " " + t + " 360 TransformEnd\n";
+    return "TransformBegin Translate " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + " Sphere " + t +
+           " -" + t + " " + t + " 360 TransformEnd\n";
 }
 
 std::vector<std::pair<std::string, std::string>> scenes() {
     const std::string floor = quad({-3, -1, -3}, {3, -1, -3}, {3, -1, 3}, {-3, -1, 3});
     std::string city = floor, stairs, pearls = floor;
-    const float houses[7][3] = {{-1.5f, -1, 1}, {-.7f, .5f, 1.6f}, {.2f, -.8f, .7f}, {1.1f, .4f, 1.3f}, {1.7f, -1.2f, .5f}, {-1.9f, 1.2f, 1.9f}, {.3f, 1.5f, 2}};
+    const float houses[7][3] = {{-1.5f, -1, 1},     {-.7f, .5f, 1.6f},   {.2f, -.8f, .7f}, {1.1f, .4f, 1.3f},
+                                {1.7f, -1.2f, .5f}, {-1.9f, 1.2f, 1.9f}, {.3f, 1.5f, 2}};
     for (const auto& h : houses) city += box(h[0] - .25f, -1, h[1] - .25f, h[0] + .25f, -1 + h[2], h[1] + .25f);
     for (int i = 0; i < 5; ++i) stairs += box(-2, -1, float(i) * .5f - 1, 2, -1 + .3f * float(i + 1), float(i) * .5f - .5f);
     for (int x = -3; x < 4; ++x)
         for (int z = -3; z < 4; ++z) pearls += ball(float(x) * .6f, -.75f, float(z) * .6f, .25f);
-    const std::string walls = quad({-2, -1, -2}, {2, -1, -2}, {2, -1, 2}, {-2, -1, 2}) + quad({-2, -1, 2}, {2, -1, 2}, {2, 2, 2}, {-2, 2, 2}) +
-                              quad({-2, -1, -2}, {-2, -1, 2}, {-2, 2, 2}, {-2, 2, -2}) + quad({2, -1, 2}, {2, -1, -2}, {2, 2, -2}, {2, 2, 2}) +
-                              quad({-2, 2, 2}, {2, 2, 2}, {2, 2, -2}, {-2, 2, -2});
+    const std::string walls =
+        quad({-2, -1, -2}, {2, -1, -2}, {2, -1, 2}, {-2, -1, 2}) + quad({-2, -1, 2}, {2, -1, 2}, {2, 2, 2}, {-2, 2, 2}) +
+        quad({-2, -1, -2}, {-2, -1, 2}, {-2, 2, 2}, {-2, 2, -2}) + quad({2, -1, 2}, {2, -1, -2}, {2, 2, -2}, {2, 2, 2}) +
+        quad({-2, 2, 2}, {2, 2, 2}, {2, 2, -2}, {-2, 2, -2});
     return {{"ball", floor + ball(0, 0, 0, 1)},
             {"two balls", ball(-1, 0, 0, 1) + ball(1, 0, 0, 1)},
-            {"corner", floor + quad({-3, -1, 3}, {3, -1, 3}, {3, 4, 3}, {-3, 4, 3}) + quad({-3, -1, -3}, {-3, -1, 3}, {-3, 4, 3}, {-3, 4, -3})},
+            {"corner", floor + quad({-3, -1, 3}, {3, -1, 3}, {3, 4, 3}, {-3, 4, 3}) +
+                           quad({-3, -1, -3}, {-3, -1, 3}, {-3, 4, 3}, {-3, 4, -3})},
             {"torus", floor + "TransformBegin Translate 0 -.6 0 Rotate 90 1 0 0 Torus 1.2 .4 0 360 360 TransformEnd\n"},
-            {"planes", quad({-2, -.6f, -2}, {2, -.6f, -2}, {2, -.6f, 2}, {-2, -.6f, 2}) + quad({-2, .2f, -2}, {2, .2f, -2}, {2, .2f, 2}, {-2, .2f, 2})},
+            {"planes", quad({-2, -.6f, -2}, {2, -.6f, -2}, {2, -.6f, 2}, {-2, -.6f, 2}) +
+                           quad({-2, .2f, -2}, {2, .2f, -2}, {2, .2f, 2}, {-2, .2f, 2})},
             {"tube", "TransformBegin Rotate 50 0 1 0 Cylinder 1 -1.5 1.5 360 TransformEnd\n"},
             {"city", city},
             {"bowl", "TransformBegin Rotate -30 1 0 0 Sphere 1.5 0 1.5 360 TransformEnd\n"},
-            {"cone", floor + "TransformBegin Translate 0 -1 0 Rotate -90 1 0 0 Cone 2 1 360 TransformEnd\nTransformBegin Translate 1.5 -1 .5 Rotate -90 1 0 0 Cylinder .4 0 1.5 360 TransformEnd\n"},
+            {"cone", floor + "TransformBegin Translate 0 -1 0 Rotate -90 1 0 0 Cone 2 1 360 TransformEnd\nTransformBegin "
+                             "Translate 1.5 -1 .5 Rotate -90 1 0 0 Cylinder .4 0 1.5 360 TransformEnd\n"},
             {"stairs", stairs},
             {"pearls", pearls},
             {"room", walls + ball(.6f, -.4f, .5f, .6f) + box(-1.3f, -1, -.2f, -.4f, .6f, .7f)}};
@@ -262,10 +273,13 @@ protected:
     const std::string camera = "Projection \"perspective\" \"fov\" 40\nTranslate 0 -.1 6\nRotate -15 1 0 0\n";
     std::string header(const std::string& name, int side) const {
         const std::string n = std::to_string(side);
-        return "Format " + n + " " + n + " 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nHider \"hidden\" \"jitter\" [0]\nDisplay \"" + name + "\" \"openexr\" \"rgba\"\n";
+        return "Format " + n + " " + n +
+               " 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nHider \"hidden\" \"jitter\" [0]\nDisplay \"" + name +
+               "\" \"openexr\" \"rgba\"\n";
     }
     void shader(const std::string& name, const std::string& parameters, const std::string& body) const {
-        write(name + ".sl", "surface " + name + "(" + parameters + ") { Oi = 1; normal n = faceforward(normalize(N), I); " + body + " }\n");
+        write(name + ".sl",
+              "surface " + name + "(" + parameters + ") { Oi = 1; normal n = faceforward(normalize(N), I); " + body + " }\n");
     }
     void render(const std::string& text) {
         write("s.rib", text);
@@ -299,7 +313,8 @@ protected:
 TEST_F(PointScenes, OcclusionOfTwelveScenesIsThatOfRays) {
     shader("baker", "", "bake3d(\"o.ptc\", \"\", P, normalize(N), \"interpolate\", 1); Ci = 1;");
     shader("traced", "", "Ci = occlusion(P, n, 400);");
-    shader("points", "float a = .1;", "Ci = occlusion(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\", \"maxsolidangle\", a);");
+    shader("points", "float a = .1;",
+           "Ci = occlusion(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\", \"maxsolidangle\", a);");
     shader("standard", "", "Ci = occlusion(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\");");
     double sums[3] = {};
     for (const auto& [name, geometry] : scenes()) {
@@ -325,7 +340,8 @@ TEST_F(PointScenes, ColoursBleedAsByRays) {
     shader("plain", "", "Ci = Cs;");
     shader("traced", "", "Ci = indirectdiffuse(P, n, 1024);");
     shader("points", "float on = 1; string f[] = {\"o.ptc\"};",
-           "float o = 5; color e = 5; Ci = indirectdiffuse(P, n, 1, \"pointbased\", on, \"filenames\", f, \"occlusion\", o, \"environmentcolor\", e, \"sortbleeding\", 1); if (o > 1 || e != 0) Ci = 9;");
+           "float o = 5; color e = 5; Ci = indirectdiffuse(P, n, 1, \"pointbased\", on, \"filenames\", f, \"occlusion\", o, "
+           "\"environmentcolor\", e, \"sortbleeding\", 1); if (o > 1 || e != 0) Ci = 9;");
     bake(ofWall);
     const auto both = [&](const char* s) { return picture("Surface \"plain\"\n" + ofWall + "Surface \"" + s + floor, ""); };
     const auto rays = both("traced\"\n"), points = both("points\"\n"), off = both("points\" \"on\" 0\n");
@@ -335,11 +351,16 @@ TEST_F(PointScenes, ColoursBleedAsByRays) {
 
 // PRMan 12 and Aqsis knew no "pointbased": a file and no samples meant it.
 TEST_F(PointScenes, AFileAndNoSamplesMeanPoints) {
-    const std::string floor = quad({-2, -1, -2}, {2, -1, -2}, {2, -1, 1.5f}, {-2, -1, 1.5f}), ofBall = "Color [.9 .3 .1]\n" + ball(-.8f, -.4f, .4f, .6f);
+    const std::string floor = quad({-2, -1, -2}, {2, -1, -2}, {2, -1, 1.5f}, {-2, -1, 1.5f}),
+                      ofBall = "Color [.9 .3 .1]\n" + ball(-.8f, -.4f, .4f, .6f);
     shader("baker", "", "bake3d(\"o.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", Cs); Ci = Cs;");
-    shader("points", "", "Ci = .1 + indirectdiffuse(P, n, 0, \"pointbased\", 1, \"filename\", \"o.ptc\") + occlusion(P, n, 0, \"pointbased\", 1, \"filename\", \"o.ptc\");");
-    shader("old", "", "Ci = .1 + indirectdiffuse(P, n, 0, \"filename\", \"o.ptc\") + occlusion(P, n, 0, \"filename\", \"o.ptc\");");
-    shader("asked", "string f = \"o.ptc\"; float most = 0;", "Ci = .1 + indirectdiffuse(P, n, most, \"filename\", f) + occlusion(P, n, most, \"filename\", f);");
+    shader("points", "",
+           "Ci = .1 + indirectdiffuse(P, n, 0, \"pointbased\", 1, \"filename\", \"o.ptc\") + occlusion(P, n, 0, \"pointbased\", "
+           "1, \"filename\", \"o.ptc\");");
+    shader("old", "",
+           "Ci = .1 + indirectdiffuse(P, n, 0, \"filename\", \"o.ptc\") + occlusion(P, n, 0, \"filename\", \"o.ptc\");");
+    shader("asked", "string f = \"o.ptc\"; float most = 0;",
+           "Ci = .1 + indirectdiffuse(P, n, most, \"filename\", f) + occlusion(P, n, most, \"filename\", f);");
     bake(ofBall);
     const auto points = picture(floor, "Surface \"points\"\n");
     EXPECT_EQ(points, picture(floor, "Surface \"old\"\n"));
@@ -351,11 +372,14 @@ TEST_F(PointScenes, AFileAndNoSamplesMeanPoints) {
 // A closed room whose walls have the albedo .6 and shine by 1: what arrives after n bounces is the sum of a geometric series.
 TEST_F(PointScenes, BouncesAddUpAsTheSeriesSays) {
     const std::string walls = ball(0, 0, 0, 4); // the camera is inside
-    write("begin.sl", "surface begin() { Oi = 1; Ci = 1; bake3d(\"b0.ptc\", \"\", P, -normalize(N), \"interpolate\", 1, \"_radiosity\", color(1)); }\n");
-    write("next.sl", "surface next(string from = \"\", to = \"\";) { Oi = 1; color e = indirectdiffuse(P, -normalize(N), 1, \"pointbased\", 1, \"filename\", from, \"maxsolidangle\", .04); Ci = e;"
+    write("begin.sl", "surface begin() { Oi = 1; Ci = 1; bake3d(\"b0.ptc\", \"\", P, -normalize(N), \"interpolate\", 1, "
+                      "\"_radiosity\", color(1)); }\n");
+    write("next.sl", "surface next(string from = \"\", to = \"\";) { Oi = 1; color e = indirectdiffuse(P, -normalize(N), 1, "
+                     "\"pointbased\", 1, \"filename\", from, \"maxsolidangle\", .04); Ci = e;"
                      " bake3d(to, \"\", P, -normalize(N), \"interpolate\", 1, \"_radiosity\", 1 + .6 * e); }\n");
     const auto frame = [&](const std::string& surface) {
-        render(header("a.exr", 24) + "Projection \"perspective\" \"fov\" 90\nWorldBegin\nShadingRate 1\nSurface " + surface + "\n" + walls + "WorldEnd\n");
+        render(header("a.exr", 24) + "Projection \"perspective\" \"fov\" 90\nWorldBegin\nShadingRate 1\nSurface " + surface +
+               "\n" + walls + "WorldEnd\n");
     };
     frame("\"begin\"");
     double want = 1;
@@ -366,7 +390,8 @@ TEST_F(PointScenes, BouncesAddUpAsTheSeriesSays) {
         ASSERT_TRUE(image);
         double mean = 0;
         for (size_t i = 0; i < image->data.size(); i += 4) mean += double(image->data[i]) * 4 / double(image->data.size());
-        EXPECT_NEAR(mean, want, .045 * n * want) << n << ": up to .045 of the light is between clusters and long disks, each time";
+        EXPECT_NEAR(mean, want, .045 * n * want)
+            << n << ": up to .045 of the light is between clusters and long disks, each time";
         want = 1 + .6 * want;
     }
     run("ptc bounce --albedo .6 --bounces 2 --solid-angle .04 b0.ptc b2t.ptc", "2>&1");
@@ -386,7 +411,8 @@ TEST_F(PointScenes, BouncesAddUpAsTheSeriesSays) {
 TEST_F(PointScenes, SubsurfaceOfAPlaneInEvenLight) {
     shader("lit", "", "Ci = 1; bake3d(\"s.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", color(1));");
     shader("below", "float path = .1; string f = \"s.ptc\", t = \"pointcloud\";",
-           "Ci = subsurface(P, n, \"type\", t, \"filename\", f, \"reflectance\", color(.8, .5, .2), \"meanfreepath\", path, \"model\", \"jensen\", \"maxsolidangle\", .05);");
+           "Ci = subsurface(P, n, \"type\", t, \"filename\", f, \"reflectance\", color(.8, .5, .2), \"meanfreepath\", path, "
+           "\"model\", \"jensen\", \"maxsolidangle\", .05);");
     const std::string plane = quad({-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0});
     bake(plane, "Surface \"lit\"\n");
     for (const char* path : {".02", ".1", ".15"}) {
@@ -400,7 +426,9 @@ TEST_F(PointScenes, SubsurfaceOfAPlaneInEvenLight) {
 
 // Half of a plane is lit: the profile behind the edge is the dipole's integral, and what rays find.
 TEST_F(PointScenes, SubsurfaceSpreadsAsByRays) {
-    shader("lit", "", "point p = transform(\"world\", P); color e = xcomp(p) < 0 ? color(1) : color(0); Ci = e; bake3d(\"s.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", e);");
+    shader("lit", "",
+           "point p = transform(\"world\", P); color e = xcomp(p) < 0 ? color(1) : color(0); Ci = e; bake3d(\"s.ptc\", \"\", P, "
+           "normalize(N), \"interpolate\", 1, \"_radiosity\", e);");
     const std::string call = "\"reflectance\", color(.8, .5, .2), \"meanfreepath\", .3, \"model\", \"jensen\"";
     shader("below", "", "Ci = subsurface(\"pointcloud\", P, n, \"filename\", \"s.ptc\", " + call + ");");
     shader("rays", "", "Ci = subsurface(P, n, \"samples\", 1024, " + call + ");");
@@ -408,13 +436,16 @@ TEST_F(PointScenes, SubsurfaceSpreadsAsByRays) {
     const std::string plane = quad({-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0});
     const std::string upright = "TransformBegin Rotate 15 1 0 0 LightSource \"left\" 1 TransformEnd\n";
     bake(plane, "Surface \"lit\"\n");
-    const auto points = picture(plane, "Surface \"below\"\n"), rays = picture(plane, "Surface \"rays\"\n", "LightSource \"left\" 1\n");
+    const auto points = picture(plane, "Surface \"below\"\n"),
+               rays = picture(plane, "Surface \"rays\"\n", "LightSource \"left\" 1\n");
     EXPECT_LT(meanError(points, rays), .02);
     (void)upright;
 }
 
 TEST_F(PointScenes, WhatCannotBeReadIsSaidOnce) {
-    shader("points", "string f = \"\";", "Ci = occlusion(P, n, 1, \"pointbased\", 1, \"filename\", f) + indirectdiffuse(P, n, 1, \"pointbased\", 1, \"filename\", f);");
+    shader("points", "string f = \"\";",
+           "Ci = occlusion(P, n, 1, \"pointbased\", 1, \"filename\", f) + indirectdiffuse(P, n, 1, \"pointbased\", 1, "
+           "\"filename\", f);");
     Diagnostics d;
     PointCloud none;
     none.channels = {{"_area", clouds::ChannelType::Float}};
@@ -425,10 +456,13 @@ TEST_F(PointScenes, WhatCannotBeReadIsSaidOnce) {
     clouds::saveCloud((dir / "flat.ptc").string(), flat, here, d);
     clouds::saveBrickMap((dir / "b.bkm").string(), clouds::test::square(4), here, d);
     write("bad.ptc", "this is no cloud");
-    const std::pair<const char*, const char*> cases[] = {{"", "names no point cloud"}, {"missing.ptc", "there is no point cloud"}, {"none.ptc", "has no points"},
-                                                         {"flat.ptc", "16 points without area"}, {"b.bkm", "is a brick map"}, {"bad.ptc", "it is no point cloud"}};
+    const std::pair<const char*, const char*> cases[] = {
+        {"", "names no point cloud"},  {"missing.ptc", "there is no point cloud"},
+        {"none.ptc", "has no points"}, {"flat.ptc", "16 points without area"},
+        {"b.bkm", "is a brick map"},   {"bad.ptc", "it is no point cloud"}};
     for (const auto& [file, word] : cases) {
-        write("s.rib", header("a.exr", 8) + camera + "WorldBegin\nSurface \"points\" \"f\" \"" + file + "\"\nSphere 1 -1 1 360\nWorldEnd\n");
+        write("s.rib", header("a.exr", 8) + camera + "WorldBegin\nSurface \"points\" \"f\" \"" + file +
+                           "\"\nSphere 1 -1 1 360\nWorldEnd\n");
         const std::string said = run("render s.rib", "2>&1");
         const size_t at = said.find(word);
         EXPECT_NE(at, std::string::npos) << file << said;
@@ -441,14 +475,21 @@ TEST_F(PointScenes, WhatCannotBeReadIsSaidOnce) {
 
 // Names of clouds in other ways, and in another space: the plane is the same wherever the file has it.
 TEST_F(PointScenes, SpacesAndSeveralClouds) {
-    write("lit.sl", "surface lit() { Oi = 1; Ci = 1; bake3d(\"w.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", color(1)); bake3d(\"c.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"coordsystem\", \"camera\", \"_radiosity\", color(1)); }\n");
-    write("asks.sl", "surface asks(string f[] = {\"w.ptc\"}; float which = 0;) { Oi = 1; color a = subsurface(P, N, \"type\", \"pointcloud\", \"filename\", \"w.ptc\", \"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
-                     " color b = subsurface(P, N, \"type\", \"pointcloud\", \"filenames\", f, \"coordsystem\", \"world\", \"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
-                     " color c = subsurface(P, N, \"type\", \"pointcloud\", \"filename\", \"c.ptc\", \"coordsystem\", \"camera\", \"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
-                     " Ci = which == 0 ? a : which == 1 ? b : c; }\n");
+    write("lit.sl", "surface lit() { Oi = 1; Ci = 1; bake3d(\"w.ptc\", \"\", P, normalize(N), \"interpolate\", 1, "
+                    "\"_radiosity\", color(1)); bake3d(\"c.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"coordsystem\", "
+                    "\"camera\", \"_radiosity\", color(1)); }\n");
+    write("asks.sl",
+          "surface asks(string f[] = {\"w.ptc\"}; float which = 0;) { Oi = 1; color a = subsurface(P, N, \"type\", "
+          "\"pointcloud\", \"filename\", \"w.ptc\", \"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
+          " color b = subsurface(P, N, \"type\", \"pointcloud\", \"filenames\", f, \"coordsystem\", \"world\", "
+          "\"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
+          " color c = subsurface(P, N, \"type\", \"pointcloud\", \"filename\", \"c.ptc\", \"coordsystem\", \"camera\", "
+          "\"maxsolidangle\", .05, \"reflectance\", .5, \"meanfreepath\", .1);\n"
+          " Ci = which == 0 ? a : which == 1 ? b : c; }\n");
     const std::string plane = quad({-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0});
     bake(plane, "Surface \"lit\"\n");
-    const auto a = picture(plane, "Surface \"asks\" \"which\" 0\n"), b = picture(plane, "Surface \"asks\" \"which\" 1\n"), c = picture(plane, "Surface \"asks\" \"which\" 2\n");
+    const auto a = picture(plane, "Surface \"asks\" \"which\" 0\n"), b = picture(plane, "Surface \"asks\" \"which\" 1\n"),
+               c = picture(plane, "Surface \"asks\" \"which\" 2\n");
     EXPECT_TRUE(a == b);
     EXPECT_LT(meanError(a, c), .01);
     EXPECT_NEAR(a[size_t(kSide * kSide / 2 + kSide / 2) * 4], .5, .025);
@@ -457,7 +498,9 @@ TEST_F(PointScenes, SpacesAndSeveralClouds) {
 // Points do not see threads.
 TEST_F(PointScenes, SameBitsForAllThreads) {
     shader("baker", "", "bake3d(\"o.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", Cs); Ci = 1;");
-    shader("points", "", "Ci = indirectdiffuse(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\") + occlusion(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\");");
+    shader("points", "",
+           "Ci = indirectdiffuse(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\") + occlusion(P, n, 1, \"pointbased\", 1, "
+           "\"filename\", \"o.ptc\");");
     const std::string geometry = scenes()[8].second;
     bake(geometry);
     std::vector<float> first;

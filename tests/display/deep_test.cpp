@@ -2,8 +2,8 @@
 #include "base/limits.h"
 #include "support.h"
 #include <ImfChannelList.h>
-#include <ImfDeepFrameBuffer.h>
 #include <ImfCompression.h>
+#include <ImfDeepFrameBuffer.h>
 #include <ImfDeepTiledOutputFile.h>
 #include <ImfHeader.h>
 #include <ImfPartType.h>
@@ -131,7 +131,8 @@ TEST(Deep, WhatIsTooLargeOrDoesNotFitIsNotWritten) {
             WriteOptions o;
             o.policy = s.policy();
             EXPECT_FALSE(writeImage("map.dsm", m, o, d));
-            EXPECT_NE(messages(d).find(pixels == 1 && steps > 1 ? std::to_string(limits::kDeepSteps) : "match"), std::string::npos);
+            EXPECT_NE(messages(d).find(pixels == 1 && steps > 1 ? std::to_string(limits::kDeepSteps) : "match"),
+                      std::string::npos);
             EXPECT_EQ(s.files(), 0u);
         }
 }
@@ -168,7 +169,8 @@ std::vector<uint8_t> tiledFileOf(const Image& m) {
         Imf::DeepFrameBuffer fb;
         fb.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(count.data()), 4, 4 * size_t(m.width)));
         for (size_t c = 0; c < 4; ++c)
-            fb.insert(names[c], Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(at[c].data()), sizeof(float*), sizeof(float*) * size_t(m.width), sizeof(float)));
+            fb.insert(names[c], Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(at[c].data()), sizeof(float*),
+                                               sizeof(float*) * size_t(m.width), sizeof(float)));
         file.setFrameBuffer(fb);
         file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
     }
@@ -193,7 +195,8 @@ TEST(Deep, TilesAreReadAsLinesAre) {
     std::mt19937 random(5);
     for (int trial = 0; trial < 2000; ++trial) {
         std::vector<uint8_t> b = file;
-        for (int i = 0; i < 1 + trial % 5; ++i) b[random() % b.size()] = trial % 3 ? uint8_t(random()) : uint8_t(random() % 2 ? 255 : 0);
+        for (int i = 0; i < 1 + trial % 5; ++i)
+            b[random() % b.size()] = trial % 3 ? uint8_t(random()) : uint8_t(random() % 2 ? 255 : 0);
         Diagnostics said;
         EXPECT_TRUE(decodeImage(b, "damaged", said) || said.errors());
     }
@@ -212,7 +215,8 @@ TEST(Deep, CutAndDamagedFilesAreRefusedOrRead) {
     std::mt19937 random(11);
     for (int trial = 0; trial < 2000; ++trial) {
         std::vector<uint8_t> b = file;
-        for (int i = 0; i < 1 + trial % 5; ++i) b[random() % b.size()] = trial % 3 ? uint8_t(random()) : uint8_t(random() % 2 ? 255 : 0);
+        for (int i = 0; i < 1 + trial % 5; ++i)
+            b[random() % b.size()] = trial % 3 ? uint8_t(random()) : uint8_t(random() % 2 ? 255 : 0);
         Diagnostics d;
         const auto r = decodeImage(b, "damaged", d);
         EXPECT_TRUE(r || d.errors());

@@ -280,7 +280,8 @@ std::vector<Seed> seeds(const Scratch& s) {
     Image mip = m;
     for (auto [w, h] : {std::pair{4, 3}, {2, 1}, {1, 1}}) mip.levels.push_back(pattern(w, h, m.channels));
     add("exr mip", mip, tiled);
-    for (const char* c : {"none", "zip", "lzw", "packbits"}) add(std::string("tiff ") + c, m, as(Format::Tiff, Sample::UInt8, false, c));
+    for (const char* c : {"none", "zip", "lzw", "packbits"})
+        add(std::string("tiff ") + c, m, as(Format::Tiff, Sample::UInt8, false, c));
     add("png", m, as(Format::Png, Sample::UInt8));
     return out;
 }

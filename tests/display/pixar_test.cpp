@@ -338,7 +338,7 @@ TEST(PixarNative, SampleShadowMapSeesTheSpheresOfItsScene) {
 
 TEST(PixarNative, TruncationGivesAnErrorOrThePicture) {
     for (const ByteList& seed : damageSeeds())
-        for (size_t n = 0; n<seed.size(); n += seed.size()> 4096 ? 64 : 1) {
+        for (size_t n = 0; n < seed.size(); n += seed.size() > 4096 ? 64 : 1) {
             Diagnostics d;
             auto m = decoded(ByteList(seed.begin(), seed.begin() + std::ptrdiff_t(n)), d);
             if (m) EXPECT_EQ(m->data.size(), m->sampleCount()) << n;

@@ -14,8 +14,26 @@ using Byte = std::vector<uint8_t>;
 
 /// A header: type, map (length, bits), size, bits, descriptor.
 Byte header(int type, int mapLength, int mapBits, int w, int h, int bits, int descriptor) {
-    return {2, uint8_t(mapLength > 0), uint8_t(type), 0, 0, uint8_t(mapLength), uint8_t(mapLength >> 8), uint8_t(mapBits), 0, 0, 0, 0,
-            uint8_t(w), uint8_t(w >> 8), uint8_t(h), uint8_t(h >> 8), uint8_t(bits), uint8_t(descriptor), 'i', 'd'};
+    return {2,
+            uint8_t(mapLength > 0),
+            uint8_t(type),
+            0,
+            0,
+            uint8_t(mapLength),
+            uint8_t(mapLength >> 8),
+            uint8_t(mapBits),
+            0,
+            0,
+            0,
+            0,
+            uint8_t(w),
+            uint8_t(w >> 8),
+            uint8_t(h),
+            uint8_t(h >> 8),
+            uint8_t(bits),
+            uint8_t(descriptor),
+            'i',
+            'd'};
 }
 Byte operator+(Byte a, const Byte& b) {
     a.insert(a.end(), b.begin(), b.end());

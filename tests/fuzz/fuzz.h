@@ -56,7 +56,7 @@ struct Target {
     std::function<Seeds()> seeds;                      ///< beside the corpus of its name
     std::function<Bytes(Random&, const Seeds&)> input; ///< a new input; there is at least one seed
     std::function<Outcome(const Bytes&)> run;          ///< in a process and a folder of its own
-    bool caches = false;   ///< compiled kernels are kept for the next inputs: where compiling is not what is tested
+    bool caches = false; ///< compiled kernels are kept for the next inputs: where compiling is not what is tested
 };
 std::vector<Target> allTargets();
 

@@ -21,7 +21,8 @@ const OutputPolicy kHere{".", true};
 
 clouds::PointCloud someCloud(int n) {
     clouds::PointCloud c;
-    c.channels = {{"_area", clouds::ChannelType::Float}, {"_radiosity", clouds::ChannelType::Color}, {"m", clouds::ChannelType::Matrix}};
+    c.channels = {
+        {"_area", clouds::ChannelType::Float}, {"_radiosity", clouds::ChannelType::Color}, {"m", clouds::ChannelType::Matrix}};
     for (int i = 0; i < n; ++i) {
         std::vector<float> v(20, float(i));
         v[0] = .01f;

@@ -1,9 +1,9 @@
 #include "mutate.h"
-#include <cfloat>
-#include <cmath>
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cfloat>
+#include <cmath>
 #include <cstring>
 #include <zlib.h>
 

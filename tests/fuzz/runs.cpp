@@ -51,7 +51,8 @@ Outcome readModelFile(const Bytes& b) {
     {
         ri::ModelLog log([&](Severity, Rie, const SourcePlace&, std::string) { ++said; });
         const std::string name = b.empty() || b[0] == 'p' ? "m.ply" : "m.obj";
-        for (const scene::Primitive& p : ri::readModel(name, b, [&](const std::string&) { return std::optional<std::string>(b); }, log)) {
+        for (const scene::Primitive& p :
+             ri::readModel(name, b, [&](const std::string&) { return std::optional<std::string>(b); }, log)) {
             const scene::Param* P = scene::find(p.params, "P");
             size_t corners = 0;
             for (int n : p.ints) corners += size_t(n);

@@ -136,26 +136,92 @@ Seeds mapsOf(void (*make)(), std::vector<std::string> extensions) { return madeI
 /// A small model of each form, and what may stand in their texts.
 Seeds models() {
     Bytes vertices;
-    for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f}) vertices.append(reinterpret_cast<const char*>(&f), 4);
+    for (const float f : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f})
+        vertices.append(reinterpret_cast<const char*>(&f), 4);
     const Bytes header = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
                          "property list uchar int vertex_indices\nend_header\n";
     const char face[] = {4, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0};
-    return {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
-            "property uchar blue\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nelement face 1\n"
-            "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0 255 0 0 0 0 1 0 0\n1 0 0 0 9 0 0 0 1 1 0\n"
+    return {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+            "red\nproperty uchar green\n"
+            "property uchar blue\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float "
+            "t\nelement face 1\n"
+            "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0 255 0 0 0 0 1 0 0\n1 "
+            "0 0 0 9 0 0 0 1 1 0\n"
             "0 1 0 1 2 3 0 0 1 0 1\n3 0 1 2 6 0 0 1 0 0 1\n",
             "ply\nformat binary_little_endian 1.0\n" + header + vertices + Bytes(face, sizeof face),
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
             "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n",
-            "mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\ns 1\nusemtl a b\nf 1/1/1 2/2/1 3/1/1\ns off\nusemtl c\n"
+            "mtllib m.mtl\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\ns 1\nusemtl a b\nf 1/1/1 2/2/1 "
+            "3/1/1\ns off\nusemtl c\n"
             "f -1//-1 -2 \\\n -3/2\nnewmtl c\nKd 1 0 0\nd .5\nmap_Kd a.tx\n"};
 }
 
 std::vector<std::string> modelWords() {
-    return {"ply", "format", "ascii", "binary_big_endian", "binary_little_endian", "1.0", "element", "vertex", "face", "tristrips", "property", "list", "uchar",
-            "int", "float", "double", "int64", "x", "y", "z", "nx", "red", "alpha", "s", "t", "radius", "vertex_indices", "texcoord", "end_header", "comment",
-            "1000000000", "999999999999999", "-1", "nan", "inf", "1e39", "0", "4", "v", "vt", "vn", "f", "usemtl", "mtllib", "m.mtl", "s", "off", "g", "o",
-            "-9", "2147483648", "1/1/1", "1//1", "/", "newmtl", "Kd", "d", "Tr", "map_Kd", "\n", "\\\n", "#", "p", "l", "curv"};
+    return {"ply",
+            "format",
+            "ascii",
+            "binary_big_endian",
+            "binary_little_endian",
+            "1.0",
+            "element",
+            "vertex",
+            "face",
+            "tristrips",
+            "property",
+            "list",
+            "uchar",
+            "int",
+            "float",
+            "double",
+            "int64",
+            "x",
+            "y",
+            "z",
+            "nx",
+            "red",
+            "alpha",
+            "s",
+            "t",
+            "radius",
+            "vertex_indices",
+            "texcoord",
+            "end_header",
+            "comment",
+            "1000000000",
+            "999999999999999",
+            "-1",
+            "nan",
+            "inf",
+            "1e39",
+            "0",
+            "4",
+            "v",
+            "vt",
+            "vn",
+            "f",
+            "usemtl",
+            "mtllib",
+            "m.mtl",
+            "s",
+            "off",
+            "g",
+            "o",
+            "-9",
+            "2147483648",
+            "1/1/1",
+            "1//1",
+            "/",
+            "newmtl",
+            "Kd",
+            "d",
+            "Tr",
+            "map_Kd",
+            "\n",
+            "\\\n",
+            "#",
+            "p",
+            "l",
+            "curv"};
 }
 
 Bytes anyBinaryRib(Random& r, const Seeds& seeds) {
@@ -323,60 +389,65 @@ std::vector<Target> allTargets() {
         return s;
     };
     const Input sl = text(slWords), rib = text(ribWords);
-    return {{"rib-ascii", "the RIB reader: text", ".rib", 1, false, scenes, rib, readRib},
-            {"rib-binary", "the RIB reader: the binary encoding", ".rib", 1, false, scenes, anyBinaryRib, readRib},
-            {"rib-gzip", "the RIB reader: compressed streams", ".rib", 1, false, scenes, anyGzip, readRib},
-            {"rib-generated", "the RIB reader: random requests", ".rib", 1, false, scenes,
-             [](Random& r, const Seeds&) { return generateRib(r); }, readRib},
-            {"models", "the readers of .ply and .obj", ".ply", 1, false, models, text(modelWords), readModelFile},
-            {"rib-render", "tiny renders of damaged scenes", ".rib", 4, true, scenes, rib, renderRib, true},
-            {"rib-requests", "tiny renders of random requests", ".rib", 4, true, none,
-             [](Random& r, const Seeds&) { return generateRib(r); }, renderRib, true},
-            {"sl-preprocess", "the preprocessor", ".sl", 1, false, none, sl, checkShader},
-            {"sl-check", "parser and checker", ".sl", 1, false, shaders, sl, checkShader},
-            {"sl-shade", "damaged shaders, compiled and run", ".sl", 20, true, shaders, sl, shadeShader},
-            {"sl-generated", "made shaders at three widths of the machine code", ".sl", 40, true, none,
-             [](Random& r, const Seeds&) { return generateShader(r); }, shadeInWidths},
-            {"sl-render", "damaged shaders in a scene", ".sl", 25, true, shaders, sl, renderShader},
-            {"eval", "damaged and made expressions at two widths", ".txt", 20, true,
-             [] {
-                 Seeds s = linesOf("tests/fuzz/corpus/expressions.txt");
-                 for (const Bytes& e : examplesOfShadeops()) s.push_back(e);
-                 return s;
-             },
-             [sl](Random& r, const Seeds& seeds) {
-                 static const char* const types[] = {"float", "color", "point", "vector", "string", "matrix"};
-                 return r.once(2) ? generateExpression(r, r.of(types), 3) : sl(r, seeds);
-             },
-             evaluate},
-            {"pictures", "all decoders; maps and lookups", ".tx", 1, false, pictures, mendedBytes, decodePicture},
-            {"picture-files", "diff, maketx and scenes with damaged pictures", ".tx", 2, false, pictures, mendedBytes, usePicture,
-             true},
-            {"clouds", "point clouds, of ours and PLY; lookups", ".ptc", 1, false, [] { return mapsOf(makeClouds, {".ptc", ".ply"}); }, summedBytes, readCloud},
-            {"bricks", "brick maps and lookups", ".bkm", 1, false, [] { return mapsOf(makeClouds, {".bkm"}); }, summedBytes, readCloud},
-            {"baked", "what bake() writes", ".bake", 1, false, [] { return mapsOf(makeClouds, {".bake"}); }, summedBytes, readBaked},
-            {"photon-maps", "photon maps in files", ".photons", 1, false, [] { return mapsOf(makeClouds, {".photons"}); }, summedBytes, readPhotons},
-            {"ptex", "Ptex files and lookups", ".ptx", 1, false, [] { return mapsOf(makePtexFiles, {".ptx"}); }, anyBytes, readPtex},
-            {"deep-maps", "deep shadow maps", ".dsm", 1, false, [] { return mapsOf(makeDeepMaps, {".dsm"}); }, mendedBytes, decodePicture},
-            {"parts", "merge and --resume with damaged part files", ".part", 4, false,
-             [] { return madeInChild(makeParts, {".part"}); }, mendedBytes, usePart, true},
-            {"lsp", "sessions of the language server", ".lsp", 2, false,
-             [] {
-                 Seeds s;
-                 for (const Bytes& b : filesOf(source("tests/fuzz/corpus/sessions"), {".jsonl"})) {
-                     std::vector<std::string> lines;
-                     for (size_t at = 0; at < b.size();) {
-                         const size_t end = std::min(b.find('\n', at), b.size());
-                         lines.push_back(b.substr(at, end - at));
-                         at = end + 1;
-                     }
-                     s.push_back(framed(lines));
+    return {
+        {"rib-ascii", "the RIB reader: text", ".rib", 1, false, scenes, rib, readRib},
+        {"rib-binary", "the RIB reader: the binary encoding", ".rib", 1, false, scenes, anyBinaryRib, readRib},
+        {"rib-gzip", "the RIB reader: compressed streams", ".rib", 1, false, scenes, anyGzip, readRib},
+        {"rib-generated", "the RIB reader: random requests", ".rib", 1, false, scenes,
+         [](Random& r, const Seeds&) { return generateRib(r); }, readRib},
+        {"models", "the readers of .ply and .obj", ".ply", 1, false, models, text(modelWords), readModelFile},
+        {"rib-render", "tiny renders of damaged scenes", ".rib", 4, true, scenes, rib, renderRib, true},
+        {"rib-requests", "tiny renders of random requests", ".rib", 4, true, none,
+         [](Random& r, const Seeds&) { return generateRib(r); }, renderRib, true},
+        {"sl-preprocess", "the preprocessor", ".sl", 1, false, none, sl, checkShader},
+        {"sl-check", "parser and checker", ".sl", 1, false, shaders, sl, checkShader},
+        {"sl-shade", "damaged shaders, compiled and run", ".sl", 20, true, shaders, sl, shadeShader},
+        {"sl-generated", "made shaders at three widths of the machine code", ".sl", 40, true, none,
+         [](Random& r, const Seeds&) { return generateShader(r); }, shadeInWidths},
+        {"sl-render", "damaged shaders in a scene", ".sl", 25, true, shaders, sl, renderShader},
+        {"eval", "damaged and made expressions at two widths", ".txt", 20, true,
+         [] {
+             Seeds s = linesOf("tests/fuzz/corpus/expressions.txt");
+             for (const Bytes& e : examplesOfShadeops()) s.push_back(e);
+             return s;
+         },
+         [sl](Random& r, const Seeds& seeds) {
+             static const char* const types[] = {"float", "color", "point", "vector", "string", "matrix"};
+             return r.once(2) ? generateExpression(r, r.of(types), 3) : sl(r, seeds);
+         },
+         evaluate},
+        {"pictures", "all decoders; maps and lookups", ".tx", 1, false, pictures, mendedBytes, decodePicture},
+        {"picture-files", "diff, maketx and scenes with damaged pictures", ".tx", 2, false, pictures, mendedBytes, usePicture,
+         true},
+        {"clouds", "point clouds, of ours and PLY; lookups", ".ptc", 1, false,
+         [] { return mapsOf(makeClouds, {".ptc", ".ply"}); }, summedBytes, readCloud},
+        {"bricks", "brick maps and lookups", ".bkm", 1, false, [] { return mapsOf(makeClouds, {".bkm"}); }, summedBytes,
+         readCloud},
+        {"baked", "what bake() writes", ".bake", 1, false, [] { return mapsOf(makeClouds, {".bake"}); }, summedBytes, readBaked},
+        {"photon-maps", "photon maps in files", ".photons", 1, false, [] { return mapsOf(makeClouds, {".photons"}); },
+         summedBytes, readPhotons},
+        {"ptex", "Ptex files and lookups", ".ptx", 1, false, [] { return mapsOf(makePtexFiles, {".ptx"}); }, anyBytes, readPtex},
+        {"deep-maps", "deep shadow maps", ".dsm", 1, false, [] { return mapsOf(makeDeepMaps, {".dsm"}); }, mendedBytes,
+         decodePicture},
+        {"parts", "merge and --resume with damaged part files", ".part", 4, false,
+         [] { return madeInChild(makeParts, {".part"}); }, mendedBytes, usePart, true},
+        {"lsp", "sessions of the language server", ".lsp", 2, false,
+         [] {
+             Seeds s;
+             for (const Bytes& b : filesOf(source("tests/fuzz/corpus/sessions"), {".jsonl"})) {
+                 std::vector<std::string> lines;
+                 for (size_t at = 0; at < b.size();) {
+                     const size_t end = std::min(b.find('\n', at), b.size());
+                     lines.push_back(b.substr(at, end - at));
+                     at = end + 1;
                  }
-                 return s;
-             },
-             anySession, serveEditor},
-            {"command-line", "arguments", ".txt", 4, true, [] { return linesOf("tests/fuzz/corpus/commands.txt"); },
-             text(optionWords), commandLine, true}};
+                 s.push_back(framed(lines));
+             }
+             return s;
+         },
+         anySession, serveEditor},
+        {"command-line", "arguments", ".txt", 4, true, [] { return linesOf("tests/fuzz/corpus/commands.txt"); },
+         text(optionWords), commandLine, true}};
 }
 
 Seeds seedsOf(const Target& t) {

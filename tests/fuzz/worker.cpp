@@ -118,7 +118,7 @@ void becomeWorker(const fs::path& logs, const fs::path& folder, const std::strin
         sigaltstack(&s, nullptr);
         void* frame;
         backtrace(&frame, 1); // loads what it needs while that is still possible
-        struct sigaction a {};
+        struct sigaction a{};
         a.sa_handler = onCrash;
         a.sa_flags = SA_ONSTACK | SA_RESETHAND;
         for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) sigaction(signal, &a, nullptr);
@@ -243,7 +243,7 @@ Ending batch(const Target& target, const std::function<Bytes(size_t)>& input, si
 }
 
 size_t sizeOf(int fd) {
-    struct stat s {};
+    struct stat s{};
     return fstat(fd, &s) == 0 ? size_t(s.st_size) : 0;
 }
 
@@ -274,8 +274,7 @@ bool saidAnything() {
 Verdict runAlone(const Target& target, const Bytes& bytes, const Limits& limits) {
     Folder logs;
     SharedMemory shared;
-    const Ending e = batch(
-        target, [&](size_t) { return bytes; }, 1, clockSeconds() + 1000, limits, shared, logs.path);
+    const Ending e = batch(target, [&](size_t) { return bytes; }, 1, clockSeconds() + 1000, limits, shared, logs.path);
     if (e.broken) return e.verdict;
     const Outcome o = e.done ? Outcome(shared->outcome[0].load()) : Outcome::Ok;
     return {o, nameOf(o), contentsOf((logs.path / "err").string())};
@@ -288,8 +287,7 @@ Tally runMany(const Target& target, const Source& source, size_t first, size_t l
     for (size_t at = first; at < last && clockSeconds() < end;) {
         SharedMemory shared;
         const size_t count = std::min(kBatch, last - at);
-        const Ending e = batch(
-            target, [&](size_t i) { return source(at + i); }, count, end, limits, shared, logs.path);
+        const Ending e = batch(target, [&](size_t i) { return source(at + i); }, count, end, limits, shared, logs.path);
         const auto take = [&](size_t i, const Verdict& v) {
             ++tally.count[size_t(v.outcome)];
             ++tally.runs;

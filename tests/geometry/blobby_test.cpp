@@ -191,7 +191,8 @@ TEST(Blobby, ALongSegmentIsATube) {
     EXPECT_NEAR(t[1] - t[0], 8 + 2 * 0.5 * lo, 1e-9);
 }
 
-// Every point of such a line is a point of the surface, as far as numbers tell: no number of pieces decides about it. It took hours.
+// Every point of such a line is a point of the surface, as far as numbers tell: no number of pieces decides about it. It took
+// hours.
 TEST(Blobby, ALineInTheSurfaceOfATubeEnds) {
     Diagnostics diag;
     auto floats = std::vector<float>{-2, 0, 0, 2, 0, 0, 1};
@@ -351,8 +352,9 @@ TEST(Blobby, VariablesBlendByTheField) {
     }
 }
 
-// A variable of type mpoint, which is read as the four rows of its matrix. Where the reference pose is the pose, every blob takes a point
-// to itself, so their mix is the point, in camera space; and one blob alone takes it by the inverse of its matrix and the other matrix.
+// A variable of type mpoint, which is read as the four rows of its matrix. Where the reference pose is the pose, every blob takes
+// a point to itself, so their mix is the point, in camera space; and one blob alone takes it by the inverse of its matrix and the
+// other matrix.
 TEST(Blobby, ReferencePosesPlaceThePoints) {
     const Matrix here = rotateMatrix(30, 1, 2, 0.5) * scaleMatrix(0.8, 1, 1.2) * translateMatrix(-0.3, 0.1, 0);
     const Matrix there = rotateMatrix(-70, 0, 1, 1) * scaleMatrix(2, 1, 3) * translateMatrix(4, 5, 6);
@@ -360,7 +362,12 @@ TEST(Blobby, ReferencePosesPlaceThePoints) {
     std::vector<float> tube{-0.5, 0, 0, 0.5, 0, 0, 0.4f};
     const auto second = ball(0.4, 0, 0.2, 0.9);
     tube.insert(tube.end(), second.begin(), second.end());
-    struct Case { std::vector<int> code; std::vector<std::vector<float>> floats; std::vector<Matrix> poses; Matrix moves; };
+    struct Case {
+        std::vector<int> code;
+        std::vector<std::vector<float>> floats;
+        std::vector<Matrix> poses;
+        Matrix moves;
+    };
     const Matrix own = scaleMatrix(0.9, 0.9, 0.9) * translateMatrix(0.4, 0, 0.2);
     const Case cases[] = {{{1001, 0, 1001, 16, 0, 2, 0, 1}, {matrixNumbers(here), second}, {here, own}, Matrix()},
                           {{1001, 0, 1002, 16, 0, 2, 0, 1}, {matrixNumbers(here), tube}, {here, own}, Matrix()},
@@ -384,7 +391,8 @@ TEST(Blobby, ReferencePosesPlaceThePoints) {
             if (!(s->sampleDensity(q) > 0)) continue;
             float v[3], du[3], dv[3];
             s->interpolate(var, q, v, du, dv);
-            const Vec3d want = transformPoint(all, Vec3d(q.P)), wu = transformVector(all, Vec3d(q.dPdu)), wv = transformVector(all, Vec3d(q.dPdv));
+            const Vec3d want = transformPoint(all, Vec3d(q.P)), wu = transformVector(all, Vec3d(q.dPdu)),
+                        wv = transformVector(all, Vec3d(q.dPdv));
             for (int k = 0; k < 3; ++k) {
                 EXPECT_NEAR(v[k], want[k], 1e-4);
                 EXPECT_NEAR(du[k], wu[k], 1e-4 * (1 + length(wu)));

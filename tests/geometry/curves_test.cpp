@@ -21,8 +21,8 @@ Vec3d within(Rng& r, double size) {
     return Vec3d(2 * x - 1, 2 * y - 1, 2 * z - 1) * size;
 }
 
-std::shared_ptr<scene::Primitive> curves(const std::string& type, std::vector<int> n, const std::string& wrap, std::vector<float> P,
-                                         float width = 0.1f) {
+std::shared_ptr<scene::Primitive> curves(const std::string& type, std::vector<int> n, const std::string& wrap,
+                                         std::vector<float> P, float width = 0.1f) {
     auto p = std::make_shared<scene::Primitive>();
     p->kind = "Curves";
     p->strings = {type, wrap};
@@ -96,7 +96,8 @@ template <class At> Nearest nearest(const Vec3d& o, const Vec3d& d, At at) {
     }
     return best;
 }
-int allHits(const Shape& s, const Vec3d& o, const Vec3d& d, std::vector<std::pair<uint32_t, ExactHit>>& out, double lo = -INFINITY) {
+int allHits(const Shape& s, const Vec3d& o, const Vec3d& d, std::vector<std::pair<uint32_t, ExactHit>>& out,
+            double lo = -INFINITY) {
     out.clear();
     for (uint32_t k = 0; k < s.exactPrims(); ++k) {
         ExactHit h[4];
@@ -133,7 +134,8 @@ TEST(Bernstein, RootsAreThoseOfTheFactors) {
             const double line[2] = {-r, 1 - r};
             const int n = int(c.size()) - 1;
             for (int a = 0; a <= n; ++a)
-                for (int b = 0; b < 2; ++b) next[size_t(a + b)] += binomial(n, a) / binomial(n + 1, a + b) * c[size_t(a)] * line[b];
+                for (int b = 0; b < 2; ++b)
+                    next[size_t(a + b)] += binomial(n, a) / binomial(n + 1, a + b) * c[size_t(a)] * line[b];
             c = next;
         }
         std::sort(inside.begin(), inside.end());
@@ -178,7 +180,9 @@ TEST(Curves, AreAsWideAsTheySay) {
     Rng rng(3);
     for (const char* type : {"linear", "cubic"}) {
         auto request = curves(type, {4}, "nonperiodic", {0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0});
-        request->params[1] = floats("width", Class::Varying, std::string(type) == "linear" ? std::vector<float>{.2f, .4f, .6f, .8f} : std::vector<float>{.2f, .8f});
+        request->params[1] =
+            floats("width", Class::Varying,
+                   std::string(type) == "linear" ? std::vector<float>{.2f, .4f, .6f, .8f} : std::vector<float>{.2f, .8f});
         request->params.push_back(normals(Class::Constant, {0, 0, 1}));
         Diagnostics diag;
         const Matrix m = scaleMatrix(1, 3, 1) * translateMatrix(0, 0, 5); // widths are lengths of object space
@@ -207,7 +211,8 @@ TEST(Curves, RibbonsThatFaceTheRayAreMetWhereItPassesTheMiddle) {
         const ShapeRef s = build(curves("cubic", {4}, "nonperiodic", flat(p), width), Matrix(), diag);
         ASSERT_TRUE(s);
         for (int k = 0; k < 20; ++k) {
-            const Vec3d o = within(rng, 6), aim = casteljau(p, uniform(rng)) + within(rng, 0.7 * width), d = (aim - o) * (0.1 + uniform(rng));
+            const Vec3d o = within(rng, 6), aim = casteljau(p, uniform(rng)) + within(rng, 0.7 * width),
+                        d = (aim - o) * (0.1 + uniform(rng));
             const Nearest n = nearest(o, d, [&](double f) { return casteljau(p, f); });
             if (n.f < 1e-3 || n.f > 1 - 1e-3 || std::fabs(n.distance - width / 2) < 1e-7) continue;
             std::vector<std::pair<uint32_t, ExactHit>> hits;
@@ -245,12 +250,14 @@ TEST(Curves, FacingCurvesAreSeenFromAllSidesWhateverTheirOrientation) {
                     a->sides = 1;
                     a->inside = inside;
                     Diagnostics diag;
-                    const ShapeRef s = buildShape(curves(type, {4}, "nonperiodic", {-1, 0, 0, 0, 1, 0, 0, 0, 1, 1, -1, 0}, 0.4f), a, m, -1, diag, facing);
+                    const ShapeRef s = buildShape(curves(type, {4}, "nonperiodic", {-1, 0, 0, 0, 1, 0, 0, 0, 1, 1, -1, 0}, 0.4f),
+                                                  a, m, -1, diag, facing);
                     ASSERT_TRUE(s);
                     int met = 0;
                     for (int k = 0; k < 50; ++k) {
                         SurfacePoint to = s->evaluate(0, 0.5, uniform(rng));
-                        const Vec3d o = facing == Facing::Picture ? Vec3d(to.P) * Vec3d(1, 1, 0) : Vec3d(0.0), d = Vec3d(to.P) - o;
+                        const Vec3d o = facing == Facing::Picture ? Vec3d(to.P) * Vec3d(1, 1, 0) : Vec3d(0.0),
+                                    d = Vec3d(to.P) - o;
                         std::vector<std::pair<uint32_t, ExactHit>> hits;
                         allHits(*s, o, d, hits, 0);
                         for (const auto& [prim, h] : hits) {
@@ -282,7 +289,8 @@ TEST(Curves, RibbonsWithNormalsAgreeWithTheirTessellation) {
             for (int u = 0; u < 2; ++u) side[u].push_back(Vec3d(s->evaluate(0, u, double(i) / kAlong).P));
         for (int k = 0; k < 12; ++k) {
             const size_t at = rng() % kAlong;
-            const Vec3d aim = side[0][at] + (side[1][at] - side[0][at]) * (1.3 * uniform(rng) - 0.15), o = aim + within(rng, 4), d = aim - o;
+            const Vec3d aim = side[0][at] + (side[1][at] - side[0][at]) * (1.3 * uniform(rng) - 0.15), o = aim + within(rng, 4),
+                        d = aim - o;
             // Where the line goes through the strip, by its quads' halves.
             std::vector<double> expected;
             for (size_t i = 0; i < kAlong; ++i) {
@@ -300,7 +308,8 @@ TEST(Curves, RibbonsWithNormalsAgreeWithTheirTessellation) {
             // Triangles stray from the strip and from each other at rims: there the two may differ.
             if (expected.size() > 4) continue;
             for (double t : expected) {
-                const bool found = std::any_of(hits.begin(), hits.end(), [&](const auto& h) { return std::fabs(h.second.t - t) < 2e-3; });
+                const bool found =
+                    std::any_of(hits.begin(), hits.end(), [&](const auto& h) { return std::fabs(h.second.t - t) < 2e-3; });
                 found ? ++met : ++missed;
             }
         }
@@ -314,7 +323,8 @@ TEST(Curves, TubesAreMetOnTheirCircles) {
     int met = 0, passed = 0;
     for (int turn = 0; turn < 60; ++turn) {
         const bool wide = turn % 3 == 0;
-        const std::vector<Vec3d> p = {within(rng, 0.2) + Vec3d(-1, 0, 0), within(rng, 0.6), within(rng, 0.6), within(rng, 0.2) + Vec3d(1, 0, 0)};
+        const std::vector<Vec3d> p = {within(rng, 0.2) + Vec3d(-1, 0, 0), within(rng, 0.6), within(rng, 0.6),
+                                      within(rng, 0.2) + Vec3d(1, 0, 0)};
         const double r = wide ? 0.08 : 0.01;
         Diagnostics diag;
         const ShapeRef s = build(curves("cubic", {4}, "nonperiodic", flat(p), float(2 * r)), Matrix(), diag, round());
@@ -391,8 +401,11 @@ TEST(Curves, PartialsAreThoseOfDifferences) {
     Rng rng(9);
     for (int kind = 0; kind < 3; ++kind) {
         auto request = curves(kind == 2 ? "linear" : "cubic", {7}, "nonperiodic", flat(randomPoints(rng, 7)));
-        request->params[1] = floats("width", kind == 1 ? Class::Vertex : Class::Varying, kind == 0 ? std::vector<float>{.3f, .1f, .4f} : std::vector<float>(7, 0.3f));
-        if (kind != 1) request->params.push_back(normals(kind == 0 ? Class::Vertex : Class::Constant, kind == 0 ? flat(randomPoints(rng, 7)) : std::vector<float>{.3f, 1, .2f}));
+        request->params[1] = floats("width", kind == 1 ? Class::Vertex : Class::Varying,
+                                    kind == 0 ? std::vector<float>{.3f, .1f, .4f} : std::vector<float>(7, 0.3f));
+        if (kind != 1)
+            request->params.push_back(normals(kind == 0 ? Class::Vertex : Class::Constant,
+                                              kind == 0 ? flat(randomPoints(rng, 7)) : std::vector<float>{.3f, 1, .2f}));
         Diagnostics diag;
         const ShapeRef s = build(request, skewed(), diag, kind == 1 ? round() : scene::Attributes());
         ASSERT_TRUE(s);
@@ -401,7 +414,8 @@ TEST(Curves, PartialsAreThoseOfDifferences) {
             double v = 0.02 + 0.96 * uniform(rng), x = v * (kind == 2 ? 6 : 2);
             if (x - std::floor(x) < 0.1 || x - std::floor(x) > 0.9) continue;
             const SurfacePoint q = s->evaluate(0, u, v);
-            // Central differences of fourth order of float points: 1e-6 / e of rounding, and what is left of the fifth derivative.
+            // Central differences of fourth order of float points: 1e-6 / e of rounding, and what is left of the fifth
+            // derivative.
             const auto slope = [&](bool byU, double h) {
                 const auto at = [&](double by) { return Vec3d(s->evaluate(0, byU ? u + by : u, byU ? v : v + by).P); };
                 return (at(-2 * h) - at(2 * h) + (at(h) - at(-h)) * 8.0) / (12 * h);
@@ -414,7 +428,8 @@ TEST(Curves, PartialsAreThoseOfDifferences) {
 }
 
 TEST(Curves, VariablesOfAllClasses) {
-    auto request = curves("cubic", {7, 4}, "nonperiodic", std::vector<float>{0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0, 5, 0, 0, 6, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, 3, 1, 0});
+    auto request = curves("cubic", {7, 4}, "nonperiodic", std::vector<float>{0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0, 5, 0,
+                                                                             0, 6, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, 3, 1, 0});
     request->params.push_back(floats("whole", Class::Constant, {7}));
     request->params.push_back(floats("each", Class::Uniform, {10, 20}));
     request->params.push_back(floats("corner", Class::Varying, {0, 1, 4, 5, 7})); // 3 and 2: segments + 1

@@ -10,7 +10,10 @@ using namespace alpenglow::geometry::test;
 
 namespace {
 
-struct Case { std::string name; std::shared_ptr<scene::Primitive> prim; };
+struct Case {
+    std::string name;
+    std::shared_ptr<scene::Primitive> prim;
+};
 
 std::vector<Case> parametricCases() {
     return {
@@ -73,11 +76,13 @@ TEST(Derivatives, QuadricPositionsAreThoseOfTheReference) {
         return build(p, Matrix(), diag)->evaluate(0, u, v).P;
     };
     auto expect = [](Vec3 p, double x, double y, double z) {
-        EXPECT_NEAR(p.x, x, 1e-6); EXPECT_NEAR(p.y, y, 1e-6); EXPECT_NEAR(p.z, z, 1e-6);
+        EXPECT_NEAR(p.x, x, 1e-6);
+        EXPECT_NEAR(p.y, y, 1e-6);
+        EXPECT_NEAR(p.z, z, 1e-6);
     };
     double q = std::sqrt(0.5);
-    expect(at(quadric("Sphere", {2, -2, 2, 360}), 0.25, 0.75), 0, 2 * q, 2 * q);      // theta 90, phi 45 degrees
-    expect(at(quadric("Sphere", {2, 0, 1, 180}), 0.5, 1), 0, std::sqrt(3.0), 1);      // phimax = asin(1/2)
+    expect(at(quadric("Sphere", {2, -2, 2, 360}), 0.25, 0.75), 0, 2 * q, 2 * q); // theta 90, phi 45 degrees
+    expect(at(quadric("Sphere", {2, 0, 1, 180}), 0.5, 1), 0, std::sqrt(3.0), 1); // phimax = asin(1/2)
     expect(at(quadric("Cone", {2, 1, 360}), 0.5, 0.25), -0.75, 0, 0.5);
     expect(at(quadric("Cylinder", {1, -1, 3, 90}), 1, 0.5), 0, 1, 1);
     expect(at(quadric("Hyperboloid", {1, 0, 0, 0, 1, 2, 360}), 0.25, 0.5), -0.5, 0.5, 1);
@@ -90,9 +95,9 @@ TEST(Area, ClosedForms) {
     Diagnostics diag;
     auto area = [&](std::shared_ptr<scene::Primitive> p) { return build(p, translateMatrix(1, 2, 3), diag)->area(); };
     EXPECT_NEAR(area(quadric("Sphere", {2, -2, 2, 360})), 16 * kPi, 1e-6);
-    EXPECT_NEAR(area(quadric("Sphere", {2, -1, 1, 180})), 4 * kPi, 1e-6);        // zone: 2 pi r h, half a turn
+    EXPECT_NEAR(area(quadric("Sphere", {2, -1, 1, 180})), 4 * kPi, 1e-6); // zone: 2 pi r h, half a turn
     EXPECT_NEAR(area(quadric("Cylinder", {0.5f, -1, 1, 360})), 2 * kPi, 1e-6);
-    EXPECT_NEAR(area(quadric("Cone", {3, 4, 360})), 20 * kPi, 1e-6);             // pi r l, l = 5
+    EXPECT_NEAR(area(quadric("Cone", {3, 4, 360})), 20 * kPi, 1e-6); // pi r l, l = 5
     EXPECT_NEAR(area(quadric("Disk", {0, 2, 90})), kPi, 1e-6);
     EXPECT_NEAR(area(quadric("Torus", {2, 0.5f, 0, 360, 360})), 4 * kPi * kPi, 1e-6);
     // Paraboloid r = 1 at z = 1: pi/6 (5^1.5 - 1); its parametrisation has a root at the apex.
@@ -130,10 +135,10 @@ TEST(Orientation, NormalsFollowTheRules) {
     lh.absoluteHandedness = rh.absoluteHandedness = true;
     rh.rightHanded = true;
     EXPECT_EQ(outward(plain, outside, sphere), 1);
-    EXPECT_EQ(outward(mirror, outside, sphere), 1);  // flips with the handedness, so the outside stays outside
+    EXPECT_EQ(outward(mirror, outside, sphere), 1); // flips with the handedness, so the outside stays outside
     EXPECT_EQ(outward(plain, inside, sphere), -1);
     EXPECT_EQ(outward(mirror, inside, sphere), -1);
-    EXPECT_EQ(outward(plain, lh, sphere), 1);        // dPdu ^ dPdv as it is in left-handed camera space
+    EXPECT_EQ(outward(plain, lh, sphere), 1); // dPdu ^ dPdv as it is in left-handed camera space
     EXPECT_EQ(outward(plain, rh, sphere), -1);
     EXPECT_EQ(outward(mirror, lh, sphere), -1);
     EXPECT_EQ(outward(mirror, rh, sphere), 1);

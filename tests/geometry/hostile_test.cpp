@@ -174,7 +174,7 @@ double areaOf(const std::vector<Vec3d>& p, const std::vector<uint32_t>& tri, con
 TEST(Triangulate, ConcaveAndHolesKeepTheirArea) {
     // A 10 by 10 square with two holes of 2 by 2 (either winding) and a notch of 1 by 5 cut from the top.
     std::vector<Vec3d> p = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {5.5, 10, 0}, {5.5, 5, 0}, {4.5, 5, 0}, {4.5, 10, 0}, {0, 10, 0},
-                            {1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, 0}, {7, 1, 0}, {7, 3, 0}, {9, 3, 0}, {9, 1, 0}};
+                            {1, 1, 0}, {3, 1, 0},  {3, 3, 0},   {1, 3, 0},    {7, 1, 0},   {7, 3, 0},   {9, 3, 0},    {9, 1, 0}};
     for (auto& q : p) q.z = q.x * 0.5 + q.y * 0.25; // any plane
     std::vector<int> loops = {8, 4, 4};
     std::vector<uint32_t> tri;
@@ -183,8 +183,7 @@ TEST(Triangulate, ConcaveAndHolesKeepTheirArea) {
     EXPECT_EQ(tri.size() / 3, 16u + 2 * 2 - 2);
     double stretch = std::sqrt(1 + 0.25 + 0.0625);
     EXPECT_NEAR(areaOf(p, tri, n), (100 - 8 - 5) * stretch, 1e-9);
-    for (size_t i = 0; i < tri.size(); i += 3)
-        EXPECT_GE(dot(cross(p[tri[i + 1]] - p[tri[i]], p[tri[i + 2]] - p[tri[i]]), n), 0);
+    for (size_t i = 0; i < tri.size(); i += 3) EXPECT_GE(dot(cross(p[tri[i + 1]] - p[tri[i]], p[tri[i + 2]] - p[tri[i]]), n), 0);
 }
 
 TEST(Triangulate, FlatCornersKeepTheirPlace) {

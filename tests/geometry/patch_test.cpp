@@ -39,7 +39,12 @@ TEST(Patch, PzIsAHeightFieldOverTheUnitSquare) {
 
 TEST(Patch, EveryBasisReproducesStraightLines) {
     // Control points on a plane, evenly spaced: b-spline and Catmull-Rom run from the 2nd to the 3rd of four points.
-    struct B { const char* name; std::vector<double> m; int step; double x0, x1; };
+    struct B {
+        const char* name;
+        std::vector<double> m;
+        int step;
+        double x0, x1;
+    };
     double s = 1.0 / 6;
     for (const B& b :
          {B{"bezier", {-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3, 0, 3},
@@ -141,19 +146,22 @@ TEST(NuPatch, DerivativesAcrossKnots) {
 }
 
 TEST(Dicing, FlatnessIsThePixelsThatFacetsStray) {
-    // A quarter of a tube of radius 1, 100 pixels a unit: a cubic that strays from the circle by 0.03 pixels, so that n chords stray by
-    // 100 (1 - cos(pi / 4n)).
+    // A quarter of a tube of radius 1, 100 pixels a unit: a cubic that strays from the circle by 0.03 pixels, so that n chords
+    // stray by 100 (1 - cos(pi / 4n)).
     const double k = 0.5522847498;
     std::vector<float> P;
     for (int j = 0; j < 4; ++j)
-        for (const auto& [x, y] : {std::pair{1., 0.}, {1., k}, {k, 1.}, {0., 1.}}) P.insert(P.end(), {float(x), float(y), float(j)});
+        for (const auto& [x, y] : {std::pair{1., 0.}, {1., k}, {k, 1.}, {0., 1.}})
+            P.insert(P.end(), {float(x), float(y), float(j)});
     size_t before = 0;
     for (const float flatness : {0.f, 0.5f, 4.f, 0.02f}) {
         scene::Attributes a;
         a.shadingRate = 4;
         setBasis(a.ubasis, {-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3);
         a.vbasis = a.ubasis;
-        if (flatness > 0) a.values["GeometricApproximation:flatness"] = param("flatness", scene::Class::Uniform, scene::Type::Float, {flatness});
+        if (flatness > 0)
+            a.values["GeometricApproximation:flatness"] =
+                param("flatness", scene::Class::Uniform, scene::Type::Float, {flatness});
         Diagnostics diag;
         ShapeRef s = build(patch("bicubic", P), Matrix(), diag, a);
         DiceOptions o;

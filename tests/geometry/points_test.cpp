@@ -74,7 +74,8 @@ TEST(Points, SpheresAndSquaresAndDiscsWithNormals) {
     Diagnostics diag;
     Rng rng(2);
     const Matrix m = rotateMatrix(30, 0, 0, 1) * translateMatrix(0, 0, 6);
-    const ShapeRef balls = build(particles(kThree, "sphere"), m, diag), squares = build(particles(kThree, "patch"), translateMatrix(0, 0, 6), diag);
+    const ShapeRef balls = build(particles(kThree, "sphere"), m, diag),
+                   squares = build(particles(kThree, "patch"), translateMatrix(0, 0, 6), diag);
     auto request = particles(kThree);
     request->params.push_back(param("N", Class::Varying, Type::Normal, {0, 0, -1, 0, 1, 0, 1, 0, 0}));
     const ShapeRef discs = build(request, m, diag);
@@ -102,7 +103,10 @@ TEST(Points, SpheresAndSquaresAndDiscsWithNormals) {
             EXPECT_NEAR(p.v, 0.5 + 2 * by.y, 1e-5);
             EXPECT_NEAR(std::fabs(p.u - 0.5), 2 * std::fabs(by.x), 1e-5);
         }
-        const Vec3d normal = k == 0 ? Vec3d(0, 0, -1) : k == 1 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0), turned = transformVector(m, normal);
+        const Vec3d normal = k == 0   ? Vec3d(0, 0, -1)
+                             : k == 1 ? Vec3d(0, 1, 0)
+                                      : Vec3d(1, 0, 0),
+                    turned = transformVector(m, normal);
         const double t = dot(c - o, turned) / dot(d, turned);
         ASSERT_EQ(discs->exactHits(k, o, d, -INFINITY, INFINITY, Shape::Wanted::All, h), length(o + d * t - c) < 0.25);
         if (length(o + d * t - c) < 0.25) EXPECT_LT(length(Vec3d(discs->evaluateHit(k, h[0].u, h[0].v).n) - turned), 1e-5);
@@ -116,7 +120,9 @@ TEST(Points, AreasAndDensities) {
         auto request = particles(kThree, type);
         request->params[1] = param("width", Class::Varying, Type::Float, {0.2f, 0.4f, 0.6f});
         const ShapeRef s = build(request, scaleMatrix(2, 2, 2) * translateMatrix(0, 0, 9), diag);
-        const double squares = 0.1 * 0.1 + 0.2 * 0.2 + 0.3 * 0.3, form = type[0] == 's' ? 4 * kPi : type[1] == 'a' && type[2] == 't' ? 4 : kPi;
+        const double squares = 0.1 * 0.1 + 0.2 * 0.2 + 0.3 * 0.3, form = type[0] == 's'                     ? 4 * kPi
+                                                                         : type[1] == 'a' && type[2] == 't' ? 4
+                                                                                                            : kPi;
         EXPECT_NEAR(s->area(), 4 * form * squares, 1e-5) << type;
         double sum = 0;
         int count[3] = {};

@@ -25,7 +25,8 @@ std::shared_ptr<scene::Primitive> polygons(std::vector<int> counts, std::vector<
     return p;
 }
 
-/// Points of a cube's six faces, u fastest, as far apart in the picture as they like; `turn` turns each face's u and v differently.
+/// Points of a cube's six faces, u fastest, as far apart in the picture as they like; `turn` turns each face's u and v
+/// differently.
 std::array<std::array<Vec3, 4>, 6> faces(int turn) {
     const auto corner = [](int k) { return Vec3(k & 1 ? 1.f : -1.f, k & 2 ? 1.25f : -1.f, k & 4 ? 1.1f : -1.3f); };
     static constexpr int at[6][4] = {{0, 1, 2, 3}, {4, 6, 5, 7}, {0, 4, 1, 5}, {2, 3, 6, 7}, {0, 2, 4, 6}, {1, 5, 3, 7}};
@@ -61,7 +62,8 @@ Made pillow() {
     Made out;
     const auto bend = [](const Vec3& p) {
         const float l = length(p);
-        return Vec3(p.x * (1.6f - 0.3f * l) + 0.2f * p.y * p.z, p.y * (1.5f - 0.25f * l) + 0.1f * p.x, p.z * (1.4f - 0.2f * l) - 0.15f * p.x * p.y);
+        return Vec3(p.x * (1.6f - 0.3f * l) + 0.2f * p.y * p.z, p.y * (1.5f - 0.25f * l) + 0.1f * p.x,
+                    p.z * (1.4f - 0.2f * l) - 0.15f * p.x * p.y);
     };
     for (const auto& q : faces(1)) {
         std::vector<float> P;
@@ -75,7 +77,8 @@ Made pillow() {
                     const float w = float(swap ? 3 - k : k) / 3;
                     return Vec3(lo.x + (hi.x - lo.x) * w, lo.y + (hi.y - lo.y) * w, lo.z + (hi.z - lo.z) * w);
                 };
-                const Vec3 p = i == 0 || i == 3 ? third(q[i ? 1 : 0], q[i ? 3 : 2], j) : third(third(q[0], q[2], j), third(q[1], q[3], j), i);
+                const Vec3 p = i == 0 || i == 3 ? third(q[i ? 1 : 0], q[i ? 3 : 2], j)
+                                                : third(third(q[0], q[2], j), third(q[1], q[3], j), i);
                 put(P, bend(p));
             }
         out.push_back(patch("bicubic", P));
@@ -83,8 +86,9 @@ Made pillow() {
     return out;
 }
 
-/// A closed form of six meshes whose edges are curves: each face of a bent box has the points of a grid of `side` by `side` faces. kind 0: quadrilaterals of
-/// catmull-clark; 1: triangles of catmull-clark, which are cut in parts; 2: triangles of loop; 3: bilinear.
+/// A closed form of six meshes whose edges are curves: each face of a bent box has the points of a grid of `side` by `side`
+/// faces. kind 0: quadrilaterals of catmull-clark; 1: triangles of catmull-clark, which are cut in parts; 2: triangles of loop;
+/// 3: bilinear.
 Made cage(int kind, int side) {
     Made out;
     for (const auto& q : faces(1)) {
@@ -101,7 +105,8 @@ Made cage(int kind, int side) {
             for (int i = 0; i <= side; ++i) {
                 // The same arithmetic on both faces of an edge: parts of its ends, bent by where they lie. Corners stay.
                 const auto part = [&](const Vec3& a, const Vec3& b, int k) {
-                    return Vec3((a.x * float(side - k) + b.x * float(k)) / float(side), (a.y * float(side - k) + b.y * float(k)) / float(side),
+                    return Vec3((a.x * float(side - k) + b.x * float(k)) / float(side),
+                                (a.y * float(side - k) + b.y * float(k)) / float(side),
                                 (a.z * float(side - k) + b.z * float(k)) / float(side));
                 };
                 const Vec3 at = part(part(q[0], q[1], i), part(q[2], q[3], i), j);
@@ -125,19 +130,21 @@ Made cage(int kind, int side) {
     return out;
 }
 
-/// A box whose faces are cut in strips, each face in its own number and direction, so that an edge of one meets corners of others. kind 0: polygons;
-/// 1: patches; 2: either.
+/// A box whose faces are cut in strips, each face in its own number and direction, so that an edge of one meets corners of
+/// others. kind 0: polygons; 1: patches; 2: either.
 Made strips(int kind) {
     Made out;
     int f = 0;
     for (const auto& q : faces(1)) {
         const int n = 1 + f % 4;
-        const auto between = [&](const Vec3& a, const Vec3& b, int k) { // the same from both ends, and for a half of two and two of four
+        const auto between = [&](const Vec3& a, const Vec3& b,
+                                 int k) { // the same from both ends, and for a half of two and two of four
             const float v = float(n - k), w = float(k), all = float(n);
             return Vec3((a.x * v + b.x * w) / all, (a.y * v + b.y * w) / all, (a.z * v + b.z * w) / all);
         };
         for (int k = 0; k < n; ++k) {
-            const Vec3 a = between(q[0], q[1], k), b = between(q[0], q[1], k + 1), c = between(q[2], q[3], k), d = between(q[2], q[3], k + 1);
+            const Vec3 a = between(q[0], q[1], k), b = between(q[0], q[1], k + 1), c = between(q[2], q[3], k),
+                       d = between(q[2], q[3], k + 1);
             std::vector<float> P;
             const bool patches = kind == 1 || (kind == 2 && (f + k) % 2);
             for (const Vec3& p : patches ? std::array{a, b, c, d} : std::array{a, b, d, c}) put(P, p);
@@ -202,7 +209,8 @@ std::vector<Form> closedForms() {
             {"a bowl", {quadric("Paraboloid", {1, 0, 1.2f, 360}), quadric("Disk", {1.2f, 1, 360})}},
             {"half a ball", {quadric("Sphere", {1, 0, 1, 360}), quadric("Disk", {0, 1, 360})}},
             {"a ball", {quadric("Sphere", {1, -1, 1, 360})}},
-            {"a waist", {quadric("Hyperboloid", {1, 0, 0, 0.5f, 0, 1, 360}), quadric("Disk", {0, 1, 360}), quadric("Disk", {1, 0.5f, 360})}},
+            {"a waist",
+             {quadric("Hyperboloid", {1, 0, 0, 0.5f, 0, 1, 360}), quadric("Disk", {0, 1, 360}), quadric("Disk", {1, 0.5f, 360})}},
             {"a ring", {quadric("Torus", {1, 0.4f, 0, 360, 360})}},
             {"strips of polygons", strips(0)},
             {"strips of patches", strips(1)},
@@ -246,8 +254,8 @@ TEST(Seams, WhereEdgesAreCutDependsOnThemOnly) {
 
 TEST(Seams, BezierAndArcDerivatives) {
     const std::array<double, 4> points[4] = {{0, 1, 2, 1}, {2, 4, 3, 2}, {1, 0, 1, 0.5}, {4, 4, 2, 1}};
-    for (const EdgeCurve& e : {EdgeCurve::bezier(points), EdgeCurve::bezier({points, 3}), EdgeCurve::arc({1, 2, 3}, {2, 0, 0}, {0, 1, 1}, 1.7),
-                               EdgeCurve::line({1, 2, 3}, {0, 5, 1})})
+    for (const EdgeCurve& e : {EdgeCurve::bezier(points), EdgeCurve::bezier({points, 3}),
+                               EdgeCurve::arc({1, 2, 3}, {2, 0, 0}, {0, 1, 1}, 1.7), EdgeCurve::line({1, 2, 3}, {0, 5, 1})})
         for (double c : {0.1, 0.5, 0.8}) {
             constexpr double h = 1e-4;
             Vec3d d, dd;
@@ -269,7 +277,9 @@ TEST(Seams, NoRayLeavesThroughThem) {
         Scene s(f.made, rotateMatrix(31, 1, 2, 3) * translateMatrix(centre.x, centre.y, centre.z), 40);
         accel::Accel tree(s.shapes, {}, s.diag);
         // Within the form, off the middle of what is hollow.
-        const Vec3d inside = transformPoint(rotateMatrix(31, 1, 2, 3), f.name == "a ring" ? Vec3d(1, 0, 0) : Vec3d(0, 0, f.name == "a ball" ? 0 : 0.3)) + centre;
+        const Vec3d inside = transformPoint(rotateMatrix(31, 1, 2, 3),
+                                            f.name == "a ring" ? Vec3d(1, 0, 0) : Vec3d(0, 0, f.name == "a ball" ? 0 : 0.3)) +
+                             centre;
         std::vector<Vec3> seam;
         for (const ShapeRef& shape : s.shapes)
             for (uint32_t i = 0; i < shape->mesh().vertices; ++i) seam.push_back(shape->mesh().P[i]);
@@ -280,8 +290,9 @@ TEST(Seams, NoRayLeavesThroughThem) {
             // At vertices, between two that may be neighbours, and anywhere.
             const size_t i = random() % (seam.size() - 1);
             const double w = uniform();
-            const Vec3d at = k % 3 == 0 ? Vec3d(seam[i]) : k % 3 == 1 ? Vec3d(seam[i]) * w + Vec3d(seam[i + 1]) * (1 - w)
-                                        : centre + Vec3d(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5) * 5;
+            const Vec3d at = k % 3 == 0   ? Vec3d(seam[i])
+                             : k % 3 == 1 ? Vec3d(seam[i]) * w + Vec3d(seam[i + 1]) * (1 - w)
+                                          : centre + Vec3d(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5) * 5;
             r.dir = Vec3(at - Vec3d(r.org));
             r.sides = accel::Sides::Both;
             lost += !tree.occluded(r);
@@ -316,7 +327,8 @@ TEST(Seams, WhatMovesTogetherMeetsThroughoutTheShutter) {
             p->toWorld = scene::Transform(translateMatrix(0, 0, 5));
             if (kind != 1) {
                 p->toWorld.times = {0, 0.5f, 1};
-                p->toWorld.keys = {translateMatrix(0, 0, 5), rotateMatrix(20, 0, 1, 0) * translateMatrix(0.2, 0, 5), rotateMatrix(40, 0, 1, 0) * translateMatrix(0.5, 0, 6)};
+                p->toWorld.keys = {translateMatrix(0, 0, 5), rotateMatrix(20, 0, 1, 0) * translateMatrix(0.2, 0, 5),
+                                   rotateMatrix(40, 0, 1, 0) * translateMatrix(0.5, 0, 6)};
             }
             if (kind != 0) {
                 auto last = std::make_shared<scene::Primitive>(*made);
@@ -379,7 +391,9 @@ TEST(Dicing, EndsWhereTheEyeLiesOnAFace) {
             EXPECT_LT(triangles, 1'000'000u) << kind;
             EXPECT_EQ(openEdges(s.shapes), 0u) << kind << " " << x;
         }
-    for (const std::vector<float>& P : {std::vector<float>{-60, 0, -60, -60, 0, 60, 60, 0, 60, 60, 0, -60}, {0, 0, 0, 1e6f, 0, 0, 0, 0, 1e6f}, {-1, 0, 0, 1, 0, 0, 0, 1, 0}}) {
+    for (const std::vector<float>& P : {std::vector<float>{-60, 0, -60, -60, 0, 60, 60, 0, 60, 60, 0, -60},
+                                        {0, 0, 0, 1e6f, 0, 0, 0, 0, 1e6f},
+                                        {-1, 0, 0, 1, 0, 0, 0, 1, 0}}) {
         Scene s({polygon(P)}, Matrix(), 20);
         EXPECT_GT(s.shapes[0]->mesh().triangles(), 100u);
         EXPECT_LT(s.shapes[0]->mesh().triangles(), 1'000'000u);
@@ -407,13 +421,17 @@ TEST(Dicing, HeightsOfADisplacedBallAndPlane) {
 TEST(DisplacementBound, CountsInItsOwnSpace) {
     struct Case {
         std::string space;
-        Vec3 moved; ///< in camera space
+        Vec3 moved;   ///< in camera space
         double reach; ///< in the space
     };
     // Object space is stretched by 4 along x and 0.5 along y.
     const Matrix object = scaleMatrix(4, 0.5, 1) * translateMatrix(0, 0, 5);
-    for (const Case& c : {Case{"object", {0.4f, 0, 0}, 0.1}, {"object", {0, 0.4f, 0}, 0.8}, {"camera", {0, 0.4f, 0}, 0.4}, {"current", {0.4f, 0, 0}, 0.4},
-                          {"metres", {0, 0.4f, 0}, 4}, {"shader", {0.4f, 0, 0}, 0.2}})
+    for (const Case& c : {Case{"object", {0.4f, 0, 0}, 0.1},
+                          {"object", {0, 0.4f, 0}, 0.8},
+                          {"camera", {0, 0.4f, 0}, 0.4},
+                          {"current", {0.4f, 0, 0}, 0.4},
+                          {"metres", {0, 0.4f, 0}, 4},
+                          {"shader", {0.4f, 0, 0}, 0.2}})
         for (double radius : {c.reach * 1.01, c.reach * 0.5}) {
             scene::Attributes a;
             a.values["displacementbound:sphere"] = param("sphere", scene::Class::Constant, scene::Type::Float, {float(radius)});

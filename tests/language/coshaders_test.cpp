@@ -1,4 +1,5 @@
-// Shaders that call others through handles: methods, members, getshader, getshaders, getvar. Every number below is in the shaders.
+// Shaders that call others through handles: methods, members, getshader, getshaders, getvar. Every number below is in the
+// shaders.
 #include "base/limits.h"
 #include "points.h"
 #include "rsl/compiler.h"
@@ -23,7 +24,8 @@ class layer(float gain = 1; string __category = "";)
 })";
 
 /// The outputs of a surface with two layers bound: "a" (gain 2, category "paint,wet") and "b" (gain 10, category "dust").
-std::vector<float> shade(const std::string& body, const std::vector<std::string>& names, Diagnostics& d, int lanes = 16, bool mixed = false) {
+std::vector<float> shade(const std::string& body, const std::vector<std::string>& names, Diagnostics& d, int lanes = 16,
+                         bool mixed = false) {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
     ShaderCompiler compiler(settings);
@@ -135,13 +137,17 @@ TEST(CoShaders, ErrorsHaveTheirPlaces) {
             all += std::to_string(m.place.line) + ":" + std::to_string(m.place.column) + " " + m.message + "\n";
         return all;
     };
-    EXPECT_NE(message("\nshader h = getshader(\"a\"); x = h->none(1);").find("2:33 co-shader 'a' (layer) has no public method 'none'"),
-              std::string::npos);
-    EXPECT_NE(message("\nshader h = getshader(\"a\"); x = h->hidden;").find("2:33 co-shader 'a' (layer) has no public member 'hidden'"),
-              std::string::npos);
+    EXPECT_NE(
+        message("\nshader h = getshader(\"a\"); x = h->none(1);").find("2:33 co-shader 'a' (layer) has no public method 'none'"),
+        std::string::npos);
+    EXPECT_NE(
+        message("\nshader h = getshader(\"a\"); x = h->hidden;").find("2:33 co-shader 'a' (layer) has no public member 'hidden'"),
+        std::string::npos);
     EXPECT_NE(message("\nshader h = null; x = h->gain;").find("2:22 this handle is null here"), std::string::npos);
-    EXPECT_NE(message("\nfloat f = 1; x = f->gain;").find("2:19 '->' needs a structure or a shader, not float"), std::string::npos);
-    EXPECT_NE(message("\nshader h = getshader(\"a\"); h->tint(P, \"s\");").find("argument 2 of method 'tint'"), std::string::npos);
+    EXPECT_NE(message("\nfloat f = 1; x = f->gain;").find("2:19 '->' needs a structure or a shader, not float"),
+              std::string::npos);
+    EXPECT_NE(message("\nshader h = getshader(\"a\"); h->tint(P, \"s\");").find("argument 2 of method 'tint'"),
+              std::string::npos);
 }
 
 /// What a chain of n co-shaders gives, each of which calls the next.
@@ -153,8 +159,8 @@ std::string chain(int n, float& value) {
     const auto link = compiler.loadText(R"(class link(string next = "";) {
         public float down(float x) { float y = x + 1; if (next != "") { shader h = getshader(next); y = h->down(y); } return y; } })",
                                         "link.sl", d);
-    const auto top = compiler.loadText("surface top(output varying float r = 0;) { shader h = getshader(\"0\"); r = h->down(0); }",
-                                       "top.sl", d);
+    const auto top = compiler.loadText(
+        "surface top(output varying float r = 0;) { shader h = getshader(\"0\"); r = h->down(0); }", "top.sl", d);
     KernelOptions o;
     o.outputs = {"r"};
     for (int i = 0; i < n; i++) {
@@ -179,7 +185,8 @@ TEST(CoShaders, DepthAndRecursion) {
     settings.useDefaultCache = false;
     ShaderCompiler compiler(settings);
     Diagnostics d;
-    const auto loop = compiler.loadText("class loop() { public float f(string to) { shader h = getshader(to); return h->f(to); } }", "loop.sl", d);
+    const auto loop = compiler.loadText(
+        "class loop() { public float f(string to) { shader h = getshader(to); return h->f(to); } }", "loop.sl", d);
     const auto top = compiler.loadText("surface top(string to = \"0\"; output varying float r = 0;) { shader h = getshader(to);"
                                        " string x = (u > 0.3) ? \"0\" : \"1\"; r = h->f(x); }",
                                        "top.sl", d);
@@ -196,10 +203,12 @@ TEST(CoShaders, TakeAndChangeStructures) {
     ShaderCompiler compiler(settings);
     Diagnostics d;
     const std::string pair = "struct pair { float a = 2; color c = 0; }\n";
-    const auto layer = compiler.loadText(pair + "class layer() { public void fill(output pair p; float k) { p->c = p->a * k; p->a = 7; } }", "layer.sl", d);
-    const auto top = compiler.loadText(pair + "surface top(output varying float r = 0;) { pair p; shader h = getshader(\"layer\");"
-                                              " if (h != null) h->fill(p, 3); r = p->a * 10 + comp(p->c, 1); }",
-                                       "top.sl", d);
+    const auto layer = compiler.loadText(
+        pair + "class layer() { public void fill(output pair p; float k) { p->c = p->a * k; p->a = 7; } }", "layer.sl", d);
+    const auto top =
+        compiler.loadText(pair + "surface top(output varying float r = 0;) { pair p; shader h = getshader(\"layer\");"
+                                 " if (h != null) h->fill(p, 3); r = p->a * 10 + comp(p->c, 1); }",
+                          "top.sl", d);
     ASSERT_TRUE(layer && top);
     KernelOptions o;
     o.outputs = {"r"};

@@ -2,8 +2,8 @@
 // error, and with exactly the warnings that a comment "warns: ids" on its first line names. What single constructs mean is in
 // dialect_*.rsl.
 #include "rsl/compiler.h"
-#include "rsl/front/messages.h"
 #include "rsl/front/headers.h"
+#include "rsl/front/messages.h"
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

@@ -43,9 +43,7 @@ std::vector<std::vector<float>> run(const std::string& body, const std::vector<s
     EXPECT_TRUE(shader);
     const auto kernel = shader ? compiler.kernel(shader, o, d) : nullptr;
     EXPECT_TRUE(kernel);
-    if (kernel) {
-        EXPECT_TRUE(runPoints(*kernel, o.mixed, int(places.size()), at(places), {}, out, d));
-    }
+    if (kernel) { EXPECT_TRUE(runPoints(*kernel, o.mixed, int(places.size()), at(places), {}, out, d)); }
     return out;
 }
 
@@ -203,7 +201,8 @@ TEST(Differences, WithinABranchOrLoopTheNeighbourFollows) {
         float y = u, i; r1 = 0; for (i = 0; i < 3; i += 1) { y = y * (1 + v); r1 += Du(y * y); }
         float a[2]; r2 = 0; for (i = 0; i < 3; i += 1) { a[0] = u * u * i; a[1] = a[0] + v; r2 += Du(a[1]); }
         float f(float x) { return Du(x * x); } r3 = f(u * 2);
-    )", {"float", "float", "float", "float"}, places, grid());
+    )",
+                         {"float", "float", "float", "float"}, places, grid());
     ASSERT_EQ(out.size(), 4u);
     for (size_t p = 0; p < places.size(); ++p) {
         const double u = places[p].u, v = places[p].v, h = places[p].du;

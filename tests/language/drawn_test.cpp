@@ -1,4 +1,5 @@
-// random() where there is no scene: a number for each call of the text and each turn of a loop, the same whenever it is asked again.
+// random() where there is no scene: a number for each call of the text and each turn of a loop, the same whenever it is asked
+// again.
 #include "rsl/compiler.h"
 #include "rsl/evaluate.h"
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ std::vector<std::string> printed(const std::string& setup) {
 }
 
 TEST(Drawn, EveryTurnAndEveryCallHasItsOwn) {
-    const char* text = "float one() { return random(); } float i; for (i = 0; i < 8; i += 1) printf(\"%.7f %.7f \", random(), one()); printf(\"%.7f\", one());";
+    const char* text = "float one() { return random(); } float i; for (i = 0; i < 8; i += 1) printf(\"%.7f %.7f \", random(), "
+                       "one()); printf(\"%.7f\", one());";
     const auto words = printed(text);
     ASSERT_EQ(words.size(), 17u);
     EXPECT_EQ(std::set<std::string>(words.begin(), words.end()).size(), 17u);

@@ -75,7 +75,8 @@ inline std::vector<Bad> readErrors(const std::filesystem::path& path) {
 
 inline std::vector<std::filesystem::path> errorFiles() {
     std::vector<std::filesystem::path> all;
-    for (const auto& e : std::filesystem::directory_iterator(std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "tests/language/errors"))
+    for (const auto& e :
+         std::filesystem::directory_iterator(std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "tests/language/errors"))
         if (e.path().extension() == ".err") all.push_back(e.path());
     std::sort(all.begin(), all.end());
     return all;

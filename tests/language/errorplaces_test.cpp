@@ -1,12 +1,13 @@
 // Erroneous programs and exactly what must be said about them: id, line and column of every message (errors/*.err). A file holds
 //   # remarks
-//   == lines NAME      each line that follows is a program of its own: the body of a shader (errors/lines.err tells its variables)
+//   == lines NAME      each line that follows is a program of its own: the body of a shader (errors/lines.err tells its
+//   variables)
 //   == file NAME       what follows is one program
 //   == lint NAME       one program, with the warnings of `compile -W`
 //   == kernel NAME     one program, also taken as far as code for it, with the warning about light used non-linearly; the shader
 //                      below is bound to it under the handle "layer"
-// Below a line of a program stands what is expected there: a caret in the column that is meant, then "warning" if it is one, then the
-// id. "^ 7:3 id" names line and column of the program instead. "{{300*(}}" in a program stands for 300 opening parentheses.
+// Below a line of a program stands what is expected there: a caret in the column that is meant, then "warning" if it is one, then
+// the id. "^ 7:3 id" names line and column of the program instead. "{{300*(}}" in a program stands for 300 opening parentheses.
 #include "base/limits.h"
 #include "errorfiles.h"
 #include "rsl/compiler.h"
@@ -23,8 +24,9 @@ namespace fs = std::filesystem;
 namespace alpenglow::rsl {
 namespace {
 
-const char* const kVariables = "surface t() { float f, g, h; color c, d; point p, q; vector v1, w; normal n; matrix m, mm; string str; float a[4]; "
-                               "color ca[3]; shader sh; float open[]; string strs[2];\n";
+const char* const kVariables =
+    "surface t() { float f, g, h; color c, d; point p, q; vector v1, w; normal n; matrix m, mm; string str; float a[4]; "
+    "color ca[3]; shader sh; float open[]; string strs[2];\n";
 
 const char* const kLayer = R"(
 class layer(float gain = 1;)
@@ -84,7 +86,9 @@ TEST_P(ErrorPlaces, AreExact) {
     for (const Bad& b : programs) {
         const auto said = messages(b);
         EXPECT_EQ(said, b.expected) << path.filename().string() << ":" << b.line << ": " << b.name << "\n"
-                                    << (b.mode == "lines" ? b.text + "\n" : "") << "expected\n" << shown(b.expected) << "said\n" << shown(said);
+                                    << (b.mode == "lines" ? b.text + "\n" : "") << "expected\n"
+                                    << shown(b.expected) << "said\n"
+                                    << shown(said);
     }
 }
 
@@ -115,9 +119,9 @@ TEST(ErrorPlaces, EveryKindOfMessageAndThreeHundredPrograms) {
     EXPECT_GE(wrong, 300);
     // These need files beside the shader, or other renderers' limits: each has a test of its own elsewhere. "not-available" is
     // for shadeops that are described before they are there; all are.
-    const std::set<std::string> elsewhere = {"pp-include-elsewhere", "pp-include-depth", "shader-too-large", "too-many-errors",
-                                             "plugin-missing", "plugin-unusable", "coshader-depth", "no-code",
-                                             "struct-members", "too-many-includes", "light-blocks", "shader-memory",
+    const std::set<std::string> elsewhere = {"pp-include-elsewhere", "pp-include-depth",  "shader-too-large", "too-many-errors",
+                                             "plugin-missing",       "plugin-unusable",   "coshader-depth",   "no-code",
+                                             "struct-members",       "too-many-includes", "light-blocks",     "shader-memory",
                                              "not-available"};
     for (const MessageKind& k : messageKinds())
         if (!elsewhere.count(k.id)) EXPECT_TRUE(ids.count(k.id)) << "no program has the message " << k.id;

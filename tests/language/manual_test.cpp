@@ -1,5 +1,6 @@
-// docs/language.md tells the truth: every program on the page is compiled and run. In a program, "// error: id" or "// warning: id"
-// at the end of a line names the messages that must stand on it (several one after the other, ids of one kind may share the word), and
+// docs/language.md tells the truth: every program on the page is compiled and run. In a program, "// error: id" or "// warning:
+// id" at the end of a line names the messages that must stand on it (several one after the other, ids of one kind may share the
+// word), and
 // "// gives NAME = NUMBERS" behind it what an output holds.
 #include "points.h"
 #include "rsl/compiler.h"
@@ -15,7 +16,7 @@ namespace {
 struct Page {
     int line = 0;
     std::string text;
-    std::multiset<std::string> expected;      ///< "3 warning no-effect"
+    std::multiset<std::string> expected; ///< "3 warning no-effect"
     std::vector<std::pair<std::string, std::string>> gives;
 };
 
@@ -89,8 +90,8 @@ TEST(Manual, EveryProgramDoesWhatThePageSays) {
     }
 }
 
-// What `alpenglow info --shadeops NAME` shows: each has at least one example. Those that need nothing but the point of `alpenglow eval`
-// must give the value that stands there; those that need lights, maps or other surfaces must compile.
+// What `alpenglow info --shadeops NAME` shows: each has at least one example. Those that need nothing but the point of `alpenglow
+// eval` must give the value that stands there; those that need lights, maps or other surfaces must compile.
 TEST(Manual, EveryShadeopHasAnExampleThatIsTrue) {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
@@ -106,8 +107,10 @@ TEST(Manual, EveryShadeopHasAnExampleThatIsTrue) {
                 bool compiled = false;
                 for (const char* kind : {"surface", "light"})
                     for (const char* type : {"float", "color", "point", "string"})
-                        compiled |= bool(compiler.loadText(std::string(kind) + " probe(output varying " + type + " r = " + (type[0] == 's' ? "\"\"" : "0") +
-                                                               ";) {\n" + e.setup + "\nr = " + e.expression + ";\n}\n", "probe", d));
+                        compiled |= bool(compiler.loadText(std::string(kind) + " probe(output varying " + type +
+                                                               " r = " + (type[0] == 's' ? "\"\"" : "0") + ";) {\n" + e.setup +
+                                                               "\nr = " + e.expression + ";\n}\n",
+                                                           "probe", d));
                 EXPECT_TRUE(compiled) << e.setup << " " << e.expression;
                 continue;
             }

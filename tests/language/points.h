@@ -123,7 +123,8 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     return true;
 }
 
-/// 4, 8 and 16 lanes; uniform inputs as numbers and in lanes; optimised and not; functions inlined and called. The first is what the others are compared with.
+/// 4, 8 and 16 lanes; uniform inputs as numbers and in lanes; optimised and not; functions inlined and called. The first is what
+/// the others are compared with.
 inline std::vector<KernelOptions> configurations() {
     std::vector<KernelOptions> all;
     for (int lanes : {16, 8, 4})

@@ -46,9 +46,7 @@ public:
         Term functions{'g', "", {}, true}, body{'l', "", {}, true};
         for (int n = pick(large_ ? 4 : 3); n > 0; n--) functions.parts.push_back(function());
         Scope s;
-        for (const auto& [sort, names] : kBody) {
-            s.read[sort] = s.write[sort] = names;
-        }
+        for (const auto& [sort, names] : kBody) { s.read[sort] = s.write[sort] = names; }
         for (const char* n : {"u", "v", "k", "ua"}) s.read['F'].push_back(n);
         s.read['C'].push_back("kc");
         s.read['P'].push_back("kp");
@@ -148,12 +146,14 @@ private:
 
     /// Functions have all that a body has under the same names, some of it as parameters: pieces of text fit into both.
     Term function() {
-        Callable c{"f" + std::to_string(names_++) + "_@", std::vector<char>{'F', 'F', 'C', 'P', 'V', 'N', 'M', 'S', 'v'}[size_t(pick(9))],
+        Callable c{"f" + std::to_string(names_++) + "_@",
+                   std::vector<char>{'F', 'F', 'C', 'P', 'V', 'N', 'M', 'S', 'v'}[size_t(pick(9))],
                    {}};
         std::map<char, std::vector<std::string>> left = kBody;
         std::string parameters, locals = "float i0, i1, i2; ";
         const auto parameter = [&](char sort, const std::string& name, const std::string& suffix, bool output) {
-            parameters += (parameters.empty() ? "" : "; ") + std::string(output ? "output " : "") + typeName(sort) + " " + name + suffix;
+            parameters +=
+                (parameters.empty() ? "" : "; ") + std::string(output ? "output " : "") + typeName(sort) + " " + name + suffix;
             c.parameters.push_back({suffix.empty() ? sort : 'a', output});
         };
         for (int n = 1 + pick(4); n > 0; n--) {
@@ -168,7 +168,8 @@ private:
         else locals += "float a[4] = {0.5, 1}; ";
         locals += "color b[3] = 0.25; float h[] = {1, 2}; ";
         locals += kStructures;
-        static const std::map<char, const char*> kStart = {{'F', "0.75"}, {'C', "0.5"}, {'P', "1"}, {'V', "2"}, {'N', "0.5"}, {'M', "2"}, {'S', "\"a\""}};
+        static const std::map<char, const char*> kStart = {{'F', "0.75"}, {'C', "0.5"}, {'P', "1"},    {'V', "2"},
+                                                           {'N', "0.5"},  {'M', "2"},   {'S', "\"a\""}};
         for (const auto& [sort, names] : left)
             for (const std::string& n : names) locals += std::string(typeName(sort)) + " " + n + " = " + kStart.at(sort) + "; ";
         Scope s;
@@ -177,7 +178,8 @@ private:
         s.turns = 4; // it may be called in loops
         Term body{'l', "", {}, true};
         for (int n = 1 + pick(3); n > 0; n--) body.parts.push_back(statement(s, 1));
-        Term t{'d', std::string(typeName(c.result)) + " " + c.name + "(" + parameters + ") {\n" + locals + "/*member*/\n$", {body}};
+        Term t{
+            'd', std::string(typeName(c.result)) + " " + c.name + "(" + parameters + ") {\n" + locals + "/*member*/\n$", {body}};
         if (c.result != 'v') {
             t.text += "return $;\n";
             t.parts.push_back(value(c.result, s, 1));
@@ -198,7 +200,8 @@ private:
                {}};
         // Only what it has declared: the grammar's patterns know the names of bodies.
         const auto both = [&](char sort, const char* pattern) { return Term{sort, pattern, {leaf('F', s), leaf('F', s)}}; };
-        t.parts = {both('F', "($ * $)"), both('B', "$ < $"), both('F', "max($, $)"), leaf('C', s), leaf('S', s), both('F', "($ - $)")};
+        t.parts = {both('F', "($ * $)"), both('B', "$ < $"), both('F', "max($, $)"),
+                   leaf('C', s),         leaf('S', s),       both('F', "($ - $)")};
         callables_.push_back({"g_@", 'F', {{'F', false}, {'C', true}}});
         return t;
     }
@@ -224,7 +227,8 @@ private:
         if (s.result == 0 && pick(4) == 0) { // a counter that is the same for all points
             const std::string j = "j" + std::to_string(s.loops);
             inner.read['F'].back() = j;
-            return {'s', "for (" + j + " = 0; " + j + " < " + std::to_string(most) + "; " + j + " += 1) $", {block(inner, depth)}};
+            return {
+                's', "for (" + j + " = 0; " + j + " < " + std::to_string(most) + "; " + j + " += 1) $", {block(inner, depth)}};
         }
         const char bound = pick(2) ? 'U' : 'F';
         Term t{'s', "for (" + i + " = 0; " + i + " < " + std::to_string(most) + " && " + i + " < $; " + i + " += 1) $", {}};
@@ -261,28 +265,31 @@ private:
         }
         switch (kind) {
         case 6:
-            return fill('s', any(std::vector<std::string>{"a[$I] = $F;", "a[2] += $F;", "b[$I] = $C;", "b[1] *= $C;", "a[$I] -= $F;",
-                                                          "h[$I] = $F;", "a = {$F, 2, $F, 0};"}),
+            return fill('s',
+                        any(std::vector<std::string>{"a[$I] = $F;", "a[2] += $F;", "b[$I] = $C;", "b[1] *= $C;", "a[$I] -= $F;",
+                                                     "h[$I] = $F;", "a = {$F, 2, $F, 0};"}),
                         s, 1);
         case 7:
-            return fill('s', any(std::vector<std::string>{"c[$I] = $F;", "p[1] = $F;", "setcomp(c, $F, $F);", "setxcomp(p, $F);",
-                                                          "setzcomp(r, $F);", "setcomp(m, $F, 2, $F);", "n[0] += $F;", "d[$I] *= $F;"}),
-                        s, 1);
+            return fill(
+                's',
+                any(std::vector<std::string>{"c[$I] = $F;", "p[1] = $F;", "setcomp(c, $F, $F);", "setxcomp(p, $F);",
+                                             "setzcomp(r, $F);", "setcomp(m, $F, 2, $F);", "n[0] += $F;", "d[$I] *= $F;"}),
+                s, 1);
         case 8:
-            return fill('s', any(std::vector<std::string>{"if (arraylength(h) < 6) push(h, $F);", "if (arraylength(h) > 1) x = pop(h);",
-                                                          "if (arraylength(h) > 2 && ($B)) z += pop(h);",
-                                                          "z = capacity(h) > 3 ? $F : 1;"}),
-                        s, 1);
+            return fill(
+                's',
+                any(std::vector<std::string>{"if (arraylength(h) < 6) push(h, $F);", "if (arraylength(h) > 1) x = pop(h);",
+                                             "if (arraylength(h) > 2 && ($B)) z += pop(h);", "z = capacity(h) > 3 ? $F : 1;"}),
+                s, 1);
         case 9:
-            return fill('s', any(std::vector<std::string>{"{ float x = $F; y += x * $F; x += 1; z -= x; }",
-                                                          "{ color c = $C; d = c * $F; }",
-                                                          "{ float g[3] = {$F, $F, $F}; x = g[$I] + g[0]; }",
-                                                          "{ string g[2] = {$T, $T}; st = g[$I]; }",
-                                                          "one->f = $F;", "one->c *= $C;", "three[$I]->f += $F;", "one = three[$I];",
-                                                          "three[$I] = one;", "one = two;", "two->twist(x, $F);", "two->g[$I] = $F;",
-                                                          "two->twist(y, z);", "{ Deep other = two; other->f = $F; x = other->add(y); }",
-                                                          "spread(two, $F);", "if (arraylength(four) < 4) push(four, one);",
-                                                          "if (arraylength(four) > 0) one = pop(four);"}),
+            return fill('s',
+                        any(std::vector<std::string>{
+                            "{ float x = $F; y += x * $F; x += 1; z -= x; }", "{ color c = $C; d = c * $F; }",
+                            "{ float g[3] = {$F, $F, $F}; x = g[$I] + g[0]; }", "{ string g[2] = {$T, $T}; st = g[$I]; }",
+                            "one->f = $F;", "one->c *= $C;", "three[$I]->f += $F;", "one = three[$I];", "three[$I] = one;",
+                            "one = two;", "two->twist(x, $F);", "two->g[$I] = $F;", "two->twist(y, z);",
+                            "{ Deep other = two; other->f = $F; x = other->add(y); }", "spread(two, $F);",
+                            "if (arraylength(four) < 4) push(four, one);", "if (arraylength(four) > 0) one = pop(four);"}),
                         s, 1);
         case 10:
         case 11:
@@ -414,7 +421,8 @@ std::string shaderOf(const std::vector<Term>& all, bool object) {
         functions += text;
         for (const auto& [name, type] : outputs(n))
             parameters += "output varying " + type + " " + name + " = " + (type == "string" ? "\"\"" : "0") + ";\n";
-        body += "{ uniform float j0, j1, j2; float x = 0.1, y = u, z = -v, i0, i1, i2; color c = 0.5, d = color(u, v, 0.25); point p = P, w = point(1, u, -1);\n"
+        body += "{ uniform float j0, j1, j2; float x = 0.1, y = u, z = -v, i0, i1, i2; color c = 0.5, d = color(u, v, 0.25); "
+                "point p = P, w = point(1, u, -1);\n"
                 "vector r = vector(v, 1, u); normal n = normal(0, u, 1); matrix m = 1; string st = \"a\";\n"
                 "float a[4] = {1, 2, -3, 0.5}; color b[3] = {color(1), color(u, 0, 1)}; float h[] = {4, 5, 6};\n";
         body += kStructures;
@@ -422,14 +430,24 @@ std::string shaderOf(const std::vector<Term>& all, bool object) {
         const std::string member = "mf_" + std::to_string(n);
         members += "varying float " + member + " = 0.5;\n";
         const std::string first = object ? "color(x + " + member + ", y, z)" : "color(x, y, z)";
-        const char* values[] = {first.c_str(), "c", "d + one->c * two->f + three[1]->c", "p", "w", "r", "n", "color(a[0], a[1], a[2] - a[3])",
-                                "b[0] + b[1] * b[2]", "m", "st"};
+        const char* values[] = {first.c_str(),
+                                "c",
+                                "d + one->c * two->f + three[1]->c",
+                                "p",
+                                "w",
+                                "r",
+                                "n",
+                                "color(a[0], a[1], a[2] - a[3])",
+                                "b[0] + b[1] * b[2]",
+                                "m",
+                                "st"};
         const auto names = outputs(n);
         for (size_t q = 0; q < names.size(); q++) body += names[q].first + " = " + values[q] + ";\n";
         body += "}\n";
     }
     if (object)
-        return kTypes + ("class random(" + parameters) + ") {\n" + members + functions + "public void surface(output color Ci, Oi) {\n" + body + "}\n}\n";
+        return kTypes + ("class random(" + parameters) + ") {\n" + members + functions +
+               "public void surface(output color Ci, Oi) {\n" + body + "}\n}\n";
     return kTypes + functions + "surface random(" + parameters + ") {\n" + body + "}\n";
 }
 

@@ -29,8 +29,11 @@ namespace {
 
 /// A variable, a member, or an element by a number.
 bool looksOnly(const std::string& expression) {
-    return std::all_of(expression.begin(), expression.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '[' || c == ']' || c == '-' || c == '>'; }) &&
-           !expression.empty() && !std::isdigit(static_cast<unsigned char>(expression[0])) && expression.find("--") == std::string::npos;
+    return std::all_of(
+               expression.begin(), expression.end(),
+               [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '[' || c == ']' || c == '-' || c == '>'; }) &&
+           !expression.empty() && !std::isdigit(static_cast<unsigned char>(expression[0])) &&
+           expression.find("--") == std::string::npos;
 }
 
 const char* const kVeil = "float veil(float x) { return (u < 2) ? x : x + 1; }\n";
@@ -194,7 +197,8 @@ TEST_P(Language, Snippets) {
         names.push_back("r" + std::to_string(cases.size()));
         parameters += "output varying " + type + " " + names.back() + " = " + zero + ";\n";
         // What only looks at variables shares the block of the case before it with the same setup: there is less to compile.
-        const bool shared = !cases.empty() && cases.back()->setup == e.setup && looksOnly(cases.back()->expression) && looksOnly(e.expression);
+        const bool shared =
+            !cases.empty() && cases.back()->setup == e.setup && looksOnly(cases.back()->expression) && looksOnly(e.expression);
         const auto put = [&](std::string& body, const std::string& expression) {
             if (shared) body.resize(body.size() - 2); // the end of that block
             else body += "{ " + e.setup + "\n";

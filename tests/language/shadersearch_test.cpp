@@ -1,4 +1,5 @@
-// Shaders that share a file are found by their own names; how much is looked at on the way is limited, as are the lines of messages.
+// Shaders that share a file are found by their own names; how much is looked at on the way is limited, as are the lines of
+// messages.
 #include "base/limits.h"
 #include "rsl/compiler.h"
 #include "rsl/shadersearch.h"
@@ -26,7 +27,8 @@ struct Folder {
 TEST(ShaderSearch, DeclarationsCountTextInCommentsAndStringsDoesNot) {
     EXPECT_TRUE(declaresShader("light\n  lamp (float k = 1;) {}", "lamp"));
     EXPECT_TRUE(declaresShader("surface a() {} /* x */ class /* y */ b(float k = 1;) {}", "b"));
-    for (const char* text : {"// surface b() {}\nsurface a() {}", "/* surface b() */", "string s = \"surface b()\";", "surface bb() {}", "surface b;", "float b() { return 1; }"})
+    for (const char* text : {"// surface b() {}\nsurface a() {}", "/* surface b() */", "string s = \"surface b()\";",
+                             "surface bb() {}", "surface b;", "float b() { return 1; }"})
         EXPECT_FALSE(declaresShader(text, "b")) << text;
 }
 

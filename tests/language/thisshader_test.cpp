@@ -1,5 +1,5 @@
-// `this` as a value: handed to functions, to co-shaders, kept in variables and arrays; what others call back; what members of a type that
-// is not known until they are bound give to format().
+// `this` as a value: handed to functions, to co-shaders, kept in variables and arrays; what others call back; what members of a
+// type that is not known until they are bound give to format().
 #include "points.h"
 #include "rsl/compiler.h"
 #include <algorithm>
@@ -24,7 +24,8 @@ class layer(float gain = 5;)
 })";
 
 /// Outputs of a class whose method surface() has this body, with one layer (gain 7) under the handle "coat".
-std::vector<float> shade(const std::string& body, const std::string& outputs, const std::vector<std::string>& names, Diagnostics& d, int lanes = 16) {
+std::vector<float> shade(const std::string& body, const std::string& outputs, const std::vector<std::string>& names,
+                         Diagnostics& d, int lanes = 16) {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
     ShaderCompiler compiler(settings);
@@ -35,7 +36,9 @@ std::vector<float> shade(const std::string& body, const std::string& outputs, co
     public float twice(float x) { count += 1; return x * 2; }
     public float around(shader who) { return who->round(this); }
     float gainOf(shader who) { return who->gain; }
-    public void surface(output color Ci, Oi) { )" + body + "}\n}", "asker.sl", d);
+    public void surface(output color Ci, Oi) { )" +
+                                               body + "}\n}",
+                                           "asker.sl", d);
     if (!layer || !surface) return {};
     KernelOptions o;
     o.lanes = lanes;
@@ -75,9 +78,11 @@ TEST(ThisShader, IsAHandleLikeOthers) {
 
 TEST(ThisShader, GetvarAndHasmethod) {
     Diagnostics d;
-    EXPECT_EQ(shade(R"(float v = 0; float found = getvar(this, "count", v); a = found * 10 + v; b = hasmethod(this, "twice") * 10 + hasmethod(this, "gainOf");)",
-                    "output varying float a = 0, b = 0;", {"a", "b"}, d),
-              (Values{13, 10}));
+    EXPECT_EQ(
+        shade(
+            R"(float v = 0; float found = getvar(this, "count", v); a = found * 10 + v; b = hasmethod(this, "twice") * 10 + hasmethod(this, "gainOf");)",
+            "output varying float a = 0, b = 0;", {"a", "b"}, d),
+        (Values{13, 10}));
     EXPECT_EQ(d.errors(), 0);
 }
 
@@ -102,7 +107,8 @@ TEST(ThisShader, PrintsOfConstructAreMarked) {
         public void construct() { printf("constructed\n"); helper(); }
         void helper() { printf("helped\n"); }
         public void begin() { printf("begun %f\n", u); }
-        public void surface(output color Ci, Oi) { printf("shaded\n"); helper(); } })", "talker.sl", d);
+        public void surface(output color Ci, Oi) { printf("shaded\n"); helper(); } })",
+                                          "talker.sl", d);
     ASSERT_TRUE(shader);
     const auto kernel = compiler.kernel(shader, {}, d);
     ASSERT_TRUE(kernel);
@@ -121,7 +127,9 @@ TEST(ThisShader, WhatItHasNotIsAnError) {
 
 /// The error stands at the call that closes the circle, the first time round, and tells the way.
 TEST(ThisShader, CirclesEndWhereTheyClose) {
-    struct { const char *body, *file, *way; } const circles[] = {
+    struct {
+        const char *body, *file, *way;
+    } const circles[] = {
         {"shader me = this; me->surface(Ci, Oi);", "asker.sl", ": surface() > surface()"},
         {"shader coat = getshader(\"coat\"); a = coat->round(this);", "asker.sl", ": coat->round() > around() > coat->round()"},
         {"shader coat = getshader(\"coat\"); a = around(coat);", "layer.sl", ": around() > coat->round() > around()"}};

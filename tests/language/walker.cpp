@@ -221,7 +221,8 @@ private:
         }
     }
 
-    /// While it lives the indices of a place, and of the same place written a second time, keep their values: they are computed once.
+    /// While it lives the indices of a place, and of the same place written a second time, keep their values: they are computed
+    /// once.
     struct Held {
         Walker& walker;
         std::vector<const Expr*> indices{};
@@ -336,7 +337,8 @@ private:
         statement(*f.body);
         const Walked r = std::exchange(result_, around);
         for (size_t i = 0; i < f.parameters.size(); i++)
-            if (f.parameters[i]->output && !f.parameters[i]->type.array && e.args[i]->kind != ExprKind::Variable) store(*e.args[i], given[i]->value);
+            if (f.parameters[i]->output && !f.parameters[i]->type.array && e.args[i]->kind != ExprKind::Variable)
+                store(*e.args[i], given[i]->value);
         return r;
     }
 

@@ -1,5 +1,6 @@
-// A second evaluator of the language, slow and simple: it walks the checked tree at one point, statement by statement, as a reader of
-// the text would. It shares the front end with the renderer and nothing behind it: no IR, no passes, no lanes, no masks.
+// A second evaluator of the language, slow and simple: it walks the checked tree at one point, statement by statement, as a
+// reader of the text would. It shares the front end with the renderer and nothing behind it: no IR, no passes, no lanes, no
+// masks.
 #pragma once
 #include "rsl/front/ast.h"
 #include <array>
@@ -26,13 +27,14 @@ struct WalkedLights {
     std::function<bool(const float* L, const float* axis, float angle)> lit;
 };
 
-/// Runs a shader whose parameters have their defaults; the final values of its output parameters by name. Throws std::runtime_error
-/// at what it does not know (lights where none are given, rays, named spaces, derivatives) and after too many steps.
+/// Runs a shader whose parameters have their defaults; the final values of its output parameters by name. Throws
+/// std::runtime_error at what it does not know (lights where none are given, rays, named spaces, derivatives) and after too many
+/// steps.
 std::map<std::string, Walked> walk(const Shader&, const WalkerInput&, const WalkedLights& = {});
 
-/// A pure shadeop by its definition over single floats (walker_shadeops.cpp); output arguments change in place. Elementary functions,
-/// noise, colour spaces and the inverse of a matrix come from the shadeop's own code at one point, which tests/shadeops holds against
-/// double precision and closed forms. Throws for others.
+/// A pure shadeop by its definition over single floats (walker_shadeops.cpp); output arguments change in place. Elementary
+/// functions, noise, colour spaces and the inverse of a matrix come from the shadeop's own code at one point, which
+/// tests/shadeops holds against double precision and closed forms. Throws for others.
 Walked walkShadeop(const Shadeop&, const Signature&, std::vector<Walked>& arguments);
 
 /// Product and the rules by which points, vectors and normals transform; row vectors.

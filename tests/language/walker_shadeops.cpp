@@ -1,10 +1,10 @@
-// Shadeops by their definitions, one float at a time. Where a definition says how it is rounded (one fused multiplication here, two
-// roundings there) it is written so; nothing here comes in lanes or carries derivatives.
+// Shadeops by their definitions, one float at a time. Where a definition says how it is rounded (one fused multiplication here,
+// two roundings there) it is written so; nothing here comes in lanes or carries derivatives.
 #include "walker.h"
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <cstdio>
+#include <cstring>
 #include <regex>
 #include <stdexcept>
 
@@ -232,7 +232,9 @@ const std::map<std::string, Definition>& definitions() {
         {"mod", each(modulo)},
         {"min", each(lesser)},
         {"max", each(greater)},
-        {"clamp", each([](float x, float lo, float hi) { return x < lo ? lo : x > hi ? hi : x; })},
+        {"clamp", each([](float x, float lo, float hi) { return x < lo   ? lo
+                                                                : x > hi ? hi
+                                                                         : x; })},
         {"step", each([](float edge, float x) { return x < edge ? 0.0f : 1.0f; })},
         {"smoothstep", each(smooth)},
         {"mix", each(blend)},
@@ -242,38 +244,46 @@ const std::map<std::string, Definition>& definitions() {
         {"setxcomp", setComponent(0)},
         {"setycomp", setComponent(1)},
         {"setzcomp", setComponent(2)},
-        {"comp", [](Arguments& a) {
+        {"comp",
+         [](Arguments& a) {
              if (a[0].base == Base::Matrix)
                  return real(a[0].n[size_t(clampedIndex(a[1].n[0], 3) * 4 + clampedIndex(a[2].n[0], 3))]);
              return real(a[0].n[size_t(clampedIndex(a[1].n[0], 2))]);
          }},
-        {"setcomp", [](Arguments& a) {
+        {"setcomp",
+         [](Arguments& a) {
              if (a[0].base == Base::Matrix)
                  a[0].n[size_t(clampedIndex(a[1].n[0], 3) * 4 + clampedIndex(a[2].n[0], 3))] = a[3].n[0];
              else a[0].n[size_t(clampedIndex(a[1].n[0], 2))] = a[2].n[0];
              return Walked{};
          }},
-        {"luminance", [](Arguments& a) {
-             return real(a[0].n[0] * 0.2126f + (a[0].n[1] * 0.7152f + a[0].n[2] * 0.0722f));
-         }},
+        {"luminance", [](Arguments& a) { return real(a[0].n[0] * 0.2126f + (a[0].n[1] * 0.7152f + a[0].n[2] * 0.0722f)); }},
         {"length", [](Arguments& a) { return real(length(three(a[0]))); }},
         {"distance", [](Arguments& a) { return real(length(minus(three(a[1]), three(a[0])))); }},
-        {"normalize", [](Arguments& a) { const V3 v = times(three(a[0]), midRange(three(a[0]))); return tuple(times(v, over(1, root(dot(v, v))))); }},
+        {"normalize",
+         [](Arguments& a) {
+             const V3 v = times(three(a[0]), midRange(three(a[0])));
+             return tuple(times(v, over(1, root(dot(v, v)))));
+         }},
         {"ptlined", [](Arguments& a) { return real(segmentDistance(three(a[0]), three(a[1]), three(a[2]))); }},
-        {"reflect", [](Arguments& a) {
+        {"reflect",
+         [](Arguments& a) {
              const V3 i = three(a[0]), n = three(a[1]);
              const float k = dot(i, n) * -2;
              return tuple({std::fma(n[0], k, i[0]), std::fma(n[1], k, i[1]), std::fma(n[2], k, i[2])});
          }},
         {"refract", [](Arguments& a) { return tuple(refracted(three(a[0]), three(a[1]), a[2].n[0])); }},
-        {"translate", [](Arguments& a) {
+        {"translate",
+         [](Arguments& a) {
              Walked r = a[0];
              const auto at = [&](size_t row, size_t c) { return a[0].n[row * 4 + c]; };
              for (size_t c = 0; c < 4; c++)
-                 r.n[12 + c] = std::fma(a[1].n[0], at(0, c), std::fma(a[1].n[1], at(1, c), std::fma(a[1].n[2], at(2, c), at(3, c))));
+                 r.n[12 + c] =
+                     std::fma(a[1].n[0], at(0, c), std::fma(a[1].n[1], at(1, c), std::fma(a[1].n[2], at(2, c), at(3, c))));
              return r;
          }},
-        {"scale", [](Arguments& a) {
+        {"scale",
+         [](Arguments& a) {
              Walked r = a[0];
              for (size_t i = 0; i < 12; i++) r.n[i] = a[1].n[i / 4] * a[0].n[i];
              return r;
@@ -285,14 +295,14 @@ const std::map<std::string, Definition>& definitions() {
         {"ctransform", colourSpace},
         {"spline", spline},
         {"format", format},
-        {"concat", [](Arguments& a) {
+        {"concat",
+         [](Arguments& a) {
              Walked r = a[0];
              for (size_t i = 1; i < a.size(); i++) r.s += a[i].s;
              return r;
          }},
-        {"match", [](Arguments& a) {
-             return real(std::regex_search(a[1].s, std::regex(a[0].s, std::regex::extended)) ? 1.0f : 0.0f);
-         }},
+        {"match",
+         [](Arguments& a) { return real(std::regex_search(a[1].s, std::regex(a[0].s, std::regex::extended)) ? 1.0f : 0.0f); }},
     };
     return all;
 }

@@ -1,5 +1,5 @@
-// Random programs: machine code against the walker, at every width, in both builds, optimised and not, functions inlined and called. A
-// difference is made as small as RapidCheck can make it before it is shown.
+// Random programs: machine code against the walker, at every width, in both builds, optimised and not, functions inlined and
+// called. A difference is made as small as RapidCheck can make it before it is shown.
 #include "../sanitized.h"
 #include "points.h"
 #include "programs.h"
@@ -65,7 +65,8 @@ struct Machine {
         Results expected;
         try {
             for (int p = 0; p < kPoints; p++)
-                expected.push_back(walk(shader->shader(), [&](const std::string& name, int c) { return input(name, c, p); }, testLights()));
+                expected.push_back(
+                    walk(shader->shader(), [&](const std::string& name, int c) { return input(name, c, p); }, testLights()));
         } catch (const std::runtime_error& e) { // no program: what asks for a light was torn out of its loop
             compiles = false;
             return e.what();
@@ -83,7 +84,8 @@ struct Machine {
             if (!runPoints(*kernel, o.mixed, kPoints, at, defaults, got, d)) return describe(o) + ": it suspends";
             for (size_t k = 0; k < got.size(); k++)
                 for (size_t x = 0; x < got[k].size(); x++)
-                    if (const std::string s = difference(kernel->outputs()[k], got[k][x], x / kPoints, expected[x % kPoints]); !s.empty())
+                    if (const std::string s = difference(kernel->outputs()[k], got[k][x], x / kPoints, expected[x % kPoints]);
+                        !s.empty())
                         return describe(o) + ", point " + std::to_string(x % kPoints) + ": " + s;
         }
         return {};
@@ -133,8 +135,8 @@ struct Turn {
     bool object = false;
 };
 
-/// All take their turns in first place, and at night every pair of them comes. Code that is not optimised costs half: every day it is
-/// the second.
+/// All take their turns in first place, and at night every pair of them comes. Code that is not optimised costs half: every day
+/// it is the second.
 Turn turnOf(int batch, bool night) {
     const std::vector<KernelOptions> all = configurations();
     const size_t n = all.size(), b = size_t(batch);
@@ -148,7 +150,8 @@ Turn turnOf(int batch, bool night) {
     return t;
 }
 
-// Every width, build and level has its turn every day; at night with shaders and with classes, and every two have the same program.
+// Every width, build and level has its turn every day; at night with shaders and with classes, and every two have the same
+// program.
 TEST(RandomTurns, EveryConfigurationHasItsTurn) {
     const size_t all = configurations().size();
     for (const bool night : {false, true}) {
@@ -211,20 +214,23 @@ std::string walkSnippet(ShaderCompiler& compiler, const Expectation& e) {
         if (!e.type.empty() && e.type != type) continue;
         Diagnostics quiet;
         const bool text = std::string(type) == "string";
-        const auto shader = compiler.loadText(std::string("surface s(output varying ") + type + " walked = " + (text ? "\"\"" : "0") + ";) { " +
-                                                  e.setup + "\n walked = (" + e.expression + "); }\n",
-                                              "snippet", quiet);
+        const auto shader =
+            compiler.loadText(std::string("surface s(output varying ") + type + " walked = " + (text ? "\"\"" : "0") + ";) { " +
+                                  e.setup + "\n walked = (" + e.expression + "); }\n",
+                              "snippet", quiet);
         if (!shader) continue;
         Walked w;
         try {
-            w = walk(shader->shader(), [](const std::string& name, int component) {
-                    float v = 0;
-                    EvaluationPoint::value(name, component, 0, v);
-                    return v;
-                }, testLights()).at("walked");
-        } catch (const std::runtime_error&) {
-            return "?";
-        }
+            w = walk(
+                    shader->shader(),
+                    [](const std::string& name, int component) {
+                        float v = 0;
+                        EvaluationPoint::value(name, component, 0, v);
+                        return v;
+                    },
+                    testLights())
+                    .at("walked");
+        } catch (const std::runtime_error&) { return "?"; }
         if (text) return w.s == e.value ? "" : "\"" + w.s + "\"";
         std::istringstream in(e.value);
         std::vector<std::string> words;

@@ -52,7 +52,10 @@ TEST(AttackLights, WhatALightAsksAboutTheSurface) {
     writeShader("attackname",
                 "light attackname(string which = \"Kd\";) { string w = concat(which, \"\"); float q = 1; surface(w, q); "
                 "solar(vector \"world\" (0, 0, 1), 0) Cl = q; }\n");
-    struct Case { const char *before, *light, *after; float want; };
+    struct Case {
+        const char *before, *light, *after;
+        float want;
+    };
     for (const Case& one : {Case{"Atmosphere \"attackhaze\" \"density\" [3]\n", "attackair", "", 3},
                             {"", "attackair", "", 1},
                             {"LightSource \"pointlight\" \"key\" \"intensity\" [0]\n", "attackone", "", 0},

@@ -178,7 +178,8 @@ TEST(GeometryLimits, EditsOfSubdivisionSurfaces) {
 }
 
 TEST(GeometryLimits, PatternsOfSubdivisionSurfaces) {
-    // Creases of many degrees give nearly every face a neighbourhood of its own, some of 1 MiB: kLimitPatternBytes ends that, and says so.
+    // Creases of many degrees give nearly every face a neighbourhood of its own, some of 1 MiB: kLimitPatternBytes ends that, and
+    // says so.
     Diagnostics d;
     auto p = subdivision(40, "SubdivisionMesh", {"interpolateboundary"});
     p->ints3 = {0, 0};

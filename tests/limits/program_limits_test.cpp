@@ -95,8 +95,8 @@ TEST_F(ProgramLimits, MemoryWhileShadersAreCompiled) {
         for (size_t at; (at = s.find("\"matte\"")) != std::string::npos;) s.replace(at, 7, "\"own\"");
         write("s.rib", s);
         write("old.png", old);
-        shell("ulimit -v " + std::to_string(kilobytes) + "; ALPENGLOW_CACHE=$PWD/cache '" ALPENGLOW_PROGRAM
-              "' render --progress none --threads 1 -o old.png s.rib");
+        shell("ulimit -v " + std::to_string(kilobytes) +
+              "; ALPENGLOW_CACHE=$PWD/cache '" ALPENGLOW_PROGRAM "' render --progress none --threads 1 -o old.png s.rib");
         if (status == 127) continue;
         EXPECT_TRUE(status == 0 || status == 4) << status << " with " << kilobytes << " kB: " << err;
         EXPECT_TRUE(status == 0 || read("old.png") == old) << kilobytes << " kB";

@@ -1,5 +1,5 @@
-// The oracle: a plain path tracer of the Muttenzer box. Planes and spheres met in double, materials and light written out. It shares
-// nothing with the renderer but the arithmetic of C++. World space, right-handed, y up (reference muttenzer_box.md).
+// The oracle: a plain path tracer of the Muttenzer box. Planes and spheres met in double, materials and light written out. It
+// shares nothing with the renderer but the arithmetic of C++. World space, right-handed, y up (reference muttenzer_box.md).
 // box_oracle_embree.h has a second way to meet the box, for box_bench.
 #pragma once
 #include <array>
@@ -9,7 +9,9 @@
 
 namespace oracle {
 
-struct V { double x = 0, y = 0, z = 0; };
+struct V {
+    double x = 0, y = 0, z = 0;
+};
 inline V operator+(V a, V b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline V operator-(V a, V b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline V operator*(V a, double s) { return {a.x * s, a.y * s, a.z * s}; }
@@ -18,7 +20,12 @@ inline double dot(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline V unit(V a) { return a * (1 / std::sqrt(dot(a, a))); }
 
 enum Material { Diffuse, Mirror, Glass, Light };
-struct Hit { double t = 1e30; V p, n; Material m = Diffuse; V albedo; };
+struct Hit {
+    double t = 1e30;
+    V p, n;
+    Material m = Diffuse;
+    V albedo;
+};
 
 /// The way to meet that knows the box: each plane and sphere asked in turn, in double. The tests' way.
 struct Analytic {
@@ -40,7 +47,8 @@ struct Analytic {
             if (!(t > 1e-9) || t >= h.t) return;
             V p = o + d * t;
             const double e = 1e-9;
-            if (p.x < -1.48 - e || p.x > 1.48 + e || p.y < -1.25 - e || p.y > 1.19 + e || p.z < -1.55 - e || p.z > 1.79 + e) return;
+            if (p.x < -1.48 - e || p.x > 1.48 + e || p.y < -1.25 - e || p.y > 1.19 + e || p.z < -1.55 - e || p.z > 1.79 + e)
+                return;
             h = {t, p, {axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0}, Diffuse, albedo};
         };
         V grey{.75, .75, .75};
@@ -81,8 +89,8 @@ struct Analytic {
 
 /// The path tracer over any way to meet.
 template <class Meet> struct Tracer : Meet {
-    bool indirect = true; ///< false: direct light only
-    int freeBounces = 4;  ///< roulette decides behind hits past this one (the camera's hit is 0)
+    bool indirect = true;      ///< false: direct light only
+    int freeBounces = 4;       ///< roulette decides behind hits past this one (the camera's hit is 0)
     bool rootRoulette = false; ///< the chance to go on is 1.5 sqrt(throughput), the renderer's rule; false: the throughput
     static constexpr double kLe = 7;
     using Meet::meet, Meet::hides, Meet::kOff;
@@ -183,7 +191,11 @@ using Box = Tracer<Analytic>;
 struct Mean {
     double n = 0;
     V s, q;
-    void add(V v) { n++; s = s + v; q = q + v * v; }
+    void add(V v) {
+        n++;
+        s = s + v;
+        q = q + v * v;
+    }
     V mean() const { return s * (1 / n); }
     V se() const {
         V m = mean(), e = q * (1 / n) - m * m;

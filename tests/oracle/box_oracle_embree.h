@@ -1,5 +1,5 @@
-// The oracle's second way to meet the box: through Embree, as a renderer that does not know that the scene is a box has to. The twelve
-// triangles and two of Embree's own spheres, robust flag, one ray at a time, in float; what is shaded stays the oracle's.
+// The oracle's second way to meet the box: through Embree, as a renderer that does not know that the scene is a box has to. The
+// twelve triangles and two of Embree's own spheres, robust flag, one ray at a time, in float; what is shaded stays the oracle's.
 #pragma once
 #include "oracle/box_oracle.h"
 #include <algorithm>
@@ -16,10 +16,12 @@ public:
     ThroughEmbree() : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_.get())) {
         // Corners in turn; the normal is that of the side the oracle lights.
         const float x = 1.48f, lo = -1.25f, hi = 1.19f, back = -1.55f, front = 1.79f, lamp = 1.18f;
-        const float quads[6][4][3] = {
-            {{-x, lo, front}, {x, lo, front}, {x, lo, back}, {-x, lo, back}}, {{-x, hi, back}, {x, hi, back}, {x, hi, front}, {-x, hi, front}},
-            {{-x, lo, back}, {x, lo, back}, {x, hi, back}, {-x, hi, back}},   {{-x, lo, front}, {-x, lo, back}, {-x, hi, back}, {-x, hi, front}},
-            {{x, lo, back}, {x, lo, front}, {x, hi, front}, {x, hi, back}},   {{-.5f, lamp, -.075f}, {.5f, lamp, -.075f}, {.5f, lamp, .575f}, {-.5f, lamp, .575f}}};
+        const float quads[6][4][3] = {{{-x, lo, front}, {x, lo, front}, {x, lo, back}, {-x, lo, back}},
+                                      {{-x, hi, back}, {x, hi, back}, {x, hi, front}, {-x, hi, front}},
+                                      {{-x, lo, back}, {x, lo, back}, {x, hi, back}, {-x, hi, back}},
+                                      {{-x, lo, front}, {-x, lo, back}, {-x, hi, back}, {-x, hi, front}},
+                                      {{x, lo, back}, {x, lo, front}, {x, hi, front}, {x, hi, back}},
+                                      {{-.5f, lamp, -.075f}, {.5f, lamp, -.075f}, {.5f, lamp, .575f}, {-.5f, lamp, .575f}}};
         RTCGeometry g = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 24));
         auto* i = static_cast<unsigned*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, 12));
@@ -69,8 +71,16 @@ public:
     }
 
 private:
-    struct Ball { V centre; double radius; Material material; };
-    struct Wall { V n; Material material; V albedo; };
+    struct Ball {
+        V centre;
+        double radius;
+        Material material;
+    };
+    struct Wall {
+        V n;
+        Material material;
+        V albedo;
+    };
     static constexpr Ball kBalls[2] = {{{-.65, -.75, -.55}, .5, Mirror}, {{.73, -.80, .10}, .45, Glass}};
     static constexpr Wall kWalls[6] = {{{0, 1, 0}, Diffuse, {.75, .75, .75}},  {{0, -1, 0}, Diffuse, {.75, .75, .75}},
                                        {{0, 0, 1}, Diffuse, {.75, .75, .75}},  {{1, 0, 0}, Diffuse, {.75, .25, .25}},

@@ -1,5 +1,5 @@
-// The oracle itself against the published figures of the box (reference muttenzer_box.md: standard error below 0.0002, figures to four
-// digits). Two-sided z at alpha 2e-6 is 4.753.
+// The oracle itself against the published figures of the box (reference muttenzer_box.md: standard error below 0.0002, figures to
+// four digits). Two-sided z at alpha 2e-6 is 4.753.
 #include "oracle/box_oracle_embree.h"
 #include <gtest/gtest.h>
 #include <string_view>
@@ -8,18 +8,58 @@ using namespace oracle;
 
 namespace {
 
-struct Place { const char* name; V p, n, albedo, direct, empty, full; double seFull; };
+struct Place {
+    const char* name;
+    V p, n, albedo, direct, empty, full;
+    double seFull;
+};
 const Place kPlaces[] = {
-    {"floor", {0, -1.25, .25}, {0, 1, 0}, {.75, .75, .75}, {.1769, .1769, .1769}, {.2415, .2164, .2416}, {.2535, .2308, .2586}, 2e-4},
-    {"far wall", {0, 0, -1.55}, {0, 0, 1}, {.75, .75, .75}, {.1055, .1055, .1055}, {.1846, .1592, .1847}, {.1862, .1628, .1904}, 2e-4},
-    {"red wall", {-1.48, 0, 0}, {1, 0, 0}, {.75, .25, .25}, {.1434, .0478, .0478}, {.2209, .0689, .0787}, {.2258, .0694, .0792}, 2e-4},
+    {"floor",
+     {0, -1.25, .25},
+     {0, 1, 0},
+     {.75, .75, .75},
+     {.1769, .1769, .1769},
+     {.2415, .2164, .2416},
+     {.2535, .2308, .2586},
+     2e-4},
+    {"far wall",
+     {0, 0, -1.55},
+     {0, 0, 1},
+     {.75, .75, .75},
+     {.1055, .1055, .1055},
+     {.1846, .1592, .1847},
+     {.1862, .1628, .1904},
+     2e-4},
+    {"red wall",
+     {-1.48, 0, 0},
+     {1, 0, 0},
+     {.75, .25, .25},
+     {.1434, .0478, .0478},
+     {.2209, .0689, .0787},
+     {.2258, .0694, .0792},
+     2e-4},
     {"ceiling", {1, 1.19, .25}, {0, -1, 0}, {.75, .75, .75}, {0, 0, 0}, {.0805, .0640, .1079}, {.0881, .0725, .1180}, 2e-4},
-    {"caustic", {.73, -1.25, .1}, {0, 1, 0}, {.75, .75, .75}, {.1501, .1501, .1501}, {.2093, .1912, .2286}, {.4912, .4804, .5069}, 9e-4},
+    {"caustic",
+     {.73, -1.25, .1},
+     {0, 1, 0},
+     {.75, .75, .75},
+     {.1501, .1501, .1501},
+     {.2093, .1912, .2286},
+     {.4912, .4804, .5069},
+     9e-4},
 };
 
 void compare(const char* what, V got, V se, V want, double wantSe) {
     for (int c = 0; c < 3; ++c) {
-        double g = c == 0 ? got.x : c == 1 ? got.y : got.z, s = c == 0 ? se.x : c == 1 ? se.y : se.z, w = c == 0 ? want.x : c == 1 ? want.y : want.z;
+        double g = c == 0   ? got.x
+                   : c == 1 ? got.y
+                            : got.z,
+               s = c == 0   ? se.x
+                   : c == 1 ? se.y
+                            : se.z,
+               w = c == 0   ? want.x
+                   : c == 1 ? want.y
+                            : want.z;
         // The figures are rounded to 5e-5 on top of their standard error.
         double z = (std::fabs(g - w) - 5e-5) / std::sqrt(s * s + wantSe * wantSe);
         EXPECT_LT(z, 4.753) << what << " channel " << c << ": " << g << " +- " << s << ", reference " << w;
@@ -61,8 +101,8 @@ TEST(Oracle, FrameMeans) {
     }
 }
 
-// From points of the room and of the inside of both spheres, in all directions. Embree meets in float: coordinates here are below 2, so t
-// is off by some 1e-6 over the cosine; rays that pass an edge or a rim within that may meet its other side.
+// From points of the room and of the inside of both spheres, in all directions. Embree meets in float: coordinates here are below
+// 2, so t is off by some 1e-6 over the cosine; rays that pass an edge or a rim within that may meet its other side.
 TEST(Oracle, EmbreeMeetsTheSame) {
     Analytic analytic;
     ThroughEmbree embree;
@@ -77,7 +117,8 @@ TEST(Oracle, EmbreeMeetsTheSame) {
         bool ma = analytic.meet(o, d, a), me = embree.meet(o, d, e);
         met += ma;
         inGlass += ma && a.m == Glass && dot(a.n, d) > 0;
-        if (ma != me || (ma && (a.m != e.m || std::fabs(a.t - e.t) * std::fabs(dot(a.n, d)) > 1e-5 || dot(a.n, e.n) < 1 - 1e-4))) {
+        if (ma != me ||
+            (ma && (a.m != e.m || std::fabs(a.t - e.t) * std::fabs(dot(a.n, d)) > 1e-5 || dot(a.n, e.n) < 1 - 1e-4))) {
             ++different;
             continue;
         }

@@ -1,5 +1,5 @@
-// Hider "path" "caustics": photons bring what comes by way of mirrors and glass, paths bring the rest. Both together are the light
-// that paths alone find, and closed forms where there are some.
+// Hider "path" "caustics": photons bring what comes by way of mirrors and glass, paths bring the rest. Both together are the
+// light that paths alone find, and closed forms where there are some.
 #include "photons/photonmap.h"
 #include "transport/floorscene.h"
 #include "transport/photons.h"
@@ -64,12 +64,14 @@ void expectSame(const Moments& a, const Moments& b, double precision, const std:
 }
 
 const std::string kMirror = "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 1]\n";
-const std::string kGlass = "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 \"string fresnel\" \"exact\"\n";
+const std::string kGlass = "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" "
+                           "1.5 \"string fresnel\" \"exact\"\n";
 const std::string kMatte = "Surface \"slmaterial\" \"color diffusecolor\" [.8 .6 .4]\n";
 std::string lamp(double y, double half, double radiance) {
     char text[400];
-    std::snprintf(text, sizeof text, "AttributeBegin Sides 1 AreaLightSource \"slrect\" 1 \"float intensity\" %g Surface \"constant\" Color 0 0 0 "
-                                     "Polygon \"P\" [%g %g %g  %g %g %g  %g %g %g  %g %g %g] AttributeEnd\nIlluminate 1 1\n",
+    std::snprintf(text, sizeof text,
+                  "AttributeBegin Sides 1 AreaLightSource \"slrect\" 1 \"float intensity\" %g Surface \"constant\" Color 0 0 0 "
+                  "Polygon \"P\" [%g %g %g  %g %g %g  %g %g %g  %g %g %g] AttributeEnd\nIlluminate 1 1\n",
                   radiance, -half, y, -half, half, y, -half, half, y, half, -half, y, half);
     return text;
 }
@@ -77,7 +79,8 @@ std::string lamp(double y, double half, double radiance) {
 // A point light and a mirror: the light's image shines as well as the light does. No path finds it.
 TEST(Caustics, MirrorImageOfAPointLight) {
     Scene s(world("LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\nAttributeBegin " + kMirror +
-                  "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
+                  "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte +
+                  "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
             path());
     const CameraRay ray = rayTo({.1f, 1.2f, 0}, {0, 2, 0});
     const double direct = .8 * 4, image = .8 * 4 / 9;
@@ -91,13 +94,15 @@ TEST(Caustics, MirrorImageOfAPointLight) {
     EXPECT_LT(m.se(), .06 * image);
 }
 
-// The same in air that takes light. What an eye sees on each way is dimmed by the air of the surface that it sees: the way from the
-// mirror to the ceiling by the mirror's, over 2; the light has no surface, so its way to the mirror by nobody's.
+// The same in air that takes light. What an eye sees on each way is dimmed by the air of the surface that it sees: the way from
+// the mirror to the ceiling by the mirror's, over 2; the light has no surface, so its way to the mirror by nobody's.
 TEST(Caustics, MirrorImageInAtmospheres) {
     writeShader("beer", "volume beer(float k = 1) { Ci *= exp(-k * length(I)); }\n");
     const std::string light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n";
-    Scene s(world(light + "AttributeBegin Atmosphere \"beer\" \"k\" .5 " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" +
-                  "Atmosphere \"beer\" \"k\" .25 Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
+    Scene s(world(light + "AttributeBegin Atmosphere \"beer\" \"k\" .5 " + kMirror +
+                  "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" +
+                  "Atmosphere \"beer\" \"k\" .25 Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2 "
+                  " -2 2 2  2 2 2  2 2 -2]\n"),
             path());
     const CameraRay ray = rayTo({.1f, 1.2f, 0}, {0, 2, 0});
     const double image = .1 * 4 / 9 * std::exp(-.5 * 2 - .25 * std::hypot(.1, .8));
@@ -110,12 +115,23 @@ TEST(Caustics, MirrorImageInAtmospheres) {
 
 // What moves while the shutter is open: each time has its own image. A mirror that sinks, and a light that rises.
 TEST(Caustics, MirrorImagesOfEachTime) {
-    const std::string mirror = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]", light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n",
-                      ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
-    const auto moving = [](double y) { return "MotionBegin [0 1] Translate 0 0 0 Translate 0 " + std::to_string(y) + " 0 MotionEnd "; };
-    struct Case { std::string name, scene; double first, last; }; // how far the image lies below the ceiling
-    for (const Case& c : {Case{"mirror", light + "AttributeBegin " + kMirror + moving(-1) + mirror + " AttributeEnd\n" + ceiling, 3, 5},
-                          Case{"light", "TransformBegin " + moving(-.75) + light + "TransformEnd AttributeBegin " + kMirror + mirror + " AttributeEnd\n" + ceiling, 3, 2.25}}) {
+    const std::string
+        mirror = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]",
+        light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n",
+        ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    const auto moving = [](double y) {
+        return "MotionBegin [0 1] Translate 0 0 0 Translate 0 " + std::to_string(y) + " 0 MotionEnd ";
+    };
+    struct Case {
+        std::string name, scene;
+        double first, last;
+    }; // how far the image lies below the ceiling
+    for (const Case& c :
+         {Case{"mirror", light + "AttributeBegin " + kMirror + moving(-1) + mirror + " AttributeEnd\n" + ceiling, 3, 5},
+          Case{"light",
+               "TransformBegin " + moving(-.75) + light + "TransformEnd AttributeBegin " + kMirror + mirror + " AttributeEnd\n" +
+                   ceiling,
+               3, 2.25}}) {
         Scene s("Shutter 0 1\n" + world(c.scene), path());
         CameraRay ray = rayTo({.1f, 1.6f, 0}, {0, 2, 0});
         for (const float t : {0.f, .5f, 1.f}) {
@@ -126,24 +142,35 @@ TEST(Caustics, MirrorImagesOfEachTime) {
             passes(s, 40, 14000, .3f, {.window = .1f});
             const Moments m = estimate(s, ray, 40, 64);
             const double d = c.first + (c.last - c.first) * double(t), image = .1 * 4 / (d * d);
-            EXPECT_NEAR(m.mean() - paths, image, 4.5 * m.se() + .08 * image) << c.name << " at " << t; // half a window at the ends: 4 %
+            EXPECT_NEAR(m.mean() - paths, image, 4.5 * m.se() + .08 * image)
+                << c.name << " at " << t; // half a window at the ends: 4 %
             EXPECT_LT(m.se(), .08 * image);
         }
     }
 }
 
-// Mirrors that spread light, too, whatever stands first, and a sheet that does and lets half of it through: each way has its own chance.
+// Mirrors that spread light, too, whatever stands first, and a sheet that does and lets half of it through: each way has its own
+// chance.
 TEST(Caustics, HalfOfAMirror) {
     const char* const begin = "{ normal n = faceforward(normalize(N), I); Oi = 1; Ci = ";
-    writeShader("mirrorlast", std::string("surface mirrorlast() ") + begin + ".4 * diffuse(n) + .4 * trace(P, reflect(normalize(I), n)); }\n");
-    writeShader("mirrorfirst", std::string("surface mirrorfirst() ") + begin + ".4 * trace(P, reflect(normalize(I), n)) + .4 * diffuse(n); }\n");
+    writeShader("mirrorlast",
+                std::string("surface mirrorlast() ") + begin + ".4 * diffuse(n) + .4 * trace(P, reflect(normalize(I), n)); }\n");
+    writeShader("mirrorfirst",
+                std::string("surface mirrorfirst() ") + begin + ".4 * trace(P, reflect(normalize(I), n)) + .4 * diffuse(n); }\n");
     writeShader("sheet", "surface sheet() { Oi = .5; Ci = .5 * diffuse(faceforward(normalize(N), I)); }\n");
-    const std::string light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n",
-                      sheet = "AttributeBegin Surface \"sheet\" Polygon \"P\" [-.5 1.5 -.5  -.5 1.5 .5  .5 1.5 .5  .5 1.5 -.5] AttributeEnd\n",
-                      ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
-    struct Case { std::string name, surface, more; double part; };
-    for (const Case& c : {Case{"last", "Surface \"mirrorlast\"", "", .4}, Case{"first", "Surface \"mirrorfirst\"", "", .4}, Case{"sheet", kMirror, sheet, .5}}) {
-        Scene s(world(light + "AttributeBegin " + c.surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + c.more + ceiling), path());
+    const std::string
+        light = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n",
+        sheet = "AttributeBegin Surface \"sheet\" Polygon \"P\" [-.5 1.5 -.5  -.5 1.5 .5  .5 1.5 .5  .5 1.5 -.5] AttributeEnd\n",
+        ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    struct Case {
+        std::string name, surface, more;
+        double part;
+    };
+    for (const Case& c : {Case{"last", "Surface \"mirrorlast\"", "", .4}, Case{"first", "Surface \"mirrorfirst\"", "", .4},
+                          Case{"sheet", kMirror, sheet, .5}}) {
+        Scene s(world(light + "AttributeBegin " + c.surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" +
+                      c.more + ceiling),
+                path());
         const CameraRay ray = rayTo({.1f, 1.7f, 0}, {0, 2, 0});
         const Moments paths = estimate(s, ray, 64, 100);
         passes(s, 64, 12000, .3f);
@@ -156,42 +183,77 @@ TEST(Caustics, HalfOfAMirror) {
 
 // An area light: paths find its image in the mirror too. With photons these are left out, and the sum stays.
 TEST(Caustics, TogetherAsPathsAlone) {
-    struct Case { std::string name, scene; CameraRay ray; double precision; float width = 0; };
+    struct Case {
+        std::string name, scene;
+        CameraRay ray;
+        double precision;
+        float width = 0;
+    };
     const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
-    const std::string mirror = kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n", ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    const std::string mirror = kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n",
+                      ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
     const Case cases[] = {
-        {"mirror", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
+        {"mirror",
+         lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte +
+             "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
          rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
-        {"glass ball", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor, rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .04},
+        {"glass ball",
+         lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor,
+         rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .04},
         // A floor below water that light comes through: refraction takes energy for radiance.
-        {"water", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + floor, rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .05},
+        {"water",
+         lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + floor,
+         rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .05},
         // Lobes other than diffuse() gather, too.
-        {"glossy floor", lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" +
-                             "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.8 .6 .4] \"float shininess\" 3\nPolygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n",
+        {"glossy floor",
+         lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" +
+             "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.8 .6 .4] \"float shininess\" "
+             "3\nPolygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n",
          rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .05},
         // A lamp that a displacement lifts from the mirror to the middle: photons start where light samples and rays find it.
-        {"displaced lamp", "AttributeBegin AreaLightSource \"both5\" 1 Surface \"constant\" Color 0 0 0 Attribute \"displacementbound\" \"float sphere\" 2\n"
-                           "Displacement \"lift\" Patch \"bilinear\" \"P\" [-.5 .1 -.5  .5 .1 -.5  -.5 .1 .5  .5 .1 .5] AttributeEnd\nIlluminate 1 1\nAttributeBegin " +
-                               kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
+        {"displaced lamp",
+         "AttributeBegin AreaLightSource \"both5\" 1 Surface \"constant\" Color 0 0 0 Attribute \"displacementbound\" \"float "
+         "sphere\" 2\n"
+         "Displacement \"lift\" Patch \"bilinear\" \"P\" [-.5 .1 -.5  .5 .1 -.5  -.5 .1 .5  .5 .1 .5] AttributeEnd\nIlluminate 1 "
+         "1\nAttributeBegin " +
+             kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte +
+             "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
          rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
         // A sky whose attribute says that it sends photons: paths that met the mirror find it, too.
-        {"sky", "Attribute \"light\" \"int emitphotons\" 1\nLightSource \"envlight\" 1\nAttributeBegin " + kMirror +
-                    "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte + "Polygon \"P\" [-.5 1 -.5  -.5 1 .5  .5 1 .5  .5 1 -.5]\n",
+        {"sky",
+         "Attribute \"light\" \"int emitphotons\" 1\nLightSource \"envlight\" 1\nAttributeBegin " + kMirror +
+             "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte +
+             "Polygon \"P\" [-.5 1 -.5  -.5 1 .5  .5 1 .5  .5 1 -.5]\n",
          rayTo({1.1f, .4f, 0}, {.1f, 1, 0}), .07},
         // Nothing gathers photons in a medium: paths bring all that is scattered there, and none rests on what has such a normal.
-        {"fog", lamp(1, .8, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n"
-                    "AttributeBegin Surface \"null\" Interior \"medium\" \"color scattering\" [1 .7 .4] Translate 0 2 0 Sphere .5 -.5 .5 360 AttributeEnd\n",
+        {"fog",
+         lamp(1, .8, 5) + "AttributeBegin " + kMirror +
+             "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n"
+             "AttributeBegin Surface \"null\" Interior \"medium\" \"color scattering\" [1 .7 .4] Translate 0 2 0 Sphere .5 -.5 "
+             ".5 360 AttributeEnd\n",
          rayTo({2, 2, 0}, {0, 2, 0}), .13},
         // Light that a mirror sends into a surface walks there once, not once as photons and once more from the eye.
-        {"below a surface", lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"waxen\" Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
+        {"below a surface",
+         lamp(1, .5, 5) + "AttributeBegin " + kMirror +
+             "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"waxen\" Polygon \"P\" [-2 2 -2  -2 2 2  2 2 "
+             "2  2 2 -2]\n",
          rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
-        // Air that differs from surface to surface; and a ball of a volume about the lamp, which some of the ways leave, others enter again.
-        {"air", "AttributeBegin Atmosphere \"beer\" \"k\" .3 " + lamp(1, .5, 5) + "AttributeEnd Illuminate 1 1 AttributeBegin Atmosphere \"beer\" \"k\" .5 " + mirror +
-                    "AttributeEnd Atmosphere \"beer\" \"k\" .2 " + ceiling, rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
-        {"volume", lamp(1, .5, 5) + "AttributeBegin Surface \"null\" Interior \"beer\" \"k\" .4 Translate 0 1 0 Sphere .9 -.9 .9 360 AttributeEnd AttributeBegin " +
-                       "Atmosphere \"beer\" \"k\" .5 " + mirror + "AttributeEnd " + ceiling, rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06}};
+        // Air that differs from surface to surface; and a ball of a volume about the lamp, which some of the ways leave, others
+        // enter again.
+        {"air",
+         "AttributeBegin Atmosphere \"beer\" \"k\" .3 " + lamp(1, .5, 5) +
+             "AttributeEnd Illuminate 1 1 AttributeBegin Atmosphere \"beer\" \"k\" .5 " + mirror +
+             "AttributeEnd Atmosphere \"beer\" \"k\" .2 " + ceiling,
+         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06},
+        {"volume",
+         lamp(1, .5, 5) +
+             "AttributeBegin Surface \"null\" Interior \"beer\" \"k\" .4 Translate 0 1 0 Sphere .9 -.9 .9 360 AttributeEnd "
+             "AttributeBegin " +
+             "Atmosphere \"beer\" \"k\" .5 " + mirror + "AttributeEnd " + ceiling,
+         rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06}};
     writeShader("beer", "volume beer(float k = 1) { Ci *= exp(-k * length(I)); }\n");
-    writeShader("waxen", "surface waxen() { Oi = 1; Ci = subsurface(P, N, \"reflectance\", color(.8, .6, .4), \"meanfreepath\", .01, \"ior\", 1); }\n");
+    writeShader("waxen", "surface waxen() { Oi = 1; Ci = subsurface(P, N, \"reflectance\", color(.8, .6, .4), \"meanfreepath\", "
+                         ".01, \"ior\", 1); }\n");
     writeShader("lift", "displacement lift() { P += vector \"world\" (0, .9, 0); }\n");
     writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
     for (const Case& c : cases) {
@@ -206,28 +268,49 @@ TEST(Caustics, TogetherAsPathsAlone) {
 // Narrow lobes: photons follow them as mirrors, paths leave out their light, whether they would have sampled the lamp or met it.
 TEST(Caustics, NarrowLobesTogetherAsPathsAlone) {
     // Weights that depend on where a surface is seen from: an eye sees another weight than the light does.
-    const char* const begin = "{ normal n = faceforward(normalize(N), I); vector V = -normalize(I); float c = n . V; Oi = 1; Ci = ";
-    const auto write = [&](const std::string& name, const std::string& value) { writeShader(name, "surface " + name + "() " + begin + value + "; }\n"); };
-    write("roughmetal", "mix(color(.9, .7, .5), color 1, pow(1 - c, 3)) * trace(P, n, \"distribution\", \"cook-torrance\", \"roughness\", .06, \"samplearealights\", 1, \"type\", \"specular\")");
-    write("grazing", ".9 * (1 - c) * trace(P, reflect(-V, n), \"distribution\", \"slphong\", \"horizon\", n, \"exponent\", 300, \"samplearealights\", 1, \"type\", \"specular\")");
+    const char* const begin =
+        "{ normal n = faceforward(normalize(N), I); vector V = -normalize(I); float c = n . V; Oi = 1; Ci = ";
+    const auto write = [&](const std::string& name, const std::string& value) {
+        writeShader(name, "surface " + name + "() " + begin + value + "; }\n");
+    };
+    write("roughmetal", "mix(color(.9, .7, .5), color 1, pow(1 - c, 3)) * trace(P, n, \"distribution\", \"cook-torrance\", "
+                        "\"roughness\", .06, \"samplearealights\", 1, \"type\", \"specular\")");
+    write("grazing", ".9 * (1 - c) * trace(P, reflect(-V, n), \"distribution\", \"slphong\", \"horizon\", n, \"exponent\", 300, "
+                     "\"samplearealights\", 1, \"type\", \"specular\")");
     write("coated", "color(.4, .3, .2) * diffuse(n) + 8 * (1 - .5 * c) * specular(n, V, .02)");
-    write("roughglass", "trace(P, normalize(N), \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, \"samplearealights\", 1, \"type\", \"specular\")");
-    const std::string ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n", floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
+    write("roughglass", "trace(P, normalize(N), \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, "
+                        "\"samplearealights\", 1, \"type\", \"specular\")");
+    const std::string ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
+                      floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
     const auto below = [&](const std::string& surface) {
-        return lamp(1, .5, 5) + "AttributeBegin " + surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + ceiling;
+        return lamp(1, .5, 5) + "AttributeBegin " + surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" +
+               ceiling;
     };
     const CameraRay up = rayTo({1.1f, 1.2f, 0}, {1, 2, 0});
-    struct Case { std::string name, scene; CameraRay ray; double precision; };
-    for (const Case& c : {Case{"metal", below("Surface \"roughmetal\""), up, .05}, Case{"grazing", below("Surface \"grazing\""), up, .06},
-                          Case{"coated", below("Surface \"coated\""), up, .05},
-                          Case{"rough glass", lamp(3, .8, 5) + "AttributeBegin Surface \"roughglass\" Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + floor,
-                               rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .05},
-                          Case{"rough ball", lamp(3, .8, 5) + "AttributeBegin Surface \"roughglass\" Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor,
-                               rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .05},
-                          // What is thrown about a refracted direction stays with the paths: photons would not find all of it.
-                          Case{"translucent ball", lamp(3, .8, 5) + "AttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 "
-                                                   "\"float shininess\" 300 \"float translucency\" 300 Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor,
-                               rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .05}}) {
+    struct Case {
+        std::string name, scene;
+        CameraRay ray;
+        double precision;
+    };
+    for (const Case& c :
+         {Case{"metal", below("Surface \"roughmetal\""), up, .05}, Case{"grazing", below("Surface \"grazing\""), up, .06},
+          Case{"coated", below("Surface \"coated\""), up, .05},
+          Case{"rough glass",
+               lamp(3, .8, 5) +
+                   "AttributeBegin Surface \"roughglass\" Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + floor,
+               rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .05},
+          Case{"rough ball",
+               lamp(3, .8, 5) + "AttributeBegin Surface \"roughglass\" Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" +
+                   floor,
+               rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .05},
+          // What is thrown about a refracted direction stays with the paths: photons would not find all of it.
+          Case{"translucent ball",
+               lamp(3, .8, 5) +
+                   "AttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float "
+                   "kn\" 1.5 "
+                   "\"float shininess\" 300 \"float translucency\" 300 Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" +
+                   floor,
+               rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .05}}) {
         Scene s(world(c.scene), path());
         const Moments plain = s.estimate(c.ray, samples(60000));
         const uint32_t count = nightly() ? 100 : 40;
@@ -236,29 +319,44 @@ TEST(Caustics, NarrowLobesTogetherAsPathsAlone) {
     }
 }
 
-// What a shader says of a narrow lobe that depends on how far away it is seen from, which of its calls it is, and how deep rays may go:
-// the same as without photons.
+// What a shader says of a narrow lobe that depends on how far away it is seen from, which of its calls it is, and how deep rays
+// may go: the same as without photons.
 TEST(Caustics, NarrowLobesAsTheirShadersAndDepthsSay) {
-    const std::string glass = "trace(P, n, \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, \"samplearealights\", 1, \"type\", \"specular\"); ";
+    const std::string glass = "trace(P, n, \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, "
+                              "\"samplearealights\", 1, \"type\", \"specular\"); ";
     const std::string begin = "() { normal n = normalize(N); Oi = 1; ";
     writeShader("plainglass", "surface plainglass" + begin + "Ci = " + glass + "}\n");
-    writeShader("tinted", "surface tinted" + begin + "float a = length(I); color k = 1; if (I . n > 0) k = color(exp(-.2 * a), exp(-a), exp(-2 * a)); Ci = k * " + glass + "}\n");
+    writeShader("tinted",
+                "surface tinted" + begin +
+                    "float a = length(I); color k = 1; if (I . n > 0) k = color(exp(-.2 * a), exp(-a), exp(-2 * a)); Ci = k * " +
+                    glass + "}\n");
     writeShader("twocalls", "surface twocalls" + begin + "if (I . n > 0) Ci = " + glass + "else Ci = " + glass + "}\n");
-    writeShader("twolobes", "surface twolobes" + begin + "n = faceforward(n, I); vector V = -normalize(I); Ci = 4 * specular(n, V, .02) + 2 * specular(n, V, .01); }\n");
-    const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n", ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    writeShader(
+        "twolobes",
+        "surface twolobes" + begin +
+            "n = faceforward(n, I); vector V = -normalize(I); Ci = 4 * specular(n, V, .02) + 2 * specular(n, V, .01); }\n");
+    const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n",
+                      ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
     const auto ball = [&](const std::string& surface) {
         return lamp(3, .8, 5) + "AttributeBegin " + surface + " Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + floor;
     };
     const auto below = [&](const std::string& surface) {
-        return lamp(1, .5, 5) + "AttributeBegin " + surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + ceiling;
+        return lamp(1, .5, 5) + "AttributeBegin " + surface + " Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" +
+               ceiling;
     };
     const auto depth = [](int most) { return "Attribute \"trace\" \"int maxspeculardepth\" " + std::to_string(most) + " "; };
     const CameraRay up = rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), down = rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f});
-    struct Case { std::string name, scene; CameraRay ray; double precision; };
-    for (const Case& c : {Case{"length of I", ball("Surface \"tinted\""), down, .03}, Case{"two calls", ball("Surface \"twocalls\""), down, .03},
-                          Case{"two lobes", below("Surface \"twolobes\""), up, .05},
-                          // The last lobe before the lamp is sampled: it may be one deeper.
-                          Case{"no rays", below(depth(0) + "Surface \"twolobes\""), up, .07}, Case{"no second ray", ball(depth(1) + "Surface \"plainglass\""), down, .08}}) {
+    struct Case {
+        std::string name, scene;
+        CameraRay ray;
+        double precision;
+    };
+    for (const Case& c :
+         {Case{"length of I", ball("Surface \"tinted\""), down, .03}, Case{"two calls", ball("Surface \"twocalls\""), down, .03},
+          Case{"two lobes", below("Surface \"twolobes\""), up, .05},
+          // The last lobe before the lamp is sampled: it may be one deeper.
+          Case{"no rays", below(depth(0) + "Surface \"twolobes\""), up, .07},
+          Case{"no second ray", ball(depth(1) + "Surface \"plainglass\""), down, .08}}) {
         Scene s(world(c.scene), path());
         const Moments plain = s.estimate(c.ray, samples(60000));
         const uint32_t count = nightly() ? 100 : 40;
@@ -269,10 +367,15 @@ TEST(Caustics, NarrowLobesAsTheirShadersAndDepthsSay) {
 
 // Lights that are off for a surface, or whose highlights are: neither photons nor paths bring them by way of its narrow lobes.
 TEST(Caustics, NarrowLobesOfLightsThatAreOff) {
-    writeShader("highlight", "surface highlight() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = 4 * specular(n, -normalize(I), .02); }\n");
-    writeShader("nohighlight", "light nohighlight(float intensity = 1; output float __nonspecular = .75;) { illuminate(P, N, PI / 2) Cl = intensity; }\n");
-    const std::string off = "Illuminate 1 0\n", on = "", mirror = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n",
-                      ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
+    writeShader(
+        "highlight",
+        "surface highlight() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = 4 * specular(n, -normalize(I), .02); }\n");
+    writeShader("nohighlight", "light nohighlight(float intensity = 1; output float __nonspecular = .75;) { illuminate(P, N, PI "
+                               "/ 2) Cl = intensity; }\n");
+    const std::string
+        off = "Illuminate 1 0\n",
+        on = "", mirror = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n",
+        ceiling = "Surface \"slmaterial\" \"color diffusecolor\" [.1 .1 .1] Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
     const auto scene = [&](const std::string& light, const std::string& illuminate) {
         std::string with = lamp(1, .5, 5);
         with.replace(with.find("slrect"), 6, light);
@@ -294,7 +397,9 @@ TEST(Caustics, NarrowLobesOfLightsThatAreOff) {
 
 // Without photons of its sample a path is what it was, bit by bit.
 TEST(Caustics, NothingWithoutPasses) {
-    const std::string scene = world(lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n");
+    const std::string scene =
+        world(lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n" + kMatte +
+              "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n");
     Scene a(scene, path()), b(scene, path());
     passes(b, 1, 5000, .05f);
     CameraRay ray = rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f});
@@ -314,12 +419,13 @@ double beyond(double radius, double d) {
     return c >= 1 ? 0 : (std::acos(c) - c * std::sqrt(1 - c * c)) / kPi;
 }
 
-// Narrower circles have less bias: at the edge of a shadow that a mirror throws, it is the part of the circle that lies in the shadow. Of
-// the finest, which holds few photons, nightly.
+// Narrower circles have less bias: at the edge of a shadow that a mirror throws, it is the part of the circle that lies in the
+// shadow. Of the finest, which holds few photons, nightly.
 TEST(Caustics, BiasShrinksWithTheRadius) {
     // Half of the mirror is missing: to the one side of the middle of the ceiling there is no image.
     Scene s(world("LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\nAttributeBegin " + kMirror +
-                  "Polygon \"P\" [0 0 -2  0 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"slmaterial\" \"color diffusecolor\" [.01 .01 .01]\nPolygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
+                  "Polygon \"P\" [0 0 -2  0 0 2  2 0 2  2 0 -2] AttributeEnd\nSurface \"slmaterial\" \"color diffusecolor\" [.01 "
+                  ".01 .01]\nPolygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n"),
             path());
     const CameraRay ray = rayTo({.13f, 1.2f, 0}, {.03f, 2, 0}); // .03 within the light
     const double d2 = 9 + .03 * .03, image = .01 * 4 / d2 * 3 / std::sqrt(d2);

@@ -1,9 +1,9 @@
 // Photons as lights emit them and surfaces scatter them: their power against closed forms, maps against closed forms, the same
 // bits in any company.
+#include "lobes/sampling.h"
 #include "photons/photonmap.h"
 #include "transport/floorscene.h"
 #include "transport/photons.h"
-#include "lobes/sampling.h"
 #include <cstring>
 
 using namespace alpenglow;
@@ -46,19 +46,25 @@ TEST(Emission, OfWhatFades) {
 
 // A photon's power is the same whatever it meets first; all together carry what the light sends.
 TEST(Emission, PowerOfLights) {
-    struct Case { std::string light; double power, error; };
+    struct Case {
+        std::string light;
+        double power, error;
+    };
     const double pi = kPi;
-    const std::string area = "AttributeBegin AreaLightSource \"slrect\" 1 \"float intensity\" 7 Surface \"constant\" Color 0 0 0 ";
+    const std::string area =
+        "AttributeBegin AreaLightSource \"slrect\" 1 \"float intensity\" 7 Surface \"constant\" Color 0 0 0 ";
     const Case cases[] = {
         // Intensity pi a steradian for Cl = 1 / d^2: 4 pi of them.
         {"LightSource \"pointlight\" 1 \"float intensity\" 3 \"point from\" [1 .5 2]\n", 3 * pi * 4 * pi, 1e-4},
         // A one-sided rectangle, a sphere, a disc of both sides: pi L A.
-        {area + "Sides 1 Polygon \"P\" [-.5 1 -.3  -.5 1 .4  .5 1 .4  .5 1 -.3] AttributeEnd\nIlluminate 1 1\n", 7 * pi * .7, 1e-4},
+        {area + "Sides 1 Polygon \"P\" [-.5 1 -.3  -.5 1 .4  .5 1 .4  .5 1 -.3] AttributeEnd\nIlluminate 1 1\n", 7 * pi * .7,
+         1e-4},
         {area + "Sides 1 Sphere .4 -.4 .4 360 AttributeEnd\nIlluminate 1 1\n", 7 * pi * 4 * pi * .16, .01},
         {area + "Sides 2 Disk 0 .5 360 AttributeEnd\nIlluminate 1 1\n", 7 * pi * pi * .25, .01},
         // BMRT's: intensity over squared distance; as radiance pi I / A, so pi A of that.
         {"AttributeBegin AreaLightSource \"arealight\" 1 \"float intensity\" 2 Surface \"constant\" Color 0 0 0 Sides 1 "
-         "Polygon \"P\" [-.5 1 -.5  -.5 1 .5  .5 1 .5  .5 1 -.5] AttributeEnd\nIlluminate 1 1\n", 2 * pi * pi, 1e-3}};
+         "Polygon \"P\" [-.5 1 -.5  -.5 1 .5  .5 1 .5  .5 1 -.5] AttributeEnd\nIlluminate 1 1\n",
+         2 * pi * pi, 1e-3}};
     for (const Case& c : cases) {
         Scene s(world(c.light + kBall), path());
         const auto all = emitted(s, 40000);
@@ -70,12 +76,13 @@ TEST(Emission, PowerOfLights) {
     }
 }
 
-// A ball of radius 1 that a displacement makes one of radius 1.5 sends pi L A of the latter, from where it is: none starts within it. Its
-// facets have .3 % less area.
+// A ball of radius 1 that a displacement makes one of radius 1.5 sends pi L A of the latter, from where it is: none starts within
+// it. Its facets have .3 % less area.
 TEST(Emission, DisplacedLamp) {
     writeShader("swell", "displacement swell() { P += .5 * normalize(N); N = calculatenormal(P); }\n");
     writeShader("white5", "light white5() { illuminate(P, N, PI / 2) Cl = 5; }\n");
-    const std::string lamp = "AttributeBegin AreaLightSource \"white5\" 1 Surface \"constant\" Color 0 0 0 Sides 1 Attribute \"displacementbound\" \"float sphere\" 1\n"
+    const std::string lamp = "AttributeBegin AreaLightSource \"white5\" 1 Surface \"constant\" Color 0 0 0 Sides 1 Attribute "
+                             "\"displacementbound\" \"float sphere\" 1\n"
                              "Displacement \"swell\"\nSphere 1 -1 1 360 AttributeEnd\nIlluminate 1 1\n";
     // The inner ball, which photons would meet that started at radius 1.
     const std::string inner = "AttributeBegin Color 0 0 0 " + kMatte + "Sphere 1.2 -1.2 1.2 360 AttributeEnd\n";
@@ -89,8 +96,11 @@ TEST(Emission, DisplacedLamp) {
 
 // A spot: its shader's own fall-off to the rim, integrated over directions.
 TEST(Emission, PowerOfASpot) {
-    Scene s(world("LightSource \"spotlight\" 1 \"float intensity\" 2 \"point from\" [0 1 0] \"point to\" [0 0 0] \"float coneangle\" .6 "
-                  "\"float conedeltaangle\" .2 \"float beamdistribution\" 3\n" + kBall), path());
+    Scene s(world("LightSource \"spotlight\" 1 \"float intensity\" 2 \"point from\" [0 1 0] \"point to\" [0 0 0] \"float "
+                  "coneangle\" .6 "
+                  "\"float conedeltaangle\" .2 \"float beamdistribution\" 3\n" +
+                  kBall),
+            path());
     double want = 0;
     const int n = 20000;
     for (int i = 0; i < n; ++i) { // over the cosine
@@ -104,7 +114,9 @@ TEST(Emission, PowerOfASpot) {
 // Light from far away: what falls on a floor is its area times the irradiance; on a ball in a sky, pi L times the surface.
 TEST(Emission, PowerFromFarAway) {
     const std::string floor = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n";
-    Scene sun(world("LightSource \"distantlight\" 1 \"float intensity\" 1.5 \"point from\" [0 1 0] \"point to\" [1 0 0]\n" + kMatte + floor), path());
+    Scene sun(world("LightSource \"distantlight\" 1 \"float intensity\" 1.5 \"point from\" [0 1 0] \"point to\" [1 0 0]\n" +
+                    kMatte + floor),
+              path());
     EXPECT_NEAR(powerOf(emitted(sun, 100000), 0), 1.5 * kPi * std::sqrt(.5) * 16, .01 * 1.5 * kPi * std::sqrt(.5) * 16);
     Scene sky(world("LightSource \"envlight\" 1 \"float intensity\" 2\n" + kMatte + "Sphere 1 -1 1 360\n"), path());
     EXPECT_NEAR(powerOf(emitted(sky, 100000), 0), 2 * kPi * 4 * kPi, .02 * 2 * kPi * 4 * kPi);
@@ -112,8 +124,10 @@ TEST(Emission, PowerFromFarAway) {
 
 // A light that does not fall off, and one that shines through a slide: the photons carry what it sends where they arrive.
 TEST(Emission, LightsAsTheirShadersSay) {
-    writeShader("photonslide", "light photonslide(point from = point \"world\" (0, 2, 0);) { illuminate(from) { vector d = vtransform(\"world\", L); "
-                               "Cl = ptransform(\"world\", Ps)[0] > 0 ? color(1, 0, 0) : color(0, .5, 0); } }\n");
+    writeShader(
+        "photonslide",
+        "light photonslide(point from = point \"world\" (0, 2, 0);) { illuminate(from) { vector d = vtransform(\"world\", L); "
+        "Cl = ptransform(\"world\", Ps)[0] > 0 ? color(1, 0, 0) : color(0, .5, 0); } }\n");
     writeShader("photonflat", "light photonflat(point from = point \"world\" (0, 2, 0);) { illuminate(from) Cl = 1; }\n");
     const std::string floor = "Polygon \"P\" [-1 0 -1  -1 0 1  1 0 1  1 0 -1]\n";
     Scene s(world("LightSource \"photonflat\" 1\n" + kMatte + floor), path());
@@ -130,7 +144,8 @@ TEST(Emission, LightsAsTheirShadersSay) {
 // Only lights that say so, as soon as one does; lights without a place send none.
 TEST(Emission, WhichLights) {
     const std::string other = "LightSource \"pointlight\" 2 \"float intensity\" 100 \"point from\" [1 1 1]\n";
-    const std::string one = "Attribute \"light\" \"integer emitphotons\" 1\nLightSource \"pointlight\" 1 \"float intensity\" 1 \"point from\" [-1 1 0]\n";
+    const std::string one = "Attribute \"light\" \"integer emitphotons\" 1\nLightSource \"pointlight\" 1 \"float intensity\" 1 "
+                            "\"point from\" [-1 1 0]\n";
     const std::string none = "Attribute \"light\" \"integer emitphotons\" 0\n";
     const double unit = 4 * kPi * kPi;
     Scene some(world(one + none + other + kBall), path());
@@ -150,10 +165,22 @@ TEST(Emission, ShadingModels) {
     const std::string outer = "AttributeBegin " + kMatte + "Sphere 9 -9 9 360 AttributeEnd\n";
     const double unit = 4 * kPi * kPi, half = (1 - 2 / std::sqrt(5.)) / 2; // of the light that goes through the disc below
     // Refraction takes energy for radiance: through the one surface, out of what is denser, light is n^2 times what is refracted.
-    const auto through = [](double n) { const double kr = (n - 1) / (n + 1) * (n - 1) / (n + 1); return kr + (1 - kr) * n * n; };
+    const auto through = [](double n) {
+        const double kr = (n - 1) / (n + 1) * (n - 1) / (n + 1);
+        return kr + (1 - kr) * n * n;
+    };
     const double glass = through(1.5), water = through(1.33);
-    struct Case { const char* model; double kept, caustic; };
-    for (const Case& c : {Case{"matte", 1, 0}, {"chrome", 0, 1}, {"glass", 0, glass}, {"water", 0, water}, {"dielectric", 0, glass}, {"conductor", 0, 1}, {"transparent", 0, 0}}) {
+    struct Case {
+        const char* model;
+        double kept, caustic;
+    };
+    for (const Case& c : {Case{"matte", 1, 0},
+                          {"chrome", 0, 1},
+                          {"glass", 0, glass},
+                          {"water", 0, water},
+                          {"dielectric", 0, glass},
+                          {"conductor", 0, 1},
+                          {"transparent", 0, 0}}) {
         const std::string disc = std::string("AttributeBegin Attribute \"photon\" \"string shadingmodel\" \"") + c.model +
                                  "\" Color .5 .5 .5 Surface \"constant\" Rotate 90 1 0 0 Disk 0 1 360 AttributeEnd\n";
         Scene s(world(lamp + disc + outer), path());
@@ -169,15 +196,19 @@ TEST(Emission, ShadingModels) {
         EXPECT_NEAR(caustics, .5 * c.caustic * half * unit, .01 * unit) << c.model;
         EXPECT_NEAR(direct, (1 - (std::string(c.model) == "transparent" ? 0 : half)) * unit, .01 * unit) << c.model;
     }
-    const std::string unseen = "AttributeBegin Attribute \"visibility\" \"integer photon\" 0 Surface \"matte\" Rotate 90 1 0 0 Disk 0 1 360 AttributeEnd\n";
+    const std::string unseen = "AttributeBegin Attribute \"visibility\" \"integer photon\" 0 Surface \"matte\" Rotate 90 1 0 0 "
+                               "Disk 0 1 360 AttributeEnd\n";
     Scene s(world(lamp + unseen + outer), path());
     EXPECT_NEAR(powerOf(emitted(s, 20000), 0), unit, 1e-3 * unit);
 }
 
 // A surface that decides on what its rays bring scatters as a matte one, and says so.
 TEST(Emission, SurfacesThatWait) {
-    writeShader("photonwaits", "surface photonwaits() { color c = trace(P, reflect(normalize(I), normalize(N))); Oi = 1; Ci = comp(c, 0) > .1 ? .5 : .25; }\n");
-    Scene s(world("LightSource \"pointlight\" 1 \"float intensity\" 1\nSurface \"photonwaits\" Color .5 .5 .5 Sphere 5 -5 5 360\n"), path());
+    writeShader("photonwaits", "surface photonwaits() { color c = trace(P, reflect(normalize(I), normalize(N))); Oi = 1; Ci = "
+                               "comp(c, 0) > .1 ? .5 : .25; }\n");
+    Scene s(
+        world("LightSource \"pointlight\" 1 \"float intensity\" 1\nSurface \"photonwaits\" Color .5 .5 .5 Sphere 5 -5 5 360\n"),
+        path());
     const auto all = emitted(s, 40000);
     EXPECT_NEAR(powerOf(all, 0), 4 * kPi * kPi, .01);
     EXPECT_NEAR(powerOf(all, 1), 2 * kPi * kPi, 1);
@@ -186,16 +217,18 @@ TEST(Emission, SurfacesThatWait) {
 
 // The same photons, bit by bit, whatever they are emitted with, at any number of lanes.
 TEST(Emission, SameBitsInAnyCompany) {
-    const std::string scene = world("LightSource \"pointlight\" 1 \"float intensity\" 1 \"point from\" [0 2 0]\n"
-                                    "AttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 "
-                                    "Sphere 1 -1 1 360 AttributeEnd\nSurface \"plastic\" Sphere 5 -5 5 360\n");
+    const std::string scene = world(
+        "LightSource \"pointlight\" 1 \"float intensity\" 1 \"point from\" [0 2 0]\n"
+        "AttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 "
+        "Sphere 1 -1 1 360 AttributeEnd\nSurface \"plastic\" Sphere 5 -5 5 360\n");
     Scene s(scene, path());
     const auto want = emitted(s, 6000);
     ASSERT_GT(want.size(), 6000u);
     const auto same = [&](const std::vector<StoredPhoton>& got) {
         if (got.size() != want.size()) return false;
         for (size_t i = 0; i < got.size(); ++i)
-            if (std::memcmp(&got[i].photon, &want[i].photon, sizeof(photons::Photon)) || got[i].number != want[i].number) return false;
+            if (std::memcmp(&got[i].photon, &want[i].photon, sizeof(photons::Photon)) || got[i].number != want[i].number)
+                return false;
         return true;
     };
     EXPECT_TRUE(same(emitted(s, 6000, {}, 6000)));
@@ -218,15 +251,18 @@ TEST(Emission, Stops) {
 }
 
 void showing(const std::string& name, const std::string& value) {
-    writeShader(name, "surface " + name + "(string map = \"all.photons\";) { normal n = faceforward(normalize(N), I); Oi = 1; "
-                      "Ci = 0 * diffuse(n) + " + value + "; }\n");
+    writeShader(name, "surface " + name +
+                          "(string map = \"all.photons\";) { normal n = faceforward(normalize(N), I); Oi = 1; "
+                          "Ci = 0 * diffuse(n) + " +
+                          value + "; }\n");
 }
 
 // Irradiance under a point light: pi Cl cos, so Cl cos by photonmap(). The error falls as photons grow.
 TEST(PhotonMaps, UnderAPointLight) {
     showing("photonshow", "photonmap(map, P, n, \"estimator\", 200)");
     writeShader("photonfloor", "surface photonfloor() { Oi = 1; Ci = .5 * diffuse(normalize(N)); }\n");
-    const std::string lamp = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n", floor = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n";
+    const std::string lamp = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n",
+                      floor = "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n";
     double before = 1e9;
     for (const uint32_t count : {20000u, 1000000u}) {
         Scene s(world(lamp + "Surface \"photonshow\"\n" + floor), path());
@@ -251,7 +287,9 @@ TEST(PhotonMaps, UnderAPointLight) {
 // photonmap(), its part of other surfaces, and indirectdiffuse() by way of photons and by rays agree with the closed form.
 TEST(PhotonMaps, HollowFurnace) {
     const double a = .5, direct = 4 / 25., all = direct / (1 - a), other = all - direct;
-    const std::string ball = "Attribute \"visibility\" \"integer diffuse\" 1 \"integer specular\" 1\nAttribute \"photon\" \"string globalmap\" \"room.photons\" \"integer estimator\" 400\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" .5\nSphere 5 -5 5 360\n";
+    const std::string ball =
+        "Attribute \"visibility\" \"integer diffuse\" 1 \"integer specular\" 1\nAttribute \"photon\" \"string globalmap\" "
+        "\"room.photons\" \"integer estimator\" 400\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" .5\nSphere 5 -5 5 360\n";
     const std::string lamp = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 0 0]\n";
     showing("photonroom", "photonmap(\"room.photons\", P, n, \"estimator\", 1000)");
     showing("photonroom1", "photonmap(\"room.photons\", P, n, \"estimator\", 1000, \"mindepth\", 1)");
@@ -264,7 +302,8 @@ TEST(PhotonMaps, HollowFurnace) {
             for (const float w : {-.57735f, .57735f}) ways.push_back({u * .57735f, v, w});
     }
     const auto plates = [&](const std::string& shader) {
-        std::string rib = "AttributeBegin Attribute \"visibility\" \"integer diffuse\" 0 \"integer specular\" 0 \"integer photon\" 0 Surface \"" +
+        std::string rib = "AttributeBegin Attribute \"visibility\" \"integer diffuse\" 0 \"integer specular\" 0 \"integer "
+                          "photon\" 0 Surface \"" +
                           shader + "\"\n";
         for (const Vec3& d : ways) {
             const Basis b(d);
@@ -281,11 +320,15 @@ TEST(PhotonMaps, HollowFurnace) {
     Scene emitting(world(lamp + ball), path());
     const auto stored = emitted(emitting, 400000);
     const std::vector<std::string> names = {"room.photons"};
-    struct Case { const char* shader; double want; };
+    struct Case {
+        const char* shader;
+        double want;
+    };
     for (const Case& c : {Case{"photonroom", all}, {"photonroom1", other}, {"photongather", a * all}}) {
         for (const Hider h : {Hider::Path, Hider::Raytrace}) {
             Scene s(world(lamp + plates(c.shader) + ball), withShaders(h));
-            for (auto& [name, photons] : photonsByMap(*emitting.world, names, stored)) setPhotonMap(*s.world, name, std::move(photons));
+            for (auto& [name, photons] : photonsByMap(*emitting.world, names, stored))
+                setPhotonMap(*s.world, name, std::move(photons));
             double mean = 0;
             for (const Vec3& d : ways) {
                 const Vec3 beside = Basis(d).t * .003f;
@@ -300,16 +343,21 @@ TEST(PhotonMaps, HollowFurnace) {
 // caustic() in a surface and in a light: the map of the surface's attributes. A mirror on the floor throws light to the ceiling.
 TEST(PhotonMaps, CausticOfAMirror) {
     const std::string scene = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 1 0]\n"
-                              "AttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 1] Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n";
-    const std::string ceiling = "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n", maps = "Attribute \"photon\" \"string causticmap\" \"c.photons\" \"integer estimator\" 400\n";
+                              "AttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 "
+                              "1] Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n";
+    const std::string ceiling = "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
+                      maps = "Attribute \"photon\" \"string causticmap\" \"c.photons\" \"integer estimator\" 400\n";
     showing("photoncaustic", "caustic(P, n)");
-    for (const std::string& shader : {std::string("Surface \"photoncaustic\"\n"), std::string("LightSource \"causticlight\" 2\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n")}) {
+    for (const std::string& shader :
+         {std::string("Surface \"photoncaustic\"\n"),
+          std::string("LightSource \"causticlight\" 2\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n")}) {
         const bool light = shader[0] == 'L';
         Scene emitting(world(scene + maps + "Surface \"matte\"\n" + ceiling), path());
         const auto stored = emitted(emitting, 600000);
         Scene s(world(scene + maps + shader + ceiling), withShaders(Hider::Hidden));
         const std::vector<std::string> names = {"c.photons"};
-        for (auto& [name, photons] : photonsByMap(*emitting.world, names, stored)) setPhotonMap(*s.world, name, std::move(photons));
+        for (auto& [name, photons] : photonsByMap(*emitting.world, names, stored))
+            setPhotonMap(*s.world, name, std::move(photons));
         // The image of the light lies 3 below the ceiling: Cl cos = 4 / 9 above it; the light itself is 1 away.
         const double want = 4 / 9. + (light ? 4 : 0), got = double(s.one(rayTo({.1f, 1.2f, 0}, {0, 2, 0})).x);
         EXPECT_NEAR(got, want, .15 * 4 / 9.) << light; // 400 photons: 5 %

@@ -1,4 +1,5 @@
-// Photons as a user has them: maps written, read, damaged, made on demand; more than there is room for; the same bits over threads.
+// Photons as a user has them: maps written, read, damaged, made on demand; more than there is room for; the same bits over
+// threads.
 #include "cli/command_folder.h"
 #include "photons/limits.h"
 #include "statistics/nightly.h"
@@ -10,12 +11,14 @@ using namespace alpenglow;
 
 class PhotonHider : public cli::testing::CommandFolder {
 protected:
-    const std::string room = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 0 1]\n"
-                             "Attribute \"photon\" \"string globalmap\" \"room.photons\" \"string causticmap\" \"room.photons\"\n";
+    const std::string room =
+        "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 0 1]\n"
+        "Attribute \"photon\" \"string globalmap\" \"room.photons\" \"string causticmap\" \"room.photons\"\n";
     const std::string ball = "Sides 2\nSphere 5 -5 5 360\nWorldEnd\n";
     const std::string use = "Display \"use.tif\" \"tiff\" \"rgb\"\nFormat 16 16 1\nWorldBegin\n";
     void writeEmission(const std::string& count) {
-        write("emit.rib", "Hider \"photon\" \"int emit\" " + count + "\nWorldBegin\n" + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
+        write("emit.rib",
+              "Hider \"photon\" \"int emit\" " + count + "\nWorldBegin\n" + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
     }
 };
 
@@ -33,7 +36,8 @@ TEST_F(PhotonHider, WritesMapsThatShadersRead) {
     EXPECT_NE(run("render use.rib", "2>&1").find("room.photons\" cannot be read: it is cut short"), std::string::npos);
     std::filesystem::remove(dir / "room.photons");
     EXPECT_NE(run("render use.rib", "2>&1").find("there is no photon map \"room.photons\""), std::string::npos);
-    write("use.rib", use + "Attribute \"light\" \"int emitphotons\" 1\n" + room + "LightSource \"causticlight\" 2\nSurface \"matte\" \"float Kd\" .5\n" + ball);
+    write("use.rib", use + "Attribute \"light\" \"int emitphotons\" 1\n" + room +
+                         "LightSource \"causticlight\" 2\nSurface \"matte\" \"float Kd\" .5\n" + ball);
     EXPECT_EQ(run("render use.rib", "2>&1").find("there is no photon map"), std::string::npos); // made for the picture
     EXPECT_EQ(status, 0);
 }
@@ -42,7 +46,9 @@ TEST_F(PhotonHider, NothingToDo) {
     write("none.rib", "Hider \"photon\"\nWorldBegin\nLightSource \"pointlight\" 1\n" + ball);
     EXPECT_NE(run("render none.rib", "2>&1").find("names a photon map"), std::string::npos);
     EXPECT_NE(status, 0);
-    write("dark.rib", "Hider \"photon\"\nWorldBegin\nAttribute \"photon\" \"string globalmap\" \"a.photons\"\nLightSource \"ambientlight\" 1\n" + ball);
+    write("dark.rib", "Hider \"photon\"\nWorldBegin\nAttribute \"photon\" \"string globalmap\" \"a.photons\"\nLightSource "
+                      "\"ambientlight\" 1\n" +
+                          ball);
     EXPECT_NE(run("render dark.rib", "2>&1").find("no light of the frame emits photons"), std::string::npos);
     EXPECT_NE(status, 0);
 }
@@ -54,10 +60,12 @@ TEST_F(PhotonHider, TooManyAreToldAndAnInterruptEndsThem) {
     EXPECT_NE(said.find("interrupted while photons were emitted"), std::string::npos) << said;
     EXPECT_EQ(status, 130);
     EXPECT_FALSE(std::filesystem::exists(dir / "room.photons"));
-    write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"int emit\" -1\nPixelSamples 1 1\n" + use + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
+    write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"int emit\" -1\nPixelSamples 1 1\n" + use + room +
+                          "Surface \"matte\" \"float Kd\" .5\n" + ball);
     EXPECT_NE(run("render pass.rib", "2>&1").find("1 to " + std::to_string(limits::kPhotonsOfPass)), std::string::npos);
     EXPECT_GE(limits::kPhotons, limits::kPhotonsOfPass); // a map holds a pass
-    write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"float causticwidth\" -1\nPixelSamples 1 1\n" + use + room + "Surface \"matte\" \"float Kd\" .5\n" + ball);
+    write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"float causticwidth\" -1\nPixelSamples 1 1\n" + use + room +
+                          "Surface \"matte\" \"float Kd\" .5\n" + ball);
     EXPECT_NE(run("render pass.rib", "2>&1").find("\"causticwidth\" is an angle in radians"), std::string::npos);
 }
 
@@ -66,9 +74,13 @@ TEST_F(PhotonHider, PassesHoldNoMoreThanTheyMay) {
     EXPECT_LE(8 * limits::kPhotonsAtRest * 48, size_t(1) << 30);
     if (!teststat::nightly()) GTEST_SKIP() << "36 million photons";
     const int samples = 8;
-    write("many.rib", "Hider \"path\" \"int caustics\" 1 \"int emit\" 4000000\nPixelSamples " + std::to_string(samples) + " 1\nFormat 8 8 1\nDisplay \"many.tif\" \"tiff\" \"rgb\"\nWorldBegin\n"
-                      "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 -4.9 0]\nAttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 1]\n"
-                      "Sides 2 Polygon \"P\" [-9 -4.95 -9  -9 -4.95 9  9 -4.95 9  9 -4.95 -9] AttributeEnd\nSurface \"matte\" \"float Kd\" .5\n" + ball);
+    write("many.rib", "Hider \"path\" \"int caustics\" 1 \"int emit\" 4000000\nPixelSamples " + std::to_string(samples) +
+                          " 1\nFormat 8 8 1\nDisplay \"many.tif\" \"tiff\" \"rgb\"\nWorldBegin\n"
+                          "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 -4.9 0]\nAttributeBegin Surface "
+                          "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 1]\n"
+                          "Sides 2 Polygon \"P\" [-9 -4.95 -9  -9 -4.95 9  9 -4.95 9  9 -4.95 -9] AttributeEnd\nSurface "
+                          "\"matte\" \"float Kd\" .5\n" +
+                          ball);
     const std::string said = run("render --stats many.json many.rib", "2>&1");
     EXPECT_EQ(status, 0) << said;
     EXPECT_EQ(said.find("error: "), std::string::npos) << said;
@@ -77,10 +89,13 @@ TEST_F(PhotonHider, PassesHoldNoMoreThanTheyMay) {
 }
 
 TEST_F(PhotonHider, SameCausticsOverThreadsAndParts) {
-    const std::string scene = "Format 24 24 1\nHider \"path\" \"int caustics\" 1\nPixelSamples 2 2\nProjection \"perspective\"\nTranslate 0 0 3\nWorldBegin\n"
-                              "LightSource \"pointlight\" 1 \"float intensity\" 9 \"point from\" [.5 3 .2]\nSides 2\nAttributeBegin Surface \"slmaterial\" "
-                              "\"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5\nSphere .6 -.6 .6 360 AttributeEnd\n"
-                              "Surface \"matte\"\nPolygon \"P\" [-3 -1 -3  -3 -1 3  3 -1 3  3 -1 -3]\nWorldEnd\n";
+    const std::string scene =
+        "Format 24 24 1\nHider \"path\" \"int caustics\" 1\nPixelSamples 2 2\nProjection \"perspective\"\nTranslate 0 0 "
+        "3\nWorldBegin\n"
+        "LightSource \"pointlight\" 1 \"float intensity\" 9 \"point from\" [.5 3 .2]\nSides 2\nAttributeBegin Surface "
+        "\"slmaterial\" "
+        "\"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5\nSphere .6 -.6 .6 360 AttributeEnd\n"
+        "Surface \"matte\"\nPolygon \"P\" [-3 -1 -3  -3 -1 3  3 -1 3  3 -1 -3]\nWorldEnd\n";
     for (const char* threads : {"1", "3"}) {
         write("a.rib", std::string("Display \"a") + threads + ".exr\" \"openexr\" \"rgba\"\n" + scene);
         run(std::string("render a.rib -t ") + threads, "2>&1");
@@ -99,17 +114,23 @@ TEST_F(PhotonHider, SameCausticsOverThreadsAndParts) {
 
 // Narrow lobes, whose shaders run twice, and photons of times.
 TEST_F(PhotonHider, SameNarrowLobesInMotionOverThreadsAndParts) {
-    write("rough.sl", "surface rough() { Oi = 1; Ci = trace(P, normalize(N), \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, \"samplearealights\", 1, "
+    write("rough.sl", "surface rough() { Oi = 1; Ci = trace(P, normalize(N), \"distribution\", \"glass-ggx\", \"roughness\", "
+                      ".06, \"eta\", 1.5, \"samplearealights\", 1, "
                       "\"type\", \"specular\"); }\n");
-    write("coat.sl", "surface coat() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = .3 * diffuse(n) + 4 * specular(n, -normalize(I), .02); }\n");
-    const std::string scene = "Format 24 24 1\nPixelSamples 3 2\nShutter 0 1\nProjection \"perspective\"\nTranslate 0 0 3\nWorldBegin\n"
-                              "AttributeBegin AreaLightSource \"slrect\" 1 \"float intensity\" 20 Translate .5 2 .2 Polygon \"P\" [-.3 0 -.3  -.3 0 .3  .3 0 .3  .3 0 -.3] AttributeEnd\n"
-                              "Illuminate 1 1\nLightSource \"pointlight\" 2 \"float intensity\" 3 \"point from\" [-.5 2 .2]\nSides 2\n"
-                              "AttributeBegin Surface \"rough\" MotionBegin [0 1] Translate 0 0 0 Translate .3 .2 0 MotionEnd Sphere .6 -.6 .6 360 AttributeEnd\n"
-                              "AttributeBegin Surface \"coat\" Polygon \"P\" [1.2 -1 -1  1.2 -1 1  1.2 2 1  1.2 2 -1] AttributeEnd\n"
-                              "Surface \"matte\"\nPolygon \"P\" [-3 -1 -3  -3 -1 3  3 -1 3  3 -1 -3]\nWorldEnd\n";
+    write("coat.sl", "surface coat() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = .3 * diffuse(n) + 4 * specular(n, "
+                     "-normalize(I), .02); }\n");
+    const std::string scene =
+        "Format 24 24 1\nPixelSamples 3 2\nShutter 0 1\nProjection \"perspective\"\nTranslate 0 0 3\nWorldBegin\n"
+        "AttributeBegin AreaLightSource \"slrect\" 1 \"float intensity\" 20 Translate .5 2 .2 Polygon \"P\" [-.3 0 -.3  -.3 0 .3 "
+        " .3 0 .3  .3 0 -.3] AttributeEnd\n"
+        "Illuminate 1 1\nLightSource \"pointlight\" 2 \"float intensity\" 3 \"point from\" [-.5 2 .2]\nSides 2\n"
+        "AttributeBegin Surface \"rough\" MotionBegin [0 1] Translate 0 0 0 Translate .3 .2 0 MotionEnd Sphere .6 -.6 .6 360 "
+        "AttributeEnd\n"
+        "AttributeBegin Surface \"coat\" Polygon \"P\" [1.2 -1 -1  1.2 -1 1  1.2 2 1  1.2 2 -1] AttributeEnd\n"
+        "Surface \"matte\"\nPolygon \"P\" [-3 -1 -3  -3 -1 3  3 -1 3  3 -1 -3]\nWorldEnd\n";
     const auto render = [&](const std::string& name, const std::string& hider, const std::string& how) {
-        write(name + ".rib", "Display \"" + name + ".exr\" \"openexr\" \"rgba\"\nHider \"path\" \"int caustics\" 1" + hider + "\n" + scene);
+        write(name + ".rib",
+              "Display \"" + name + ".exr\" \"openexr\" \"rgba\"\nHider \"path\" \"int caustics\" 1" + hider + "\n" + scene);
         const std::string said = run("render " + how + " " + name + ".rib", "2>&1");
         EXPECT_EQ(status, 0) << said;
     };

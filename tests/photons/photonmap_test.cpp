@@ -77,7 +77,8 @@ TEST(PhotonMap, RightInTheMean) {
             sum += e, squares += e * e;
         }
         const double mean = sum / turns, error = std::sqrt((squares / turns - mean * mean) / turns);
-        if (estimator > 2) EXPECT_NEAR(mean, 1, 4.5 * error) << estimator; // the variance of 1 / r^2 is infinite for the first two
+        if (estimator > 2)
+            EXPECT_NEAR(mean, 1, 4.5 * error) << estimator; // the variance of 1 / r^2 is infinite for the first two
         else EXPECT_GT(mean, .8) << estimator;
     }
 }
@@ -139,7 +140,8 @@ TEST(PhotonGrid, FindsThoseOfATime) {
     EXPECT_EQ(PhotonGrid(all, .3f).lasts(.5f), 1);
 }
 
-// As many photons as in the circle of a scene that stands still; what is smeared is as wide as the circle, or the window is least.
+// As many photons as in the circle of a scene that stands still; what is smeared is as wide as the circle, or the window is
+// least.
 TEST(PhotonGrid, MovingStart) {
     for (const float travel : {0.f, .5f, 2.f, 10.f, 1e6f}) {
         const MovingStart s = movingStart(1, travel);

@@ -37,7 +37,8 @@ std::string refusal(ShaderCompiler& c, const std::string& text) {
 }
 
 /// Output `o` at n points with u = 0, 1/n, 2/n ...; components one after the other.
-std::vector<float> run(ShaderCompiler& c, const std::string& body, const KernelOptions& options, int n, const std::string& type = "float") {
+std::vector<float> run(ShaderCompiler& c, const std::string& body, const KernelOptions& options, int n,
+                       const std::string& type = "float") {
     Diagnostics d;
     const std::string zero = type == "string" ? "\"\"" : "0";
     const auto shader =
@@ -79,10 +80,12 @@ TEST(Plugins, EveryKindOfArgument) {
     EXPECT_EQ(run(c, "float a[4] = {1, 2, 3, 4}; o = polynomial(2, a);", o, 3)[1], 1 + 2 * 2 + 3 * 4 + 4 * 8);
     EXPECT_EQ(run(c, "vector a = 1, b = vector(2, 3, 4); swap(a, b); o = a[2] * 10 + b[2];", o, 3)[1], 41);
     EXPECT_EQ(run(c, "o = trace(matrix(2));", o, 3)[1], 8);
-    // Overloaded by the result and by what else is given; which thread is an output argument. cos(0) of the middle of a thread is 1.
+    // Overloaded by the result and by what else is given; which thread is an output argument. cos(0) of the middle of a thread
+    // is 1.
     EXPECT_EQ(run(c, "o = weave(0.5, 0.5);", o, 3)[1], 1);
     EXPECT_EQ(run(c, "float w = 7; color k = weave(1.5, 0.5, 0, color(1, 2, 3), w); o = k[1] * 10 + w;", o, 3)[1], 21);
-    const float id = run(c, "string s = (u < 0.5) ? \"ab\" : \"\"; o = concat(repeated(s, 2), repeated(\"x\", 3));", o, 3, "string")[1];
+    const float id =
+        run(c, "string s = (u < 0.5) ? \"ab\" : \"\"; o = concat(repeated(s, 2), repeated(\"x\", 3));", o, 3, "string")[1];
     EXPECT_EQ(internedString(std::bit_cast<int32_t>(id)), "ababxxx");
 }
 
@@ -90,8 +93,9 @@ TEST(Plugins, OnlyPointsThatComeByAreAskedAndOthersKeepTheirValues) {
     ShaderCompiler c(trusting());
     for (const KernelOptions& o : configurations()) {
         SCOPED_TRACE(describe(o));
-        const std::vector<float> got = run(c, "o = 5; if (u >= 0.5) o = trace(matrix(1)); else if (u < 0.25) { float k;"
-                                              "for (k = 0; k < 3; k += 1) o += polynomial(1, {0, k, 0, 0}); }",
+        const std::vector<float> got = run(c,
+                                           "o = 5; if (u >= 0.5) o = trace(matrix(1)); else if (u < 0.25) { float k;"
+                                           "for (k = 0; k < 3; k += 1) o += polynomial(1, {0, k, 0, 0}); }",
                                            o, 40);
         ASSERT_EQ(got.size(), 40u);
         EXPECT_EQ(got[0], 8);
@@ -124,18 +128,21 @@ TEST(Plugins, WithoutAllowExecNothingIsLoaded) {
     ShaderCompiler c(s);
     // One message: what the plug-in would have brought is not missed aloud.
     const std::string m = refusal(c, "plugin \"weave\";\nsurface t() { Ci = triangle(u) + polynomial(1, {1, 2, 3, 4}); }");
-    EXPECT_EQ(m, "1:1 plug-in \"weave\" is not loaded: a plug-in is a program, and shaders may not run programs (--allow-exec lets them)\n");
+    EXPECT_EQ(m, "1:1 plug-in \"weave\" is not loaded: a plug-in is a program, and shaders may not run programs (--allow-exec "
+                 "lets them)\n");
 }
 
 TEST(Plugins, WhatIsNoPluginIsRefused) {
     ShaderCompiler c(trusting());
     const std::string tail = "surface t() { Ci = sum(u, 1); }";
-    EXPECT_NE(refusal(c, "plugin \"nowhere\";\n" + tail).find("1:1 plug-in \"nowhere\" was not found (it is looked for as nowhere.so"),
-              std::string::npos);
+    EXPECT_NE(
+        refusal(c, "plugin \"nowhere\";\n" + tail).find("1:1 plug-in \"nowhere\" was not found (it is looked for as nowhere.so"),
+        std::string::npos);
     EXPECT_NE(refusal(c, "plugin \"\";\n" + tail).find("was not found"), std::string::npos);
     EXPECT_NE(refusal(c, "plugin \"stranger\";\n" + tail).find("is no RSL plug-in"), std::string::npos);
     EXPECT_NE(refusal(c, "plugin \"misfit\";\n" + tail)
-                  .find("of the signature \"float sum(float a; color b)\" in " ALPENGLOW_PLUGINS "/misfit.so, it says 4 numbers in and 1 out, its function has 2 and 1"),
+                  .find("of the signature \"float sum(float a; color b)\" in " ALPENGLOW_PLUGINS
+                        "/misfit.so, it says 4 numbers in and 1 out, its function has 2 and 1"),
               std::string::npos);
     const fs::path text = fs::temp_directory_path() / ("alpenglow_plugin_" + std::to_string(getpid()) + ".so");
     std::ofstream(text) << "this is no library\n";
@@ -150,9 +157,11 @@ TEST(Plugins, ArgumentsAreChecked) {
     ASSERT_EQ(d.errors(), 1) << said(d);
     ASSERT_FALSE(d.all()[0].notes.empty());
     EXPECT_EQ(d.all()[0].notes.back(), "'triangle' is a function of plug-in \"weave\": " ALPENGLOW_PLUGINS "/weave.so");
-    EXPECT_NE(refusal(c, "plugin \"weave\";\nsurface t() { Ci = triangle(\"a\"); }").find("'triangle' cannot be called with (string)"),
+    EXPECT_NE(
+        refusal(c, "plugin \"weave\";\nsurface t() { Ci = triangle(\"a\"); }").find("'triangle' cannot be called with (string)"),
+        std::string::npos);
+    EXPECT_NE(refusal(c, "plugin \"weave\";\nsurface t() { vector a = 0; swap(a, a + a); }").find("output argument"),
               std::string::npos);
-    EXPECT_NE(refusal(c, "plugin \"weave\";\nsurface t() { vector a = 0; swap(a, a + a); }").find("output argument"), std::string::npos);
 }
 
 TEST(Plugins, DerivativesAreZero) {

@@ -21,10 +21,13 @@ struct Ball {
     explicit Ball(int cut) : n(cut) {
         for (int side = 0; side < 6; ++side)
             for (int j = 0; j < n; ++j)
-                for (int i = 0; i < n; ++i) corners.push_back({at(side, i, j), at(side, i + 1, j), at(side, i + 1, j + 1), at(side, i, j + 1)});
+                for (int i = 0; i < n; ++i)
+                    corners.push_back({at(side, i, j), at(side, i + 1, j), at(side, i + 1, j + 1), at(side, i, j + 1)});
         head.faces.resize(corners.size());
         std::map<std::array<std::array<int, 3>, 2>, std::pair<int, int>> edges;
-        const auto key = [&](const Vec3d& p) { return std::array<int, 3>{int(std::lround(p.x * 1000)), int(std::lround(p.y * 1000)), int(std::lround(p.z * 1000))}; };
+        const auto key = [&](const Vec3d& p) {
+            return std::array<int, 3>{int(std::lround(p.x * 1000)), int(std::lround(p.y * 1000)), int(std::lround(p.z * 1000))};
+        };
         for (size_t f = 0; f < corners.size(); ++f)
             for (size_t e = 0; e < 4; ++e) edges[{key(corners[f][e]), key(corners[f][(e + 1) % 4])}] = {int(f), int(e)};
         for (size_t f = 0; f < corners.size(); ++f)
@@ -79,7 +82,8 @@ protected:
     std::filesystem::path dir;
     Diagnostics d;
     void SetUp() override {
-        dir = std::filesystem::temp_directory_path() / ("alpenglow_ptex_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+        dir = std::filesystem::temp_directory_path() / ("alpenglow_ptex_" + std::to_string(getpid()) + "_" +
+                                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
         std::filesystem::create_directories(dir);
     }
     void TearDown() override { std::filesystem::remove_all(dir); }

@@ -13,8 +13,8 @@ using alpenglow::ptex::test::Ptex;
 
 float linear(const Vec3d& p) { return float(.5 + .2 * p.x - .15 * p.y + .1 * p.z); }
 
-/// What a walk over the ball sees: the largest error; the largest jump of the slope within faces, over edges between faces of one side of
-/// the cube, and over edges of the cube; and the largest step from point to point, beyond that of the function.
+/// What a walk over the ball sees: the largest error; the largest jump of the slope within faces, over edges between faces of one
+/// side of the cube, and over edges of the cube; and the largest step from point to point, beyond that of the function.
 struct Walked {
     double error = 0, jump[3] = {0, 0, 0}, step = 0;
 };
@@ -38,13 +38,15 @@ Walked walkOver(const Texture& t, const Ball& ball, Kernel kernel, float width, 
             w.error = std::max(w.error, std::fabs(double(out) - double(linear(p))));
             faces[0] = faces[1], faces[1] = faces[2], faces[2] = f;
             if (i >= 2) { // the change of the slope, where a linear function on a great circle has hardly any
-                const double exact = double(linear(a * std::cos(i * step) + b * std::sin(i * step))) - 2 * double(linear(a * std::cos((i - 1) * step) + b * std::sin((i - 1) * step))) +
+                const double exact = double(linear(a * std::cos(i * step) + b * std::sin(i * step))) -
+                                     2 * double(linear(a * std::cos((i - 1) * step) + b * std::sin((i - 1) * step))) +
                                      double(linear(a * std::cos((i - 2) * step) + b * std::sin((i - 2) * step)));
                 const double change = std::fabs(double(out) - 2 * before[1] + before[0] - exact) / step;
                 const size_t side = size_t(ball.n * ball.n);
                 double& most = w.jump[faces[0] == faces[2] ? 0 : faces[0] / side == faces[2] / side ? 1 : 2];
                 most = std::max(most, change);
-                const double exactStep = double(linear(a * std::cos(i * step) + b * std::sin(i * step))) - double(linear(a * std::cos((i - 1) * step) + b * std::sin((i - 1) * step)));
+                const double exactStep = double(linear(a * std::cos(i * step) + b * std::sin(i * step))) -
+                                         double(linear(a * std::cos((i - 1) * step) + b * std::sin((i - 1) * step)));
                 w.step = std::max(w.step, std::fabs(double(out) - before[1] - exactStep));
             }
             before[0] = before[1], before[1] = double(out);
@@ -53,9 +55,9 @@ Walked walkOver(const Texture& t, const Ball& ball, Kernel kernel, float width, 
     return w;
 }
 
-// The proof of issue 15: a ball of faces with a linear function, whose slope is .25 at most. Walks over edges between faces of a side see no
-// other slopes than walks within faces. At the edges of the cube lines of equal u have a kink, as the mesh has it, which the filter
-// takes for the function's, over a pixel; still no step is to be seen in a picture of 8 bits.
+// The proof of issue 15: a ball of faces with a linear function, whose slope is .25 at most. Walks over edges between faces of a
+// side see no other slopes than walks within faces. At the edges of the cube lines of equal u have a kink, as the mesh has it,
+// which the filter takes for the function's, over a pixel; still no step is to be seen in a picture of 8 bits.
 TEST_F(Ptex, ABallOfFacesHasNoSeam) {
     Ball ball(4);
     ball.head.number = Number::Float;
@@ -67,15 +69,18 @@ TEST_F(Ptex, ABallOfFacesHasNoSeam) {
         for (const float width : {0.f, .1f, .3f}) {
             const Walked w = walkOver(*t, ball, k, width, 200);
             EXPECT_LT(w.error, 1 / 255. + .03 * double(width) * double(width)) << int(k) << " " << width;
-            EXPECT_LT(w.jump[1], 1.2 * w.jump[0] + .005) << "over edges, where within faces it is " << w.jump[0] << " " << int(k) << " " << width;
+            EXPECT_LT(w.jump[1], 1.2 * w.jump[0] + .005)
+                << "over edges, where within faces it is " << w.jump[0] << " " << int(k) << " " << width;
             EXPECT_LT(w.step, .6 / 255) << "from point to point";
         }
     // Without neighbours the same walks see the seams: the test can fail.
     for (Face& f : ball.head.faces) f.adjacent = {-1, -1, -1, -1};
     ASSERT_TRUE(writeTexture(path("apart.ptx"), ball.head, images, policy(), d));
-    const Walked apart = walkOver(*open("apart.ptx"), ball, Kernel::Gaussian, .1f, 50), whole = walkOver(*t, ball, Kernel::Gaussian, .1f, 50);
+    const Walked apart = walkOver(*open("apart.ptx"), ball, Kernel::Gaussian, .1f, 50),
+                 whole = walkOver(*t, ball, Kernel::Gaussian, .1f, 50);
     EXPECT_GT(apart.jump[1], 3 * whole.jump[1]);
-    std::printf("over edges: %.4f with neighbours, %.4f without; within faces %.4f\n", whole.jump[1], apart.jump[1], whole.jump[0]);
+    std::printf("over edges: %.4f with neighbours, %.4f without; within faces %.4f\n", whole.jump[1], apart.jump[1],
+                whole.jump[0]);
 }
 
 // Faces beside each other of different resolutions: the coarser one decides how fine what is seen can be.
@@ -108,7 +113,8 @@ TEST_F(Ptex, FacesMuchLongerThanWide) {
             for (const Kernel kernel : {Kernel::Gaussian, Kernel::Triangle, Kernel::Box}) {
                 float out = -1;
                 const float along = .1f, over = .5f; // no filter reaches the ends along the long side
-                lookup(*t, {0, tall ? .5f : at, tall ? at : .5f, tall ? over : along, tall ? along : over, 0, 1, 0, kernel}, &out);
+                lookup(*t, {0, tall ? .5f : at, tall ? at : .5f, tall ? over : along, tall ? along : over, 0, 1, 0, kernel},
+                       &out);
                 EXPECT_NEAR(out, at, 2e-3) << tall << int(kernel); // of a linear function any symmetric mean
             }
     }
@@ -164,7 +170,14 @@ TEST_F(Ptex, EdgesMeetInAllSixteenWays) {
             const auto t = open("two.ptx");
             ASSERT_TRUE(t);
             for (const float along : {.3f, .5f, .7f}) {
-                const float u = e == 0 ? along : e == 1 ? 1 : e == 2 ? 1 - along : 0, v = e == 0 ? 0 : e == 1 ? along : e == 2 ? 1 : 1 - along;
+                const float u = e == 0   ? along
+                                : e == 1 ? 1
+                                : e == 2 ? 1 - along
+                                         : 0,
+                            v = e == 0   ? 0
+                                : e == 1 ? along
+                                : e == 2 ? 1
+                                         : 1 - along;
                 float out;
                 ASSERT_TRUE(lookup(*t, {0, u, v, 0, 0, 0, 1, 0, Kernel::Triangle}, &out));
                 EXPECT_NEAR(out, along, 1e-4) << e << " " << g;
@@ -211,7 +224,8 @@ TEST_F(Ptex, HalfEdgesOfSubfaces) {
     for (int k = 0; k < 3; ++k) {
         images[size_t(k)].u = images[size_t(k)].v = 8;
         for (int j = 0; j < 8; ++j)
-            for (int i = 0; i < 8; ++i) images[size_t(k)].values.push_back(k == 0 ? (float(j) + .5f) / 8 : ((float(j) + .5f) / 8 + float(k - 1)) / 2);
+            for (int i = 0; i < 8; ++i)
+                images[size_t(k)].values.push_back(k == 0 ? (float(j) + .5f) / 8 : ((float(j) + .5f) / 8 + float(k - 1)) / 2);
     }
     ASSERT_TRUE(writeTexture(path("sub.ptx"), head, images, policy(), d));
     const auto t = open("sub.ptx");
@@ -241,9 +255,11 @@ TEST_F(Ptex, TrianglesToo) {
         for (int j = 0; j < 16; ++j)
             for (int i = 0; i < 16; ++i) {
                 const bool up = i + j < 16;
-                const float u = (up ? float(i) + 1 / 3.f : float(15 - i) + 2 / 3.f) / 16, v = (up ? float(j) + 1 / 3.f : float(15 - j) + 2 / 3.f) / 16;
+                const float u = (up ? float(i) + 1 / 3.f : float(15 - i) + 2 / 3.f) / 16,
+                            v = (up ? float(j) + 1 / 3.f : float(15 - j) + 2 / 3.f) / 16;
                 const auto* c = corners[k];
-                const float x = c[0].x * (1 - u - v) + c[1].x * u + c[2].x * v, y = c[0].y * (1 - u - v) + c[1].y * u + c[2].y * v;
+                const float x = c[0].x * (1 - u - v) + c[1].x * u + c[2].x * v,
+                            y = c[0].y * (1 - u - v) + c[1].y * u + c[2].y * v;
                 images[k].values.push_back(x + 2 * y);
             }
     }
@@ -262,11 +278,13 @@ TEST_F(Ptex, TrianglesToo) {
 
 /// A cube with colours at its corners, as PLY.
 std::string cubePly() {
-    std::string s = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty float red\nproperty float green\nproperty float blue\n"
+    std::string s = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty "
+                    "float red\nproperty float green\nproperty float blue\n"
                     "element face 6\nproperty list uchar int vertex_indices\nend_header\n";
     for (int i = 0; i < 8; ++i) {
         const int x = i & 1, y = i >> 1 & 1, z = i >> 2;
-        s += std::to_string(2 * x - 1) + " " + std::to_string(2 * y - 1) + " " + std::to_string(2 * z - 1) + " " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+        s += std::to_string(2 * x - 1) + " " + std::to_string(2 * y - 1) + " " + std::to_string(2 * z - 1) + " " +
+             std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
     }
     return s + "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 }
@@ -276,8 +294,10 @@ protected:
     const std::string indices = "[4 4 4 4 4 4] [0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5]";
     const std::string points = "\"P\" [-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1]";
     std::vector<float> picture(const std::string& geometry) {
-        write("s.rib", "Format 48 48 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nHider \"hidden\" \"jitter\" [0]\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nProjection \"perspective\" \"fov\" 30\n"
-                       "Translate 0 0 6\nRotate 30 1 1 0\nWorldBegin\n" + geometry + "WorldEnd\n");
+        write("s.rib", "Format 48 48 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nHider \"hidden\" \"jitter\" [0]\nDisplay "
+                       "\"a.exr\" \"openexr\" \"rgba\"\nProjection \"perspective\" \"fov\" 30\n"
+                       "Translate 0 0 6\nRotate 30 1 1 0\nWorldBegin\n" +
+                           geometry + "WorldEnd\n");
         const std::string said = run("render s.rib", "2>&1");
         EXPECT_EQ(said.find("error: "), std::string::npos) << said;
         EXPECT_EQ(said.find("warning: "), std::string::npos) << said;
@@ -287,28 +307,32 @@ protected:
     }
 };
 
-// A cube whose Ptex file has the colour (x, y, z): what is seen is what a shader says of P. On polygons, and on a subdivision surface
-// with creases that is a cube, too.
+// A cube whose Ptex file has the colour (x, y, z): what is seen is what a shader says of P. On polygons, and on a subdivision
+// surface with creases that is a cube, too.
 TEST_F(PtexScenes, AColouredCube) {
     write("cube.ply", cubePly());
     run("maketx -ptex -side 16 cube.ply cube.ptx", "2>&1");
     ASSERT_EQ(status, 0);
-    write("tex.sl", "surface tex(float __faceindex = 0;) { Oi = 1; Ci = ptexture(\"cube.ptx\", 0, __faceindex); float g = ptexture(\"cube.ptx\", 1, __faceindex); if (abs(g - comp(Ci, 1)) > 1e-6) Ci = 9; }\n");
-    write("want.sl", "surface want() { Oi = 1; point p = transform(\"object\", P); Ci = color(xcomp(p) + 1, ycomp(p) + 1, zcomp(p) + 1) / 2; }\n");
+    write("tex.sl", "surface tex(float __faceindex = 0;) { Oi = 1; Ci = ptexture(\"cube.ptx\", 0, __faceindex); float g = "
+                    "ptexture(\"cube.ptx\", 1, __faceindex); if (abs(g - comp(Ci, 1)) > 1e-6) Ci = 9; }\n");
+    write("want.sl", "surface want() { Oi = 1; point p = transform(\"object\", P); Ci = color(xcomp(p) + 1, ycomp(p) + 1, "
+                     "zcomp(p) + 1) / 2; }\n");
     const std::string polygons = "PointsPolygons " + indices + " " + points + "\n";
     std::string creases;
     const char* edges[] = {"0 1", "1 3", "3 2", "2 0", "4 5", "5 7", "7 6", "6 4", "0 4", "1 5", "2 6", "3 7"};
     std::string names, counts, ints, floats;
     for (const char* e : edges) names += "\"crease\" ", counts += "2 1 ", ints += std::string(e) + " ", floats += "10 ";
     for (int i = 0; i < 8; ++i) names += "\"corner\" ", counts += "1 1 ", ints += std::to_string(i) + " ", floats += "10 ";
-    const std::string subdivision = "SubdivisionMesh \"catmull-clark\" " + indices + " [" + names + "] [" + counts + "] [" + ints + "] [" + floats + "] " + points + "\n";
+    const std::string subdivision = "SubdivisionMesh \"catmull-clark\" " + indices + " [" + names + "] [" + counts + "] [" +
+                                    ints + "] [" + floats + "] " + points + "\n";
     for (const std::string& mesh : {polygons, subdivision}) {
         const auto tex = picture("Surface \"tex\"\n" + mesh), want = picture("Surface \"want\"\n" + mesh);
         ASSERT_EQ(tex.size(), want.size());
         double worst = 0, covered = 0;
         for (size_t i = 0; i < tex.size(); i += 4)
             if (want[i + 3] > .99f)
-                for (size_t k = 0; k < 3; ++k) worst = std::max(worst, std::fabs(double(tex[i + k]) - double(want[i + k]))), ++covered;
+                for (size_t k = 0; k < 3; ++k)
+                    worst = std::max(worst, std::fabs(double(tex[i + k]) - double(want[i + k]))), ++covered;
         EXPECT_GT(covered, 600);
         // Colours of the faces beside bend at the edges, over a filter of about a pixel of 1/16.
         EXPECT_LT(worst, .06) << mesh.substr(0, 20);
@@ -320,16 +344,21 @@ TEST_F(PtexScenes, WhatCannotBe) {
     write("bad.ptx", "Ptex");
     write("cube.ply", cubePly());
     run("maketx -ptex cube.ply cube.ptx", "2>&1");
-    const char* cases[][3] = {{"missing.ptx", "0", "there is no Ptex file"}, {"bad.ptx", "0", "it is cut short"}, {"cube.ptx", "6", "has 6 faces"}};
+    const char* cases[][3] = {
+        {"missing.ptx", "0", "there is no Ptex file"}, {"bad.ptx", "0", "it is cut short"}, {"cube.ptx", "6", "has 6 faces"}};
     for (const auto& [file, face, word] : cases) {
-        write("s.rib", std::string("Format 8 8 1\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nTranslate 0 0 3\nWorldBegin\nSurface \"tex\" \"f\" \"") + file + "\" \"face\" " + face + "\nSphere 1 -1 1 360\nWorldEnd\n");
+        write("s.rib",
+              std::string(
+                  "Format 8 8 1\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nTranslate 0 0 3\nWorldBegin\nSurface \"tex\" \"f\" \"") +
+                  file + "\" \"face\" " + face + "\nSphere 1 -1 1 360\nWorldEnd\n");
         const std::string said = run("render s.rib", "2>&1");
         const size_t at = said.find(word);
         EXPECT_NE(at, std::string::npos) << said;
         EXPECT_EQ(said.find(word, at + 1), std::string::npos) << "once";
         EXPECT_LT(status, 128);
     }
-    write("five.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0\n5 0 0 0 0 0\n");
+    write("five.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement face 1\nproperty list uchar int "
+                      "vertex_indices\nend_header\n0\n5 0 0 0 0 0\n");
     EXPECT_NE(run("maketx -ptex five.ply x.ptx", "2>&1").find("four corners"), std::string::npos);
     EXPECT_NE(status, 0);
 }

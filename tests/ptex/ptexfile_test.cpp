@@ -42,7 +42,10 @@ TEST_F(Ptex, WhatIsWrittenIsRead) {
             ASSERT_EQ(t->head().metas.size(), 2u);
             EXPECT_EQ(t->head().metas[0].key, "small");
             EXPECT_EQ(t->head().metas[1].bytes.size(), 5000u);
-            const double near = number == Number::Byte ? 1.0 / 500 : number == Number::Word ? 1e-5 : number == Number::Half ? 3e-4 : 1e-7;
+            const double near = number == Number::Byte   ? 1.0 / 500
+                                : number == Number::Word ? 1e-5
+                                : number == Number::Half ? 3e-4
+                                                         : 1e-7;
             for (uint32_t f = 0; f < 12; ++f) {
                 const auto m = t->image(f, 0);
                 if (f == 5) {
@@ -58,7 +61,8 @@ TEST_F(Ptex, WhatIsWrittenIsRead) {
                     half = halved(half, channels, Mesh::Quad);
                     const auto got = t->image(f, k);
                     ASSERT_EQ(got->values.size(), half.values.size()) << f << " " << k;
-                    for (size_t i = 0; i < half.values.size(); ++i) ASSERT_NEAR(got->values[i], half.values[i], 4 * near + 1e-6) << f << " " << k;
+                    for (size_t i = 0; i < half.values.size(); ++i)
+                        ASSERT_NEAR(got->values[i], half.values[i], 4 * near + 1e-6) << f << " " << k;
                 }
             }
         }
@@ -82,7 +86,8 @@ TEST_F(Ptex, LargeFacesAreTiledAndAlphaIsMultiplied) {
             ASSERT_NEAR(m->values[i + 3], images[f].values[i + 3], 1e-6);
         }
         const auto coarse = t->image(f, 1);
-        EXPECT_NEAR(coarse->values[0], (m->values[0] + m->values[4] + m->values[size_t(m->u) * 4] + m->values[size_t(m->u) * 4 + 4]) / 4, 1 / 250.0);
+        EXPECT_NEAR(coarse->values[0],
+                    (m->values[0] + m->values[4] + m->values[size_t(m->u) * 4] + m->values[size_t(m->u) * 4 + 4]) / 4, 1 / 250.0);
     }
 }
 
@@ -99,13 +104,13 @@ TEST_F(Ptex, TheHeaderIsThatOfTheSpecification) {
     const std::string b = bytes("a.ptx");
     const auto* u = reinterpret_cast<const uint8_t*>(b.data());
     EXPECT_EQ(b.substr(0, 4), "Ptex");
-    EXPECT_EQ(take<uint32_t>(u + 4), 1u);            // version
-    EXPECT_EQ(take<uint32_t>(u + 8), 1u);            // quads
-    EXPECT_EQ(take<uint32_t>(u + 12), 2u);           // float16
-    EXPECT_EQ(take<uint32_t>(u + 16), 0xffffffffu);  // no alpha
-    EXPECT_EQ(take<uint16_t>(u + 20), 2);            // channels
-    EXPECT_EQ(take<uint16_t>(u + 22), 2);            // levels: 16 x 8, 8 x 4
-    EXPECT_EQ(take<uint32_t>(u + 24), 3u);           // faces
+    EXPECT_EQ(take<uint32_t>(u + 4), 1u);           // version
+    EXPECT_EQ(take<uint32_t>(u + 8), 1u);           // quads
+    EXPECT_EQ(take<uint32_t>(u + 12), 2u);          // float16
+    EXPECT_EQ(take<uint32_t>(u + 16), 0xffffffffu); // no alpha
+    EXPECT_EQ(take<uint16_t>(u + 20), 2);           // channels
+    EXPECT_EQ(take<uint16_t>(u + 22), 2);           // levels: 16 x 8, 8 x 4
+    EXPECT_EQ(take<uint32_t>(u + 24), 3u);          // faces
     const uint32_t ext = take<uint32_t>(u + 28), info = take<uint32_t>(u + 32);
     EXPECT_EQ(ext, 40u);
     EXPECT_EQ(take<uint32_t>(u + 64), 2u); // periodic along u
@@ -118,7 +123,8 @@ TEST_F(Ptex, TheHeaderIsThatOfTheSpecification) {
     EXPECT_EQ(take<uint32_t>(&faces[24]), 2u);
     EXPECT_EQ(take<uint32_t>(&faces[28]), 0xffffffffu);
     const uint64_t levels = take<uint64_t>(u + 48);
-    EXPECT_EQ(64 + ext + info + take<uint32_t>(u + 36) + take<uint32_t>(u + 40) + levels + take<uint32_t>(u + 56) + 8, b.size()) << "the barrier ends it";
+    EXPECT_EQ(64 + ext + info + take<uint32_t>(u + 36) + take<uint32_t>(u + 40) + levels + take<uint32_t>(u + 56) + 8, b.size())
+        << "the barrier ends it";
 }
 
 // An edit at the end of the file replaces a face, and the levels that were made of it.
@@ -216,7 +222,8 @@ TEST_F(Ptex, DamagedTwoThousandTimes) {
 
 TEST_F(Ptex, PromisesThatNoFileKeeps) {
     put("none.ptx", "");
-    put("text.ptx", "Ptex is a fine format, but this is a text file, and it is long enough to have a header of 64 bytes and more.");
+    put("text.ptx",
+        "Ptex is a fine format, but this is a text file, and it is long enough to have a header of 64 bytes and more.");
     for (const char* name : {"none.ptx", "text.ptx", "missing.ptx"}) {
         Diagnostics said;
         EXPECT_FALSE(openTexture(path(name), makeCache(1000), said));

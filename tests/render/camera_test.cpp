@@ -201,8 +201,8 @@ TEST(Camera, NonsenseIsReportedAndReplaced) {
 }
 
 TEST(Camera, CirclesOfConfusion) {
-    // ri.md 6: in perspective the blur of a point at depth z has the diameter A |1/z - 1/D| k xres / (right - left) in the raster; in
-    // orthographic views A |z/D - 1| xres / (right - left).
+    // ri.md 6: in perspective the blur of a point at depth z has the diameter A |1/z - 1/D| k xres / (right - left) in the
+    // raster; in orthographic views A |z/D - 1| xres / (right - left).
     Diagnostics d;
     for (bool perspectively : {true, false})
         for (double z : {2.0, 5.0, 8.0, 20.0, 100.0}) {
@@ -224,7 +224,8 @@ TEST(Camera, CirclesOfConfusion) {
             };
             const double blur = std::fabs(seenFrom({1, 0.5f}) - seenFrom({0, 0.5f}));
             const double k = 1 / std::tan(20 * kPi / 180), screen = 600 / 3.0;
-            EXPECT_NEAR(blur, perspectively ? 0.5 * std::fabs(1 / z - 1 / 8.0) * k * screen : 0.5 * std::fabs(z / 8 - 1) * screen, 1e-3 * (1 + blur));
+            EXPECT_NEAR(blur, perspectively ? 0.5 * std::fabs(1 / z - 1 / 8.0) * k * screen : 0.5 * std::fabs(z / 8 - 1) * screen,
+                        1e-3 * (1 + blur));
         }
 }
 

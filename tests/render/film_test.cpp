@@ -1,5 +1,5 @@
-#include "render/film.h"
 #include "base/limits.h"
+#include "render/film.h"
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
@@ -22,7 +22,13 @@ FilmDescription describe(int w, int h, std::vector<Channel> channels = {}) {
     return d;
 }
 
-struct Item { int x, y; uint32_t index; Color c; float alpha; float aov[3]; };
+struct Item {
+    int x, y;
+    uint32_t index;
+    Color c;
+    float alpha;
+    float aov[3];
+};
 
 std::vector<Item> randomItems(int w, int h, uint32_t spp, uint32_t seed) {
     std::mt19937 g(seed);
@@ -45,15 +51,13 @@ void add(Film& f, const Item& i) { f.add(i.x, i.y, i.index, {i.c, i.alpha, i.aov
 TEST(Film, ShuffledOrdersGiveTheSameBits) {
     auto items = randomItems(5, 4, 40, 1);
     Film a(describe(5, 4, kChannels));
-    for (auto& i : items)
-        add(a, i);
+    for (auto& i : items) add(a, i);
     ASSERT_TRUE(a.addRange({0, 40}));
     std::mt19937 g(2);
     for (int trial = 0; trial < 10; ++trial) {
         std::shuffle(items.begin(), items.end(), g);
         Film b(describe(5, 4, kChannels));
-        for (auto& i : items)
-            add(b, i);
+        for (auto& i : items) add(b, i);
         b.addRange({0, 40});
         EXPECT_EQ(a.digest(), b.digest());
         for (int y = 0; y < 4; ++y)
@@ -68,15 +72,13 @@ TEST(Film, SevenRangesInAnyOrder) {
     const uint32_t cut[8] = {0, 3, 4, 11, 20, 21, 30, 48};
     auto items = randomItems(4, 3, 48, 3);
     Film whole(describe(4, 3, kChannels));
-    for (auto& i : items)
-        add(whole, i);
+    for (auto& i : items) add(whole, i);
     ASSERT_TRUE(whole.addRange({0, 48}));
     std::vector<Film> parts;
     for (int p = 0; p < 7; ++p) {
         parts.emplace_back(describe(4, 3, kChannels));
         for (auto& i : items)
-            if (i.index >= cut[p] && i.index < cut[p + 1])
-                add(parts.back(), i);
+            if (i.index >= cut[p] && i.index < cut[p + 1]) add(parts.back(), i);
         ASSERT_TRUE(parts.back().addRange({cut[p], cut[p + 1]}));
     }
     std::vector<int> order(7);
@@ -86,8 +88,7 @@ TEST(Film, SevenRangesInAnyOrder) {
     for (int trial = 0; trial < 50; ++trial) {
         std::shuffle(order.begin(), order.end(), g);
         Film sum = parts[size_t(order[0])];
-        for (int i = 1; i < 7; ++i)
-            ASSERT_TRUE(sum.merge(parts[size_t(order[size_t(i)])], diag));
+        for (int i = 1; i < 7; ++i) ASSERT_TRUE(sum.merge(parts[size_t(order[size_t(i)])], diag));
         EXPECT_EQ(sum.digest(), whole.digest());
         EXPECT_EQ(sum.ranges(), (std::vector<SampleRange>{{0, 48}}));
     }
@@ -111,8 +112,7 @@ TEST(Film, MomentsByHand) {
     // Grey samples 1, 2, 3, 6: S1 = 12, S2 = 50, variance = (50 - 36) / 3. The weights of Y add up to 1.
     Film f(describe(1, 1));
     uint32_t i = 0;
-    for (float v : {1.0f, 2.0f, 3.0f, 6.0f})
-        f.add(0, 0, i++, {Color(v), 1, {}});
+    for (float v : {1.0f, 2.0f, 3.0f, 6.0f}) f.add(0, 0, i++, {Color(v), 1, {}});
     Moments m = f.moments(0, 0);
     EXPECT_EQ(m.n, 4u);
     EXPECT_NEAR(m.s1, 12, 1e-10);
@@ -159,8 +159,7 @@ TEST(Film, EverySampleOfThousandsIsCounted) {
 TEST(Film, EqualSamplesHaveNoVarianceAtAll) {
     for (float v : {0.1f, 1e-7f, 12345.678f, 3e15f}) {
         Film f(describe(1, 1));
-        for (uint32_t i = 0; i < 1000; ++i)
-            f.add(0, 0, i, {Color(v, v / 3, v / 7), 1, {}});
+        for (uint32_t i = 0; i < 1000; ++i) f.add(0, 0, i, {Color(v, v / 3, v / 7), 1, {}});
         EXPECT_EQ(f.moments(0, 0).variance, 0.0) << v;
     }
 }
@@ -238,8 +237,7 @@ TEST(Film, MergeRefusesWhatDoesNotBelong) {
         Diagnostics diag;
         bool ok = a.merge(b, diag, {"part", 0, 0});
         EXPECT_EQ(ok, diag.errors() == 0);
-        if (!ok)
-            EXPECT_EQ(a.digest(), before);
+        if (!ok) EXPECT_EQ(a.digest(), before);
         return !ok;
     };
     EXPECT_FALSE(refused(describe(2, 2, {{"n"}}), {8, 9}));
@@ -293,12 +291,10 @@ TEST(Film, ThreadsAndTilesChangeNothing) {
                 int ox = order[size_t(t)] % tx * tile, oy = order[size_t(t)] / tx * tile;
                 for (int y = oy; y < std::min(h, oy + tile); ++y)
                     for (int x = ox; x < std::min(w, ox + tile); ++x)
-                        for (uint32_t i = 0; i < spp; ++i)
-                            f.add(x, y, i, {sample(x, y, i), 1, {}});
+                        for (uint32_t i = 0; i < spp; ++i) f.add(x, y, i, {sample(x, y, i), 1, {}});
             });
             f.addRange({0, spp});
-            if (!expected)
-                expected = f.digest();
+            if (!expected) expected = f.digest();
             EXPECT_EQ(f.digest(), expected) << threads << " threads, tile " << tile;
         }
 }

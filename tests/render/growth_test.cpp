@@ -21,7 +21,8 @@ struct SlowWorld final : transport::World {
     Facts facts() const override { return {}; }
     void flushPrints(bool) const override {}
     std::vector<int> outputWidths() const override { return std::vector<int>(settings_.outputs.size(), 1); }
-    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&, const StopFlag*) const override {
+    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
+                   const StopFlag*) const override {
         return true;
     }
 };
@@ -29,7 +30,8 @@ struct SlowWorld final : transport::World {
 /// A wave that no two samples have the same of; 25 milliseconds a call.
 struct SlowTracer final : Tracer {
     transport::Counters counts;
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out, const StopFlag* stop) override {
+    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
+               const StopFlag* stop) override {
         std::this_thread::sleep_for(std::chrono::milliseconds(25));
         for (size_t i = 0; i < rays.size(); ++i) {
             const Vec3 d = rays[i].direction;
@@ -147,8 +149,10 @@ TEST_P(Growing, IsTheWholePictureWhereItIsThere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Growing,
-                         testing::Values(Case{"box", "hidden", "box", 1, 2, 0, 1}, Case{"gaussian", "hidden", "gaussian", 3, 2, 0, 2},
-                                         Case{"wide", "raytrace", "gaussian", 20, 1, 0, 1}, Case{"refined", "raytrace", "box", 1, 1, 3, 1}),
+                         testing::Values(Case{"box", "hidden", "box", 1, 2, 0, 1},
+                                         Case{"gaussian", "hidden", "gaussian", 3, 2, 0, 2},
+                                         Case{"wide", "raytrace", "gaussian", 20, 1, 0, 1},
+                                         Case{"refined", "raytrace", "box", 1, 1, 3, 1}),
                          [](const auto& i) { return std::string(i.param.name); });
 
 // Who looks on may run out of memory.

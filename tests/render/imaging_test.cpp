@@ -57,8 +57,7 @@ TEST(Imaging, DitheredMeanKeepsTheValue) {
     double sum = 0;
     const int n = 300;
     for (int y = 0; y < n; ++y)
-        for (int x = 0; x < n; ++x)
-            sum += quantize(100.3 / 255, q, 1, x, y, 0);
+        for (int x = 0; x < n; ++x) sum += quantize(100.3 / 255, q, 1, x, y, 0);
     EXPECT_NEAR(sum / n / n, 100.3, 4.753 * std::sqrt(0.3 * 0.7) / n);
 }
 

@@ -1,6 +1,6 @@
 // Levels of detail: sizes of boxes worked out by hand, and which representations of a frame are left.
-#include "render/levels.h"
 #include "geometry/instance_attributes.h"
+#include "render/levels.h"
 #include "transport/integrator.h"
 #include <gtest/gtest.h>
 
@@ -38,7 +38,8 @@ TEST(Levels, SizesOfBoxes) {
     Diagnostics d;
     Camera ortho(square("orthographic"), d), perspective(square("perspective"), d);
     EXPECT_NEAR(detailSize({-.5f, .5f, -.25f, .25f, 0, 9}, {}, ortho), 50 * 25, 1e-9);
-    EXPECT_NEAR(detailSize({-.5f, .5f, -.25f, .25f, 0, 9}, scaleMatrix(2, 2, 1) * translateMatrix(7, 0, 0), ortho), 100 * 50, 1e-9)
+    EXPECT_NEAR(detailSize({-.5f, .5f, -.25f, .25f, 0, 9}, scaleMatrix(2, 2, 1) * translateMatrix(7, 0, 0), ortho), 100 * 50,
+                1e-9)
         << "outside of the picture too";
     // A cube turned by 45 degrees about y shows sqrt(2) of its width.
     EXPECT_NEAR(detailSize({-.5f, .5f, -.5f, .5f, -.5f, .5f}, rotateMatrix(45, 0, 1, 0), ortho), 2500 * std::sqrt(2.), 1e-3);
@@ -86,7 +87,8 @@ TEST(Levels, TransitionsFade) {
         return p;
     };
     using Parts = std::vector<std::vector<float>>;
-    // 2500 pixels lie a quarter of the way from 2000 to 4000: three quarters of the samples see the middle one, the others the high one.
+    // 2500 pixels lie a quarter of the way from 2000 to 4000: three quarters of the samples see the middle one, the others the
+    // high one.
     EXPECT_EQ(parts(1), (Parts{{0, .75f}, {.75f, 1}}));
     EXPECT_EQ(parts(.05f), (Parts{{0, .75f}, {.75f, 1}})); // 125 between 100 and 200
     EXPECT_EQ(parts(.5f), (Parts{{}}));

@@ -8,7 +8,8 @@ using Source = OutputVariable::Source;
 
 namespace {
 
-scene::Options asking(const std::string& mode, const std::vector<std::array<std::string, 2>>& channels, scene::Type type = scene::Type::Color) {
+scene::Options asking(const std::string& mode, const std::vector<std::array<std::string, 2>>& channels,
+                      scene::Type type = scene::Type::Color) {
     scene::Options o;
     scene::Display d;
     d.name = "x.exr", d.type = "openexr", d.mode = mode;
@@ -26,7 +27,8 @@ scene::Options asking(const std::string& mode, const std::vector<std::array<std:
 TEST(LightChannels, NamesAndSources) {
     Diagnostics d;
     RenderSettings s;
-    OutputPlan plan = planOutputs(asking("rgba,key,direct,variance,shown", {{"key", "color lpe:C.*<L.'key'>"}, {"shown", "color other"}}), s, true, "", d);
+    OutputPlan plan = planOutputs(
+        asking("rgba,key,direct,variance,shown", {{"key", "color lpe:C.*<L.'key'>"}, {"shown", "color other"}}), s, true, "", d);
     const auto& v = plan.pictures[0].variables;
     ASSERT_EQ(v.size(), 6u);
     EXPECT_EQ(v[2].source, Source::Light);
@@ -88,9 +90,7 @@ TEST(LightChannels, PixelsOfAFilm) {
         film.add(0, 0, s, {.radiance = r.color, .alpha = 1, .aovs = values});
     }
     const Image image = filmImage(film, plan, DepthFilter::Min);
-    const auto at = [&](const OutputVariable& v) {
-        return image.data[8 + size_t(plan.engineFloats()) + lightFloat(plan, v)];
-    };
+    const auto at = [&](const OutputVariable& v) { return image.data[8 + size_t(plan.engineFloats()) + lightFloat(plan, v)]; };
     const auto& v = plan.pictures[0].variables;
     EXPECT_EQ(at(v[2]), .5f); // a quarter of 2
     EXPECT_EQ(at(v[4]), 4);

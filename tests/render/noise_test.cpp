@@ -35,8 +35,7 @@ TEST(Noise, FormulaByHand) {
 TEST(Noise, RankOfThePercentile) {
     // 2000 figures 0..1999: k = floor(1998) = 1998.
     std::vector<double> v;
-    for (int i = 1999; i >= 0; --i)
-        v.push_back(i);
+    for (int i = 1999; i >= 0; --i) v.push_back(i);
     double mean, rank;
     summarise(v, &mean, &rank);
     EXPECT_EQ(rank, 1998);
@@ -57,8 +56,7 @@ TEST(Noise, FilmFiguresFollowTheFormula) {
     for (uint32_t i = 0; i < 4; ++i) {
         f.add(0, 0, i, {Color(a[i]), 1, {}});
         f.add(1, 0, i, {Color(b[i]), 1, {}});
-        if (i == 0)
-            EXPECT_EQ(noiseFigures(f).noiseRSE, 0); // one sample says nothing
+        if (i == 0) EXPECT_EQ(noiseFigures(f).noiseRSE, 0); // one sample says nothing
     }
     NoiseFigures n = noiseFigures(f);
     double rse = std::sqrt(14.0 / 12) / 3.001;
@@ -210,8 +208,7 @@ TEST(Noise, HalvesWhenSamplesAreQuadrupled) {
         for (int x = 0; x < 40; ++x)
             for (uint32_t i = 0; i < 1024; ++i) {
                 Color c(d(g));
-                if (i < 256)
-                    a.add(x, y, i, {c, 1, {}});
+                if (i < 256) a.add(x, y, i, {c, 1, {}});
                 b.add(x, y, i, {c, 1, {}});
             }
     double ra = noiseFigures(a).noiseRSE, rb = noiseFigures(b).noiseRSE;
@@ -227,12 +224,17 @@ TEST(Noise, HalvesWhenSamplesAreQuadrupled) {
 // Moments of the ordinary samples are drawn exactly: mean ~ N, sum of squared deviations ~ sigma^2 chi^2(n - 1), independent.
 // The table is one random draw and so is ours: tolerances are 4.753 deviations of the difference plus the rounding shown.
 TEST(Noise, ThresholdTableOfTheReference) {
-    struct Row { double share, rse, rse999, tolerance999; };
+    struct Row {
+        double share, rse, rse999, tolerance999;
+    };
     const int pixels = 640 * 360, n = 1000;
     // Rows 1 and 2: a quantile of ordinary pixels, density of s at that quantile known. Row 3: the median firefly, k = 2. Rows
     // 4 and 5: inside k = 1, whose spread is that of the ordinary mean.
-    const Row rows[] = {{1e-4, 0.00320, 0.00338, 2e-5}, {1e-3, 0.00370, 0.00342, 9e-5}, {2e-3, 0.00421, 0.60547, 2e-3},
-                        {1e-2, 0.00848, 0.75006, 6e-4}, {5e-2, 0.02910, 0.75061, 6e-4}};
+    const Row rows[] = {{1e-4, 0.00320, 0.00338, 2e-5},
+                        {1e-3, 0.00370, 0.00342, 9e-5},
+                        {2e-3, 0.00421, 0.60547, 2e-3},
+                        {1e-2, 0.00848, 0.75006, 6e-4},
+                        {5e-2, 0.02910, 0.75061, 6e-4}};
     std::mt19937_64 g(5);
     std::normal_distribution<double> normal(0, 1);
     std::binomial_distribution<int> outliers(n, 0.002);
@@ -257,8 +259,7 @@ TEST(Noise, ReplicaErrorByHand) {
     // Eight replicas of two samples, means 1..8: m = 4.5, sum of squares 42, SE = sqrt(42 / 56).
     std::vector<double> sums;
     std::vector<uint32_t> counts(8, 2);
-    for (int i = 1; i <= 8; ++i)
-        sums.push_back(2.0 * i);
+    for (int i = 1; i <= 8; ++i) sums.push_back(2.0 * i);
     ReplicaError e = replicaError(sums, counts);
     EXPECT_DOUBLE_EQ(e.mean, 4.5);
     EXPECT_DOUBLE_EQ(e.se, std::sqrt(0.75));

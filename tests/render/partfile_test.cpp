@@ -77,8 +77,7 @@ TEST_F(PartFile, RoundTrip) {
     EXPECT_EQ(g->firstDropped()->sample, 4u);
     EXPECT_EQ(g->aov(2, 2, 1), f.aov(2, 2, 1));
     // A resumed render: the loaded film takes further samples like the original.
-    for (Film* p : {&f, g.get()})
-        p->add(2, 1, 20, {Color(3.0f), 1, {}});
+    for (Film* p : {&f, g.get()}) p->add(2, 1, 20, {Color(3.0f), 1, {}});
     EXPECT_EQ(g->digest(), f.digest());
 }
 
@@ -133,8 +132,7 @@ TEST_F(PartFile, SevenPartsInAnyOrderEqualOneRender) {
         auto whole = mergeParts(names, diag);
         ASSERT_TRUE(whole);
         EXPECT_EQ(whole->samplesPerPixel(), 64u);
-        if (!t)
-            digest = whole->digest();
+        if (!t) digest = whole->digest();
         EXPECT_EQ(whole->digest(), digest);
         // One render of all samples; only the counter of dropped samples differs (each part dropped one).
         Film one = makeFilm(0, 64);

@@ -1,5 +1,5 @@
-#include "render/pixelfilter.h"
 #include "base/limits.h"
+#include "render/pixelfilter.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -59,18 +59,15 @@ TEST(PixelFilter, SymmetricAndZeroOutside) {
                     EXPECT_EQ(f(x, y), f(-x, y));
                     EXPECT_EQ(f(x, y), f(x, -y));
                     EXPECT_NEAR(f(x, y), f(y, x), 1e-14) << filterName(f.kind);
-                    if (x > w / 2 || y > w / 2)
-                        EXPECT_EQ(f(x, y), 0);
-                    if (f.separable())
-                        EXPECT_DOUBLE_EQ(f(x, y), f.axis(x, w) * f.axis(y, w));
+                    if (x > w / 2 || y > w / 2) EXPECT_EQ(f(x, y), 0);
+                    if (f.separable()) EXPECT_DOUBLE_EQ(f(x, y), f.axis(x, w) * f.axis(y, w));
                 }
             EXPECT_EQ(f(std::numeric_limits<double>::quiet_NaN(), 0), 0);
         }
 }
 
 TEST(PixelFilter, Names) {
-    for (int k = 0; k < kFilterKinds; ++k)
-        EXPECT_EQ(filterByName(filterName(FilterKind(k))), FilterKind(k));
+    for (int k = 0; k < kFilterKinds; ++k) EXPECT_EQ(filterByName(filterName(FilterKind(k))), FilterKind(k));
     EXPECT_FALSE(filterByName("gauss"));
 }
 

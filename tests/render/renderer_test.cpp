@@ -149,8 +149,9 @@ TEST(Renderer, HiddenReconstructsALinearFunctionExactly) {
         }
 }
 
-// Blue is 7 left of the middle and 0 right of it, red and green change by an eighth a pixel: of 25 columns the middle one is cut in two. It and the one
-// before differ by more than .3 from the other; sub-samples lie at thirds, fifths ... of a pixel, that in the middle on the right side.
+// Blue is 7 left of the middle and 0 right of it, red and green change by an eighth a pixel: of 25 columns the middle one is cut
+// in two. It and the one before differ by more than .3 from the other; sub-samples lie at thirds, fifths ... of a pixel, that in
+// the middle on the right side.
 TEST(Renderer, PixelsThatDifferAreRefined) {
     const auto number = [](const char* name, float value) {
         scene::Param p;
@@ -181,15 +182,19 @@ TEST(Renderer, PixelsThatDifferAreRefined) {
                     EXPECT_NEAR(i.pixel(x, y)[2], x < 12 ? 7 : x > 12 ? 0 : 7. * (side / 2) / side, 1e-6) << x;
                 }
         }
-    const struct { std::vector<scene::Param> params; const char* hider; unsigned pixels; bool said; } cases[] = {
-        {{number("aaSamples", 3), number("aaThreshold", 2)}, "raytrace", 0, false},
-        {{number("aaThreshold", .3f)}, "raytrace", 2 * 16, false}, // 3 x 3
-        {{number("aaSamples", 1)}, "raytrace", 0, false},
-        {{number("aaSamples", 4)}, "raytrace", 2 * 16, true},
-        {{number("aaSamples", 1e9f)}, "raytrace", 2 * 16, true},
-        {{number("aaSamples", NAN)}, "raytrace", 0, true},
-        {{number("aaSamples", 3), number("aaThreshold", NAN)}, "raytrace", 2 * 16, true},
-        {{number("aaSamples", 3)}, "hidden", 0, true}};
+    const struct {
+        std::vector<scene::Param> params;
+        const char* hider;
+        unsigned pixels;
+        bool said;
+    } cases[] = {{{number("aaSamples", 3), number("aaThreshold", 2)}, "raytrace", 0, false},
+                 {{number("aaThreshold", .3f)}, "raytrace", 2 * 16, false}, // 3 x 3
+                 {{number("aaSamples", 1)}, "raytrace", 0, false},
+                 {{number("aaSamples", 4)}, "raytrace", 2 * 16, true},
+                 {{number("aaSamples", 1e9f)}, "raytrace", 2 * 16, true},
+                 {{number("aaSamples", NAN)}, "raytrace", 0, true},
+                 {{number("aaSamples", 3), number("aaThreshold", NAN)}, "raytrace", 2 * 16, true},
+                 {{number("aaSamples", 3)}, "hidden", 0, true}};
     for (const auto& c : cases) {
         Folder dir;
         RenderSettings s;
@@ -203,9 +208,9 @@ TEST(Renderer, PixelsThatDifferAreRefined) {
     }
 }
 
-// What is infinitely far away is drawn as circles of confusion of the lens's diameter in the plane of focus. Blue is 7 to the left of an edge
-// there: a pixel sees the part of the circle about it that lies to the left, by the area of a segment. A line cuts fewer than 192 of 64 by 64
-// cells of the lens, whose halves are counted wrong at random: 0.001 in the mean square.
+// What is infinitely far away is drawn as circles of confusion of the lens's diameter in the plane of focus. Blue is 7 to the
+// left of an edge there: a pixel sees the part of the circle about it that lies to the left, by the area of a segment. A line
+// cuts fewer than 192 of 64 by 64 cells of the lens, whose halves are counted wrong at random: 0.001 in the mean square.
 TEST(Renderer, LensSamplesMakeCirclesOfConfusion) {
     const auto param = [](const char* name, std::vector<float> values) {
         scene::Param p;
@@ -226,7 +231,8 @@ TEST(Renderer, LensSamplesMakeCirclesOfConfusion) {
         f->options.fstop = 2; // another lens, which has no say
         f->options.focalLength = 1;
         f->options.focalDistance = 7;
-        f->options.hiderParams = {param("lensDiameter", {float(diameter)}), param("lensSamples", {64, 64}), param("focalDist", {float(focus)})};
+        f->options.hiderParams = {param("lensDiameter", {float(diameter)}), param("lensSamples", {64, 64}),
+                                  param("focalDist", {float(focus)})};
         run.frame(f);
         EXPECT_EQ(run.diags.errors() + run.diags.warnings(), 0);
         EXPECT_EQ(run.renderer.stats().classic.primary, 24u * 16 * 64 * 64);
@@ -244,7 +250,12 @@ TEST(Renderer, LensSamplesMakeCirclesOfConfusion) {
             before = i.pixel(x, 0)[2];
         }
     }
-    const struct { std::vector<scene::Param> params; const char* hider; size_t rays; int errors, warnings; } cases[] = {
+    const struct {
+        std::vector<scene::Param> params;
+        const char* hider;
+        size_t rays;
+        int errors, warnings;
+    } cases[] = {
         {{param("lensSamples", {1, 1}), param("lensDiameter", {1}), param("focalDist", {2})}, "raytrace", 1, 0, 0}, // a pinhole
         {{param("lensSamples", {3})}, "raytrace", 9, 0, 0},
         {{param("lensSamples", {2.5f, 3})}, "raytrace", 4, 1, 0},
@@ -499,7 +510,8 @@ TEST(Renderer, OneDisplayForEachFile) {
         Session run(s);
         auto f = frameOf("hidden", 4, 4);
         const std::string a = dir / "a.tif";
-        const scene::Display file{a, "file", "rgba", {}, {}}, window{a, "framebuffer", "rgb", {}, {}}, more{a, "tiff", "z", {}, {}};
+        const scene::Display file{a, "file", "rgba", {}, {}}, window{a, "framebuffer", "rgb", {}, {}},
+            more{a, "tiff", "z", {}, {}};
         using Displays = std::vector<scene::Display>;
         f->options.displays = order == 0   ? Displays{file, window}
                               : order == 1 ? Displays{window, file}

@@ -11,8 +11,7 @@ template <class F> void fill(SampleBuffer& b, F shade) {
     const Window& w = b.sampled();
     for (int y = w.y0; y < w.y1; ++y)
         for (int x = w.x0; x < w.x1; ++x)
-            for (int k = 0; k < b.samplesPerPixel(); ++k)
-                b.set(x, y, k, shade(b.position(x, y, k), x, y, k));
+            for (int k = 0; k < b.samplesPerPixel(); ++k) b.set(x, y, k, shade(b.position(x, y, k), x, y, k));
 }
 
 ImageSample grey(float v) {
@@ -31,9 +30,7 @@ TEST(SampleBuffer, PositionsAreStratified) {
                 Vec2 o = stratifiedOffset(3, 5, y, k, 4, 3, j);
                 EXPECT_EQ(int(o.x * 4), k % 4);
                 EXPECT_EQ(int(o.y * 3), k / 4);
-                if (j == Jitter::Grid) {
-                    EXPECT_NEAR(o.x, (k % 4 + 0.5) / 4, 1e-6);
-                }
+                if (j == Jitter::Grid) { EXPECT_NEAR(o.x, (k % 4 + 0.5) / 4, 1e-6); }
             }
     EXPECT_NE(stratifiedOffset(3, 5, 0, 0, 4, 3, Jitter::Jittered).x, stratifiedOffset(3, 6, 0, 0, 4, 3, Jitter::Jittered).x);
 }
@@ -68,8 +65,7 @@ TEST(SampleBuffer, BoxOfOnePixelIsThePlainMean) {
     fill(b, [](Vec2, int x, int y, int k) { return grey(float(x * 100 + y * 10 + k)); });
     Image i = b.reconstruct({FilterKind::Box, 1, 1}, DepthFilter::Min, {0, 0, 3, 3});
     for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 3; ++x)
-            EXPECT_FLOAT_EQ(i.at(x, y, 0), float(x * 100 + y * 10) + 3.5f); // mean of 0..7
+        for (int x = 0; x < 3; ++x) EXPECT_FLOAT_EQ(i.at(x, y, 0), float(x * 100 + y * 10) + 3.5f); // mean of 0..7
 }
 
 TEST(SampleBuffer, WeightsByHand) {
@@ -96,7 +92,8 @@ TEST(SampleBuffer, EdgeResponseIsTheFiltersDistribution) {
 
 TEST(SampleBuffer, PartsOfTheRasterGiveTheSameBits) {
     auto shade = [](Vec2 p, int, int, int) { return grey(std::sin(p.x) * p.y); };
-    const std::vector<PixelFilter> displays = {{FilterKind::Gaussian, 2, 2}, {FilterKind::Mitchell, 4, 4}, {FilterKind::Sinc, 3, 5}};
+    const std::vector<PixelFilter> displays = {
+        {FilterKind::Gaussian, 2, 2}, {FilterKind::Mitchell, 4, 4}, {FilterKind::Sinc, 3, 5}};
     SampleBuffer whole({0, 0, 20, 11}, 4, 5, 2, 3, {}, 9, Jitter::Jittered);
     fill(whole, shade);
     for (const PixelFilter& f : displays) {
@@ -107,8 +104,7 @@ TEST(SampleBuffer, PartsOfTheRasterGiveTheSameBits) {
             Image some = part.reconstruct(f, DepthFilter::Min, w), cut = whole.reconstruct(f, DepthFilter::Min, w);
             EXPECT_EQ(some.data, cut.data);
             for (int y = w.y0; y < w.y1; ++y)
-                for (int x = w.x0; x < w.x1; ++x)
-                    EXPECT_EQ(some.at(x, y, 0), all.at(x, y, 0));
+                for (int x = w.x0; x < w.x1; ++x) EXPECT_EQ(some.at(x, y, 0), all.at(x, y, 0));
         }
     }
 }

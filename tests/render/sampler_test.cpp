@@ -1,6 +1,6 @@
 // T8 of the test plan: the structure of the samples.
-#include "base/sampler.h"
 #include "../statistics/chisquare.h"
+#include "base/sampler.h"
 #include <algorithm>
 #include <bit>
 #include <gtest/gtest.h>
@@ -16,18 +16,14 @@ void expectNet(const std::vector<Vec2>& points, int m) {
     ASSERT_EQ(points.size(), size_t(1) << m);
     for (int a = 0; a <= m; ++a) {
         std::vector<int> hits(points.size(), 0);
-        for (Vec2 p : points)
-            hits[(size_t(p.x * float(1 << a)) << (m - a)) + size_t(p.y * float(1 << (m - a)))]++;
-        for (int h : hits)
-            ASSERT_EQ(h, 1) << "m " << m << " a " << a;
+        for (Vec2 p : points) hits[(size_t(p.x * float(1 << a)) << (m - a)) + size_t(p.y * float(1 << (m - a)))]++;
+        for (int h : hits) ASSERT_EQ(h, 1) << "m " << m << " a " << a;
     }
 }
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
     double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, n = double(a.size());
-    for (size_t i = 0; i < a.size(); ++i) {
-        sa += a[i], sb += b[i], saa += a[i] * a[i], sbb += b[i] * b[i], sab += a[i] * b[i];
-    }
+    for (size_t i = 0; i < a.size(); ++i) { sa += a[i], sb += b[i], saa += a[i] * a[i], sbb += b[i] * b[i], sab += a[i] * b[i]; }
     return (sab - sa * sb / n) / std::sqrt((saa - sa * sa / n) * (sbb - sb * sb / n));
 }
 
@@ -49,8 +45,7 @@ TEST(Sampler, EveryElementaryIntervalOnce) {
                 Sampler s(seed, 12 + int(site), -3);
                 for (int m = 0; m <= 12; ++m) {
                     std::vector<Vec2> p;
-                    for (uint32_t i = 0; i < 1u << m; ++i)
-                        p.push_back(s.get2(2, site, 1, i * kReplicas + replica));
+                    for (uint32_t i = 0; i < 1u << m; ++i) p.push_back(s.get2(2, site, 1, i * kReplicas + replica));
                     expectNet(p, m);
                 }
             }
@@ -60,8 +55,7 @@ TEST(Sampler, EveryAlignedBlockIsANet) {
     Sampler s(9, 100, 200);
     for (uint32_t block = 0; block < 64; ++block) {
         std::vector<Vec2> p;
-        for (uint32_t i = 0; i < 64; ++i)
-            p.push_back(s.get2(0, 1, 0, (block * 64 + i) * kReplicas + 1));
+        for (uint32_t i = 0; i < 64; ++i) p.push_back(s.get2(0, 1, 0, (block * 64 + i) * kReplicas + 1));
         expectNet(p, 6);
     }
 }
@@ -70,8 +64,7 @@ TEST(Sampler, SingleNumbersAreStratified) {
     Sampler s(4, 7, 8);
     for (uint32_t replica = 0; replica < kReplicas; ++replica) {
         std::vector<int> hits(1024, 0);
-        for (uint32_t i = 0; i < 1024; ++i)
-            hits[size_t(s.get1(3, 2, 1, i * kReplicas + replica) * 1024)]++;
+        for (uint32_t i = 0; i < 1024; ++i) hits[size_t(s.get1(3, 2, 1, i * kReplicas + replica) * 1024)]++;
         EXPECT_EQ(std::count(hits.begin(), hits.end(), 1), 1024);
     }
 }
@@ -94,10 +87,8 @@ TEST(Sampler, ScrambleIsNested) {
                                                : scrambleReversed<uint32_t>(r, low, high, ~low));
         };
         const uint32_t diff = a ^ b, flipped = scrambled(a) ^ scrambled(b);
-        if (diff)
-            EXPECT_EQ(__builtin_clz(diff), __builtin_clz(flipped)) << a << " " << b;
-        else
-            EXPECT_EQ(flipped, 0u);
+        if (diff) EXPECT_EQ(__builtin_clz(diff), __builtin_clz(flipped)) << a << " " << b;
+        else EXPECT_EQ(flipped, 0u);
     }
 }
 
@@ -156,8 +147,7 @@ TEST(Sampler, OwenBitsUniform) {
         auto order = [&](uint32_t v) { return s.shuffledIndex(reverseBits<uint32_t>(v)) ^ v; };
         auto siblings = [&](auto flips, int depth, uint32_t path) { // of eight nodes that part three digits above `depth`
             uint32_t bits = 0;
-            for (uint32_t k = 0; k < 8; ++k)
-                bits = bits << 1 | ((flips(path | k << (32 - depth)) >> (31 - depth)) & 1);
+            for (uint32_t k = 0; k < 8; ++k) bits = bits << 1 | ((flips(path | k << (32 - depth)) >> (31 - depth)) & 1);
             return bits;
         };
         hits[0][first(0xa5000000u) >> 24]++;
@@ -235,8 +225,7 @@ TEST(Sampler, TenMillionKeysNoCollision) {
             Sampler s(1, x, y);
             for (uint32_t r = 0; r < kReplicas; ++r)
                 for (uint32_t vertex = 0; vertex < 4; ++vertex)
-                    for (uint32_t site = 0; site < 10; ++site)
-                        keys.push_back(s.streamKey(r, vertex, site, 0));
+                    for (uint32_t site = 0; site < 10; ++site) keys.push_back(s.streamKey(r, vertex, site, 0));
         }
     ASSERT_EQ(keys.size(), 10'000'000u);
     std::sort(keys.begin(), keys.end());
@@ -246,8 +235,7 @@ TEST(Sampler, TenMillionKeysNoCollision) {
     for (uint64_t seed = 0; seed < 4; ++seed)
         for (uint32_t vertex = 0; vertex < 50; ++vertex)
             for (uint32_t site = 0; site < 100; ++site)
-                for (uint32_t o = 0; o < 100; ++o)
-                    keys.push_back(Sampler(seed, 0, 0).streamKey(0, vertex, site, o));
+                for (uint32_t o = 0; o < 100; ++o) keys.push_back(Sampler(seed, 0, 0).streamKey(0, vertex, site, o));
     std::sort(keys.begin(), keys.end());
     EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
 }

@@ -28,8 +28,9 @@ RenderStats example() {
 
 TEST(Stats, JsonHasEveryPromisedKey) {
     auto j = nlohmann::json::parse(toJson(example()));
-    for (const char* k : {"width", "height", "spp", "renderSec", "cpuSec", "raysPerMS", "noiseRSE", "noiseRSE999", "efficiency", "noiseQMC",
-                          "threads", "peakMemoryBytes", "parseSec", "compileSec", "buildSec", "nonFinite", "errors", "warnings"})
+    for (const char* k :
+         {"width", "height", "spp", "renderSec", "cpuSec", "raysPerMS", "noiseRSE", "noiseRSE999", "efficiency", "noiseQMC",
+          "threads", "peakMemoryBytes", "parseSec", "compileSec", "buildSec", "nonFinite", "errors", "warnings"})
         EXPECT_TRUE(j.at(k).is_number()) << k;
     for (const char* k : {"camera", "diffuse", "specular", "transmission", "shadow", "volume"})
         EXPECT_TRUE(j.at("rays").at(k).is_number()) << k;
@@ -37,8 +38,8 @@ TEST(Stats, JsonHasEveryPromisedKey) {
         EXPECT_TRUE(j.at("shading").at(k).is_number()) << k;
     EXPECT_EQ(j["depth"]["maximum"], 32);
     EXPECT_EQ(j["depth"]["average"], 3.25);
-    EXPECT_EQ(j["raysPerMS"], 2500);                  // 5e6 / 2 s / 1000
-    EXPECT_NEAR(double(j["efficiency"]), 50, 1e-9);   // 1 / (0.01 * 2)
+    EXPECT_EQ(j["raysPerMS"], 2500);                // 5e6 / 2 s / 1000
+    EXPECT_NEAR(double(j["efficiency"]), 50, 1e-9); // 1 / (0.01 * 2)
     EXPECT_EQ(j["rays"]["camera"], 23'040'000);
 }
 

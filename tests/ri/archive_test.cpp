@@ -139,8 +139,10 @@ TEST_F(Archives, FoldersOfTheSearchPathLieBesideTheScene) {
 TEST_F(Archives, SearchPathsKnowTheEnvironment) {
     write("sub/deep.rib", "Sphere 2 -2 2 360");
     ::setenv("ALPENGLOW_TEST_MODELS", (dir / "sub").c_str(), 1);
-    for (const char* path : {"$ALPENGLOW_TEST_MODELS", "&:${ALPENGLOW_TEST_MODELS}/.", "$ALPENGLOW_TEST_ABSENT:$ALPENGLOW_TEST_MODELS"}) {
-        auto c = readHere("Option \"searchpath\" \"archive\" [\"" + std::string(path) + "\"] WorldBegin ReadArchive \"deep.rib\" WorldEnd");
+    for (const char* path :
+         {"$ALPENGLOW_TEST_MODELS", "&:${ALPENGLOW_TEST_MODELS}/.", "$ALPENGLOW_TEST_ABSENT:$ALPENGLOW_TEST_MODELS"}) {
+        auto c = readHere("Option \"searchpath\" \"archive\" [\"" + std::string(path) +
+                          "\"] WorldBegin ReadArchive \"deep.rib\" WorldEnd");
         EXPECT_EQ(c->count(), 0u) << path << c->messages();
         EXPECT_EQ(c->frame().primitives.size(), 1u) << path;
     }
@@ -150,22 +152,24 @@ TEST_F(Archives, SearchPathsKnowTheEnvironment) {
         auto c = read("Option \"searchpath\" \"texture\" [\"" + p + "\"] WorldBegin WorldEnd");
         return c->frame().options.values.at("searchpath:texture").strings.at(0);
     };
-    for (const char* p : {"$ALPENGLOW_TEST_ABSENT/x", "a$", "${", "${}", "a~b", "~other/x", "${ALPENGLOW_TEST_ABSENT}y"}) EXPECT_EQ(path(p), p);
+    for (const char* p : {"$ALPENGLOW_TEST_ABSENT/x", "a$", "${", "${}", "a~b", "~other/x", "${ALPENGLOW_TEST_ABSENT}y"})
+        EXPECT_EQ(path(p), p);
     ::setenv("HOME", "/home/somebody", 1);
     EXPECT_EQ(path("~:~/tx;x~"), "/home/somebody:/home/somebody/tx;x~");
 }
 
-// Archives that the scene names are parsed ahead, several at a time; those of Procedural2 are not. Both draw and say the same, in order.
+// Archives that the scene names are parsed ahead, several at a time; those of Procedural2 are not. Both draw and say the same, in
+// order.
 TEST_F(Archives, ParsedAheadAreTheSame) {
     const int count = 40;
     for (int i = 0; i < count; ++i) {
         std::string text = "# an archive\nColor [1 0 0]\n";
         for (int k = 0; k < 50; ++k) text += "Sphere " + std::to_string(100 * i + k + 1) + " -1 1 360\nTranslate 1 0 0\n";
-        if (i % 7 == 1) text += "Sphere 1 -1 \n";                      // said while it is parsed
-        if (i % 7 == 2) text += "Polygon \"P\" [0 0 0]\n";             // said while it is executed
-        if (i % 7 == 3) text += "AttributeBegin\n";                     // said when it ends
+        if (i % 7 == 1) text += "Sphere 1 -1 \n";          // said while it is parsed
+        if (i % 7 == 2) text += "Polygon \"P\" [0 0 0]\n"; // said while it is executed
+        if (i % 7 == 3) text += "AttributeBegin\n";        // said when it ends
         if (i % 7 == 4) text += "ReadArchive \"a0.rib\"\nIfBegin \"1\"\n";
-        if (i % 7 == 5) text += "Polygon \"P\" [0 0 0";                // ends in the middle
+        if (i % 7 == 5) text += "Polygon \"P\" [0 0 0";                   // ends in the middle
         if (i % 7 == 6) text += std::string("Sphere 7 -1 1 360 \x93 \n"); // binary
         write("a" + std::to_string(i) + ".rib", text);
     }
@@ -175,7 +179,8 @@ TEST_F(Archives, ParsedAheadAreTheSame) {
             const std::string name = "\"a" + std::to_string(i * 3 % count) + ".rib\"";
             if (i % 5 == 0) text += "IfBegin \"0\"\n"; // passed over
             text += ahead ? "Procedural \"DelayedReadArchive\" [ " + name + "] [-1 1 -1 1 -1 1]\n"
-                          : "Procedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"string filename\" " + name + " \"float[6] bound\" [-1 1 -1 1 -1 1]\n";
+                          : "Procedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"string filename\" " + name +
+                                " \"float[6] bound\" [-1 1 -1 1 -1 1]\n";
             if (i % 5 == 0) text += "IfEnd\n";
         }
         return readHere(text + "WorldEnd\n");

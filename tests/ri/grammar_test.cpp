@@ -29,7 +29,8 @@ TEST(Grammar, BadNumbersAreReportedInPlace) {
 
 // What C libraries print of numbers that are none; exporters write it. The other numbers stay where they are.
 TEST(Grammar, NotANumberIsSaidAndTaken) {
-    const std::string none[] = {"nan", "-nan", "-NaN(ind)", "1.#QNAN", "-1.#IND00"}, endless[] = {"inf", "Infinity", "1.#INF00", "+INF"};
+    const std::string none[] = {"nan", "-nan", "-NaN(ind)", "1.#QNAN", "-1.#IND00"},
+                      endless[] = {"inf", "Infinity", "1.#INF00", "+INF"};
     for (const std::string& text : none) {
         auto c = world("Polygon \"P\" [" + text + " 0 0 1 " + text + " 2 3 4 " + text + "] Sphere 1 -1 1 360");
         EXPECT_EQ(c->frame().primitives.size(), 2u) << c->messages();
@@ -209,7 +210,8 @@ TEST(Grammar, StreamsOneByteAtATime) {
 
 TEST(Grammar, MessagesAreBounded) {
     std::string text;
-    for (int i = 0; i < 3 * limits::kReportedProblems; ++i) text += "foo" + std::to_string(i) + " "; // the same name would be said once
+    for (int i = 0; i < 3 * limits::kReportedProblems; ++i)
+        text += "foo" + std::to_string(i) + " "; // the same name would be said once
     auto c = read(text);
     EXPECT_EQ(c->count(), size_t(limits::kReportedProblems) + 1);
     EXPECT_FALSE(c->ok);

@@ -55,10 +55,9 @@ TEST(KnownOptions, EverySampleIsReadWithoutAMessage) {
                 << d.name;
     for (const OptionDescription& d : scene::knownDisplayParameters())
         if (d.effect != Effect::Ignored)
-            EXPECT_EQ(
-                read("Display \"a.tif\" \"tiff\" \"rgba\" \"" + std::string(d.name) + "\" " + std::string(d.sample) + "\n")
-                    ->messages(),
-                "")
+            EXPECT_EQ(read("Display \"a.tif\" \"tiff\" \"rgba\" \"" + std::string(d.name) + "\" " + std::string(d.sample) + "\n")
+                          ->messages(),
+                      "")
                 << d.name;
 }
 

@@ -317,8 +317,7 @@ TEST(Model, DamagedFilesNeitherCrashNorGrow) {
         }
         Said said;
         ModelLog log(said.sink());
-        for (auto& p : readModel(
-                 k % 2 ? "m.ply" : "m.obj", text, [&](const std::string&) { return std::optional(text); }, log)) {
+        for (auto& p : readModel(k % 2 ? "m.ply" : "m.obj", text, [&](const std::string&) { return std::optional(text); }, log)) {
             const size_t points = var(p, "P").numbers.size() / 3;
             size_t corners = 0;
             for (int n : p.ints) corners += size_t(n);

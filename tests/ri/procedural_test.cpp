@@ -150,9 +150,11 @@ const scene::Param& variable(const scene::Primitive& p, const std::string& name)
 } // namespace
 
 TEST_F(Procedurals, OfLibrariesArePartsOfTheSceneAtTheirPlace) {
-    auto c = readHere("Format 200 200 1 Projection \"perspective\" \"fov\" 90 Translate 0 0 4 WorldBegin Color [1 0 0] Translate 0 0 0 "
-                      "Procedural \"DynamicLoad\" [\"" ALPENGLOW_PROCEDURALS "/facets\" \"detail\"] [-.5 .5 -.5 .5 0 0] "
-                      "Sphere 5 -1 1 360 " + library("halves 2") + " WorldEnd");
+    auto c = readHere(
+        "Format 200 200 1 Projection \"perspective\" \"fov\" 90 Translate 0 0 4 WorldBegin Color [1 0 0] Translate 0 0 0 "
+        "Procedural \"DynamicLoad\" [\"" ALPENGLOW_PROCEDURALS "/facets\" \"detail\"] [-.5 .5 -.5 .5 0 0] "
+        "Sphere 5 -1 1 360 " +
+        library("halves 2") + " WorldEnd");
     EXPECT_EQ(c->messages(), "");
     ASSERT_EQ(c->frame().primitives.size(), 6u);
     EXPECT_NEAR(c->primitive(0).numbers[3], 25 * 25, 1e-3); // as AreToldHowLargeTheyAre
@@ -224,10 +226,11 @@ TEST_F(Procedurals, OfLibrariesThatAreWrongAreToldAtTheirPlace) {
     ASSERT_EQ(c->frame().primitives.size(), 2u);
     EXPECT_EQ(c->primitive(0).kind, "Polygon");
     const std::string said = c->messages();
-    for (const char* what :
-         {"RiPointsPolygons, called by a library: a count is negative", "RiPointsPolygons, called by a library: an argument is a null pointer",
-          "RiPolygon, called by a library: an argument is a null pointer", "RiSurface, called by a library: an argument is a null pointer",
-          "\"unheard\" is not declared", "RiColor, called by a library: an argument is a null pointer", "before the AttributeBegin"})
+    for (const char* what : {"RiPointsPolygons, called by a library: a count is negative",
+                             "RiPointsPolygons, called by a library: an argument is a null pointer",
+                             "RiPolygon, called by a library: an argument is a null pointer",
+                             "RiSurface, called by a library: an argument is a null pointer", "\"unheard\" is not declared",
+                             "RiColor, called by a library: an argument is a null pointer", "before the AttributeBegin"})
         EXPECT_NE(said.find(what), std::string::npos) << what << "\n" << said;
     for (const Diagnostic& d : c->diagnostics.all()) EXPECT_EQ(d.place.line, 2) << toString(d);
     EXPECT_EQ(c->count(), 7u) << said;
@@ -244,7 +247,8 @@ TEST_F(Procedurals, OfLibrariesNeedToBeAllowedAndThere) {
     EXPECT_NE(c->only().message.find("library \"nowhere\" of procedurals was not found"), std::string::npos);
     EXPECT_EQ(c->frame().primitives.size(), 1u);
 
-    c = readHere("Option \"searchpath\" \"procedural\" \"" ALPENGLOW_PROCEDURALS "\" WorldBegin " + library("", "hollow") + "WorldEnd");
+    c = readHere("Option \"searchpath\" \"procedural\" \"" ALPENGLOW_PROCEDURALS "\" WorldBegin " + library("", "hollow") +
+                 "WorldEnd");
     EXPECT_NE(c->only().message.find("it does not define Subdivide, Free"), std::string::npos) << c->messages();
     c = readHere("WorldBegin " + library("", ALPENGLOW_PROCEDURALS "/stranger_calls.so") + "WorldEnd");
     EXPECT_NE(c->only().message.find("RiNotThere"), std::string::npos) << c->messages();

@@ -161,7 +161,8 @@ TEST(Published, SignsBeginNumbersAndOneNumberIsAGrey) {
     EXPECT_EQ(world("Color [.3 .4] Sphere 1 -1 1 360")->only().severity, Severity::Error);
     EXPECT_EQ(world("Translate 1-x 2 3")->first().severity, Severity::Error);
     // Whole numbers written with a point are integers.
-    auto whole = world("Sides 2.0 Attribute \"trace\" \"integer maxspeculardepth\" 3.0\nPointsPolygons [3.0] [0.0 1 2] \"P\" [0 0 0 1 0 0 1 1 0]");
+    auto whole = world("Sides 2.0 Attribute \"trace\" \"integer maxspeculardepth\" 3.0\nPointsPolygons [3.0] [0.0 1 2] \"P\" [0 "
+                       "0 0 1 0 0 1 1 0]");
     EXPECT_EQ(whole->count(), 0u) << whole->messages();
     EXPECT_EQ(whole->primitive().ints, (std::vector<int>{3}));
 }

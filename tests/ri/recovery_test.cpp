@@ -15,7 +15,8 @@ TEST(Recovery, WhatTheUserStoppedIsNotCalledUnfinished) {
     ReaderOptions options;
     options.stop = &c.stop;
     RibReader reader(options, c, c.diagnostics);
-    reader.readMemory("FrameBegin 1\nReadArchive \"inner\"\nIfBegin \"1\"\nWorldBegin WorldEnd\nSphere 1 -1 1 360\nIfEnd\nFrameEnd\n", "t.rib");
+    reader.readMemory(
+        "FrameBegin 1\nReadArchive \"inner\"\nIfBegin \"1\"\nWorldBegin WorldEnd\nSphere 1 -1 1 360\nIfEnd\nFrameEnd\n", "t.rib");
     EXPECT_EQ(c.frames.size(), 1u);
     EXPECT_EQ(c.count(), 1u) << c.messages(); // the archive that is not there
 }
@@ -94,8 +95,10 @@ TEST(Nesting, DepthIsBounded) {
 
 TEST(Solids, PartsKeepTheWayToThem) {
     using Op = scene::SolidOperation;
-    auto c = world("SolidBegin \"difference\"\n SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 AttributeBegin Disk 1 1 360 AttributeEnd SolidEnd\n"
-                   "SolidBegin \"union\" SolidBegin \"primitive\" Sphere 2 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere 3 -1 1 360 SolidEnd SolidEnd\n"
+    auto c = world("SolidBegin \"difference\"\n SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 AttributeBegin Disk 1 1 "
+                   "360 AttributeEnd SolidEnd\n"
+                   "SolidBegin \"union\" SolidBegin \"primitive\" Sphere 2 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere 3 "
+                   "-1 1 360 SolidEnd SolidEnd\n"
                    "SolidBegin \"primitive\" Sphere 4 -1 1 360 SolidEnd SolidEnd\nSphere 5 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     ASSERT_EQ(c->frame().primitives.size(), 6u);
@@ -121,7 +124,8 @@ TEST(Solids, PartsKeepTheWayToThem) {
 }
 
 TEST(Solids, WhatStandsBesidePartsIsOne) {
-    auto c = world("SolidBegin \"intersection\" Sphere 1 -1 1 360 Sphere 2 -1 1 360 SolidBegin \"primitive\" Sphere 3 -1 1 360 SolidEnd SolidEnd");
+    auto c = world("SolidBegin \"intersection\" Sphere 1 -1 1 360 Sphere 2 -1 1 360 SolidBegin \"primitive\" Sphere 3 -1 1 360 "
+                   "SolidEnd SolidEnd");
     EXPECT_EQ(c->only().code, Rie::BadSolid);
     ASSERT_EQ(c->frame().primitives.size(), 3u);
     for (int i = 0; i < 3; ++i) {
@@ -137,7 +141,8 @@ TEST(Solids, WhatStandsBesidePartsIsOne) {
 }
 
 TEST(Solids, InstancesKeepThePathOfTheirObject) {
-    auto c = world("ObjectBegin 1 SolidBegin \"difference\" SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere .5 -1 1 360 "
+    auto c = world("ObjectBegin 1 SolidBegin \"difference\" SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd SolidBegin "
+                   "\"primitive\" Sphere .5 -1 1 360 "
                    "SolidEnd SolidEnd ObjectEnd ObjectInstance 1 ObjectInstance 1");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     for (const scene::PrimitiveRef& p : c->frame().objects[0].primitives) {
@@ -247,8 +252,9 @@ TEST(Foreign, LaterNamesOfTheSameThings) {
 }
 
 TEST(Foreign, ShadersWithoutALanguageAreOneSentence) {
-    auto c = world("Bxdf \"PxrSurface\" \"a\" \"color diffuseColor\" [1 0 0]\nPattern \"PxrTexture\" \"b\" \"string filename\" [\"x\"]\n"
-                   "Integrator \"PxrPathTracer\" \"c\"\nSphere 1 -1 1 360");
+    auto c = world(
+        "Bxdf \"PxrSurface\" \"a\" \"color diffuseColor\" [1 0 0]\nPattern \"PxrTexture\" \"b\" \"string filename\" [\"x\"]\n"
+        "Integrator \"PxrPathTracer\" \"c\"\nSphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::Incapable);
     EXPECT_EQ(c->only().severity, Severity::Warning);
     EXPECT_EQ(c->frame().primitives.size(), 1u);
@@ -256,7 +262,8 @@ TEST(Foreign, ShadersWithoutALanguageAreOneSentence) {
 
 TEST(Foreign, ArchiveOfAProcedure) {
     auto c = read("ArchiveBegin \"part.rib\"\nColor 0 1 0\nSphere 1 -1 1 360\nArchiveEnd\n"
-                  "WorldBegin\nProcedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1] \"string filename\" [\"part.rib\"]\n"
+                  "WorldBegin\nProcedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1] \"string "
+                  "filename\" [\"part.rib\"]\n"
                   "Sphere 2 -2 2 360\nWorldEnd\n");
     ASSERT_EQ(c->frame().primitives.size(), 2u) << c->messages();
     EXPECT_EQ(c->frame().primitives[0]->attributes->color, Color(0, 1, 0));

@@ -142,7 +142,8 @@ TEST(Attributes, ValuesByClassAndName) {
 }
 
 TEST(Attributes, DetailKeepsItsSpace) {
-    auto c = read("WorldBegin Translate 1 2 3 Detail [-1 1 -1 1 -1 1] Translate 5 0 0 DetailRange [0 1 2 3] Sphere 1 -1 1 360 WorldEnd");
+    auto c = read(
+        "WorldBegin Translate 1 2 3 Detail [-1 1 -1 1 -1 1] Translate 5 0 0 DetailRange [0 1 2 3] Sphere 1 -1 1 360 WorldEnd");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->primitive().attributes->detailSpace, translateMatrix(1, 2, 3));
     EXPECT_EQ(c->primitive().attributes->detail, (std::vector<float>{-1, 1, -1, 1, -1, 1}));
@@ -310,8 +311,15 @@ TEST(Motion, MatricesTurn) {
             for (int x = 0; x < 3; ++x) EXPECT_NEAR(t.keys[i].m[y][x], want.m[y][x], 1e-5) << i; // six decimals
     }
     // Mirrored from key to key, and half a turn: as they are.
-    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(a) + text(scaleMatrix(-1, 1, 1)) + "MotionEnd Sphere 1 -1 1 360")->primitive().toWorld.keys.size(), 2u);
-    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(scaleMatrix(1, 1, 1)) + text(rotateMatrix(180, 0, 0, 1)) + "MotionEnd Sphere 1 -1 1 360")->primitive().toWorld.keys.size(), 2u);
+    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(a) + text(scaleMatrix(-1, 1, 1)) + "MotionEnd Sphere 1 -1 1 360")
+                  ->primitive()
+                  .toWorld.keys.size(),
+              2u);
+    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(scaleMatrix(1, 1, 1)) + text(rotateMatrix(180, 0, 0, 1)) +
+                    "MotionEnd Sphere 1 -1 1 360")
+                  ->primitive()
+                  .toWorld.keys.size(),
+              2u);
 }
 
 TEST(Motion, OfPrimitives) {
@@ -511,7 +519,8 @@ TEST(ColorSamples, BecomeRgb) {
 
 TEST(Textures, AreMadeWithinFramesToo) {
     // As published scenes of several passes do, after the world whose depth they use.
-    auto c = read("FrameBegin 1 WorldBegin WorldEnd MakeShadow \"a.z\" \"a.shd\" FrameEnd FrameBegin 2 MakeShadow \"b.z\" \"b.shd\" WorldBegin WorldEnd FrameEnd");
+    auto c = read("FrameBegin 1 WorldBegin WorldEnd MakeShadow \"a.z\" \"a.shd\" FrameEnd FrameBegin 2 MakeShadow \"b.z\" "
+                  "\"b.shd\" WorldBegin WorldEnd FrameEnd");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->textures.size(), 2u);
 }

@@ -221,7 +221,8 @@ TEST(Counts, TrimCurves) {
 }
 
 TEST(Volumes, AreClosedShapesWithTheShaderInside) {
-    auto c = world("Color [1 0 0] Atmosphere \"fog\" Surface \"plastic\" Volume \"box\" [-1 2 -3 4 -5 6] [0 0 0] \"constant float density\" [3] "
+    auto c = world("Color [1 0 0] Atmosphere \"fog\" Surface \"plastic\" Volume \"box\" [-1 2 -3 4 -5 6] [0 0 0] \"constant "
+                   "float density\" [3] "
                    "Interior \"haze\" Volume \"ellipsoid\" [1 3 1 3 1 5] [0 0 0] Volume \"cylinder\" [0 1 0 1 0 1] [0 0 0]");
     EXPECT_EQ(c->messages(), "");
     ASSERT_EQ(c->frame().primitives.size(), 5u); // the cylinder has two ends
@@ -235,7 +236,8 @@ TEST(Volumes, AreClosedShapesWithTheShaderInside) {
     EXPECT_EQ(egg.attributes->atmosphere->name, "fog");
     expectMatrix(egg.toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 2, 2, 3, 1});
 
-    c = world("Interior \"haze\" MotionBegin [0 1] Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0] Volume \"box\" [-1 1 -1 1 -1 3] [0 0 0] MotionEnd");
+    c = world("Interior \"haze\" MotionBegin [0 1] Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0] Volume \"box\" [-1 1 -1 1 -1 3] [0 0 "
+              "0] MotionEnd");
     EXPECT_EQ(c->messages(), "");
     ASSERT_EQ(c->primitive().motionKeys.size(), 1u);
     EXPECT_EQ(scene::find(c->primitive().motionKeys[0]->params, "P")->numbers[14], 3);
@@ -243,8 +245,9 @@ TEST(Volumes, AreClosedShapesWithTheShaderInside) {
 
 TEST(Volumes, ThatAreNoneAreErrors) {
     for (const char* text :
-         {"Volume \"blob\" [-1 1 -1 1 -1 1] [0 0 0]", "Volume \"box\" [1 -1 -1 1 -1 1] [0 0 0]", "Volume \"box\" [-1 1 -1 1 1 1] [0 0 0]",
-          "Volume \"box\" [-1 1 -1 1 -1 1] [0 0]", "Volume \"box\" [-1 1 -1 1 -1 1] [-1 0 0]", "Volume \"blobbydso:fields\" [-1 1 -1 1 -1 1] [0 0 0]",
+         {"Volume \"blob\" [-1 1 -1 1 -1 1] [0 0 0]", "Volume \"box\" [1 -1 -1 1 -1 1] [0 0 0]",
+          "Volume \"box\" [-1 1 -1 1 1 1] [0 0 0]", "Volume \"box\" [-1 1 -1 1 -1 1] [0 0]",
+          "Volume \"box\" [-1 1 -1 1 -1 1] [-1 0 0]", "Volume \"blobbydso:fields\" [-1 1 -1 1 -1 1] [0 0 0]",
           "MotionBegin [0 1] Volume \"cone\" [-1 1 -1 1 -1 1] [0 0 0] Volume \"cone\" [-1 1 -1 1 -1 2] [0 0 0] MotionEnd"}) {
         auto c = world(std::string("Interior \"haze\" ") + text + " Sphere 1 -1 1 360");
         EXPECT_GE(c->diagnostics.errors(), 1) << text;
@@ -252,7 +255,8 @@ TEST(Volumes, ThatAreNoneAreErrors) {
         EXPECT_EQ(c->primitive().kind, "Sphere");
     }
     // Voxels, and no shader at all: said, and the rest holds. A billion of them take nothing.
-    auto c = world("Interior \"haze\" Volume \"box\" [-1 1 -1 1 -1 1] [1000000000 1000000000 1000000000] \"vertex float density\" [1]");
+    auto c = world(
+        "Interior \"haze\" Volume \"box\" [-1 1 -1 1 -1 1] [1000000000 1000000000 1000000000] \"vertex float density\" [1]");
     EXPECT_NE(c->only().message.find("voxels"), std::string::npos);
     EXPECT_EQ(c->frame().primitives.size(), 1u);
     c = world("Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0]");

@@ -30,7 +30,11 @@ std::string mended(std::string text, bool lint) {
     return text;
 }
 
-struct Case { const char* body; const char* mended; bool lint = false; };
+struct Case {
+    const char* body;
+    const char* mended;
+    bool lint = false;
+};
 
 constexpr Case kCases[] = {
     {"Ci = diffues(N);", "Ci = diffuse(N);"},
@@ -99,29 +103,39 @@ TEST(Hints, SayWhatWasMeant) {
         EXPECT_TRUE(found || !*hint) << text;
     }
     // A name that is right as it stands is no hint.
-    for (const Diagnostic& d : said("surface t float k = 1; { Ci = k; }", false)) EXPECT_EQ(d.hint.find("'surface'"), std::string::npos) << d.hint;
+    for (const Diagnostic& d : said("surface t float k = 1; { Ci = k; }", false))
+        EXPECT_EQ(d.hint.find("'surface'"), std::string::npos) << d.hint;
 }
 
-// The names of the specification have no prefix; texture3d() gives what it reads; a parameter is told of once, however often it is changed.
+// The names of the specification have no prefix; texture3d() gives what it reads; a parameter is told of once, however often it
+// is changed.
 TEST(Warnings, NotWhereNothingIsWrong) {
     const auto count = [](const std::string& body, const std::string& what, const std::string& before = "") {
         const std::vector<Diagnostic> all = said(before + shader(body), true);
-        return std::count_if(all.begin(), all.end(), [&](const Diagnostic& d) { return d.message.find(what) != std::string::npos; });
+        return std::count_if(all.begin(), all.end(),
+                             [&](const Diagnostic& d) { return d.message.find(what) != std::string::npos; });
     };
-    EXPECT_EQ(count("float c[2] = {0, 1}; option(\"Clipping\", c); float f[3] = {0, 0, 0}; option(\"Format\", f); Ci = c[0] + f[0];", "knows nothing"), 0);
+    EXPECT_EQ(
+        count("float c[2] = {0, 1}; option(\"Clipping\", c); float f[3] = {0, 0, 0}; option(\"Format\", f); Ci = c[0] + f[0];",
+              "knows nothing"),
+        0);
     EXPECT_EQ(count("float a = 0; attribute(\"Sides\", a); Ci = a;", "knows nothing"), 0);
     EXPECT_EQ(count("float a = 0; option(\"Ri:Cliping\", a); Ci = a;", "knows nothing"), 1);
-    EXPECT_EQ(count("float x; color c; texture3d(\"f.ptc\", P, N, \"_x\", x, \"_c\", c); Ci = c * x;", "before it has a value"), 0);
+    EXPECT_EQ(count("float x; color c; texture3d(\"f.ptc\", P, N, \"_x\", x, \"_c\", c); Ci = c * x;", "before it has a value"),
+              0);
     EXPECT_EQ(count("float x[2]; texture3d(\"f.ptc\", P, N, \"_x\", x[1]); Ci = x[1];", "before it has a value"), 0);
     EXPECT_EQ(count("float x; bake3d(\"f.ptc\", \"\", P, N, \"_x\", x);", "before it has a value"), 1);
     EXPECT_EQ(count("Ci = f(P, 1);", "is not output",
-                    "float f(vector p; float r) { p[0] = abs(p[0]); p *= 2; p[1] -= r; r = 2; return xcomp(p) * r; }\n"), 2);
+                    "float f(vector p; float r) { p[0] = abs(p[0]); p *= 2; p[1] -= r; r = 2; return xcomp(p) * r; }\n"),
+              2);
 }
 
 // What a parameter without a default is.
 TEST(Warnings, SayWhatIsThere) {
-    const std::pair<const char*, const char*> cases[] = {{"string map", "it is empty unless set"}, {"float k", "it is zero unless set"},
-                                                         {"matrix m", "it is zero unless set"}, {"shader s", "it is null unless set"}};
+    const std::pair<const char*, const char*> cases[] = {{"string map", "it is empty unless set"},
+                                                         {"float k", "it is zero unless set"},
+                                                         {"matrix m", "it is zero unless set"},
+                                                         {"shader s", "it is null unless set"}};
     for (const auto& [parameter, what] : cases) {
         const auto all = said("surface t(" + std::string(parameter) + ";) { }\n", false);
         ASSERT_EQ(all.size(), 1u) << parameter;

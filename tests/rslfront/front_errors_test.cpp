@@ -7,7 +7,10 @@
 namespace alpenglow::rsl {
 namespace {
 
-struct Case { const char* body; const char* message; };
+struct Case {
+    const char* body;
+    const char* message;
+};
 
 /// Bodies begin on line 2, column 1. One message each, which begins so.
 const Case kBodies[] = {
@@ -129,7 +132,8 @@ const Case kFiles[] = {
     {"surface s(float a;) { }", "1:17: warning: parameter 'a' has no default value; it is zero unless set"},
     {"surface s(float a = 1 color b = 1) { }", "1:22: warning: expected ';' before the next parameter"},
     {"struct X { float a; }\nsurface s() { X x; x = 1; }", "2:24: error: expected a value of structure 'X'"},
-    {"struct X { float a; }\nsurface s() { X float l->a = 1; }", "2:17: error: expected a structure"}, // once read outside the table
+    {"struct X { float a; }\nsurface s() { X float l->a = 1; }",
+     "2:17: error: expected a structure"}, // once read outside the table
     {"class c(float a = 1;) { public void surface(output color Ci, Oi) { Ci = a; x = 1; } }", "1:76: error: 'x' is not declared"},
     {"#include \"nowhere.h\"\nsurface s() { Ci = helper(name); }", "1:10: error: cannot find the included file 'nowhere.h'"},
     {"#if 1\nsurface s() {}", "1:1: error: this #if has no #endif"},
@@ -191,7 +195,8 @@ TEST(FrontErrors, UnknownNameIsToldOnce) { EXPECT_EQ(compileBody("f = x; g = x +
 TEST(FrontErrors, LineAndCaret) {
     const auto r = compileSnippet("surface s()\n{\n\tCi = Kqqq;\n}\n", {}, "folder/s.sl");
     ASSERT_EQ(r.messages.size(), 1u);
-    EXPECT_EQ(toString(r.messages[0]), "folder/s.sl:3:7: error: 'Kqqq' is not declared [undeclared]\n  \tCi = Kqqq;\n  \t     ^~~~\n");
+    EXPECT_EQ(toString(r.messages[0]),
+              "folder/s.sl:3:7: error: 'Kqqq' is not declared [undeclared]\n  \tCi = Kqqq;\n  \t     ^~~~\n");
 }
 
 TEST(FrontErrors, MissingFile) {

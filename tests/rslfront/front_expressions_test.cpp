@@ -4,7 +4,10 @@
 namespace alpenglow::rsl {
 namespace {
 
-struct Case { const char* body; const char* tree; };
+struct Case {
+    const char* body;
+    const char* tree;
+};
 
 const Case kPrecedence[] = {
     {"f = f + g * h;", "(= f (add:float f (mul:float g h)))"},

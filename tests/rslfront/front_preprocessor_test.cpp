@@ -7,7 +7,10 @@
 namespace alpenglow::rsl {
 namespace {
 
-struct Case { const char* text; const char* tokens; };
+struct Case {
+    const char* text;
+    const char* tokens;
+};
 
 /// Tokens on one line, separated by blanks.
 std::string tokens(const std::string& text, const FrontOptions& options = {}) {
@@ -71,9 +74,7 @@ TEST(FrontPreprocessor, Defines) {
     EXPECT_EQ(tokens("QUALITY", o), "3");
 }
 
-TEST(FrontPreprocessor, StringEscapes) {
-    EXPECT_EQ(front::stringValue("\"a\\n\\t\\\\\\\"\\101\""), "a\n\t\\\"A");
-}
+TEST(FrontPreprocessor, StringEscapes) { EXPECT_EQ(front::stringValue("\"a\\n\\t\\\\\\\"\\101\""), "a\n\t\\\"A"); }
 
 TEST(FrontPreprocessor, IncludesKeepPlaces) {
     const auto folder = std::filesystem::path(::testing::TempDir()) / "alpenglow_front_include";
@@ -119,7 +120,8 @@ TEST(FrontPreprocessor, LineEndsOfEverySystem) {
 }
 
 TEST(FrontPreprocessor, AnnotationsWithoutQuotes) {
-    const auto c = compileSnippet("#pragma annotation Kd \"how \" \"bright\"\n#pragma annotation \"Ks\" slider 0 to 1\nsurface s() {}\n");
+    const auto c =
+        compileSnippet("#pragma annotation Kd \"how \" \"bright\"\n#pragma annotation \"Ks\" slider 0 to 1\nsurface s() {}\n");
     ASSERT_TRUE(c.program);
     const std::vector<std::pair<std::string, std::string>> expected = {{"Kd", "how bright"}, {"Ks", "slider 0 to 1"}};
     EXPECT_EQ(c.program->shaders[0]->annotations, expected);

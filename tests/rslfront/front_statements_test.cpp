@@ -4,7 +4,10 @@
 namespace alpenglow::rsl {
 namespace {
 
-struct Case { const char* body; const char* tree; };
+struct Case {
+    const char* body;
+    const char* tree;
+};
 
 const Case kStatements[] = {
     {"while (f < 3) f += 1;", "(while (less:bool f 3) (+= f 1))"},
@@ -180,7 +183,8 @@ TEST(FrontFunctions, EveryRslShadeopCompiles) {
                 Type t = s.parameters[i].type;
                 if (t.array < 0) t.array = 4;
                 const bool shader = s.text.find("shader " + s.parameters[i].name) != std::string::npos;
-                declarations += (shader ? "shader" : toString(t.element())) + " " + name + (t.array ? "[" + std::to_string(t.array) + "]" : "") + "; ";
+                declarations += (shader ? "shader" : toString(t.element())) + " " + name +
+                                (t.array ? "[" + std::to_string(t.array) + "]" : "") + "; ";
                 arguments += (i ? ", " : "") + name;
             }
             const std::string cast =

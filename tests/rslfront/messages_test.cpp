@@ -76,8 +76,8 @@ TEST(Messages, EveryExpectedErrorOfTheLanguageHasAnId) {
 TEST(Messages, Ranges) {
     EXPECT_EQ(only("f = nosuchname;").length, 10);
     EXPECT_EQ(only("f = f ^ 2;").length, 1);
-    EXPECT_EQ(only("f = sqrt(c);").length, 7); // the whole call
-    EXPECT_EQ(only("f = \"text\";").length, 1);  // at the '='
+    EXPECT_EQ(only("f = sqrt(c);").length, 7);  // the whole call
+    EXPECT_EQ(only("f = \"text\";").length, 1); // at the '='
 }
 
 TEST(Messages, CandidatesSayWhyNot) {
@@ -101,10 +101,11 @@ TEST(Messages, CandidatesSayWhyNot) {
 
 /// By the time calls are checked a structure is as many values as it has members; who reads the message wrote one.
 TEST(Messages, StructuresInCallsAreWhatWasWritten) {
-    const std::string structs = "struct S { float a = 1; color b = 2; float k[3]; public void put(float x; color c) { a = x; } }\n"
-                                "struct T { S s[2]; float t; }\n"
-                                "float f(S s; float x) { return x * s->a; }\n"
-                                "T g(output S s[]; string t) { T r; return r; }\n";
+    const std::string structs =
+        "struct S { float a = 1; color b = 2; float k[3]; public void put(float x; color c) { a = x; } }\n"
+        "struct T { S s[2]; float t; }\n"
+        "float f(S s; float x) { return x * s->a; }\n"
+        "T g(output S s[]; string t) { T r; return r; }\n";
     const auto told = [&](const std::string& statements) {
         const auto c = compileSnippet(structs + "surface s() { S s, q[3]; " + statements + " }\n");
         EXPECT_EQ(c.errors(), 1) << c.text();
@@ -184,7 +185,8 @@ TEST(Messages, FixIts) {
 TEST(Inspect, ProgramsWithErrorsComeBack) {
     Diagnostics d;
     const auto p = inspectText("float f(float a) { return a; }\n"
-                               "surface s(float k = 1;) { float g = f(k); Ci = g * nosuch; }", "s.sl", {}, d);
+                               "surface s(float k = 1;) { float g = f(k); Ci = g * nosuch; }",
+                               "s.sl", {}, d);
     EXPECT_EQ(d.errors(), 1);
     ASSERT_EQ(p->shaders.size(), 1u);
     EXPECT_EQ(p->shaders[0]->parameters.size(), 1u);
@@ -207,10 +209,12 @@ TEST(Lint, Unused) {
 TEST(Lint, AShaderUsesWhatAnyOfItsKindsUses) {
     // In one file a function serves two shaders; only one of them reads k by it.
     EXPECT_EQ(linted("float f(float a; float b) { return a * b; }\n"
-                     "surface s() { Ci = f(1, 2); }\ndisplacement d() { P += N * f(1, 2); }\n"), Ids());
+                     "surface s() { Ci = f(1, 2); }\ndisplacement d() { P += N * f(1, 2); }\n"),
+              Ids());
     EXPECT_EQ(linted("class c(float k = 1; float h = 1;)\n{\n"
                      "    public void surface(output color Ci; output color Oi) { Ci = k; Oi = 1; }\n"
-                     "    public void displacement(output point P; output normal N) { P += h * N; }\n}\n"), Ids());
+                     "    public void displacement(output point P; output normal N) { P += h * N; }\n}\n"),
+              Ids());
 }
 
 TEST(Lint, NothingUnlessAsked) { EXPECT_EQ(compileSnippet("surface s(float a = 1;) { float x; Ci = x; }").messages.size(), 0u); }

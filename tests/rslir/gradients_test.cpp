@@ -15,7 +15,8 @@ int chains(const Compiled& c) {
 size_t results(const Compiled& c, const std::string& op) {
     size_t n = 0;
     ir::forEach(static_cast<const ir::Region&>(c.kernel->body), [&](const ir::Inst* i) {
-        if (i->op == ir::Op::Service && c.kernel->sites[static_cast<size_t>(i->site)].op == op) n = std::max(n, ir::resultKinds(*i).size());
+        if (i->op == ir::Op::Service && c.kernel->sites[static_cast<size_t>(i->site)].op == op)
+            n = std::max(n, ir::resultKinds(*i).size());
     });
     return n;
 }
@@ -33,17 +34,21 @@ TEST(Gradients, OnlyWhereDerivativesAreWanted) {
         EXPECT_EQ(results(wanted, "texture"), 3u);
         EXPECT_EQ(results(wanted, "environment"), 4u);
         EXPECT_EQ(wanted.messages, "");
-        const auto second = compile("surface s() { Ci = Dv(Du(color texture(\"a\", u, v))) + Du(Du(float environment(\"c\", N))); }", o);
+        const auto second =
+            compile("surface s() { Ci = Dv(Du(color texture(\"a\", u, v))) + Du(Du(float environment(\"c\", N))); }", o);
         EXPECT_EQ(results(second, "texture"), 6u);
         EXPECT_EQ(results(second, "environment"), 10u);
         const auto mixed = compile("surface s() { float a = texture(\"a\"); float b = texture(\"b\", s, t); "
-                                   "Ci = a + Dv(texture(\"c\", v, v)); if (u > 0.5) Ci += Du(b); }", o);
+                                   "Ci = a + Dv(texture(\"c\", v, v)); if (u > 0.5) Ci += Du(b); }",
+                                   o);
         EXPECT_EQ(chains(mixed), 2);
     }
 }
 
 // Where the coordinates are constant, so is the value.
-TEST(Gradients, NotOfConstantCoordinates) { EXPECT_EQ(chains(compile("surface s() { Ci = Du(texture(\"a\", 0.25, 0.5)); }")), 0); }
+TEST(Gradients, NotOfConstantCoordinates) {
+    EXPECT_EQ(chains(compile("surface s() { Ci = Du(texture(\"a\", 0.25, 0.5)); }")), 0);
+}
 
 // Through variables, branches, loops, corners and names that are computed.
 TEST(Gradients, Forms) {

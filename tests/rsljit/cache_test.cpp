@@ -6,8 +6,8 @@
 #include "rsl/jit/identity.h"
 #include "rsl/jit/loader.h"
 #include "rsl/jit/module.h"
-#include "rsl/jit/stamp.h"
 #include "rsl/jit/sha256.h"
+#include "rsl/jit/stamp.h"
 #include "rsl/services_basic.h"
 #include <filesystem>
 #include <fstream>

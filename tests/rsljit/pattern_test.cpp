@@ -1,6 +1,6 @@
 // The regular expressions of match() against those of the C library, and such as nothing may take long.
-#include "base/pattern.h"
 #include "base/limits.h"
+#include "base/pattern.h"
 #include <chrono>
 #include <gtest/gtest.h>
 #include <random>

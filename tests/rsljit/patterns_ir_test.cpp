@@ -9,14 +9,16 @@ namespace {
 
 /// Every instruction of the text that should not be there, one a line. Intrinsics that are one machine instruction may be called.
 std::string offences(const std::string& llvm) {
-    static const char* const kInstructions[] = {"llvm.fma.",  "llvm.floor.", "llvm.ceil.",   "llvm.trunc.",      "llvm.fabs.",        "llvm.sqrt.",
-                                                "llvm.fshl.", "llvm.umin.",  "llvm.umax.",   "llvm.smin.",       "llvm.smax.",        "llvm.copysign.",
+    static const char* const kInstructions[] = {"llvm.fma.",  "llvm.floor.", "llvm.ceil.",       "llvm.trunc.",
+                                                "llvm.fabs.", "llvm.sqrt.",  "llvm.fshl.",       "llvm.umin.",
+                                                "llvm.umax.", "llvm.smin.",  "llvm.smax.",       "llvm.copysign.",
                                                 "llvm.abs.",  "llvm.rint.",  "llvm.is.fpclass.", "llvm.vector.reduce.or."};
     std::istringstream in(llvm);
     std::string line, found;
     while (std::getline(in, line)) {
         if (line.rfind("declare", 0) == 0 || line.rfind(";", 0) == 0) continue;
-        bool bad = line.find(" alloca ") != std::string::npos || line.find("gather") != std::string::npos || line.find("scatter") != std::string::npos;
+        bool bad = line.find(" alloca ") != std::string::npos || line.find("gather") != std::string::npos ||
+                   line.find("scatter") != std::string::npos;
         if (line.find(" call ") != std::string::npos) {
             bool one = false;
             for (const char* k : kInstructions) one = one || line.find("@" + std::string(k)) != std::string::npos;
@@ -49,7 +51,8 @@ protected:
 };
 
 TEST_P(PatternsIr, OurPatterns) {
-    look(std::string(ALPENGLOW_SOURCE_DIR) + "/bench/shaders", {"clouds", "veins", "cells", "tiles", "transcendental", "escape", "clouds_slope"});
+    look(std::string(ALPENGLOW_SOURCE_DIR) + "/bench/shaders",
+         {"clouds", "veins", "cells", "tiles", "transcendental", "escape", "clouds_slope"});
 }
 
 TEST_P(PatternsIr, PublishedPatterns) {

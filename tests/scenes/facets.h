@@ -9,10 +9,12 @@
 namespace alpenglow::scenes {
 
 /// How often a patch is cut in u and in v.
-struct Cuts { int u, v; };
+struct Cuts {
+    int u, v;
+};
 
-/// A RIB file's text with every `Patch "bicubic" "P" [...]` (Bezier, object space) replaced by triangles with the patch's own normals at
-/// their corners; `cuts` is asked with the text of the last line that began with '#'.
+/// A RIB file's text with every `Patch "bicubic" "P" [...]` (Bezier, object space) replaced by triangles with the patch's own
+/// normals at their corners; `cuts` is asked with the text of the last line that began with '#'.
 template <class F> std::string cutPatches(const std::string& rib, F cuts) {
     const std::string head = "Patch \"bicubic\" \"P\" [";
     std::string out;

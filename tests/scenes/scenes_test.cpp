@@ -1,8 +1,8 @@
 // Scenes published in the 1990s against the pictures published with them. docs/gallery.md has the figures and the reasons.
 #include "display/imageio.h"
+#include "facets.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
-#include "facets.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -21,9 +21,7 @@ struct Measure {
     int dx = 0, dy = 0;                              ///< how far the published picture lies to the right and below
 };
 
-float channel(const display::Image& i, int x, int y, int c) {
-    return std::clamp(i.pixel(x, y)[c], 0.f, 1.f);
-}
+float channel(const display::Image& i, int x, int y, int c) { return std::clamp(i.pixel(x, y)[c], 0.f, 1.f); }
 
 Measure compare(const display::Image& ours, const display::Image& theirs, int dx, int dy) {
     Measure m{.dx = dx, .dy = dy};
@@ -58,8 +56,8 @@ Measure compare(const display::Image& ours, const display::Image& theirs, int dx
 }
 
 // Two ways of taking samples, told apart by fitting each published picture as a sum of finely rendered points near its edges
-// (docs/gallery.md): one unjittered sample in the middle of a pixel under a gaussian two pixels wide, or several under a triangle.
-// Their renderer's specular() has the exponent 1 / roughness.
+// (docs/gallery.md): one unjittered sample in the middle of a pixel under a gaussian two pixels wide, or several under a
+// triangle. Their renderer's specular() has the exponent 1 / roughness.
 constexpr const char* kOneSample = "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2 2\nPixelSamples "
                                    "1 1\nHider \"hidden\" \"jitter\" [0]\n";
 constexpr const char* kSeveralRispec =
@@ -75,8 +73,8 @@ constexpr const char* kManyMoved =
     "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2.25 2.25\nHider \"hidden\" \"jitter\" [0]\n"
     "ScreenWindow -1.60625 1.59375 -.99375 1.00625\n";
 
-// uteapot's renderer cut patches in few triangles, seen at once on the handle and the knob. How few was searched on its picture, part by
-// part: overlap of the knob .993 when cut in 4 and .97 to .98 when cut in 6 to 12, of the handle .992 against .98.
+// uteapot's renderer cut patches in few triangles, seen at once on the handle and the knob. How few was searched on its picture,
+// part by part: overlap of the knob .993 when cut in 4 and .97 to .98 when cut in 6 to 12, of the handle .992 against .98.
 scenes::Cuts uteapotCuts(const std::string& part) {
     if (part.find("Handle") != part.npos) return {6, 4};
     if (part.find("Knob") != part.npos) return {4, 4};
@@ -108,9 +106,9 @@ surface metal(float Ka = 1, Ks = 1, roughness = .1;) {
 
 struct Limits {
     const char* name;
-    const char* scene;  ///< the file's name
-    const char* before; ///< requests read before the file
-    int samples;        ///< a pixel; 0 leaves what the requests say
+    const char* scene;                                   ///< the file's name
+    const char* before;                                  ///< requests read before the file
+    int samples;                                         ///< a pixel; 0 leaves what the requests say
     enum class Renderer { Any, Bulb, Uteapot } renderer; ///< whose: bulb's highlight in plastic and metal, uteapot's facets
     double mean, p95, bias, overlap;
     int displaced; ///< pixels to the right and below
@@ -173,8 +171,8 @@ TEST_P(PublishedScene, RendersSilentlyAndLooksAlike) {
     for (int dy = -kReach; dy <= kReach; ++dy)
         for (int dx = -kReach; dx <= kReach; ++dx)
             if (Measure m = compare(*ours, *theirs, dx, dy); m.mean < best.mean) best = m;
-    std::printf("%-10s mean %.2f  95 %% %.1f  signed %+.2f  overlap %.4f  displaced %d,%d\n", want.name, best.mean, best.p95, best.bias,
-                best.overlap, best.dx, best.dy);
+    std::printf("%-10s mean %.2f  95 %% %.1f  signed %+.2f  overlap %.4f  displaced %d,%d\n", want.name, best.mean, best.p95,
+                best.bias, best.overlap, best.dx, best.dy);
     EXPECT_EQ(best.dx, want.displaced);
     EXPECT_EQ(best.dy, want.displaced);
     EXPECT_LT(best.mean, want.mean);
@@ -183,18 +181,20 @@ TEST_P(PublishedScene, RendersSilentlyAndLooksAlike) {
     EXPECT_GT(best.overlap, want.overlap);
 }
 
-// The asked-for limits are 5, 12, 2 and 0.995. Wider ones are two scenes without their renderers' peculiarities (docs/gallery.md).
-INSTANTIATE_TEST_SUITE_P(All, PublishedScene,
-                         testing::Values(Limits{"showquads", "showquads", kSeveral, 16, Limits::Renderer::Any, 5, 12, 2, .995, 0},
-                                         Limits{"val_poly", "val_poly", kSeveral, 16, Limits::Renderer::Any, 5, 12, 2, .995, 0},
-                                         Limits{"spot", "spot", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
-                                         Limits{"teapot", "teapot", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
-                                         Limits{"cubits", "cubits", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
-                                         Limits{"tetra", "tetra", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
-                                         Limits{"uteapot", "uteapot", kOneSampleMoved, 0, Limits::Renderer::Any, 5, 12, 2, .99, 0},
-                                         Limits{"uteapot_with_its_facets", "uteapot", kManyMoved, 16, Limits::Renderer::Uteapot, 5, 12, 2, .995, 0},
-                                         Limits{"bulb_with_its_highlight", "bulb", kSeveral, 16, Limits::Renderer::Bulb, 5, 12, 2, .995, 0},
-                                         Limits{"bulb", "bulb", kSeveralRispec, 16, Limits::Renderer::Any, 25, 40, 25, .995, 0}),
-                         [](const auto& i) { return std::string(i.param.name); });
+// The asked-for limits are 5, 12, 2 and 0.995. Wider ones are two scenes without their renderers' peculiarities
+// (docs/gallery.md).
+INSTANTIATE_TEST_SUITE_P(
+    All, PublishedScene,
+    testing::Values(Limits{"showquads", "showquads", kSeveral, 16, Limits::Renderer::Any, 5, 12, 2, .995, 0},
+                    Limits{"val_poly", "val_poly", kSeveral, 16, Limits::Renderer::Any, 5, 12, 2, .995, 0},
+                    Limits{"spot", "spot", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
+                    Limits{"teapot", "teapot", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
+                    Limits{"cubits", "cubits", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
+                    Limits{"tetra", "tetra", kOneSample, 0, Limits::Renderer::Any, 5, 12, 2, .995, 1},
+                    Limits{"uteapot", "uteapot", kOneSampleMoved, 0, Limits::Renderer::Any, 5, 12, 2, .99, 0},
+                    Limits{"uteapot_with_its_facets", "uteapot", kManyMoved, 16, Limits::Renderer::Uteapot, 5, 12, 2, .995, 0},
+                    Limits{"bulb_with_its_highlight", "bulb", kSeveral, 16, Limits::Renderer::Bulb, 5, 12, 2, .995, 0},
+                    Limits{"bulb", "bulb", kSeveralRispec, 16, Limits::Renderer::Any, 25, 40, 25, .995, 0}),
+    [](const auto& i) { return std::string(i.param.name); });
 
 } // namespace

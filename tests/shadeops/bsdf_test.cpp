@@ -65,7 +65,10 @@ double albedo(const Model& f, const V& o, int steps = 160) {
     return sum * (2.0 / steps) * (kPi / steps);
 }
 
-struct Case { const char* name; Model f; };
+struct Case {
+    const char* name;
+    Model f;
+};
 const std::vector<float> kFull = {0, 0, 0, 0, 0, 0}; // eta and k: no Fresnel factor
 std::vector<float> with(std::vector<float> a, const std::vector<float>& b) {
     a.insert(a.end(), b.begin(), b.end());
@@ -92,7 +95,8 @@ TEST(Bsdf, Reciprocity) {
     const Model reflected = glass({0.4f, 0.6f, 1.5f}, 0), refracted = glass({0.4f, 0.6f, 1.5f}, 1);
     for (int i = 0; i < 200; ++i) {
         const double phi = draw(0, 6);
-        const V l = direction(draw(0, 1.4), phi), o = direction(draw(0, 1.4), draw(0, 6)), below = direction(kPi - draw(0, 0.6), phi + kPi);
+        const V l = direction(draw(0, 1.4), phi), o = direction(draw(0, 1.4), draw(0, 6)),
+                below = direction(kPi - draw(0, 0.6), phi + kPi);
         const double a = reflected(l, o) / l[2], b = reflected(o, l) / o[2];
         EXPECT_NEAR(a, b, 2e-4 * std::max({a, b, 1e-3}));
         const double in = refracted(below, l) / -below[2] / (1.5 * 1.5), out = refracted(l, below) / l[2];
@@ -155,10 +159,12 @@ TEST(Bsdf, DiffuseOnesAreExact) {
 TEST(Bsdf, FacetFormulas) {
     const double tl = 0.7, to = 0.3; // on opposite sides: h is 0.2 from the normal
     const V l = direction(tl, 0), o = direction(to, kPi);
-    const double th = (tl - to) / 2, td = (tl + to) / 2, nl = std::cos(tl), no = std::cos(to), nh = std::cos(th), oh = std::cos(td);
+    const double th = (tl - to) / 2, td = (tl + to) / 2, nl = std::cos(tl), no = std::cos(to), nh = std::cos(th),
+                 oh = std::cos(td);
     const double G = std::min({1.0, 2 * nh * no / oh, 2 * nh * nl / oh});
     const double e = std::pow(0.5, -3.5) - 1;
-    EXPECT_NEAR(model("al_bsdf_blinn", false, with({0.5f}, kFull))(l, o), (e + 2) / (2 * kPi) * std::pow(nh, e) * G / (4 * no), 1e-5);
+    EXPECT_NEAR(model("al_bsdf_blinn", false, with({0.5f}, kFull))(l, o), (e + 2) / (2 * kPi) * std::pow(nh, e) * G / (4 * no),
+                1e-5);
     const double m = 0.4, beckmann = std::exp(-std::pow(std::tan(th) / m, 2)) / (kPi * m * m * std::pow(nh, 4));
     EXPECT_NEAR(model("al_bsdf_cooktorrance", false, with({0.4f}, kFull))(l, o), beckmann * G / (4 * no), 1e-5);
     // Light and view lie in the plane of udir, so only roughness counts.
@@ -183,7 +189,8 @@ TEST(Bsdf, FacetFormulas) {
             const double t = (i + 0.5) * kPi / 2 / steps;
             const V h = direction(t, 0);
             const double g = std::min(1.0, 2 * std::cos(t) * std::cos(t));
-            sum += 4 * std::cos(t) * model(symbol, udir, with({0.4f}, kFull))(h, h) / g * std::cos(t) * std::sin(t) * kPi / 2 / steps * 2 * kPi;
+            sum += 4 * std::cos(t) * model(symbol, udir, with({0.4f}, kFull))(h, h) / g * std::cos(t) * std::sin(t) * kPi / 2 /
+                   steps * 2 * kPi;
         }
         EXPECT_NEAR(sum, 1, 2e-3) << symbol;
     }
@@ -214,13 +221,16 @@ TEST(Bsdf, Glass) {
 
 TEST(Bsdf, Hair) {
     const auto lobe = [](float which, float tilt, float along, float around, V absorption, V udir = {0, 0, 0}) {
-        return model("al_bsdf_hair", false, {udir[0], udir[1], udir[2], 1.55f, absorption[0], absorption[1], absorption[2], which, tilt, along, around});
+        return model("al_bsdf_hair", false,
+                     {udir[0], udir[1], udir[2], 1.55f, absorption[0], absorption[1], absorption[2], which, tilt, along, around});
     };
-    // All lobes together keep less than arrives, and without absorption most of it (what is left are higher lobes, and what reciprocity takes).
+    // All lobes together keep less than arrives, and without absorption most of it (what is left are higher lobes, and what
+    // reciprocity takes).
     for (const double theta : {kPi / 2, 1.1, 0.6})
         for (const V& udir : {V{0, 0, 0}, V{0.6f, 0, 0}}) {
             double sum = 0;
-            for (const float p : {0.0f, 1.0f, 2.0f, 3.0f}) sum += albedo(lobe(p, 0, 0.4f, 0.4f, {0, 0, 0}, udir), direction(theta, 0.3), 50);
+            for (const float p : {0.0f, 1.0f, 2.0f, 3.0f})
+                sum += albedo(lobe(p, 0, 0.4f, 0.4f, {0, 0, 0}, udir), direction(theta, 0.3), 50);
             EXPECT_LE(sum, 1.005) << theta;
             if (udir[0] == 0) EXPECT_GE(sum, 0.85) << theta; // what is left of an elliptic section is not known
         }
@@ -237,7 +247,8 @@ TEST(Bsdf, Hair) {
     for (const auto& [p, factor] : {std::pair{0.0f, 2.0}, {1.0f, -1.0}, {2.0f, -4.0}}) {
         double best = -1, at = 0;
         for (double a = -0.6; a <= 0.6; a += 0.005) { // inclination toward the tip
-            const double v = lobe(p, 0.1f, 0.15f, 0.5f, {0, 0, 0})(direction(kPi / 2 - a, p == 1 ? kPi : 0), direction(kPi / 2, 0));
+            const double v =
+                lobe(p, 0.1f, 0.15f, 0.5f, {0, 0, 0})(direction(kPi / 2 - a, p == 1 ? kPi : 0), direction(kPi / 2, 0));
             if (v > best) best = v, at = a;
         }
         EXPECT_NEAR(at, factor * 0.1, 0.02) << p;
@@ -266,7 +277,9 @@ TEST(Bsdf, BelowTheSurfaceAndOddInputs) {
     for (const float p : {0.0f, 1.0f, 2.0f, 3.0f})
         for (const V& l : {kUp, V{0, 0, -1}, kAlong, V{0, 0, 0}})
             for (const float rough : {0.0f, 1.0f, 5.0f})
-                EXPECT_TRUE(std::isfinite(model("al_bsdf_hair", false, {0.3f, 9, 0, 1.55f, 1, 1, 1, p, 0.1f, rough, rough})(l, kAlong))) << p;
+                EXPECT_TRUE(
+                    std::isfinite(model("al_bsdf_hair", false, {0.3f, 9, 0, 1.55f, 1, 1, 1, p, 0.1f, rough, rough})(l, kAlong)))
+                    << p;
     for (const float rough : {0.0f, 1e-6f, 3.0f}) {
         EXPECT_TRUE(std::isfinite(model("al_bsdf_blinn", false, with({rough}, kFull))(kUp, kUp)));
         EXPECT_TRUE(std::isfinite(model("al_bsdf_ward", true, {rough, rough})(kUp, kUp)));

@@ -1,4 +1,5 @@
-// Errors of the elementary functions in ulp against the C library in double, over their ranges; and the edge rules of rsl.md 10.1.
+// Errors of the elementary functions in ulp against the C library in double, over their ranges; and the edge rules of
+// rsl.md 10.1.
 #include "shadeops/descriptor.h"
 #include <algorithm>
 #include <cmath>
@@ -79,17 +80,17 @@ TEST(Elementary, UlpOverRanges) {
 
 TEST(Elementary, PowUlp) {
     std::mt19937 random(5);
-    const auto draw = [&](double lo, double hi) { return static_cast<float>(lo + (hi - lo) * std::generate_canonical<double, 32>(random)); };
+    const auto draw = [&](double lo, double hi) {
+        return static_cast<float>(lo + (hi - lo) * std::generate_canonical<double, 32>(random));
+    };
     double worst = 0, worstAll = 0;
     for (int i = 0; i < 200000; ++i) {
         const float x = std::exp2(draw(-20, 20)), y = draw(-5, 5);
         const double exact = std::pow(static_cast<double>(x), static_cast<double>(y)), bits = std::abs(y * std::log2(x));
-        if (!(exact > 1e-37 && exact < 3e38))
-            continue;
+        if (!(exact > 1e-37 && exact < 3e38)) continue;
         const double e = ulps(call("al_pow", x, y), exact);
         worstAll = std::max(worstAll, e);
-        if (bits < 16)
-            worst = std::max(worst, e);
+        if (bits < 16) worst = std::max(worst, e);
     }
     EXPECT_LE(worst, 2.5);
     EXPECT_LE(worstAll, 4);
@@ -97,8 +98,7 @@ TEST(Elementary, PowUlp) {
     for (int i = 0; i < 100000; ++i) {
         const float x = draw(0.7, 1.3), y = draw(-200, 200);
         const double exact = std::pow(static_cast<double>(x), static_cast<double>(y));
-        if (exact > 1e-37 && exact < 3e38)
-            steep = std::max(steep, ulps(call("al_pow", x, y), exact));
+        if (exact > 1e-37 && exact < 3e38) steep = std::max(steep, ulps(call("al_pow", x, y), exact));
     }
     EXPECT_LE(steep, 12);
     std::printf("pow: %.2f ulp below 2^16, %.2f everywhere, %.2f near 1\n", worst, worstAll, steep);
@@ -108,7 +108,8 @@ TEST(Elementary, Atan2Ulp) {
     std::mt19937 random(6);
     double worst = 0;
     for (int i = 0; i < 200000; ++i) {
-        const float y = -4 + 8 * std::generate_canonical<float, 24>(random), x = -4 + 8 * std::generate_canonical<float, 24>(random);
+        const float y = -4 + 8 * std::generate_canonical<float, 24>(random),
+                    x = -4 + 8 * std::generate_canonical<float, 24>(random);
         worst = std::max(worst, ulps(call("al_atan2", y, x), std::atan2(static_cast<double>(y), static_cast<double>(x))));
     }
     EXPECT_LE(worst, 3);
@@ -158,7 +159,8 @@ TEST(Elementary, EdgeRules) {
 TEST(Elementary, ModStaysInRange) {
     std::mt19937 random(7);
     for (int i = 0; i < 100000; ++i) {
-        const float x = -1000 + 2000 * std::generate_canonical<float, 24>(random), y = 0.01f + 5 * std::generate_canonical<float, 24>(random);
+        const float x = -1000 + 2000 * std::generate_canonical<float, 24>(random),
+                    y = 0.01f + 5 * std::generate_canonical<float, 24>(random);
         const float r = call("al_mod", x, y);
         ASSERT_GE(r, 0) << x << " " << y;
         ASSERT_LE(r, y) << x << " " << y;

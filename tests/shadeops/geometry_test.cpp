@@ -25,8 +25,7 @@ Floats join(Floats a, const Floats& b) {
 }
 void near(const Floats& got, const Floats& expected, double tolerance, const char* what) {
     ASSERT_EQ(got.size(), expected.size()) << what;
-    for (size_t i = 0; i < got.size(); ++i)
-        EXPECT_NEAR(got[i], expected[i], tolerance) << what << " component " << i;
+    for (size_t i = 0; i < got.size(); ++i) EXPECT_NEAR(got[i], expected[i], tolerance) << what << " component " << i;
 }
 const Floats kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
@@ -97,8 +96,7 @@ TEST(Colours, ThereAndBack) {
     std::mt19937 random(2);
     for (int i = 0; i < 200; ++i) {
         Floats c(3);
-        for (float& x : c)
-            x = std::generate_canonical<float, 24>(random);
+        for (float& x : c) x = std::generate_canonical<float, 24>(random);
         for (const char* space : {"hsv", "hsl", "yiq", "xyz"})
             near(run(std::string("al_") + space + "_to_rgb", run(std::string("al_rgb_to_") + space, c)), c, 2e-5, space);
     }
@@ -135,10 +133,8 @@ TEST(Splines, SolveInverts) {
     for (const char* basis : {"catmullrom", "bspline", "bezier", "linear"})
         for (int i = 0; i < 200; ++i) {
             Floats p = {0, 1, 2, 3};
-            for (float& x : p)
-                x += 0.3f * std::generate_canonical<float, 24>(random);
-            if (i % 2)
-                std::reverse(p.begin(), p.end());
+            for (float& x : p) x += 0.3f * std::generate_canonical<float, 24>(random);
+            if (i % 2) std::reverse(p.begin(), p.end());
             const float t = std::generate_canonical<float, 24>(random);
             const float value = run(std::string("al_spline_") + basis + "_f", join({t}, p))[0];
             EXPECT_NEAR(run(std::string("al_splinesolve_") + basis, join({value}, p))[0], t, 1e-5) << basis;

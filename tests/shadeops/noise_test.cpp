@@ -26,8 +26,7 @@ protected:
     float draw(float lo, float hi) { return lo + (hi - lo) * std::generate_canonical<float, 24>(random); }
     std::vector<float> point(int n, float lo, float hi) {
         std::vector<float> p(n);
-        for (float& x : p)
-            x = draw(lo, hi);
+        for (float& x : p) x = draw(lo, hi);
         return p;
     }
 };
@@ -54,8 +53,7 @@ TEST_F(Noise, RangeMeanAndSpread) {
                 EXPECT_GT(std::sqrt(variance), 0.08) << symbol << ": too little contrast";
                 const double covariance = product[c] / count - mean * sum[(c + 1) % 3] / count;
                 EXPECT_NEAR(covariance / variance, 0, 0.03) << symbol << ": channels correlate";
-                if (std::string(kind) == "cellnoise")
-                    EXPECT_NEAR(variance, 1.0 / 12, 0.003); // uniform
+                if (std::string(kind) == "cellnoise") EXPECT_NEAR(variance, 1.0 / 12, 0.003); // uniform
             }
         }
 }
@@ -64,8 +62,7 @@ TEST_F(Noise, HalfAtLatticePoints) {
     for (int n = 1; n <= 4; ++n)
         for (int i = 0; i < 200; ++i) {
             auto p = point(n, -1000, 1000);
-            for (float& x : p)
-                x = std::floor(x);
+            for (float& x : p) x = std::floor(x);
             EXPECT_EQ(run("al_noise" + std::to_string(n) + "_f", p)[0], 0.5f);
         }
 }
@@ -75,11 +72,9 @@ TEST_F(Noise, PeriodicRepeats) {
         for (const float period : {1.0f, 2.0f, 3.0f, 7.0f, 64.0f, 256.0f, 1000.0f})
             for (int i = 0; i < 40; ++i) {
                 auto p = point(n, -8, 8);
-                for (float& x : p)
-                    x = std::round(x * 1024) / 1024; // so that adding a period is exact
+                for (float& x : p) x = std::round(x * 1024) / 1024; // so that adding a period is exact
                 auto q = p;
-                for (int k = 0; k < n; ++k)
-                    q[k] += period * static_cast<float>(static_cast<int>(random() % 5) - 2);
+                for (int k = 0; k < n; ++k) q[k] += period * static_cast<float>(static_cast<int>(random() % 5) - 2);
                 p.insert(p.end(), n, period);
                 q.insert(q.end(), n, period);
                 const std::string symbol = "al_pnoise" + std::to_string(n) + "_t";
@@ -100,7 +95,8 @@ TEST_F(Noise, CellnoiseIsConstantInCellsAndDiffersBetween) {
     std::set<float> seen;
     for (int x = -20; x < 20; ++x)
         for (int y = -20; y < 20; ++y) {
-            const auto a = run("al_cellnoise2_f", {x + 0.1f, y + 0.9f}), b = run("al_cellnoise2_f", {static_cast<float>(x), static_cast<float>(y)});
+            const auto a = run("al_cellnoise2_f", {x + 0.1f, y + 0.9f}),
+                       b = run("al_cellnoise2_f", {static_cast<float>(x), static_cast<float>(y)});
             EXPECT_EQ(a, b);
             seen.insert(a[0]);
         }
@@ -125,22 +121,22 @@ TEST_F(Noise, SecondDerivativeIsContinuous) {
                 }
                 ASSERT_TRUE(evaluateRuntimeJet(symbol, 2, in.data(), int(in.size()), side[s].data(), 6));
             }
-            for (int k = 0; k < 6; ++k)
-                EXPECT_NEAR(side[0][k], side[1][k], k < 3 ? 2e-3 : 3e-2) << symbol << " part " << k;
+            for (int k = 0; k < 6; ++k) EXPECT_NEAR(side[0][k], side[1][k], k < 3 ? 2e-3 : 3e-2) << symbol << " part " << k;
         }
     }
 }
 
 // No structure along lines: the autocorrelation at two and more cells vanishes, along axes and diagonals.
 TEST_F(Noise, NoCorrelationBeyondTheCell) {
-    const int directions[][3] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {2, 2, 0}, {2, -2, 0}, {0, 2, 2}, {2, 2, 2}, {3, -3, 3}, {4, 0, 0}, {8, 0, 0},
-                                 {0, 16, 0}, {32, 32, 0}, {64, 0, 0}, {0, 0, 256}, {0, 4096, 0}};
+    const int directions[][3] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2},  {2, 2, 0},   {2, -2, 0}, {0, 2, 2},   {2, 2, 2},   {3, -3, 3},
+                                 {4, 0, 0}, {8, 0, 0}, {0, 16, 0}, {32, 32, 0}, {64, 0, 0}, {0, 0, 256}, {0, 4096, 0}};
     for (const auto& d : directions) {
         double ab = 0, aa = 0;
         const int count = 30000;
         for (int i = 0; i < count; ++i) {
             const auto p = point(3, -100, 100);
-            const double a = run("al_noise3_f", p)[0] - 0.5, b = run("al_noise3_f", {p[0] + d[0], p[1] + d[1], p[2] + d[2]})[0] - 0.5;
+            const double a = run("al_noise3_f", p)[0] - 0.5,
+                         b = run("al_noise3_f", {p[0] + d[0], p[1] + d[1], p[2] + d[2]})[0] - 0.5;
             ab += a * b;
             aa += a * a;
         }
@@ -163,8 +159,7 @@ TEST_F(Noise, SpectrumIsABand) {
         const double w = 2 * M_PI * k / n;
         const std::complex<double> turn = std::polar(1.0, -w);
         std::complex<double> z = 1;
-        for (int i = 0; i < n; ++i, z *= turn)
-            s += x[i] * z;
+        for (int i = 0; i < n; ++i, z *= turn) s += x[i] * z;
         const double frequency = k / (n * step), power = std::norm(s);
         (frequency < 0.1 ? low : frequency < 1.5 ? band : high) += power;
     }
@@ -180,8 +175,7 @@ TEST_F(Noise, NoSymmetryAboutTheOrigin) {
         double even = 0, all = 0;
         for (int i = 0; i < 20000; ++i) {
             auto p = n == 1 ? point(n, 0, 20000) : point(n, 0, 50), q = p;
-            for (float& x : q)
-                x = -x;
+            for (float& x : q) x = -x;
             const std::string symbol = "al_noise" + std::to_string(n) + "_f";
             const double a = run(symbol, p)[0] - 0.5, b = run(symbol, q)[0] - 0.5;
             even += a * b;
@@ -198,13 +192,11 @@ TEST_F(Noise, GradientDirectionsAreBalanced) {
         const auto p = point(3, -100, 100);
         for (int k = 0; k < 3; ++k) {
             std::vector<float> in;
-            for (int j = 0; j < 3; ++j)
-                in.insert(in.end(), {p[j], j == k ? 1.0f : 0.0f, 0.57735027f});
+            for (int j = 0; j < 3; ++j) in.insert(in.end(), {p[j], j == k ? 1.0f : 0.0f, 0.57735027f});
             float out[3];
             ASSERT_TRUE(evaluateRuntimeJet("al_noise3_f", 1, in.data(), 9, out, 3));
             axis[k] += out[1] * out[1];
-            if (k == 0)
-                diagonal += out[2] * out[2];
+            if (k == 0) diagonal += out[2] * out[2];
         }
     }
     EXPECT_NEAR(axis[1] / axis[0], 1, 0.05);

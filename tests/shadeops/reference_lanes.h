@@ -1,5 +1,5 @@
-// Stands in for shadeops/lanes.h in jets_test.cpp: the same templates over double, elementary functions from the C library, written
-// with the edge rules of rsl.md 10.1. An independent reference for values, and smooth enough to difference.
+// Stands in for shadeops/lanes.h in jets_test.cpp: the same templates over double, elementary functions from the C library,
+// written with the edge rules of rsl.md 10.1. An independent reference for values, and smooth enough to difference.
 #pragma once
 #include <cmath>
 #include <cstring>
@@ -31,7 +31,9 @@ inline vf minLanes(vf a, vf b) { return a < b ? a : b; }
 inline vf maxLanes(vf a, vf b) { return a > b ? a : b; }
 inline vf rootLanes(vf x) { return __builtin_elementwise_sqrt(x); }
 inline vf flipSign(vf x, vu bits) { return select(maskOf(__builtin_bit_cast(vi, bits) < 0), -x, x); }
-inline vf copySign(vf x, vf s) { return map2(x, s, [](double a, double b) { return std::copysign(a, b); }); }
+inline vf copySign(vf x, vf s) {
+    return map2(x, s, [](double a, double b) { return std::copysign(a, b); });
+}
 inline vi toInt(vf x) { return __builtin_convertvector(x, vi); }
 inline vf unitReal(vu h) { return __builtin_convertvector(h >> 8, vf) * 0x1p-24; }
 inline vf signedSlope(vu h) {
@@ -47,16 +49,36 @@ inline vf signedSlope(vu h) {
 }
 inline vu payload(vf x) { return __builtin_convertvector(x, vu); }
 
-inline vf sinLanes(vf x) { return map(x, [](double a) { return std::sin(a); }); }
-inline vf cosLanes(vf x) { return map(x, [](double a) { return std::cos(a); }); }
-inline vf tanLanes(vf x) { return map(x, [](double a) { return std::tan(a); }); }
-inline vf asinLanes(vf x) { return map(x, [](double a) { return std::asin(std::fmin(std::fmax(a, -1), 1)); }); }
-inline vf acosLanes(vf x) { return map(x, [](double a) { return std::acos(std::fmin(std::fmax(a, -1), 1)); }); }
-inline vf atanLanes(vf x) { return map(x, [](double a) { return std::atan(a); }); }
-inline vf atan2Lanes(vf y, vf x) { return map2(y, x, [](double a, double b) { return std::atan2(a, b + 0.0); }); }
-inline vf expLanes(vf x) { return map(x, [](double a) { return std::exp(a); }); }
-inline vf logLanes(vf x) { return map(x, [](double a) { return a > 0 ? std::log(a) : -INFINITY; }); }
-inline vf log2Lanes(vf x) { return map(x, [](double a) { return a > 0 ? std::log2(a) : -INFINITY; }); }
+inline vf sinLanes(vf x) {
+    return map(x, [](double a) { return std::sin(a); });
+}
+inline vf cosLanes(vf x) {
+    return map(x, [](double a) { return std::cos(a); });
+}
+inline vf tanLanes(vf x) {
+    return map(x, [](double a) { return std::tan(a); });
+}
+inline vf asinLanes(vf x) {
+    return map(x, [](double a) { return std::asin(std::fmin(std::fmax(a, -1), 1)); });
+}
+inline vf acosLanes(vf x) {
+    return map(x, [](double a) { return std::acos(std::fmin(std::fmax(a, -1), 1)); });
+}
+inline vf atanLanes(vf x) {
+    return map(x, [](double a) { return std::atan(a); });
+}
+inline vf atan2Lanes(vf y, vf x) {
+    return map2(y, x, [](double a, double b) { return std::atan2(a, b + 0.0); });
+}
+inline vf expLanes(vf x) {
+    return map(x, [](double a) { return std::exp(a); });
+}
+inline vf logLanes(vf x) {
+    return map(x, [](double a) { return a > 0 ? std::log(a) : -INFINITY; });
+}
+inline vf log2Lanes(vf x) {
+    return map(x, [](double a) { return a > 0 ? std::log2(a) : -INFINITY; });
+}
 inline vf powLanes(vf x, vf y) {
     return map2(x, y, [](double a, double b) { return a < 0 && b != std::floor(b) ? 0.0 : std::pow(a, b); });
 }

@@ -23,10 +23,8 @@ int floatsOf(const Type& t) { return componentCount(t.base); }
 TEST(Registry, SortedAndFound) {
     const auto all = shadeops();
     ASSERT_GT(all.size(), 100u);
-    for (size_t i = 1; i < all.size(); ++i)
-        EXPECT_LT(all[i - 1].name, all[i].name);
-    for (const Shadeop& op : all)
-        EXPECT_EQ(findShadeop(op.name), &op);
+    for (size_t i = 1; i < all.size(); ++i) EXPECT_LT(all[i - 1].name, all[i].name);
+    for (const Shadeop& op : all) EXPECT_EQ(findShadeop(op.name), &op);
     EXPECT_EQ(findShadeop("nosuchthing"), nullptr);
     EXPECT_EQ(findShadeop(""), nullptr);
 }
@@ -44,8 +42,7 @@ TEST(Registry, EveryDescriptorIsWhole) {
         for (const Signature& s : op.signatures) {
             EXPECT_NE(s.text.find(op.name + "("), std::string::npos) << s.text;
             EXPECT_TRUE(seen.insert(s.text).second) << "twice: " << s.text;
-            for (const Parameter& p : s.parameters)
-                EXPECT_FALSE(p.name.empty()) << s.text;
+            for (const Parameter& p : s.parameters) EXPECT_FALSE(p.name.empty()) << s.text;
         }
     }
 }
@@ -55,8 +52,7 @@ TEST(Registry, RuntimeSignaturesMatchTheirSymbols) {
     for (const Shadeop& op : shadeops()) {
         for (const Signature& s : op.signatures) {
             ASSERT_EQ(op.lowering == Lowering::Runtime, !s.symbol.empty()) << s.text;
-            if (s.symbol.empty())
-                continue;
+            if (s.symbol.empty()) continue;
             int in = 0, out = floatsOf(s.result);
             for (const Parameter& p : s.parameters) {
                 in += floatsOf(p.type);
@@ -72,11 +68,16 @@ TEST(Registry, RuntimeSignaturesMatchTheirSymbols) {
 }
 
 TEST(Registry, SymbolsThatTheCodeGeneratorCallsByName) {
-    const struct { const char* symbol; int in, out; } kNamed[] = {
-        {"al_transformpoint", 19, 3}, {"al_transformvector", 19, 3}, {"al_transformnormal", 19, 3}, {"al_multiply", 32, 16}, {"al_inverse", 16, 16},
-        {"al_rgb_to_hsv", 3, 3},      {"al_hsv_to_rgb", 3, 3},       {"al_rgb_to_hsl", 3, 3},       {"al_hsl_to_rgb", 3, 3}, {"al_rgb_to_yiq", 3, 3},
-        {"al_yiq_to_rgb", 3, 3},      {"al_rgb_to_xyz", 3, 3},       {"al_xyz_to_rgb", 3, 3},       {"al_splinesegment", 2, 2},
-        {"al_spline_catmullrom_f", 5, 1}, {"al_spline_bezier_t", 13, 3}, {"al_splinesolve_linear", 5, 1}, {"al_random_f", 1, 1}, {"al_random_t", 1, 3}};
+    const struct {
+        const char* symbol;
+        int in, out;
+    } kNamed[] = {{"al_transformpoint", 19, 3},  {"al_transformvector", 19, 3},   {"al_transformnormal", 19, 3},
+                  {"al_multiply", 32, 16},       {"al_inverse", 16, 16},          {"al_rgb_to_hsv", 3, 3},
+                  {"al_hsv_to_rgb", 3, 3},       {"al_rgb_to_hsl", 3, 3},         {"al_hsl_to_rgb", 3, 3},
+                  {"al_rgb_to_yiq", 3, 3},       {"al_yiq_to_rgb", 3, 3},         {"al_rgb_to_xyz", 3, 3},
+                  {"al_xyz_to_rgb", 3, 3},       {"al_splinesegment", 2, 2},      {"al_spline_catmullrom_f", 5, 1},
+                  {"al_spline_bezier_t", 13, 3}, {"al_splinesolve_linear", 5, 1}, {"al_random_f", 1, 1},
+                  {"al_random_t", 1, 3}};
     for (const auto& n : kNamed) {
         EXPECT_EQ(runtimeShape(n.symbol).in, n.in) << n.symbol;
         EXPECT_EQ(runtimeShape(n.symbol).out, n.out) << n.symbol;
@@ -87,7 +88,9 @@ TEST(Registry, SymbolsThatTheCodeGeneratorCallsByName) {
 }
 
 TEST(Registry, ParseSignature) {
-    Signature s = parseSignature("void fresnel(vector i, n; float eta; output float Kr, Kt; output uniform vector R; color c[]; string d[4]; pairs)", "al_x");
+    Signature s = parseSignature(
+        "void fresnel(vector i, n; float eta; output float Kr, Kt; output uniform vector R; color c[]; string d[4]; pairs)",
+        "al_x");
     EXPECT_EQ(s.result, (Type{Base::Void, 0}));
     ASSERT_EQ(s.parameters.size(), 8u);
     EXPECT_EQ(s.parameters[1].name, "n");
@@ -115,17 +118,17 @@ TEST(Registry, ParseSignature) {
 
 // Every function heading of the manual ("- type name ( ...") is here.
 TEST(Registry, CoversTheManual) {
-    const std::filesystem::path seed = std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "../shared/seeds/3delight-standard-functions.txt";
+    const std::filesystem::path seed =
+        std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "../shared/seeds/3delight-standard-functions.txt";
     std::ifstream in(seed);
-    if (!in)
-        GTEST_SKIP() << "the manual's list is not beside this checkout";
-    const std::regex heading(R"(^- (uniform )?(type|float|color|point|vector|normal|matrix|string|void|shader)(\[\])? ([A-Za-z0-9_]+) ?\()");
+    if (!in) GTEST_SKIP() << "the manual's list is not beside this checkout";
+    const std::regex heading(
+        R"(^- (uniform )?(type|float|color|point|vector|normal|matrix|string|void|shader)(\[\])? ([A-Za-z0-9_]+) ?\()");
     std::string line;
     int found = 0;
     while (std::getline(in, line)) {
         std::smatch m;
-        if (!std::regex_search(line, m, heading))
-            continue;
+        if (!std::regex_search(line, m, heading)) continue;
         ++found;
         EXPECT_NE(findShadeop(m[4].str()), nullptr) << line;
     }
@@ -158,10 +161,8 @@ public:
         if (a && *p_ == '-') {
             ++p_;
             auto b = term();
-            if (!b)
-                return {};
-            for (size_t i = 0; i < a->v.size(); ++i)
-                a->v[i] -= b->v[i];
+            if (!b) return {};
+            for (size_t i = 0; i < a->v.size(); ++i) a->v[i] -= b->v[i];
         }
         skip();
         return *p_ ? std::nullopt : a;
@@ -170,8 +171,7 @@ public:
 private:
     const char* p_;
     void skip() {
-        while (*p_ == ' ')
-            ++p_;
+        while (*p_ == ' ') ++p_;
     }
     std::optional<Value> term() {
         skip();
@@ -182,48 +182,37 @@ private:
             return Value{Base::Float, {f}};
         }
         std::string name;
-        while (std::isalnum(static_cast<unsigned char>(*p_)) || *p_ == '_')
-            name += *p_++;
+        while (std::isalnum(static_cast<unsigned char>(*p_)) || *p_ == '_') name += *p_++;
         skip();
-        if (*p_ != '(')
-            return {};
+        if (*p_ != '(') return {};
         ++p_;
         std::vector<Value> args;
         for (skip(); *p_ && *p_ != ')'; skip()) {
             auto a = term();
-            if (!a)
-                return {};
+            if (!a) return {};
             args.push_back(*a);
             skip();
-            if (*p_ == ',')
-                ++p_;
+            if (*p_ == ',') ++p_;
         }
-        if (*p_ != ')')
-            return {};
+        if (*p_ != ')') return {};
         ++p_;
         for (const Base base : {Base::Color, Base::Point, Base::Vector, Base::Normal, Base::Matrix})
             if (name == toString(Type{base, 0})) {
                 Value r{base, {}};
                 if (base == Base::Matrix && args.size() == 1)
-                    for (int i = 0; i < 16; ++i)
-                        r.v.push_back(i % 5 == 0 ? args[0].v[0] : 0);
+                    for (int i = 0; i < 16; ++i) r.v.push_back(i % 5 == 0 ? args[0].v[0] : 0);
                 else
-                    for (const Value& a : args)
-                        r.v.push_back(a.v[0]);
+                    for (const Value& a : args) r.v.push_back(a.v[0]);
                 return r;
             }
         const Shadeop* op = findShadeop(name);
-        if (!op || op->lowering != Lowering::Runtime)
-            return {};
+        if (!op || op->lowering != Lowering::Runtime) return {};
         for (const Signature& s : op->signatures) {
             bool fits = s.parameters.size() == args.size();
-            for (size_t i = 0; fits && i < args.size(); ++i)
-                fits = s.parameters[i].type.base == args[i].base;
-            if (!fits)
-                continue;
+            for (size_t i = 0; fits && i < args.size(); ++i) fits = s.parameters[i].type.base == args[i].base;
+            if (!fits) continue;
             std::vector<float> in, out(componentCount(s.result.base));
-            for (const Value& a : args)
-                in.insert(in.end(), a.v.begin(), a.v.end());
+            for (const Value& a : args) in.insert(in.end(), a.v.begin(), a.v.end());
             EXPECT_TRUE(evaluateRuntime(s.symbol, in.data(), int(in.size()), out.data(), int(out.size()))) << s.text;
             return Value{s.result.base, out};
         }
@@ -236,8 +225,7 @@ TEST(Registry, ExamplesAreTrue) {
     for (const Shadeop& op : shadeops())
         for (const Example& e : op.examples) {
             EXPECT_FALSE(e.value.empty()) << e.expression;
-            if (op.lowering != Lowering::Runtime || !e.setup.empty() || !e.when.empty())
-                continue; // `alpenglow eval` runs these
+            if (op.lowering != Lowering::Runtime || !e.setup.empty() || !e.when.empty()) continue; // `alpenglow eval` runs these
             const auto got = Evaluator(e.expression).run();
             ASSERT_TRUE(got) << "cannot evaluate " << e.expression;
             std::string text;
@@ -254,7 +242,8 @@ TEST(Registry, ExamplesAreTrue) {
 
 TEST(Registry, RuntimeShadeopsHaveExamples) {
     for (const Shadeop& op : shadeops())
-        if (op.lowering == Lowering::Runtime && op.name.rfind("set", 0) != 0 && op.name.rfind("__", 0) != 0 && op.name != "fresnel")
+        if (op.lowering == Lowering::Runtime && op.name.rfind("set", 0) != 0 && op.name.rfind("__", 0) != 0 &&
+            op.name != "fresnel")
             EXPECT_FALSE(op.examples.empty()) << op.name;
 }
 

@@ -3,9 +3,9 @@
 #include "shadeops/descriptor.h"
 #include "shadeops/host_runtime.h"
 #include "shadeops/runtime.h"
-#include <functional>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
@@ -26,13 +26,11 @@ void compareAll(const std::function<float()>& draw, int rounds) {
                 const int in = entry.in * kParts[order], out = entry.out * kParts[order];
                 std::vector<lanes16::vf> a(in), r(out);
                 for (auto& x : a)
-                    for (int lane = 0; lane < 16; ++lane)
-                        x[lane] = draw();
+                    for (int lane = 0; lane < 16; ++lane) x[lane] = draw();
                 entry.order[order](a.data(), r.data());
                 for (int lane = 0; lane < 16; lane += 5) {
                     std::vector<float> one(in), result(out);
-                    for (int i = 0; i < in; ++i)
-                        one[i] = a[i][lane];
+                    for (int i = 0; i < in; ++i) one[i] = a[i][lane];
                     ASSERT_TRUE(evaluateRuntimeJet(entry.symbol, order, one.data(), in, result.data(), out)) << entry.symbol;
                     for (int i = 0; i < out; ++i)
                         ASSERT_TRUE(sameBits(r[i][lane], result[i]))
@@ -48,7 +46,8 @@ TEST(WideLanes, SameBitsAsFourLanes) {
 
 // 0, -0, infinities, not-a-number, denormals, huge and tiny numbers: no trap, and still the same bits.
 TEST(WideLanes, OddInputsNeitherTrapNorDiffer) {
-    const float odd[] = {0.0f, -0.0f, INFINITY, -INFINITY, NAN, 1e-45f, -1e-40f, 3.4e38f, -3.4e38f, 1e-38f, 1, -1, 0.5f, 1e9f, -1e20f, 2147483648.0f};
+    const float odd[] = {0.0f,     -0.0f,  INFINITY, -INFINITY, NAN,  1e-45f, -1e-40f, 3.4e38f,
+                         -3.4e38f, 1e-38f, 1,        -1,        0.5f, 1e9f,   -1e20f,  2147483648.0f};
     std::mt19937 random(4);
     compareAll([&] { return odd[random() % (sizeof odd / sizeof *odd)]; }, 4);
 }

@@ -9,7 +9,13 @@ using namespace alpenglow::shading;
 
 namespace {
 
-struct Payload { float value = 0; int fan = 0; int levels = 0; bool suspends = false; enum { Ray, Light, Shadow } kind = Ray; };
+struct Payload {
+    float value = 0;
+    int fan = 0;
+    int levels = 0;
+    bool suspends = false;
+    enum { Ray, Light, Shadow } kind = Ray;
+};
 using S = Scheduler<Payload>;
 
 // A strip of `lanes` rays that hit a shader which sends `fan` rays one level down, one after the other (a suspension each), and
@@ -100,8 +106,8 @@ public:
     }
 };
 
-// A light loop: the surface's strip waits for a light batch, whose own kernel waits for a shadow ray a lane. Lane i of the light is
-// blocked when i is odd; the surface adds its own value.
+// A light loop: the surface's strip waits for a light batch, whose own kernel waits for a shadow ray a lane. Lane i of the light
+// is blocked when i is odd; the surface adds its own value.
 class LightStrip : public S::Strip {
 public:
     explicit LightStrip(std::vector<S::Task> t) : tasks_(std::move(t)) {}
@@ -183,7 +189,10 @@ public:
             else if (t.payload.kind == Payload::Light) lights.push_back(t);
             else if (t.payload.levels % 2 == 0) s.add(t.target, Color(1));
         }
-        if (!lights.empty()) { lightBatches.push_back(lights.size()); LightStrip::start(s, lights); }
+        if (!lights.empty()) {
+            lightBatches.push_back(lights.size());
+            LightStrip::start(s, lights);
+        }
         for (size_t i = 0; i < surfaces.size(); i += 16)
             LitSurface::start(s, {surfaces.begin() + long(i), surfaces.begin() + long(std::min(i + 16, surfaces.size()))});
     }
@@ -297,7 +306,9 @@ TEST(Scheduler, Cancellation) {
     StopFlag stop{0};
     FakeService service;
     int slices = 0;
-    service.onSlice = [&] { if (++slices == 5) stop = 1; };
+    service.onSlice = [&] {
+        if (++slices == 5) stop = 1;
+    };
     S s(service, &stop, limits::kFrameBytesPerThread, 8);
     for (int i = 0; i < 100; ++i) s.spawn({0, s.newRoot(), {1, 3, 5, true}});
     EXPECT_FALSE(s.run());

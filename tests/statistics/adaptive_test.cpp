@@ -1,5 +1,5 @@
-// Adaptive sampling (must of T9): which pixels get more samples has no bearing on what their mean is expected to be, and the errors that
-// are reported stay true. Whole renders of known pictures, whose engine is a function of the sample's numbers.
+// Adaptive sampling (must of T9): which pixels get more samples has no bearing on what their mean is expected to be, and the
+// errors that are reported stay true. Whole renders of known pictures, whose engine is a function of the sample's numbers.
 #include "render/adaptive.h"
 #include "render/noise.h"
 #include "render/partfile.h"
@@ -35,7 +35,8 @@ struct KnownWorld final : transport::World {
     Facts facts() const override { return {}; }
     void flushPrints(bool) const override {}
     std::vector<int> outputWidths() const override { return {}; }
-    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&, const StopFlag*) const override {
+    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
+                   const StopFlag*) const override {
         return true;
     }
 };
@@ -139,8 +140,8 @@ TEST(Rates, APixelsOwnSamplesHaveNoSay) {
     }
 }
 
-// r differs by 512: r^(2/3) by 64, which is the span from least to greatest; no noise at all gets the least; a picture without any
-// noise, or too small to tell, the same everywhere.
+// r differs by 512: r^(2/3) by 64, which is the span from least to greatest; no noise at all gets the least; a picture without
+// any noise, or too small to tell, the same everywhere.
 TEST(Rates, FollowTheNoise) {
     const std::vector<uint16_t> rates = ratesOf(pilot(40, 40, [](int x, int) { return x < 20 ? .512f : .001f; }));
     EXPECT_EQ(rates[20 * 40 + 5], 512); // the mean of r^(2/3) is half of the noisy ones': rate 2, nearly
@@ -194,9 +195,9 @@ TEST(Spread, CountsAndFiles) {
     EXPECT_NE(d.all()[0].message.find("different numbers of samples"), std::string::npos);
 }
 
-// T9: means of many renders whose pixels differ in their numbers of samples. By rates that come from the pixel alone the middle band
-// would be at .76 (by a simulation apart from this program). What a forty-ninth part of its own noise would do is too little to be seen here:
-// APixelsOwnSamplesHaveNoSay tells.
+// T9: means of many renders whose pixels differ in their numbers of samples. By rates that come from the pixel alone the middle
+// band would be at .76 (by a simulation apart from this program). What a forty-ninth part of its own noise would do is too little
+// to be seen here: APixelsOwnSamplesHaveNoSay tells.
 TEST_F(Adaptive, EveryMeanIsUnbiased) {
     const int renders = samples(150, 4800);
     std::vector<double> sum(kWidth * kHeight), square(sum.size());

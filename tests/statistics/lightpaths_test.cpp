@@ -1,5 +1,5 @@
-// Light path expressions: what they mean, against a matcher that knows nothing of automata; what is wrong in one; and sums that are
-// exact by construction.
+// Light path expressions: what they mean, against a matcher that knows nothing of automata; what is wrong in one; and sums that
+// are exact by construction.
 #include "render/film.h"
 #include "scene/lightpaths.h"
 #include <gtest/gtest.h>
@@ -14,7 +14,11 @@ using scene::PathScattering;
 
 namespace {
 
-struct Event { PathEvent event; PathScattering how; std::vector<std::string> labels; };
+struct Event {
+    PathEvent event;
+    PathScattering how;
+    std::vector<std::string> labels;
+};
 using Path = std::vector<Event>;
 
 const std::vector<std::string> kLabels = {"key", "fill"};
@@ -84,8 +88,11 @@ struct Maker {
         if (what == 0) t.text = ".";
         else if (what == 1) t.text = events[size_t(e)], t.events = eventBits(e);
         else if (what == 2) t.text = hows[size_t(h)], t.how = how();
-        else if (what == 3) t.text = std::string("<") + events[size_t(e)] + hows[size_t(h)] + ">", t.events = eventBits(e), t.how = how();
-        else if (what == 4) t.text = std::string("<") + events[size_t(e)] + ".'" + kLabels[size_t(l)] + "'>", t.events = eventBits(e), t.label = l;
+        else if (what == 3)
+            t.text = std::string("<") + events[size_t(e)] + hows[size_t(h)] + ">", t.events = eventBits(e), t.how = how();
+        else if (what == 4)
+            t.text = std::string("<") + events[size_t(e)] + ".'" + kLabels[size_t(l)] + "'>", t.events = eventBits(e),
+            t.label = l;
         else t.text = std::string("[^") + events[size_t(e)] + "]", t.events = eventBits(e), t.negated = true;
         return t;
     }
@@ -129,8 +136,7 @@ std::vector<bool> shows(const LightPaths& l, const Path& path, size_t outputs) {
         s = l.next(s, l.symbol(e.event, e.how, label[0], label[1]));
     }
     std::vector<bool> in;
-    for (size_t k = 0; k < outputs; ++k)
-        in.push_back(std::count(l.partsOf(k).begin(), l.partsOf(k).end(), l.part(s)) > 0);
+    for (size_t k = 0; k < outputs; ++k) in.push_back(std::count(l.partsOf(k).begin(), l.partsOf(k).end(), l.part(s)) > 0);
     return in;
 }
 
@@ -193,25 +199,36 @@ TEST(LightPathExpressions, TheUsualNotation) {
     EXPECT_EQ(scene::lightPathIn("lpe:C<RD>L"), "C<RD>L");
     EXPECT_EQ(scene::lightPathIn(" color lpe: C.*L"), " C.*L");
     EXPECT_FALSE(scene::lightPathIn("direct"));
-    for (const char* good : {"C<RD>L", "C<RD>[<L.>O]", "C<RS>[DS]+[<L.>O]", "C[<RD><RG>].*<L.'key'>", "C(D|G){1,2}S*O", "C<[RT][DG]>L", "C<R[^D]>B",
-                             "C<RD'diffuse'>.*[LO]", "C<.D[^'a''b']>L", "C <T s>* L", "C[^S]*O", "C<TS>+<L.\"key\">", "CD{2}L", "CD{2,}L", "C<L>"})
+    for (const char* good :
+         {"C<RD>L", "C<RD>[<L.>O]", "C<RS>[DS]+[<L.>O]", "C[<RD><RG>].*<L.'key'>", "C(D|G){1,2}S*O", "C<[RT][DG]>L", "C<R[^D]>B",
+          "C<RD'diffuse'>.*[LO]", "C<.D[^'a''b']>L", "C <T s>* L", "C[^S]*O", "C<TS>+<L.\"key\">", "CD{2}L", "CD{2,}L", "C<L>"})
         EXPECT_EQ(said({good}), "") << good;
     for (const char* word : {"direct", "indirect"}) EXPECT_EQ(said({*scene::lightPathOfWord(word)}), "") << word;
 }
 
 TEST(LightPathExpressions, WhatIsWrongIsSaidWithItsPlace) {
-    const std::pair<const char*, const char*> cases[] = {
-        {"C<RX>L", "character 4: \"X\" is not a scattering"},  {"C<XD>L", "character 3: \"X\" is not an event"},
-        {"C<RD>l", "did you mean L?"},                          {"C(DL", "character 5: \")\" is missing"},
-        {"CD)L", "character 3: \")\" closes nothing"},          {"C[DL", "\"]\" is missing"},
-        {"C<RDL", "character 5: a label in quotes is missing"}, {"C<L.'key>", "the quote is not closed"},
-        {"C<L.''>", "a label is empty"},                        {"C||L", "an event is missing"},
-        {"", "character 1: an event is missing"},               {"CD{x}L", "character 4: a number is missing"},
-        {"CD{3,2}L", "n up to m"},                              {"CD{0}L", "m not 0"},
-        {"CU2L", "lobes have no numbers"},                      {"CD1L", "lobes have no numbers"},
-        {"unoccluded;C<RD>L", "is not available"},              {"holdout;CL", "is not available"},
-        {"*", "character 1"},                                   {"C<RD>", "matches no path"},
-        {"LC", "matches no path"},                              {"CD{4000}L", "more than 1024 events"}};
+    const std::pair<const char*, const char*> cases[] = {{"C<RX>L", "character 4: \"X\" is not a scattering"},
+                                                         {"C<XD>L", "character 3: \"X\" is not an event"},
+                                                         {"C<RD>l", "did you mean L?"},
+                                                         {"C(DL", "character 5: \")\" is missing"},
+                                                         {"CD)L", "character 3: \")\" closes nothing"},
+                                                         {"C[DL", "\"]\" is missing"},
+                                                         {"C<RDL", "character 5: a label in quotes is missing"},
+                                                         {"C<L.'key>", "the quote is not closed"},
+                                                         {"C<L.''>", "a label is empty"},
+                                                         {"C||L", "an event is missing"},
+                                                         {"", "character 1: an event is missing"},
+                                                         {"CD{x}L", "character 4: a number is missing"},
+                                                         {"CD{3,2}L", "n up to m"},
+                                                         {"CD{0}L", "m not 0"},
+                                                         {"CU2L", "lobes have no numbers"},
+                                                         {"CD1L", "lobes have no numbers"},
+                                                         {"unoccluded;C<RD>L", "is not available"},
+                                                         {"holdout;CL", "is not available"},
+                                                         {"*", "character 1"},
+                                                         {"C<RD>", "matches no path"},
+                                                         {"LC", "matches no path"},
+                                                         {"CD{4000}L", "more than 1024 events"}};
     for (const auto& [expression, message] : cases)
         EXPECT_NE(said({expression}).find(message), std::string::npos) << expression << ": " << said({expression});
 }
@@ -240,7 +257,8 @@ TEST(LightPathExpressions, PartsOfAPixelAddUpToItsIntegers) {
     d.width = d.height = 1;
     d.window = {0, 0, 1, 1};
     for (int part = 0; part < 3; ++part)
-        for (int k = 0; k < 3; ++k) d.channels.push_back({std::to_string(part * 3 + k), ChannelRule(int(ChannelRule::PartOfRed) + k)});
+        for (int k = 0; k < 3; ++k)
+            d.channels.push_back({std::to_string(part * 3 + k), ChannelRule(int(ChannelRule::PartOfRed) + k)});
     Film film(d);
     std::mt19937 random(3);
     for (uint32_t s = 0; s < 1000; ++s) {

@@ -1,9 +1,9 @@
 // A property of every kind of the list of lobes, whatever its parameters: a direction that sample() gives has a density above 0,
 // and a value that is finite and not negative. Where a kind is not cut by a horizon or by shadowing the value is above 0 too.
 // RapidCheck makes the parameters and shrinks what fails; fixed seeds here, fresh ones nightly.
-#include "statistics/nightly.h"
 #include "lobes/lobe.h"
 #include "lobes/sampling.h"
+#include "statistics/nightly.h"
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/detail/TestListenerAdapter.h>

@@ -2,9 +2,9 @@
 // False alarms: alpha = 2e-6 a test. Power (T1): on 200 cells and 1e5 draws an error of alternating +-5 % is found in 200 of 200
 // runs; nightly on 5,202 cells and 1e6 draws +-6 % (noncentrality N delta^2 against 7.1 sqrt(2 k), sum of delta^2 e = N delta^2).
 // Distributions have 4e5 draws on 200 cells: finds 2.3 % (root of the mean square over what is drawn) in 99 of 100 runs.
-#include "statistics/agreement.h"
 #include "lobes/lobe.h"
 #include "lobes/sampling.h"
+#include "statistics/agreement.h"
 #include <gtest/gtest.h>
 #include <random>
 #include <set>
@@ -410,7 +410,10 @@ TEST(Lobe, NarrowCones) {
                 double worst = 0;
                 for (int i = 0; i < 500; ++i) {
                     Vec3 w;
-                    if (!kind.sample(p, {u01(rng), u01(rng)}, w) || !(kind.pdf(p, w) > 0)) { ++lost; continue; }
+                    if (!kind.sample(p, {u01(rng), u01(rng)}, w) || !(kind.pdf(p, w) > 0)) {
+                        ++lost;
+                        continue;
+                    }
                     worst = std::max(worst, std::fabs(kind.pdf(p, w) / want - 1));
                 }
                 EXPECT_EQ(lost, 0) << name << " " << a;

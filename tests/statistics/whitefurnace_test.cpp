@@ -1,5 +1,5 @@
-// A white furnace for each distribution at every roughness and angle: what its samples bring under a sky of radiance 1 is the integral of its value
-// by quadrature. docs/bsdfs.md shows the figures.
+// A white furnace for each distribution at every roughness and angle: what its samples bring under a sky of radiance 1 is the
+// integral of its value by quadrature. docs/bsdfs.md shows the figures.
 #include "lobes/lobe.h"
 #include "lobes/sampling.h"
 #include "statistics/agreement.h"
@@ -23,15 +23,18 @@ LobeParams lobe(float roughness, float cosine) {
     return p;
 }
 
-/// Over the sphere, by midpoints in coordinates that are dense about the mirror direction, straight on, and the poles of the plane.
+/// Over the sphere, by midpoints in coordinates that are dense about the mirror direction, straight on, and the poles of the
+/// plane.
 double integral(const LobeKind& k, const LobeParams& p, int n) {
     const OneLobe one(k, p);
     const Basis about(normalize(p.axis * (2 * dot(p.axis, p.wo)) - p.wo));
     double sum = 0;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
-            const double s = (i + .5) / n, z = 1 - 2 * s * s * s, q = std::sqrt(std::max(0.0, 1 - z * z)), f = 2 * kPi * (j + .5) / n; // dz = 6 s^2 ds
-            sum += 6 * s * s / n * 2 * kPi / n * one.value(about.toWorld({float(q * std::cos(f)), float(q * std::sin(f)), float(z)})).fcos;
+            const double s = (i + .5) / n, z = 1 - 2 * s * s * s, q = std::sqrt(std::max(0.0, 1 - z * z)),
+                         f = 2 * kPi * (j + .5) / n; // dz = 6 s^2 ds
+            sum += 6 * s * s / n * 2 * kPi / n *
+                   one.value(about.toWorld({float(q * std::cos(f)), float(q * std::sin(f)), float(z)})).fcos;
         }
     return sum;
 }
@@ -45,7 +48,8 @@ TEST(WhiteFurnace, SamplesBringTheIntegral) {
         for (const float roughness : kRoughness)
             for (const float cosine : kCosines) {
                 const LobeParams p = lobe(roughness, cosine);
-                const std::string what = std::string(k->name) + ", roughness " + std::to_string(roughness) + ", cosine " + std::to_string(cosine);
+                const std::string what =
+                    std::string(k->name) + ", roughness " + std::to_string(roughness) + ", cosine " + std::to_string(cosine);
                 const OneLobe one(*k, p);
                 if (one.delta()) continue;
                 std::mt19937_64 rng(uint64_t(5) + teststat::seedBase());
@@ -65,7 +69,8 @@ TEST(WhiteFurnace, SamplesBringTheIntegral) {
                 const double coarse = integral(*k, p, 96), fine = integral(*k, p, 192), off = 2 * std::fabs(fine - coarse);
                 if (off > .02 * fine) continue;
                 ++compared;
-                EXPECT_LE(std::fabs(mean - fine), teststat::kZ * se + off + 1e-3 * fine) << what << ": " << mean << " +- " << se << ", " << fine;
+                EXPECT_LE(std::fabs(mean - fine), teststat::kZ * se + off + 1e-3 * fine)
+                    << what << ": " << mean << " +- " << se << ", " << fine;
             }
     }
     EXPECT_GE(compared, 120); // of 245

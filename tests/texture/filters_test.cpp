@@ -1,6 +1,6 @@
-// Filters against sums over the footprint: many points in the parallelogram, weighed by the filter as RISpec has it, each the interpolated
-// picture itself, for every wrap mode; environments likewise over directions. The lookups have the filter's mean and variance, not its
-// shape (docs/maps.md): on waves that are longer than the footprint that is a few thousandths.
+// Filters against sums over the footprint: many points in the parallelogram, weighed by the filter as RISpec has it, each the
+// interpolated picture itself, for every wrap mode; environments likewise over directions. The lookups have the filter's mean and
+// variance, not its shape (docs/maps.md): on waves that are longer than the footprint that is a few thousandths.
 #include "base/exact.h"
 #include "pictures.h"
 #include <cmath>
@@ -77,9 +77,11 @@ TEST(Filters, AreSumsOverTheFootprintForEveryWrap) {
             double sum = 0, worst = 0;
             constexpr int n = 120;
             for (int k = 0; k < n; ++k) {
-                const double s = number(-.6, 1.6), tt = number(-.6, 1.6), turn = number(0, kTurn), a = number(.02, .2), b = a * number(.1, 1);
+                const double s = number(-.6, 1.6), tt = number(-.6, 1.6), turn = number(0, kTurn), a = number(.02, .2),
+                             b = a * number(.1, 1);
                 const double ax = a * std::cos(turn), ay = a * std::sin(turn), bx = -b * std::sin(turn), by = b * std::cos(turn);
-                const double expected = overFilter(f, [&](double p, double q) { return endless(m, wrap, s + p * ax + q * bx, tt + p * ay + q * by); });
+                const double expected = overFilter(
+                    f, [&](double p, double q) { return endless(m, wrap, s + p * ax + q * bx, tt + p * ay + q * by); });
                 LookupOptions o;
                 o.filter = f;
                 float v = -1;
@@ -87,8 +89,8 @@ TEST(Filters, AreSumsOverTheFootprintForEveryWrap) {
                 sum += std::fabs(double(v) - expected);
                 worst = std::max(worst, std::fabs(double(v) - expected));
             }
-            // Beside a clamped map coarse levels show the mean of their outermost texel, not its edge: off by half a texel of up to
-            // 0.17 of the map, of waves with a slope of 1.6. At the edge of a black map the shape of the filter shows.
+            // Beside a clamped map coarse levels show the mean of their outermost texel, not its edge: off by half a texel of up
+            // to 0.17 of the map, of waves with a slope of 1.6. At the edge of a black map the shape of the filter shows.
             const bool edge = std::string(wrap) == "black" || std::string(wrap) == "clamp";
             EXPECT_LT(sum / n, edge ? .02 : .006) << wrap << " " << int(f);
             EXPECT_LT(worst, edge ? .14 : .035) << wrap << " " << int(f);
@@ -137,7 +139,8 @@ double overDirections(const Vec3d& d, const Vec3d& dx, const Vec3d& dy) {
 
 Vec3d perpendicular(const Vec3d& d, double turn, double size) {
     const Vec3d beside = std::fabs(d.z) < .8 ? Vec3d(-d.y, d.x, 0) : Vec3d(0, -d.z, d.y);
-    const Vec3d a = beside / std::sqrt(dot(beside, beside)), b(d.y * a.z - d.z * a.y, d.z * a.x - d.x * a.z, d.x * a.y - d.y * a.x);
+    const Vec3d a = beside / std::sqrt(dot(beside, beside)),
+                b(d.y * a.z - d.z * a.y, d.z * a.x - d.x * a.z, d.x * a.y - d.y * a.x);
     return (a * std::cos(turn) + b * std::sin(turn)) * size;
 }
 
@@ -149,7 +152,8 @@ std::pair<double, double> differences(Handle map, double size, double highest) {
     constexpr int n = 150;
     for (int k = 0; k < n; ++k) {
         const double z = number(-highest, highest), turn = number(0, kTurn), r = std::sqrt(1 - z * z), spin = number(0, kTurn);
-        const Vec3d d(r * std::cos(turn), r * std::sin(turn), z), dx = perpendicular(d, spin, size), dy = perpendicular(d, spin + kTurn / 4, size * .5);
+        const Vec3d d(r * std::cos(turn), r * std::sin(turn), z), dx = perpendicular(d, spin, size),
+                                                                  dy = perpendicular(d, spin + kTurn / 4, size * .5);
         float v = -1;
         environment(map, {}, 0, 1, Vec3(d), Vec3(dx), Vec3(dy), {}, &v);
         const double e = std::fabs(double(v) - overDirections(d, dx, dy));
@@ -165,11 +169,13 @@ TEST(Environments, LatLongMapsAreSumsOverDirections) {
     Image m = display::makeImage(256, 128, {"y"});
     const LatLong axes;
     for (int y = 0; y < 128; ++y)
-        for (int x = 0; x < 256; ++x) m.pixel(x, y)[0] = float(light(Vec3d(axes.direction((float(x) + .5f) / 256, (float(y) + .5f) / 128))));
+        for (int x = 0; x < 256; ++x)
+            m.pixel(x, y)[0] = float(light(Vec3d(axes.direction((float(x) + .5f) / 256, (float(y) + .5f) / 128))));
     m.metadata["textureformat"] = "LatLong Environment";
     const auto t = makeTextureFrom(m);
     for (double size : {.02, .1, .25}) {
-        const auto [mean, worst] = differences(t.get(), size, .8); // nearer to the poles footprints are no parallelograms on the map
+        const auto [mean, worst] =
+            differences(t.get(), size, .8); // nearer to the poles footprints are no parallelograms on the map
         EXPECT_LT(mean, .004) << size;
         EXPECT_LT(worst, .02) << size;
     }
@@ -194,6 +200,7 @@ TEST(Environments, CubeMapsAreSumsOverDirectionsAcrossEdges) {
     for (double size : {.02, .1, .25}) {
         const auto [mean, worst] = differences(t.get(), size, 1);
         EXPECT_LT(mean, .004) << size;
-        EXPECT_LT(worst, size < .05 ? .01 : .04) << size; // a footprint stays on its face, beyond whose edge the last texels go on
+        EXPECT_LT(worst, size < .05 ? .01 : .04)
+            << size; // a footprint stays on its face, beyond whose edge the last texels go on
     }
 }

@@ -1,5 +1,5 @@
-// Sixteen lookups at a time give the bits of one, at every width that the processor has, and what does not fit into memory is looked up in
-// scratch files with the same bits.
+// Sixteen lookups at a time give the bits of one, at every width that the processor has, and what does not fit into memory is
+// looked up in scratch files with the same bits.
 #include "base/limits.h"
 #include "base/memory.h"
 #include "pictures.h"
@@ -86,7 +86,8 @@ TEST(Lanes, AreTheSameAsOne) {
         for (int channels : {1, 2, 3, 4, 6})
             for (bool floats : {false, true})
                 for (const char* wrap : {"black", "clamp", "periodic", "mirror"}) {
-                    const auto t = makeTextureFrom(withWrap(picture(w, h, channels, floats, unsigned(w + channels)), wrap), light);
+                    const auto t =
+                        makeTextureFrom(withWrap(picture(w, h, channels, floats, unsigned(w + channels)), wrap), light);
                     for (int trial = 0; trial < 6; ++trial) {
                         LookupLanes l;
                         f.fill(l);
@@ -108,8 +109,8 @@ TEST(Lanes, EveryWidthGivesTheSameBits) {
     for (auto& byFilter : probes.weight)
         for (auto& n : byFilter)
             for (float& v : n) v = f.number(0, .1f);
-    const LaneJob job{levels.data(), int(levels.size()) - 1, 0, 3, 64, 40, int(Wrap::Periodic), int(Wrap::Periodic), {.1f, .15f, .2f},
-                      &probes};
+    const LaneJob job{levels.data(),       int(levels.size()) - 1, 0,      3, 64, 40, int(Wrap::Periodic),
+                      int(Wrap::Periodic), {.1f, .15f, .2f},       &probes};
     int widths = 0;
     for (int trial = 0; trial < 50; ++trial) {
         LookupLanes l;
@@ -183,7 +184,7 @@ TEST(Scratch, MapsBeyondTheLimitGiveTheSameBitsWithinIt) {
             most = std::max(most, little.bytes());
         }
     EXPECT_EQ(d.errors() + d.warnings(), 0) << messages(d);
-    EXPECT_GT(enough.bytes(), size_t(7) << 20); // two of floats, and two of codes with levels of floats
+    EXPECT_GT(enough.bytes(), size_t(7) << 20);       // two of floats, and two of codes with levels of floats
     EXPECT_LE(most, small.memory + small.memory / 4); // a quarter may come between two looks at the pages
     EXPECT_TRUE(little.open(s / "map3.tif")->levels[0].values.mapped());
 }

@@ -1,5 +1,5 @@
-// Writes a grid of OpenVDB for the tests: make_test_grid FILE. "density" of 6 x 5 x 4 voxels from (-1, 2, 3) on is x + 10 y + 100 z, counted
-// from there; "v" is (x, y, z).
+// Writes a grid of OpenVDB for the tests: make_test_grid FILE. "density" of 6 x 5 x 4 voxels from (-1, 2, 3) on is x + 10 y + 100
+// z, counted from there; "v" is (x, y, z).
 #include <openvdb/openvdb.h>
 
 int main(int argc, char** argv) {

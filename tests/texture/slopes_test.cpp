@@ -143,7 +143,8 @@ TEST(Curves, OfAnEnvironment) {
         int n = 0;
         for (int k = 0; k < 3; ++k)
             for (int l = k; l < 3; ++l) {
-                const double want = -((k == 2) * d[l] + (l == 2) * d[k]) / r3 - d.z * (k == l) / r3 + 3 * double(d.z) * d[k] * d[l] / (r3 * r * r);
+                const double want = -((k == 2) * d[l] + (l == 2) * d[k]) / r3 - d.z * (k == l) / r3 +
+                                    3 * double(d.z) * d[k] * d[l] / (r3 * r * r);
                 EXPECT_NEAR(c[n++], want, .01) << k << l << " " << d.x;
             }
         environment(nullptr, {}, 0, 1, d, {}, {}, {}, &v, g, c);

@@ -1,6 +1,6 @@
 // Stacks of pictures and grids as texture3d() reads them, and SLProject's gradients against their formulas written out plainly.
-#include "texture/volume.h"
 #include "pictures.h"
+#include "texture/volume.h"
 #include <cmath>
 #include <cstdlib>
 
@@ -46,7 +46,8 @@ TEST(Volumes, SlicesAndStripsAreTheSame) {
     save(s, "strip.tif", strip);
     Diagnostics d;
     const VolumeFiles files{{s.dir.string()}};
-    const auto a = loadVolume("s%03d.tif", files, d), b = loadVolume("s###.tif", files, d), c = loadVolume("strip.tif*4", files, d);
+    const auto a = loadVolume("s%03d.tif", files, d), b = loadVolume("s###.tif", files, d),
+               c = loadVolume("strip.tif*4", files, d);
     ASSERT_TRUE(a && b && c) << messages(d);
     EXPECT_EQ(a->depth, 4);
     EXPECT_EQ(a->values, b->values);
@@ -90,7 +91,8 @@ TEST(Volumes, GradientsAreThoseOfTheFormula) {
     for (int z = 0; z < 5; ++z)
         for (int y = 0; y < 6; ++y)
             for (int x = 0; x < 7; ++x)
-                for (int c = 0; c < 3; ++c) v.at(x, y, z)[c] = float(opacity(x, y, z)) + float(c - 1) * .25f; // whose mean is the opacity
+                for (int c = 0; c < 3; ++c)
+                    v.at(x, y, z)[c] = float(opacity(x, y, z)) + float(c - 1) * .25f; // whose mean is the opacity
     for (int r : {1, 2}) {
         const Volume g = gradientsOf(v, r);
         for (int z = 0; z < 5; ++z)

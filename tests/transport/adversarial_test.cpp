@@ -1,7 +1,8 @@
-// Programs that nobody should write over illuminance, illuminate, solar and gather: every one ends, is finite where its words mean something,
-// and says what it cannot do. Values follow from the lamps: Cl of 1, 10 and 100 at heights 2, 3 and 5 straight above the floor.
-#include "transport/floorscene.h"
+// Programs that nobody should write over illuminance, illuminate, solar and gather: every one ends, is finite where its words
+// mean something, and says what it cannot do. Values follow from the lamps: Cl of 1, 10 and 100 at heights 2, 3 and 5 straight
+// above the floor.
 #include "base/limits.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -20,7 +21,8 @@ Shown shown(const std::string& rib, Hider h) {
     struct Keeper final : scene::FrameConsumer {
         std::shared_ptr<const scene::Frame> frame;
         void render(std::shared_ptr<const scene::Frame> f) override { frame = std::move(f); }
-        void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}
+        void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&,
+                         const SourcePlace&) override {}
     } keeper;
     Diagnostics d;
     Shown s;
@@ -40,20 +42,28 @@ Shown shown(const std::string& rib, Hider h) {
 }
 
 std::string lamps() {
-    writeShader("evillamp", "light evillamp(float h = 1, c = 1; string __category = \"\";) { illuminate(point \"world\" (0, h, 0)) Cl = c; }\n");
-    return "LightSource \"evillamp\" 1 \"h\" 2 \"c\" 1 \"__category\" \"key,warm\"\nLightSource \"evillamp\" 2 \"h\" 3 \"c\" 10 \"__category\" \"warm,fill\"\n"
+    writeShader(
+        "evillamp",
+        "light evillamp(float h = 1, c = 1; string __category = \"\";) { illuminate(point \"world\" (0, h, 0)) Cl = c; }\n");
+    return "LightSource \"evillamp\" 1 \"h\" 2 \"c\" 1 \"__category\" \"key,warm\"\nLightSource \"evillamp\" 2 \"h\" 3 \"c\" 10 "
+           "\"__category\" \"warm,fill\"\n"
            "LightSource \"evillamp\" 3 \"h\" 5 \"c\" 100\n";
 }
 
 /// A body of a surface, the value that it shows, and words of the message that it gives; "": none.
-struct Case { const char* body; float want; const char* says = ""; };
+struct Case {
+    const char* body;
+    float want;
+    const char* says = "";
+};
 
 const char kFunctions[] =
     "    float bad = (u > 2) ? 1 : 1e38 * 1e38 - 1e38 * 1e38;\n" // not a number, known only when the shader runs
     "    string later(string a;) { string r = a; if (u > 2) r = \"x\"; return r; }\n"
     "    color all(point p;) { color c = 0; illuminance(p) c += Cl; return c; }\n"
     "    color first(string cat;) { illuminance(cat, P) { return Cl; } return -1; }\n"
-    "    float deep(float n;) { float i; for (i = 0; i < n; i += 1) { illuminance(P) { if (i == 2) return comp(Cl, 0) + i; } } return -1; }\n"
+    "    float deep(float n;) { float i; for (i = 0; i < n; i += 1) { illuminance(P) { if (i == 2) return comp(Cl, 0) + i; } } "
+    "return -1; }\n"
     "    void both(output color a, b;) { illuminance(\"warm\", P) a += Cl; illuminance(\"-warm\", P) b += Cl; }\n";
 
 void runSurfaces(const std::string& name, std::span<const Case> cases) {
@@ -62,10 +72,13 @@ void runSurfaces(const std::string& name, std::span<const Case> cases) {
         for (Hider h : {Hider::Hidden, Hider::Path}) {
             if (h == Hider::Path && n % 4 != 1) continue; // every fourth
             const std::string shader = name + std::to_string(n++) + (h == Hider::Path ? "p" : "");
-            writeShader(shader, "surface " + shader + "() {\n" + kFunctions + "    Oi = 1; Ci = 0; vector up = vector \"world\" (0, 1, 0); uniform float i, j;\n    " + c.body + "\n}\n");
+            writeShader(shader, "surface " + shader + "() {\n" + kFunctions +
+                                    "    Oi = 1; Ci = 0; vector up = vector \"world\" (0, 1, 0); uniform float i, j;\n    " +
+                                    c.body + "\n}\n");
             const Shown s = shown(world(lamps() + "Surface \"" + shader + "\" " + kFloor), h);
             ASSERT_TRUE(s.built) << c.body << s.messages;
-            for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.colour[k], c.want, 1e-4f * std::max(1.f, std::fabs(c.want))) << c.body << s.messages;
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(s.colour[k], c.want, 1e-4f * std::max(1.f, std::fabs(c.want))) << c.body << s.messages;
             if (*c.says) EXPECT_NE(s.messages.find(c.says), std::string::npos) << c.body << "\n" << s.messages;
             else EXPECT_EQ(s.messages.find("error"), std::string::npos) << c.body << "\n" << s.messages;
         }
@@ -102,7 +115,8 @@ TEST(Adversarial, LoopsOverLights) {
         {"illuminance(later(\"-\"), P) Ci += Cl;", 111, "cannot be read"},
         {"illuminance(\"key||fill\", P) Ci += Cl;", 111, "cannot be read"},
         {"illuminance(\")\", P) Ci += Cl;", 111, "cannot be read"},
-        {"string c[3] = {\"key\", \"fill\", \"-warm\"}; for (i = 0; i < 3; i += 1) illuminance(c[i], P) Ci += (i + 1) * Cl;", 1 + 20 + 300},
+        {"string c[3] = {\"key\", \"fill\", \"-warm\"}; for (i = 0; i < 3; i += 1) illuminance(c[i], P) Ci += (i + 1) * Cl;",
+         1 + 20 + 300},
         {"Ci = arraylength(getlights(\"category\", later(\"warm\")));", 2},
         {"Ci = arraylength(getlights(\"category\", later(\"&&\")));", 3, "cannot be read"},
         // Ways out of loops.
@@ -137,7 +151,8 @@ TEST(Adversarial, LoopsOverLights) {
         {"point Q = P; illuminance(P) { P += up; Ci += Cl; } P = Q;", 111},
         {"color c[4]; i = 0; illuminance(P) { c[i] = Cl; i += 1; } Ci = c[0] + 2 * c[1] + 3 * c[2];", 321},
         // A gather of a billion rays sends as many as one call may, and meets what is black.
-        {"color h = 0; gather(\"illuminance\", P, up, PI / 2, 1e9, \"surface:Ci\", h) { Ci += h; } else { Ci += 0; }", 0, "4096 rays at most"},
+        {"color h = 0; gather(\"illuminance\", P, up, PI / 2, 1e9, \"surface:Ci\", h) { Ci += h; } else { Ci += 0; }", 0,
+         "4096 rays at most"},
     };
     runSurfaces("evil", cases);
 }
@@ -171,11 +186,15 @@ TEST(Adversarial, Lights) {
     for (const Case& c : cases)
         for (Hider h : {Hider::Hidden, Hider::Path}) {
             const std::string name = "evillight" + std::to_string(n++);
-            writeShader(name, "light " + name + "() {\n    point from = point \"world\" (0, 2, 0); vector down = vector \"world\" (0, -1, 0); float bad = (xcomp(Ps) > 1e9) ? 1 : 1e38 * 1e38 - 1e38 * 1e38;\n"
-                              "    void lampOf(float x;) { extern point from; illuminate(from) Cl = x; }\n    " + c.body + "\n}\n");
+            writeShader(name, "light " + name +
+                                  "() {\n    point from = point \"world\" (0, 2, 0); vector down = vector \"world\" (0, -1, 0); "
+                                  "float bad = (xcomp(Ps) > 1e9) ? 1 : 1e38 * 1e38 - 1e38 * 1e38;\n"
+                                  "    void lampOf(float x;) { extern point from; illuminate(from) Cl = x; }\n    " +
+                                  c.body + "\n}\n");
             const Shown s = shown(world("LightSource \"" + name + "\" 1\nSurface \"evilsum\" " + kFloor), h);
             ASSERT_TRUE(s.built) << c.body << s.messages;
-            for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.colour[k], c.want, 1e-4f * std::max(1.f, std::fabs(c.want))) << c.body << "\n" << s.messages;
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(s.colour[k], c.want, 1e-4f * std::max(1.f, std::fabs(c.want))) << c.body << "\n" << s.messages;
             if (*c.says) EXPECT_NE(s.messages.find(c.says), std::string::npos) << c.body << "\n" << s.messages;
             else EXPECT_EQ(s.messages.find("error"), std::string::npos) << c.body << "\n" << s.messages;
         }
@@ -200,12 +219,15 @@ TEST(Adversarial, Refused) {
         std::string source = text;
         source.replace(source.find("NAME"), 4, name);
         writeShader(name, source + "\n");
-        const Shown s = shown(world(lamps() + (source.rfind("displacement", 0) == 0 ? "Displacement \"" : "Surface \"") + name + "\" " + kFloor), Hider::Hidden);
+        const Shown s = shown(
+            world(lamps() + (source.rfind("displacement", 0) == 0 ? "Displacement \"" : "Surface \"") + name + "\" " + kFloor),
+            Hider::Hidden);
         EXPECT_NE(s.messages.find("error"), std::string::npos) << text << s.messages;
         EXPECT_NE(s.messages.find(says), std::string::npos) << text << s.messages;
         for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(s.colour[k])) << text;
     }
-    for (const char* body : {"illuminance(P) Cl = 1;", "illuminate(from) { illuminance(P) Cl = 1; }", "solar(down) Cl = 1;", "illuminate() Cl = 1;", "illuminate(from, down) Cl = 1;"}) {
+    for (const char* body : {"illuminance(P) Cl = 1;", "illuminate(from) { illuminance(P) Cl = 1; }", "solar(down) Cl = 1;",
+                             "illuminate() Cl = 1;", "illuminate(from, down) Cl = 1;"}) {
         const std::string name = "evilno" + std::to_string(n++);
         writeShader(name, "light " + name + "() { point from = 0; vector down = 1; " + body + " }\n");
         const Shown s = shown(world("LightSource \"" + name + "\" 1\nSurface \"matte\" " + kFloor), Hider::Hidden);
@@ -224,22 +246,34 @@ TEST(Adversarial, TooManyBlocks) {
         writeShader(name, "light " + name + "() { void lamp() { illuminate(point \"world\" (0, 2, 0)) Cl = 1; }" + body + " }\n");
         const Shown s = shown(world("LightSource \"" + name + "\" 1\nSurface \"evilsum\" " + kFloor), Hider::Hidden);
         const bool few = calls <= limits::kLightBlocks;
-        EXPECT_EQ(s.messages.find("has no more than " + std::to_string(limits::kLightBlocks)) == std::string::npos, few) << s.messages;
+        EXPECT_EQ(s.messages.find("has no more than " + std::to_string(limits::kLightBlocks)) == std::string::npos, few)
+            << s.messages;
         EXPECT_NEAR(s.colour[0], few ? float(calls) : 0.f, 1e-4);
     }
 }
 
-// Functions that call each other 2^39 times: what looks into calls looks into each function once, or until there are too many blocks.
+// Functions that call each other 2^39 times: what looks into calls looks into each function once, or until there are too many
+// blocks.
 TEST(Adversarial, CallsOfCalls) {
     std::string chain;
-    for (int k = 1; k < 40; ++k) chain += " float f" + std::to_string(k) + "(float x) { return f" + std::to_string(k - 1) + "(x) + f" + std::to_string(k - 1) + "(x); }\n";
-    writeShader("evildark", "float f0(float x) { return x; }\n" + chain + "light evildark() { illuminate(point \"world\" (0, 2, 0)) Cl = 1; if (xcomp(Ps) > 1e6) Cl = f39(1); }\n");
-    writeShader("evilblocks", "float f0(float x) { illuminate(point \"world\" (0, 2, 0)) Cl = 1; return x; }\n" + chain + "light evilblocks() { float x = f39(1); }\n");
-    writeShader("evilgrid", "float f0(float x) { return gridmin(x); }\n" + chain + "surface evilgrid() { uniform float most = 0; if (xcomp(P) > 1e6) most = f39(xcomp(P)); Oi = 1; Ci = 1 + most; }\n");
+    for (int k = 1; k < 40; ++k)
+        chain += " float f" + std::to_string(k) + "(float x) { return f" + std::to_string(k - 1) + "(x) + f" +
+                 std::to_string(k - 1) + "(x); }\n";
+    writeShader("evildark",
+                "float f0(float x) { return x; }\n" + chain +
+                    "light evildark() { illuminate(point \"world\" (0, 2, 0)) Cl = 1; if (xcomp(Ps) > 1e6) Cl = f39(1); }\n");
+    writeShader("evilblocks", "float f0(float x) { illuminate(point \"world\" (0, 2, 0)) Cl = 1; return x; }\n" + chain +
+                                  "light evilblocks() { float x = f39(1); }\n");
+    writeShader(
+        "evilgrid",
+        "float f0(float x) { return gridmin(x); }\n" + chain +
+            "surface evilgrid() { uniform float most = 0; if (xcomp(P) > 1e6) most = f39(xcomp(P)); Oi = 1; Ci = 1 + most; }\n");
     writeShader("evilsum", "surface evilsum() { Oi = 1; Ci = 0; illuminance(P) Ci += Cl; }\n");
-    EXPECT_NEAR(shown(world(std::string("LightSource \"evildark\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden).colour[0], 1, 1e-5);
+    EXPECT_NEAR(shown(world(std::string("LightSource \"evildark\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden).colour[0],
+                1, 1e-5);
     const Shown blocks = shown(world(std::string("LightSource \"evilblocks\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden);
-    EXPECT_NE(blocks.messages.find("has no more than " + std::to_string(limits::kLightBlocks)), std::string::npos) << blocks.messages;
+    EXPECT_NE(blocks.messages.find("has no more than " + std::to_string(limits::kLightBlocks)), std::string::npos)
+        << blocks.messages;
     EXPECT_NEAR(shown(world(std::string("Surface \"evilgrid\" ") + kFloor), Hider::Hidden).colour[0], 1, 1e-5);
 }
 
@@ -254,7 +288,8 @@ TEST(Adversarial, Many) {
         "AttributeBegin Attribute \"light\" \"samples\" [1000000000] Attribute \"light\" \"string units\" \"radiance\" "
         "AreaLightSource \"evilarea\" 1 Translate 0 2 0 Rotate 90 1 0 0 Sphere .5 -.5 .5 360 AttributeEnd\n";
     // Of a ball that ends a sixteenth of the sky: its radiance 1 has Cl cos = 1 / 16 in the mean.
-    writeShader("evilcos", "surface evilcos() { Oi = 1; Ci = 0; illuminance(P, N, PI / 2) Ci += Cl * (normalize(N) . normalize(L)); }\n");
+    writeShader("evilcos",
+                "surface evilcos() { Oi = 1; Ci = 0; illuminance(P, N, PI / 2) Ci += Cl * (normalize(N) . normalize(L)); }\n");
     const Shown s = shown(world(area + "Illuminate 1 1 Surface \"evilcos\" " + kFloor), Hider::Hidden);
     EXPECT_NEAR(s.colour[0], 1. / 16, .01) << s.messages;
 }

@@ -155,28 +155,36 @@ void expectSameBits(const std::string& rib, const std::vector<CameraRay>& rays, 
 }
 
 /// A primitive, and the same one at the end of the shutter, of as many pieces.
-struct Pair { std::string first, last; };
+struct Pair {
+    std::string first, last;
+};
 std::vector<Pair> everyPrimitive() {
     const auto solid = [](const char* x) {
-        return std::string("SolidBegin \"difference\"\nSolidBegin \"primitive\"\nSphere .5 -.5 .5 360\nSolidEnd\nSolidBegin \"primitive\"\nColor .9 .1 .1\nTranslate ") + x +
-               " -.3\nSphere .4 -.4 .4 360\nSolidEnd\nSolidEnd\n";
+        return std::string("SolidBegin \"difference\"\nSolidBegin \"primitive\"\nSphere .5 -.5 .5 360\nSolidEnd\nSolidBegin "
+                           "\"primitive\"\nColor .9 .1 .1\nTranslate ") +
+               x + " -.3\nSphere .4 -.4 .4 360\nSolidEnd\nSolidEnd\n";
     };
     const auto net = [](double bend) { // of a bicubic patch
         std::string s;
         for (int i = 0; i < 16; ++i)
-            s += std::to_string(.3 * (i % 4) - .45) + " " + std::to_string(.3 * (i / 4) - .45) + " " + std::to_string(bend * (i % 3 - 1)) + " ";
+            s += std::to_string(.3 * (i % 4) - .45) + " " + std::to_string(.3 * (i / 4) - .45) + " " +
+                 std::to_string(bend * (i % 3 - 1)) + " ";
         return s;
     };
     const auto cube = [](double top) {
         std::string s;
         for (int k = 0; k < 8; ++k)
-            s += std::to_string((k & 1 ? .4 : -.4) * (k & 2 ? top : 1)) + " " + std::to_string(k & 2 ? .4 : -.4) + " " + std::to_string(k & 4 ? .4 : -.4) + " ";
+            s += std::to_string((k & 1 ? .4 : -.4) * (k & 2 ? top : 1)) + " " + std::to_string(k & 2 ? .4 : -.4) + " " +
+                 std::to_string(k & 4 ? .4 : -.4) + " ";
         return "\"P\" [" + s + "]\n";
     };
     const std::string faces = "[4 4 4 4 4 4] [0 2 3 1  4 5 7 6  0 1 5 4  2 6 7 3  0 4 6 2  1 3 7 5] ";
-    const std::string knots = "4 4 [0 0 0 0 1 1 1 1] 0 1 ", hole = "TrimCurve [1] [2] [0 0 1 2 3 4 4] [0] [4] [5] [.3 .7 .7 .3 .3] [.3 .3 .7 .7 .3] [1 1 1 1 1]\n";
+    const std::string knots = "4 4 [0 0 0 0 1 1 1 1] 0 1 ",
+                      hole = "TrimCurve [1] [2] [0 0 1 2 3 4 4] [0] [4] [5] [.3 .7 .7 .3 .3] [.3 .3 .7 .7 .3] [1 1 1 1 1]\n";
     std::string Pw;
-    for (int i = 0; i < 16; ++i) Pw += std::to_string(.3 * (i % 4) - .45) + " " + std::to_string(.3 * (i / 4) - .45) + " " + std::to_string(.2 * (i % 2)) + " 1 ";
+    for (int i = 0; i < 16; ++i)
+        Pw += std::to_string(.3 * (i % 4) - .45) + " " + std::to_string(.3 * (i / 4) - .45) + " " + std::to_string(.2 * (i % 2)) +
+              " 1 ";
     return {
         {"Sphere .5 -.5 .5 360\n", "Sphere .3 -.3 .3 360\n"},
         {"Cone .8 .4 360\n", "Cone .6 .5 360\n"},
@@ -185,7 +193,8 @@ std::vector<Pair> everyPrimitive() {
         {"Paraboloid .4 0 .7 360\n", "Paraboloid .5 0 .6 360\n"},
         {"Torus .35 .15 0 360 360\n", "Torus .4 .1 0 360 360\n"},
         {"Disk 0 .5 360\n", "Disk -.2 .4 360\n"},
-        {"Polygon \"P\" [-.4 -.4 0  -.4 .4 0  .4 .4 0  .4 -.4 0]\n", "Polygon \"P\" [-.4 -.4 0  -.4 .4 .2  .4 .4 0  .4 -.4 .2]\n"},
+        {"Polygon \"P\" [-.4 -.4 0  -.4 .4 0  .4 .4 0  .4 -.4 0]\n",
+         "Polygon \"P\" [-.4 -.4 0  -.4 .4 .2  .4 .4 0  .4 -.4 .2]\n"},
         {"PointsPolygons " + faces + cube(1), "PointsPolygons " + faces + cube(.5)},
         {"Patch \"bicubic\" \"P\" [" + net(.1) + "]\n", "Patch \"bicubic\" \"P\" [" + net(.3) + "]\n"},
         {"PatchMesh \"bilinear\" 4 \"nonperiodic\" 4 \"nonperiodic\" \"P\" [" + net(.1) + "]\n",
@@ -193,28 +202,40 @@ std::vector<Pair> everyPrimitive() {
         {hole + "NuPatch " + knots + knots + "\"Pw\" [" + Pw + "]\n", ""},
         {"SubdivisionMesh \"catmull-clark\" " + faces + "[\"interpolateboundary\"] [0 0] [] [] " + cube(1),
          "SubdivisionMesh \"catmull-clark\" " + faces + "[\"interpolateboundary\"] [0 0] [] [] " + cube(.5)},
-        {"Curves \"cubic\" [7] \"nonperiodic\" \"P\" [-.5 -.5 0  -.4 .5 0  -.2 .5 .3  0 0 0  .2 -.5 -.3  .4 -.5 0  .5 .5 0] \"constantwidth\" .15\n",
-         "Curves \"cubic\" [7] \"nonperiodic\" \"P\" [-.5 -.5 0  -.4 .5 .2  -.2 .3 .3  0 0 0  .2 -.3 -.3  .4 -.5 0  .5 .3 0] \"constantwidth\" .1\n"},
-        {"Attribute \"dice\" \"roundcurve\" 1\nCurves \"linear\" [3] \"nonperiodic\" \"P\" [-.4 -.4 0  0 .4 0  .4 -.4 .2] \"constantwidth\" .2\n",
+        {"Curves \"cubic\" [7] \"nonperiodic\" \"P\" [-.5 -.5 0  -.4 .5 0  -.2 .5 .3  0 0 0  .2 -.5 -.3  .4 -.5 0  .5 .5 0] "
+         "\"constantwidth\" .15\n",
+         "Curves \"cubic\" [7] \"nonperiodic\" \"P\" [-.5 -.5 0  -.4 .5 .2  -.2 .3 .3  0 0 0  .2 -.3 -.3  .4 -.5 0  .5 .3 0] "
+         "\"constantwidth\" .1\n"},
+        {"Attribute \"dice\" \"roundcurve\" 1\nCurves \"linear\" [3] \"nonperiodic\" \"P\" [-.4 -.4 0  0 .4 0  .4 -.4 .2] "
+         "\"constantwidth\" .2\n",
          "Curves \"linear\" [3] \"nonperiodic\" \"P\" [-.4 -.4 0  0 .4 .2  .4 -.4 .2] \"constantwidth\" .3\n"},
-        {"Points \"P\" [-.3 0 0  .3 0 0  0 .3 .2] \"width\" [.2 .3 .4]\n", "Points \"P\" [-.3 .2 0  .3 0 0  0 .3 .2] \"width\" [.4 .3 .2]\n"},
+        {"Points \"P\" [-.3 0 0  .3 0 0  0 .3 .2] \"width\" [.2 .3 .4]\n",
+         "Points \"P\" [-.3 .2 0  .3 0 0  0 .3 .2] \"width\" [.4 .3 .2]\n"},
         {"Points \"P\" [-.3 0 0  .3 0 0  0 .3 .2] \"constantwidth\" .4 \"uniform string type\" \"sphere\"\n",
          "Points \"P\" [-.3 .2 0  .3 0 0  0 .3 .2] \"constantwidth\" .3 \"uniform string type\" \"sphere\"\n"},
-        {"Blobby 2 [1001 0 1001 16 0 2 0 1] [.8 0 0 0  0 .8 0 0  0 0 .8 0  -.2 0 0 1  .7 0 0 0  0 .7 0 0  0 0 .7 0  .25 .1 0 1] [\"\"]\n",
-         "Blobby 2 [1001 0 1001 16 0 2 0 1] [.6 0 0 0  0 .8 .1 0  0 0 .8 0  -.1 0 0 1  .7 0 0 0  0 .7 0 0  0 .2 .7 0  .3 .1 0 1] [\"\"]\n"},
-        {"Attribute \"displacementbound\" \"sphere\" .2\nDisplacement \"waves\"\nSphere .4 -.4 .4 360\n", "Sphere .3 -.3 .3 360\n"},
+        {"Blobby 2 [1001 0 1001 16 0 2 0 1] [.8 0 0 0  0 .8 0 0  0 0 .8 0  -.2 0 0 1  .7 0 0 0  0 .7 0 0  0 0 .7 0  .25 .1 0 1] "
+         "[\"\"]\n",
+         "Blobby 2 [1001 0 1001 16 0 2 0 1] [.6 0 0 0  0 .8 .1 0  0 0 .8 0  -.1 0 0 1  .7 0 0 0  0 .7 0 0  0 .2 .7 0  .3 .1 0 1] "
+         "[\"\"]\n"},
+        {"Attribute \"displacementbound\" \"sphere\" .2\nDisplacement \"waves\"\nSphere .4 -.4 .4 360\n",
+         "Sphere .3 -.3 .3 360\n"},
         {solid(".1 0"), ""},
     };
 }
 /// All of them in rows, lit by a lamp and a point light. moving: each turns, and becomes its other one.
 std::string all(bool moving, bool instances = false) {
-    writeShader("waves", "displacement waves() { P += .03 * sin(30 * xcomp(transform(\"object\", P))) * normalize(N); N = calculatenormal(P); }\n");
-    std::string s = "Shutter 0 1\nWorldBegin\nSides 2\nShadingRate 4\nLightSource \"pointlight\" 1 \"intensity\" 30 \"from\" [1 4 -1]\n"
-                    "AttributeBegin\nAreaLightSource \"slrect\" 2 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 4 4  1 4 4  1 4 6  -1 4 6]\n"
-                    "AttributeEnd\nIlluminate 2 1\n";
+    writeShader("waves", "displacement waves() { P += .03 * sin(30 * xcomp(transform(\"object\", P))) * normalize(N); N = "
+                         "calculatenormal(P); }\n");
+    std::string s =
+        "Shutter 0 1\nWorldBegin\nSides 2\nShadingRate 4\nLightSource \"pointlight\" 1 \"intensity\" 30 \"from\" [1 4 -1]\n"
+        "AttributeBegin\nAreaLightSource \"slrect\" 2 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" "
+        "[-1 4 4  1 4 4  1 4 6  -1 4 6]\n"
+        "AttributeEnd\nIlluminate 2 1\n";
     const char* shaders[] = {"plastic", "matte", "busyall"};
-    writeShader("busyall", "surface busyall() { normal Nf = faceforward(normalize(N), I); color r = .2 * random(); Oi = Os; "
-                           "Ci = Os * (Cs * .7 * diffuse(Nf) + r + .1 * color(abs(dPdtime)) + .2 * trace(P, reflect(normalize(I), Nf))); }\n");
+    writeShader(
+        "busyall",
+        "surface busyall() { normal Nf = faceforward(normalize(N), I); color r = .2 * random(); Oi = Os; "
+        "Ci = Os * (Cs * .7 * diffuse(Nf) + r + .1 * color(abs(dPdtime)) + .2 * trace(P, reflect(normalize(I), Nf))); }\n");
     int i = 0;
     for (const auto& [first, last] : everyPrimitive()) {
         const std::string number = std::to_string(i + 1);
@@ -223,11 +244,17 @@ std::string all(bool moving, bool instances = false) {
             const size_t line = first.rfind('\n', first.size() - 2) + 1;
             body = first.substr(0, line) + "MotionBegin [0 1]\n" + first.substr(line) + last + "MotionEnd\n";
         }
-        std::string place = "Translate " + std::to_string(1.15 * (i % 5) - 2.3) + " " + std::to_string(1.15 * (i / 5) - 1.7) + " 6\n";
-        if (moving) place += "MotionBegin [0 1]\nRotate " + std::to_string(20 + 7 * i) + " 1 2 1\nRotate " + std::to_string(50 + 9 * i) + " 1 2 1\nMotionEnd\n";
+        std::string place =
+            "Translate " + std::to_string(1.15 * (i % 5) - 2.3) + " " + std::to_string(1.15 * (i / 5) - 1.7) + " 6\n";
+        if (moving)
+            place += "MotionBegin [0 1]\nRotate " + std::to_string(20 + 7 * i) + " 1 2 1\nRotate " + std::to_string(50 + 9 * i) +
+                     " 1 2 1\nMotionEnd\n";
         else place += "Rotate " + std::to_string(20 + 17 * i) + " 1 2 1\n";
-        const std::string surface = "Surface \"" + std::string(shaders[i % 3]) + "\"\nColor [" + std::to_string(.3 + .03 * i) + " .6 .5]\n" + (i % 4 == 3 ? "Opacity .6 .7 .8\n" : "");
-        if (instances) s += "AttributeBegin\n" + surface + "ObjectBegin " + number + "\n" + body + "ObjectEnd\n" + place + "ObjectInstance " + number + "\nAttributeEnd\n";
+        const std::string surface = "Surface \"" + std::string(shaders[i % 3]) + "\"\nColor [" + std::to_string(.3 + .03 * i) +
+                                    " .6 .5]\n" + (i % 4 == 3 ? "Opacity .6 .7 .8\n" : "");
+        if (instances)
+            s += "AttributeBegin\n" + surface + "ObjectBegin " + number + "\n" + body + "ObjectEnd\n" + place +
+                 "ObjectInstance " + number + "\nAttributeEnd\n";
         else s += "AttributeBegin\n" + surface + place + body + "AttributeEnd\n";
         ++i;
     }
@@ -256,7 +283,8 @@ TEST_P(BitsTest, EveryPrimitiveMoving) { expectSameBits(all(true), allRays(500, 
 INSTANTIATE_TEST_SUITE_P(Hiders, BitsTest, ::testing::Values(Hider::Hidden, Hider::Path),
                          [](const auto& i) { return i.param == Hider::Path ? "path" : "hidden"; });
 
-// Every primitive as an instance, and where it is: the same bits. (What large instances share is rounded otherwise: Placed.InstancesOfEveryFormAreCopies.)
+// Every primitive as an instance, and where it is: the same bits. (What large instances share is rounded otherwise:
+// Placed.InstancesOfEveryFormAreCopies.)
 TEST(Bits, InstancesAreCopies) {
     for (const bool moving : {false, true})
         for (const Hider h : {Hider::Hidden, Hider::Path}) {
@@ -264,7 +292,8 @@ TEST(Bits, InstancesAreCopies) {
             s.hider = h;
             s.seed = 5;
             const auto rays = allRays(400, moving);
-            const Bits copies = bitsOf(Scene(all(moving), s).trace(rays)), instances = bitsOf(Scene(all(moving, true), s).trace(rays));
+            const Bits copies = bitsOf(Scene(all(moving), s).trace(rays)),
+                       instances = bitsOf(Scene(all(moving, true), s).trace(rays));
             EXPECT_EQ(differences(copies, instances), 0u) << (moving ? "moving" : "still") << ", hider " << int(h);
         }
 }

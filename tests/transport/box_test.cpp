@@ -23,8 +23,7 @@ protected:
 
 TEST_P(BoxAgreement, Oracle) {
     expectSame(
-        with({}), [](int n, uint32_t seed) { return oracleTiles(GetParam(), n, seed); }, kPerTile, .12, name("oracle"),
-        seed(1));
+        with({}), [](int n, uint32_t seed) { return oracleTiles(GetParam(), n, seed); }, kPerTile, .12, name("oracle"), seed(1));
 }
 TEST_P(BoxAgreement, LightSamplesOnly) {
     Settings s;

@@ -32,12 +32,15 @@ template <class F> Vec3d partialV(F f, double u, double v) {
 }
 template <class F> Vec3d unitNormal(F f, double u, double v) { return normalize(cross(partialU(f, u, v), partialV(f, u, v))); }
 
-// A wave as a map of 256 texels; what slopes that are differences over a texel, interpolated, miss of it is below 0.0015 of the most.
+// A wave as a map of 256 texels; what slopes that are differences over a texel, interpolated, miss of it is below 0.0015 of the
+// most.
 constexpr int kMap = 256;
 double relief(double s, double t) { return std::sin(6 * kPi * s) * std::cos(4 * kPi * t); }
 
 template <class F> std::string mapFile(const std::string& name, int width, int height, F value) {
-    return writeMap(name, width, height, [&](int x, int y, int c) { return float((1 + c) * value((x + .5) / width, (y + .5) / height)); }, "periodic,periodic");
+    return writeMap(
+        name, width, height, [&](int x, int y, int c) { return float((1 + c) * value((x + .5) / width, (y + .5) / height)); },
+        "periodic,periodic");
 }
 
 /// A grid of ten by ten rays from the eye over the plane z = 3, of footprints that grow by `spread`.
@@ -54,11 +57,13 @@ void writeMapShaders() {
     const std::string map = mapFile("relief.exr", kMap, kMap, relief);
     const std::string sky = mapFile("height.exr", 256, 128, [](double, double t) { return std::cos(kPi * t); });
     const std::string outputs = "(output varying normal shown = 0; output varying point uv = 0;)";
-    writeShader("mapwaves", "displacement mapwaves() { P += 0.02 * float texture(" + map + ") * normalize(N); N = calculatenormal(P); }\n");
+    writeShader("mapwaves",
+                "displacement mapwaves() { P += 0.02 * float texture(" + map + ") * normalize(N); N = calculatenormal(P); }\n");
     writeShader("mapbump", "surface mapbump" + outputs + " { shown = normalize(calculatenormal(P + 0.02 * float texture(" + map +
                                ", s, t) * normalize(N))); uv = point(u, v, 0); Ci = 1; Oi = 1; }\n");
     writeShader("mapslopes", "surface mapslopes" + outputs + R"( {
-    uniform string map = )" + map + R"(;
+    uniform string map = )" + map +
+                                 R"(;
     float x = 2 * u + 0.3 * v, y = v * v, h = 0.5 / 256;
     color c = texture(map, x, y, "width", 0);
     float corners = texture(map, x, y, x, y, x, y, x, y);
@@ -79,7 +84,8 @@ void writeMapShaders() {
 )");
     writeShader("skyslopes", "surface skyslopes" + outputs + R"( {
     vector d = vector(2 * u - 1, v - 0.3, 0.7);
-    float up = environment()" + sky + R"(, d);
+    float up = environment()" + sky +
+                                 R"(, d);
     shown = normal(Du(up), Dv(up), up);
     float l = length(d);
     uv = point(-0.7 * 2 * xcomp(d) / (l * l * l), -0.7 * ycomp(d) / (l * l * l), 0.7 / l);
@@ -220,7 +226,8 @@ TEST(TextureDerivatives, Displacements) {
     expectNormals(sphereRib(waves, "shownormal"), reliefSphere, {0, 0, 0}, {0, 0, 4}, "sphere", 2e-3);
     expectNormals(patchRib(waves, "shownormal"), reliefSaddle, {0, 0, 0}, {0, 0, 3}, "patch", 2e-3);
 }
-// By the chain rule, of one channel and of another, of four corners; against differences that the shader takes itself, and the wave's.
+// By the chain rule, of one channel and of another, of four corners; against differences that the shader takes itself, and the
+// wave's.
 TEST(TextureDerivatives, AgainstDifferences) {
     writeMapShaders();
     for (Hider hider : {Hider::Raytrace, Hider::Path}) {
@@ -236,14 +243,16 @@ TEST(TextureDerivatives, AgainstDifferences) {
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(r.aovs[size_t(k)], 0, 2e-2) << k; // of slopes up to 38; the differences round
             EXPECT_NEAR(r.aovs[5], 0, 1e-4);
             const double u = r.color.x, v = r.color.y, x = 2 * u + .3 * v, y = v * v;
-            const double byS = 6 * kPi * std::cos(6 * kPi * x) * std::cos(4 * kPi * y), byT = -4 * kPi * std::sin(6 * kPi * x) * std::sin(4 * kPi * y);
+            const double byS = 6 * kPi * std::cos(6 * kPi * x) * std::cos(4 * kPi * y),
+                         byT = -4 * kPi * std::sin(6 * kPi * x) * std::sin(4 * kPi * y);
             EXPECT_NEAR(r.aovs[3], 2 * byS, .0015 * 12 * kPi) << u << " " << v;
             EXPECT_NEAR(r.aovs[4], .3 * byS + 2 * v * byT, .0015 * 14 * kPi) << u << " " << v;
         }
         EXPECT_GT(hits, 80);
     }
 }
-// Second derivatives: the wave's, by the chain rule. What differences over a texel miss of them is below half a percent of the most.
+// Second derivatives: the wave's, by the chain rule. What differences over a texel miss of them is below half a percent of the
+// most.
 TEST(TextureDerivatives, OfSecondOrder) {
     writeMapShaders();
     Settings s;
@@ -254,8 +263,10 @@ TEST(TextureDerivatives, OfSecondOrder) {
     for (const SampleResult& r : scene.trace(rays)) {
         if (r.opacity.x < 1) continue;
         ++hits;
-        const double u = r.color.x, v = r.color.y, a = 6 * kPi, b = 4 * kPi, x = a * (2 * u + .3 * v), y = b * v * v; // the map's second channel is 2 f
-        const double xx = -2 * a * a * std::sin(x) * std::cos(y), xy = -2 * a * b * std::cos(x) * std::sin(y), yy = -2 * b * b * std::sin(x) * std::cos(y);
+        const double u = r.color.x, v = r.color.y, a = 6 * kPi, b = 4 * kPi, x = a * (2 * u + .3 * v),
+                     y = b * v * v; // the map's second channel is 2 f
+        const double xx = -2 * a * a * std::sin(x) * std::cos(y), xy = -2 * a * b * std::cos(x) * std::sin(y),
+                     yy = -2 * b * b * std::sin(x) * std::cos(y);
         const double byY = -2 * b * std::sin(x) * std::sin(y), most = 4 * 2 * a * a;
         EXPECT_NEAR(r.aovs[0], 4 * xx, .005 * most) << u << " " << v;
         EXPECT_NEAR(r.aovs[1], .6 * xx + 4 * v * xy, .005 * most) << u << " " << v;

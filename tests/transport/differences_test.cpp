@@ -89,7 +89,8 @@ TEST(Differences, EachObjectHasItsOwn) {
     writeShaders();
     const auto all = render("Surface \"diffslope\"\nAttributeBegin\nAttribute \"shade\" \"derivatives\" \"exact\"\n"
                             "Patch \"bilinear\" \"P\" [-1 -1 3  0 -1 3  -1 1 3  0 1 3]\nAttributeEnd\n"
-                            "Patch \"bilinear\" \"P\" [0 -1 3  1 -1 3  0 1 3  1 1 3]\n", .02f);
+                            "Patch \"bilinear\" \"P\" [0 -1 3  1 -1 3  0 1 3  1 1 3]\n",
+                            .02f);
     std::vector<SampleResult> left, right;
     for (size_t i = 0; i < all.size(); ++i) (i % 20 < 10 ? left : right).push_back(all[i]);
     expectForm(left, false, "left", 150);

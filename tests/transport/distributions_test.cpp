@@ -1,9 +1,9 @@
-// The distributions that trace() has in common with bsdf(): what is drawn against what the functions say, and traced scenes against
-// integrals.
-#include "shadeops/descriptor.h"
-#include "transport/harness.h"
+// The distributions that trace() has in common with bsdf(): what is drawn against what the functions say, and traced scenes
+// against integrals.
 #include "lobes/lobe.h"
 #include "lobes/sampling.h"
+#include "shadeops/descriptor.h"
+#include "transport/harness.h"
 #include "transport/maps.h"
 #include <random>
 
@@ -13,8 +13,16 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-struct Case { const char* name; float roughness, roughnessv; Color eta; float view; int part; };
-void PrintTo(const Case& c, std::ostream* o) { *o << c.name << " " << c.roughness << " " << c.roughnessv << " from " << c.view << " part " << c.part; }
+struct Case {
+    const char* name;
+    float roughness, roughnessv;
+    Color eta;
+    float view;
+    int part;
+};
+void PrintTo(const Case& c, std::ostream* o) {
+    *o << c.name << " " << c.roughness << " " << c.roughnessv << " from " << c.view << " part " << c.part;
+}
 
 LobeParams paramsOf(const Case& c) {
     auto m = std::make_shared<DistributionParams>();
@@ -34,8 +42,8 @@ LobeParams paramsOf(const Case& c) {
 
 class Distribution : public ::testing::TestWithParam<Case> {};
 
-// The density integrates to the share of draws that give a direction, and the mean of value / density is the integral of the value: both
-// over a grid of the sphere, by the midpoint rule.
+// The density integrates to the share of draws that give a direction, and the mean of value / density is the integral of the
+// value: both over a grid of the sphere, by the midpoint rule.
 TEST_P(Distribution, DrawsWhatItSays) {
     const Case c = GetParam();
     const LobeKind& k = *findLobe(c.name);
@@ -46,7 +54,8 @@ TEST_P(Distribution, DrawsWhatItSays) {
     const Basis frame(p.axis);
     for (int i = 0; i < nz; ++i)
         for (int j = 0; j < nt; ++j) {
-            const double z = -1 + 2 * (i + .5) / nz, t = 2 * kPi * (j + .5) / nt, s = std::sqrt(1 - z * z), area = 4 * kPi / nz / nt;
+            const double z = -1 + 2 * (i + .5) / nz, t = 2 * kPi * (j + .5) / nt, s = std::sqrt(1 - z * z),
+                         area = 4 * kPi / nz / nt;
             const Vec3 w = frame.toWorld({float(s * std::cos(t)), float(s * std::sin(t)), float(z)});
             density += k.pdf(p, w) * area;
             value = value + Vec3d(lobeValue(k, p, w)) * area;
@@ -69,15 +78,18 @@ TEST_P(Distribution, DrawsWhatItSays) {
     EXPECT_GT(value.x, .02);
     EXPECT_LT(value.x, 1.01);
 }
-INSTANTIATE_TEST_SUITE_P(All, Distribution, ::testing::Values(
-    Case{"oren-nayar", 0, 0, Color(0), .7f, -1}, Case{"oren-nayar", .8f, .8f, Color(0), .9f, -1},
-    Case{"blinn", .4f, .4f, Color(0), .5f, -1}, Case{"blinn", .6f, .6f, Color(1.5f, 1.3f, 2), .9f, -1},
-    Case{"ashikhmin-shirley", .4f, .6f, Color(0), .5f, -1}, Case{"ashikhmin-shirley", .7f, .5f, Color(1.5f, 1.3f, 2), .9f, -1},
-    Case{"cook-torrance", .3f, .3f, Color(0), .5f, -1}, Case{"cook-torrance", .5f, .5f, Color(1.5f, 1.3f, 2), .9f, -1},
-    Case{"ward", .2f, .4f, Color(0), .5f, -1}, Case{"ward", .4f, .3f, Color(0), .9f, -1},
-    Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, -1}, Case{"glass-ggx", .3f, .3f, Color(1.5f), 2.5f, -1},
-    Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 0}, Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 1},
-    Case{"hair", 0, 0, Color(1.55f), .5f, -1}, Case{"hair", 0, 0, Color(1.55f), 1.2f, 0}, Case{"hair", 0, 0, Color(1.55f), 1.2f, 1}));
+INSTANTIATE_TEST_SUITE_P(
+    All, Distribution,
+    ::testing::Values(Case{"oren-nayar", 0, 0, Color(0), .7f, -1}, Case{"oren-nayar", .8f, .8f, Color(0), .9f, -1},
+                      Case{"blinn", .4f, .4f, Color(0), .5f, -1}, Case{"blinn", .6f, .6f, Color(1.5f, 1.3f, 2), .9f, -1},
+                      Case{"ashikhmin-shirley", .4f, .6f, Color(0), .5f, -1},
+                      Case{"ashikhmin-shirley", .7f, .5f, Color(1.5f, 1.3f, 2), .9f, -1},
+                      Case{"cook-torrance", .3f, .3f, Color(0), .5f, -1},
+                      Case{"cook-torrance", .5f, .5f, Color(1.5f, 1.3f, 2), .9f, -1}, Case{"ward", .2f, .4f, Color(0), .5f, -1},
+                      Case{"ward", .4f, .3f, Color(0), .9f, -1}, Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, -1},
+                      Case{"glass-ggx", .3f, .3f, Color(1.5f), 2.5f, -1}, Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 0},
+                      Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 1}, Case{"hair", 0, 0, Color(1.55f), .5f, -1},
+                      Case{"hair", 0, 0, Color(1.55f), 1.2f, 0}, Case{"hair", 0, 0, Color(1.55f), 1.2f, 1}));
 
 Settings under(Hider h, int mode = 0) {
     Settings s;
@@ -89,18 +101,19 @@ Settings under(Hider h, int mode = 0) {
 const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
 const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
 std::string scene(const std::string& lights, const std::string& surface) {
-    return "WorldBegin\nSides 2\n" + lights + "AttributeBegin\nSurface \"" + surface + "\"\n" + kFloor + "AttributeEnd\nWorldEnd\n";
+    return "WorldBegin\nSides 2\n" + lights + "AttributeBegin\nSurface \"" + surface + "\"\n" + kFloor +
+           "AttributeEnd\nWorldEnd\n";
 }
 const char* kDisk = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAttribute \"light\" \"string units\" \"radiance\" "
                     "AreaLightSource \"arealight\" 7 \"intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
                     "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
 void tracer(const std::string& name, const std::string& pairs, const std::string& about = "vector(Nf)") {
-    writeShader(name, "surface " + name + "() { normal Nf = faceforward(normalize(N), I); Oi = 1; Ci = trace(P, " + about + ", " + pairs +
-                          ", \"wo\", -normalize(I), \"samplearealights\", 1, \"type\", \"diffuse\"); }\n");
+    writeShader(name, "surface " + name + "() { normal Nf = faceforward(normalize(N), I); Oi = 1; Ci = trace(P, " + about + ", " +
+                          pairs + ", \"wo\", -normalize(I), \"samplearealights\", 1, \"type\", \"diffuse\"); }\n");
 }
 
-// A disk on the axis, radiance 5 (pi intensity / area of arealight is measured by the first case): roughness 0 of "oren-nayar" is Lambert's
-// law, L R^2 / (R^2 + h^2). The others: drawn by the lobe, by the light, and by both they are the same integral.
+// A disk on the axis, radiance 5 (pi intensity / area of arealight is measured by the first case): roughness 0 of "oren-nayar" is
+// Lambert's law, L R^2 / (R^2 + h^2). The others: drawn by the lobe, by the light, and by both they are the same integral.
 TEST(TraceDistributions, ADisk) {
     writeShader("shine", "light shine() { illuminate(P, N, PI / 2) Cl = 5; }\n");
     std::string disk = kDisk;
@@ -121,7 +134,8 @@ TEST(TraceDistributions, ADisk) {
         }
         for (int mode : {1, 2})
             for (int ch = 0; ch < 3; ++ch)
-                EXPECT_NEAR(of[mode].mean(ch), of[0].mean(ch), kZ * std::hypot(of[mode].se(ch), of[0].se(ch)) + 1e-6) << name << " channel " << ch << " mode " << mode;
+                EXPECT_NEAR(of[mode].mean(ch), of[0].mean(ch), kZ * std::hypot(of[mode].se(ch), of[0].se(ch)) + 1e-6)
+                    << name << " channel " << ch << " mode " << mode;
     }
 }
 // The parts of glass: reflection sees the disk above, refraction does not; together they are the whole.
@@ -151,29 +165,37 @@ TEST(TraceDistributions, Parts) {
     EXPECT_NEAR(lights.mean(), whole.mean(), kZ * std::hypot(lights.se(), whole.se()));
     EXPECT_EQ(of("refracted").mean(), 0);
 }
-// A map of one colour over a floor, half of the sky behind an endless black wall: what reaches the floor is tint times half of it; without
-// the wall all. A pane of opacity a quarter before all of it leaves three.
+// A map of one colour over a floor, half of the sky behind an endless black wall: what reaches the floor is tint times half of
+// it; without the wall all. A pane of opacity a quarter before all of it leaves three.
 TEST(TraceDistributions, EnvironmentMap) {
     const std::string map = writeMap("even.exr", 8, 4, Color(.5f, 1, 2));
     auto shader = [&](const char* name, const char* result) {
-        writeShader(name, std::string("surface ") + name + R"(() {
+        writeShader(
+            name,
+            std::string("surface ") + name + R"(() {
     normal Nf = faceforward(normalize(N), I);
     color reached = 0, open = 0, through = 0;
     float d = 0;
-    color c = trace(P, vector(Nf), d, "distribution", "cosine", "samplecone", PI / 2, "type", "diffuse", "samples", 64, "environmentmap", )" + map +
-                              R"(, "environmenttint", color(2, 1, .5), "environmentspace", "world", "environmentcontribution", reached, "unshadowedenvironment", open,
+    color c = trace(P, vector(Nf), d, "distribution", "cosine", "samplecone", PI / 2, "type", "diffuse", "samples", 64, "environmentmap", )" +
+                map +
+                R"(, "environmenttint", color(2, 1, .5), "environmentspace", "world", "environmentcontribution", reached, "unshadowedenvironment", open,
                     "transmission", through);
     Oi = 1;
-    Ci = )" + result + ";\n}\n");
+    Ci = )" + result +
+                ";\n}\n");
     };
     shader("lit", "c");
     shader("reached", "reached");
     shader("open", "open");
     shader("through", "through");
     shader("nearest", "color(d)");
-    const std::string wall = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-.01 0 -900  -.01 900 -900  -.01 900 900  -.01 0 900]\nAttributeEnd\n";
-    const std::string pane = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor 0 0 0\nOpacity .25 .25 .25\nTranslate 0 1 0\nRotate 90 1 0 0\nDisk 0 900 360\nAttributeEnd\n";
-    auto of = [&](const std::string& things, const char* name) { return Scene(scene(things, name), under(Hider::Raytrace)).estimate(kView, samples(400)); };
+    const std::string wall = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor 0 0 0\nPolygon "
+                             "\"P\" [-.01 0 -900  -.01 900 -900  -.01 900 900  -.01 0 900]\nAttributeEnd\n";
+    const std::string pane = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor 0 0 0\nOpacity "
+                             ".25 .25 .25\nTranslate 0 1 0\nRotate 90 1 0 0\nDisk 0 900 360\nAttributeEnd\n";
+    auto of = [&](const std::string& things, const char* name) {
+        return Scene(scene(things, name), under(Hider::Raytrace)).estimate(kView, samples(400));
+    };
     for (const char* name : {"lit", "reached", "open"})
         for (const auto& [things, share] : std::vector<std::pair<std::string, double>>{{"", 1}, {wall, .5}, {pane, .75}}) {
             const Moments m = of(things, name);
@@ -202,13 +224,15 @@ TEST(TraceDistributions, Unshadowed) {
     };
     shader("gives", "gives");
     shader("would", "would");
-    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor .5 .5 .5\nPolygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
+    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor .5 .5 "
+                             ".5\nPolygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
     const double want = 5 * .49 / 4.49;
     for (Hider h : {Hider::Raytrace, Hider::Path}) {
         expectMean(Scene(scene(disk, "gives"), under(h)).estimate(kView, samples(20000)), want, .03, "gives");
         expectMean(Scene(scene(disk, "would"), under(h)).estimate(kView, samples(20000)), want, .03, "would");
         EXPECT_EQ(Scene(scene(disk + card, "gives"), under(h)).estimate(kView, 500).mean(), 0);
-        expectMean(Scene(scene(disk + card, "would"), under(h)).estimate(kView, samples(20000)), want, .03, "would behind the card");
+        expectMean(Scene(scene(disk + card, "would"), under(h)).estimate(kView, samples(20000)), want, .03,
+                   "would behind the card");
     }
 }
 // Rays begin where they are told to; a bias moves them on.
@@ -220,7 +244,8 @@ TEST(TraceDistributions, WhereRaysBegin) {
     Ci = color(d);
 }
 )");
-    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nPolygon \"P\" [-9 3 -9  -9 3 9  9 3 9  9 3 -9]\nAttributeEnd\n";
+    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nPolygon \"P\" [-9 3 -9 "
+                             " -9 3 9  9 3 9  9 3 -9]\nAttributeEnd\n";
     auto of = [&](const std::string& more) {
         std::string rib = scene(card, "far");
         rib.replace(rib.find("Surface \"far\""), 13, "Surface \"far\" " + more);
@@ -233,11 +258,14 @@ TEST(TraceDistributions, WhereRaysBegin) {
 }
 // What is not followed is said.
 TEST(TraceDistributions, WordsThatAreNotKnown) {
-    writeShader("words", "surface words() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"type\", \"ghost\", \"hitsides\", \"top\", \"hitmode\", \"guess\"); }\n");
+    writeShader("words", "surface words() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"type\", \"ghost\", \"hitsides\", \"top\", "
+                         "\"hitmode\", \"guess\"); }\n");
     const std::string m = Scene(scene("", "words"), under(Hider::Raytrace)).messages();
-    for (const char* what : {"\"type\" \"ghost\" is not known", "\"hitsides\" \"top\" is not known", "\"hitmode\" \"guess\" is not known"})
+    for (const char* what :
+         {"\"type\" \"ghost\" is not known", "\"hitsides\" \"top\" is not known", "\"hitmode\" \"guess\" is not known"})
         EXPECT_NE(m.find(what), std::string::npos) << m;
-    writeShader("allwords", "surface allwords() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"subset\", \"some\", \"hitsides\", \"front\", \"hitmode\", \"primitive\", \"label\", \"l\"); }\n");
+    writeShader("allwords", "surface allwords() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"subset\", \"some\", \"hitsides\", "
+                            "\"front\", \"hitmode\", \"primitive\", \"label\", \"l\"); }\n");
     EXPECT_EQ(Scene(scene("", "allwords"), under(Hider::Raytrace)).messages(), "");
 }
 

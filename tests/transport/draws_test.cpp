@@ -20,7 +20,8 @@ std::vector<Color> samples(Scene& s, int n, Vec3 at = {.2f, .3f, 2}) {
 // The mean of n draws has the variance 1 / (12 n): were they one number, it would be 1 / 12.
 TEST(Draws, TurnsOfALoopAreIndependent) {
     writeShader("drawsloop", "float one() { return random(); }\nsurface drawsloop() { float a = 0, b = 0, i; color c = 0;"
-                             " for (i = 0; i < 16; i += 1) { a += random(); b += one(); c += color random(); } Ci = color(a, b, comp(c, 1)) / 16; Oi = 1; }\n");
+                             " for (i = 0; i < 16; i += 1) { a += random(); b += one(); c += color random(); } Ci = color(a, b, "
+                             "comp(c, 1)) / 16; Oi = 1; }\n");
     Scene s(std::string("WorldBegin\nSurface \"drawsloop\"\n") + kSquare + "WorldEnd\n");
     const int n = 4000;
     double sum[3] = {}, squares[3] = {}, product = 0;
@@ -31,7 +32,7 @@ TEST(Draws, TurnsOfALoopAreIndependent) {
     const double variance = 1. / 192;
     for (int k = 0; k < 3; ++k) {
         const double mean = sum[k] / n;
-        EXPECT_NEAR(mean, .5, 5 * std::sqrt(variance / n)) << k;                          // five standard errors
+        EXPECT_NEAR(mean, .5, 5 * std::sqrt(variance / n)) << k;                                    // five standard errors
         EXPECT_NEAR(squares[k] / n - mean * mean, variance, 5 * variance * std::sqrt(2. / n)) << k; // of a nearly normal variance
     }
     EXPECT_NEAR(product / n, 0, 5 * variance / std::sqrt(n));
@@ -54,9 +55,10 @@ TEST(Draws, LightsAndSurfaceDoNotShareNumbers) {
 }
 
 TEST(Draws, AUniformVariableHasOneNumberAPrimitive) {
-    writeShader("drawsuniform", "surface drawsuniform() { uniform float a = random(), b = random(); Ci = color(a, b, random()); Oi = 1; }\n");
-    Scene s(std::string("WorldBegin\nSurface \"drawsuniform\"\nAttributeBegin\nTranslate -1.5 0 0\n") + kSquare + "AttributeEnd\nAttributeBegin\nTranslate 1.5 0 0\n" + kSquare +
-            "AttributeEnd\nWorldEnd\n");
+    writeShader("drawsuniform",
+                "surface drawsuniform() { uniform float a = random(), b = random(); Ci = color(a, b, random()); Oi = 1; }\n");
+    Scene s(std::string("WorldBegin\nSurface \"drawsuniform\"\nAttributeBegin\nTranslate -1.5 0 0\n") + kSquare +
+            "AttributeEnd\nAttributeBegin\nTranslate 1.5 0 0\n" + kSquare + "AttributeEnd\nWorldEnd\n");
     const auto left = samples(s, 50, {-1.5f, 0, 2}), right = samples(s, 50, {1.5f, .2f, 2});
     for (const Color& c : left) EXPECT_EQ(Color(c[0], c[1], 0), Color(left[0][0], left[0][1], 0));
     for (const Color& c : right) EXPECT_EQ(Color(c[0], c[1], 0), Color(right[0][0], right[0][1], 0));

@@ -8,9 +8,9 @@
 // about 1).
 #include "accel/accel.h"
 #include "geometry/make.h"
+#include "lobes/sampling.h"
 #include "statistics/agreement.h"
 #include "world/arealight.h"
-#include "lobes/sampling.h"
 #include <gtest/gtest.h>
 #include <random>
 
@@ -52,32 +52,31 @@ std::vector<Case> cases() {
     std::vector<float> concave = {-1, -1, 0, 1, -1, 0, 1, 1, 0, 0, -.2f, 0, -1, 1, 0};
     Primitives many; // more than are chosen by area alone
     for (int i = 0; i < 12; ++i) {
-        const float x = -1 + .18f * float(i), y = .8f * std::sin(float(i) * 2.1f), z = .5f * std::cos(float(i) * 1.7f), r = .3f + .05f * float(i);
+        const float x = -1 + .18f * float(i), y = .8f * std::sin(float(i) * 2.1f), z = .5f * std::cos(float(i) * 1.7f),
+                    r = .3f + .05f * float(i);
         many.push_back(polygon({x, y, z, x + r, y, z + r, x + r, y + r, z, x, y + r, z}));
     }
-    return {
-        {"sphere", {quadric("Sphere", {1, -1, 1, 360})}, rigid, true},
-        {"mirrored sphere", {quadric("Sphere", {1, -1, 1, 360})}, scaleMatrix(-1, 1, 1) * rigid, true},
-        {"part of a sphere", {quadric("Sphere", {1, -.6f, .8f, 250})}, rigid},
-        {"ellipsoid", {quadric("Sphere", {1, -1, 1, 360})}, skew},
-        {"disk", {quadric("Disk", {.2f, 1, 300})}, skew},
-        {"cylinder", {quadric("Cylinder", {.6f, -1, 1, 360})}, skew},
-        {"cone", {quadric("Cone", {1.5f, .7f, 360})}, skew},
-        {"paraboloid", {quadric("Paraboloid", {1, .1f, 1.2f, 360})}, skew},
-        {"hyperboloid", {quadric("Hyperboloid", {1, 0, -.8f, .3f, .6f, .9f, 360})}, skew},
-        {"torus", {quadric("Torus", {.9f, .3f, 0, 360, 360})}, skew},
-        {"rectangle", {polygon({-1, -.5f, 0, 1, -.5f, 0, 1, .5f, 0, -1, .5f, 0})}, skew},
-        {"concave polygon", {polygon(concave)}, skew},
-        {"polygon with a hole", {holed()}, skew},
-        {"polyhedron", {polyhedron()}, skew},
-        {"bilinear patch", {patch("bilinear", {-1, -1, 0, 1, -1, .4f, -1, 1, .3f, .8f, 1, -.2f})}, skew},
-        {"bicubic patch", {patch("bicubic", bentNet())}, skew},
-        {"bicubic mesh", {patchMesh("bicubic", 4, "nonperiodic", 4, "nonperiodic", bentNet())}, skew},
-        {"sphere, disk and polygon",
-         {quadric("Sphere", {.5f, -.5f, .5f, 360}), quadric("Disk", {1.2f, .9f, 360}), polygon(concave)},
-         skew},
-        {"twelve polygons", many, skew}
-    };
+    return {{"sphere", {quadric("Sphere", {1, -1, 1, 360})}, rigid, true},
+            {"mirrored sphere", {quadric("Sphere", {1, -1, 1, 360})}, scaleMatrix(-1, 1, 1) * rigid, true},
+            {"part of a sphere", {quadric("Sphere", {1, -.6f, .8f, 250})}, rigid},
+            {"ellipsoid", {quadric("Sphere", {1, -1, 1, 360})}, skew},
+            {"disk", {quadric("Disk", {.2f, 1, 300})}, skew},
+            {"cylinder", {quadric("Cylinder", {.6f, -1, 1, 360})}, skew},
+            {"cone", {quadric("Cone", {1.5f, .7f, 360})}, skew},
+            {"paraboloid", {quadric("Paraboloid", {1, .1f, 1.2f, 360})}, skew},
+            {"hyperboloid", {quadric("Hyperboloid", {1, 0, -.8f, .3f, .6f, .9f, 360})}, skew},
+            {"torus", {quadric("Torus", {.9f, .3f, 0, 360, 360})}, skew},
+            {"rectangle", {polygon({-1, -.5f, 0, 1, -.5f, 0, 1, .5f, 0, -1, .5f, 0})}, skew},
+            {"concave polygon", {polygon(concave)}, skew},
+            {"polygon with a hole", {holed()}, skew},
+            {"polyhedron", {polyhedron()}, skew},
+            {"bilinear patch", {patch("bilinear", {-1, -1, 0, 1, -1, .4f, -1, 1, .3f, .8f, 1, -.2f})}, skew},
+            {"bicubic patch", {patch("bicubic", bentNet())}, skew},
+            {"bicubic mesh", {patchMesh("bicubic", 4, "nonperiodic", 4, "nonperiodic", bentNet())}, skew},
+            {"sphere, disk and polygon",
+             {quadric("Sphere", {.5f, -.5f, .5f, 360}), quadric("Disk", {1.2f, .9f, 360}), polygon(concave)},
+             skew},
+            {"twelve polygons", many, skew}};
 }
 
 /// An emitter with the shapes it is made of, and something that rays can meet.

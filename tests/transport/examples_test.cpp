@@ -13,9 +13,7 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 /// A map of one colour in the folder of the test's shaders.
-void oneColour(const std::string& name, Color c, bool sky = false) {
-    writeMap(name, sky ? 32 : 16, 16, c);
-}
+void oneColour(const std::string& name, Color c, bool sky = false) { writeMap(name, sky ? 32 : 16, 16, c); }
 
 struct Stage {
     std::string before, inside; ///< the frame before the world, and the world up to the surface that is seen

@@ -32,7 +32,10 @@ const CameraRay kSee = rayTo({0, 0, -3}, {.1f, .1f, 0});
 TEST(NotFinite, TheSampleIsLeftOutAndNamed) {
     writeShaders();
     const std::string matte = "Surface \"matte\"\n", lamp = "LightSource \"lamp\" 1\n";
-    struct Case { std::string what, world, named; bool path; };
+    struct Case {
+        std::string what, world, named;
+        bool path;
+    };
     const Case cases[] = {
         {"inf", std::string("Surface \"infinite\"\n") + kBall, "Ci of shader \"infinite\"", false},
         {"nan", std::string("Surface \"nonumber\"\n") + kBall, "Ci of shader \"nonumber\"", false},

@@ -1,4 +1,5 @@
-// The stage between hit and shader: events on the way of rays, as media with distance sampling and walks inside of surfaces have them.
+// The stage between hit and shader: events on the way of rays, as media with distance sampling and walks inside of surfaces have
+// them.
 #include "transport/floorscene.h"
 #include "wave/engine.h"
 
@@ -54,7 +55,8 @@ TEST(Flight, WhatIsAbsorbedOnTheWayDoesNotArrive) {
 TEST(Flight, ShadowRaysAreDimmedLikewise) {
     // A point light two above the floor, of irradiance pi there; both ways are through the medium.
     Absorbs absorbs;
-    Scene s(world("LightSource \"pointlight\" 1 \"intensity\" 4 \"point from\" [0 2 0] Surface \"matte\" \"Ka\" 0 \"Kd\" 1 Color .5 .5 .5 " +
+    Scene s(world("LightSource \"pointlight\" 1 \"intensity\" 4 \"point from\" [0 2 0] Surface \"matte\" \"Ka\" 0 \"Kd\" 1 Color "
+                  ".5 .5 .5 " +
                   std::string(kFloor)),
             withShaders(Hider::Path));
     const Moments m = estimate(s, absorbs, kView, 1 << 14);

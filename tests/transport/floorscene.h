@@ -1,4 +1,5 @@
-// What tests of shaders in small rendered scenes share: settings of one hider, a world, a wide floor and a camera ray that meets it.
+// What tests of shaders in small rendered scenes share: settings of one hider, a world, a wide floor and a camera ray that meets
+// it.
 #pragma once
 #include "transport/harness.h"
 

@@ -1,5 +1,5 @@
-// Footprints under transport: what a texture's filter sees after camera rays and after bounces. A checker of single texels on a large
-// wall has the mean 1/2; a lookup that is wide enough gives it in every single sample, one that is not gives 0 or 1.
+// Footprints under transport: what a texture's filter sees after camera rays and after bounces. A checker of single texels on a
+// large wall has the mean 1/2; a lookup that is wide enough gives it in every single sample, one that is not gives 0 or 1.
 #include "display/imageio.h"
 #include "transport/floorscene.h"
 
@@ -31,7 +31,8 @@ std::string checker() {
 // The wall lies at z = 100 and is 100 wide: a texel is 100 / 256 there.
 std::string wall() {
     writeShader("checkerwall", "surface checkerwall() { Oi = 1; Ci = color texture(\"" + checker() + "\", s, t); }\n");
-    return "AttributeBegin\nSurface \"checkerwall\"\nPatch \"bilinear\" \"P\" [-50 -50 100  50 -50 100  -50 50 100  50 50 100]\nAttributeEnd\n";
+    return "AttributeBegin\nSurface \"checkerwall\"\nPatch \"bilinear\" \"P\" [-50 -50 100  50 -50 100  -50 50 100  50 50 "
+           "100]\nAttributeEnd\n";
 }
 CameraRay toward(double x, double y, float spread) {
     CameraRay r = rayTo({0, 0, 0}, {float(x), float(y), 100});
@@ -72,7 +73,8 @@ TEST(Footprint, Bounces) {
         int sharp = 0, mean = 0;
         const int n = 200;
         for (int i = 0; i < n; ++i) {
-            CameraRay r = rayTo({float(texel(i % 8 + 100)), float(texel(120 + i / 8)), 1}, {float(texel(i % 8 + 100)), float(texel(120 + i / 8)), 0});
+            CameraRay r = rayTo({float(texel(i % 8 + 100)), float(texel(120 + i / 8)), 1},
+                                {float(texel(i % 8 + 100)), float(texel(120 + i / 8)), 0});
             r.spread = 1e-6f;
             r.px = i;
             float v = s.one(r).x;
@@ -91,7 +93,9 @@ TEST(Footprint, Bounces) {
 TEST(Footprint, DiffuseBounce) {
     Settings set;
     set.hider = Hider::Path;
-    Scene s("WorldBegin\nSides 2\n" + wall() + "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\nWorldEnd\n", set);
+    Scene s("WorldBegin\nSides 2\n" + wall() +
+                "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\nWorldEnd\n",
+            set);
     CameraRay r = rayTo({.3f, .2f, 1}, {0, 0, 0});
     r.spread = 1e-6f;
     int others = 0;
@@ -101,7 +105,8 @@ TEST(Footprint, DiffuseBounce) {
         others += v != 0 && std::fabs(v - .5f) > .03f;
     }
     EXPECT_EQ(others, 0);
-    // Square of half side 50 at distance 100 seen by a parallel element: F = 4 / (2 pi) 2 (a / sqrt(1 + a^2)) atan(a / sqrt(1 + a^2)), a = 1/2.
+    // Square of half side 50 at distance 100 seen by a parallel element: F = 4 / (2 pi) 2 (a / sqrt(1 + a^2)) atan(a / sqrt(1 +
+    // a^2)), a = 1/2.
     double a = .5, q = a / std::sqrt(1 + a * a), factor = 4 / (2 * kPi) * 2 * q * std::atan(q);
     expectMean(s.estimate(r, samples(20000)), .5 * factor, .02, "shape factor");
 }

@@ -1,4 +1,5 @@
-// outputchannel() of lights and atmospheres under conditions: where the call is not reached, what others gave to the output stays.
+// outputchannel() of lights and atmospheres under conditions: where the call is not reached, what others gave to the output
+// stays.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -16,12 +17,15 @@ std::vector<Floats> sides(const std::string& rib, Hider h, const std::vector<std
     Scene s(world(rib + kFloor), set);
     EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     std::vector<Floats> all;
-    for (const auto& r : s.trace(std::vector<CameraRay>{rayTo({-1, 2, 0}, {-1, 0, 0}), rayTo({1, 2, 0}, {1, 0, 0})})) all.push_back(r.aovs);
+    for (const auto& r : s.trace(std::vector<CameraRay>{rayTo({-1, 2, 0}, {-1, 0, 0}), rayTo({1, 2, 0}, {1, 0, 0})}))
+        all.push_back(r.aovs);
     return all;
 }
 
 void writeTellers() {
-    writeShader("tellsall", "light tellsall(float by = 5;) { illuminate(point \"world\" (0, 20, 0)) { Cl = 1; outputchannel(\"told\", by); } }\n");
+    writeShader(
+        "tellsall",
+        "light tellsall(float by = 5;) { illuminate(point \"world\" (0, 20, 0)) { Cl = 1; outputchannel(\"told\", by); } }\n");
     writeShader("tellsright", R"(light tellsright(float by = 7;) {
     illuminate(point "world" (0, 20, 0)) { Cl = 1; if (xcomp(transform("world", Ps)) > 0) outputchannel("told", by); }
 }
@@ -32,16 +36,20 @@ void writeTellers() {
 )");
 }
 
-std::string teller(const char* shader, int handle, float by) { return std::string("LightSource \"") + shader + "\" " + std::to_string(handle) + " \"by\" " + std::to_string(by) + "\n"; }
+std::string teller(const char* shader, int handle, float by) {
+    return std::string("LightSource \"") + shader + "\" " + std::to_string(handle) + " \"by\" " + std::to_string(by) + "\n";
+}
 
 TEST(GivenChannels, OfLightsUnderConditions) {
     writeTellers();
-    const struct { std::string lights; float left, right; } cases[] = {
-        {teller("tellsall", 1, 5) + teller("tellsright", 2, 7), 5, 7},
-        {teller("tellsright", 1, 7) + teller("tellsall", 2, 5), 5, 5},
-        {teller("tellsall", 1, 5) + teller("tellsright", 2, 0), 5, 0}, // a zero is a value
-        {teller("tellsall", 1, 5) + teller("tellsincone", 2, 7), 5, 7},
-        {teller("tellsright", 1, 7), 0, 7}};
+    const struct {
+        std::string lights;
+        float left, right;
+    } cases[] = {{teller("tellsall", 1, 5) + teller("tellsright", 2, 7), 5, 7},
+                 {teller("tellsright", 1, 7) + teller("tellsall", 2, 5), 5, 5},
+                 {teller("tellsall", 1, 5) + teller("tellsright", 2, 0), 5, 0}, // a zero is a value
+                 {teller("tellsall", 1, 5) + teller("tellsincone", 2, 7), 5, 7},
+                 {teller("tellsright", 1, 7), 0, 7}};
     for (const auto& c : cases)
         for (Hider h : {Hider::Hidden, Hider::Path})
             for (const char* surface : {"Surface \"matte\"\n", "Surface \"tellloop\"\n"}) {
@@ -60,9 +68,11 @@ TEST(GivenChannels, ArraysAndColours) {
     }
 }
 )");
-    const std::string lights = "LightSource \"tellsmuch\" 1 \"by\" 3 \"tint\" [1 2 3]\nLightSource \"tellsmuch\" 2 \"by\" 8 \"side\" 1 \"tint\" [4 0 6]\n";
+    const std::string lights = "LightSource \"tellsmuch\" 1 \"by\" 3 \"tint\" [1 2 3]\nLightSource \"tellsmuch\" 2 \"by\" 8 "
+                               "\"side\" 1 \"tint\" [4 0 6]\n";
     for (Hider h : {Hider::Hidden, Hider::Path}) {
-        EXPECT_EQ(sides(lights + "Surface \"matte\"\n", h, {"list", "tint"}), (std::vector<Floats>{{3, 4, 1, 2, 3}, {8, 9, 4, 0, 6}}));
+        EXPECT_EQ(sides(lights + "Surface \"matte\"\n", h, {"list", "tint"}),
+                  (std::vector<Floats>{{3, 4, 1, 2, 3}, {8, 9, 4, 0, 6}}));
         EXPECT_EQ(sides(lights + "Surface \"matte\"\n", h, {"list[1]"}), (std::vector<Floats>{{4}, {9}}));
     }
 }
@@ -73,9 +83,11 @@ TEST(GivenChannels, OfAtmospheres) {
     illuminate(point "world" (0, 20, 0)) { Cl = 1; if (xcomp(transform("world", Ps)) < 0) outputchannel("told", by); }
 }
 )");
-    writeShader("airtells", "volume airtells(float by = 9;) { if (xcomp(transform(\"world\", P)) > 0) outputchannel(\"told\", by); Ci = Ci; Oi = Oi; }\n");
+    writeShader("airtells", "volume airtells(float by = 9;) { if (xcomp(transform(\"world\", P)) > 0) outputchannel(\"told\", "
+                            "by); Ci = Ci; Oi = Oi; }\n");
     for (Hider h : {Hider::Hidden, Hider::Path}) {
-        EXPECT_EQ(sides("Atmosphere \"airtells\"\n" + teller("tellsleft", 1, 5) + "Surface \"matte\"\n", h, {"told"}), (std::vector<Floats>{{5}, {9}}));
+        EXPECT_EQ(sides("Atmosphere \"airtells\"\n" + teller("tellsleft", 1, 5) + "Surface \"matte\"\n", h, {"told"}),
+                  (std::vector<Floats>{{5}, {9}}));
         EXPECT_EQ(sides("Atmosphere \"airtells\"\nSurface \"matte\"\n", h, {"told"}), (std::vector<Floats>{{0}, {9}}));
     }
 }

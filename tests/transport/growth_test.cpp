@@ -1,7 +1,7 @@
 // Growth of work with depth, memory of suspended frames, interruption.
 #include "base/limits.h"
-#include "sanitized.h"
 #include "render/camera.h"
+#include "sanitized.h"
 #include "transport/harness.h"
 #include <chrono>
 #include <ctime>
@@ -183,8 +183,8 @@ TEST(Growth, SuspendedFramesStayBounded) {
     for (int i = 0; i < 7; ++i) x = .1 + .4 * x * x;
     EXPECT_NEAR(m.mean(), x, 1e-5);
 }
-// A shader that waits for eight rays at every point, in a closed box where it sends on four fifths of what arrives: .2 + .8 L = L = 1
-// but for depth 32 (.8^33 = .0006). The sum over rays must be finite work, and right.
+// A shader that waits for eight rays at every point, in a closed box where it sends on four fifths of what arrives: .2 + .8 L = L
+// = 1 but for depth 32 (.8^33 = .0006). The sum over rays must be finite work, and right.
 TEST(Growth, ManyRaysOfAWaitingShaderStayFinite) {
     writeShader("eight", R"(surface eight() {
     normal Nf = faceforward(normalize(N), I);
@@ -219,8 +219,8 @@ size_t residentBytes() {
     return resident * 4096;
 }
 
-/// Traces rays that take far longer than `wait` ms, asks to stop after those, and expects the end within the 0.2 s that the issue asks
-/// for, without more than `most` bytes more than before. Time of the processor: what else the machine has to do is not ours.
+/// Traces rays that take far longer than `wait` ms, asks to stop after those, and expects the end within the 0.2 s that the issue
+/// asks for, without more than `most` bytes more than before. Time of the processor: what else the machine has to do is not ours.
 void expectPromptStop(Scene& scene, const std::vector<CameraRay>& rays, int wait = 150, size_t most = size_t(512) << 20) {
     std::vector<SampleResult> out(rays.size());
     StopFlag stop{0};
@@ -264,19 +264,24 @@ TEST(Stop, ManyRaysEndPromptly) {
     expectPromptStop(scene, rays);
 }
 
-// 256 samples nested four deep are four thousand million rays a point: they take what they take, in bounded memory, and end when they
-// are asked to.
+// 256 samples nested four deep are four thousand million rays a point: they take what they take, in bounded memory, and end when
+// they are asked to.
 TEST(Stop, NestedSamplesEndPromptlyInBoundedMemory) {
     const char* const kBodies[][2] = {
-        {"gather", "color c = 0, sum = 0; gather(\"illuminance\", P, -P, PI / 2, 256, \"surface:Ci\", c) sum += c / 256; else sum += 1 / 256;"},
-        {"told", "color c = 0, sum = 0; float f = 0; gather(\"\", P, -P, PI / 2, 256, \"surface:Ci\", c, \"surface:shown\", f) sum += c / 256 + f * 1e-6;"},
-        {"trace", "color sum = trace(P, vector(-P), \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samples\", 256); if (comp(sum, 0) > 2) sum = 0;"},
+        {"gather", "color c = 0, sum = 0; gather(\"illuminance\", P, -P, PI / 2, 256, \"surface:Ci\", c) sum += c / 256; else "
+                   "sum += 1 / 256;"},
+        {"told", "color c = 0, sum = 0; float f = 0; gather(\"\", P, -P, PI / 2, 256, \"surface:Ci\", c, \"surface:shown\", f) "
+                 "sum += c / 256 + f * 1e-6;"},
+        {"trace", "color sum = trace(P, vector(-P), \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samples\", 256); if "
+                  "(comp(sum, 0) > 2) sum = 0;"},
         {"indirect", "color sum = indirectdiffuse(P, vector(-P), 256); if (comp(sum, 0) > 2) sum = 0;"},
-        {"inside", "color c = 0, sum = 0; gather(\"\", P, -P, 1, 256) { gather(\"\", P, -P, 1, 256) { gather(\"\", P, -P, 1, 256) {"
-                   " gather(\"\", P, -P, 1, 256, \"surface:Ci\", c) sum += c * 1e-9; } } }"}};
+        {"inside",
+         "color c = 0, sum = 0; gather(\"\", P, -P, 1, 256) { gather(\"\", P, -P, 1, 256) { gather(\"\", P, -P, 1, 256) {"
+         " gather(\"\", P, -P, 1, 256, \"surface:Ci\", c) sum += c * 1e-9; } } }"}};
     for (const auto& pair : kBodies) {
         const char *const name = pair[0], *const body = pair[1];
-        writeShader(std::string("deep") + name, "surface deep" + std::string(name) + "(output varying float shown = 0) { " + std::string(body) + " shown = comp(sum, 0); Oi = 1; Ci = .1 + .5 * sum; }\n");
+        writeShader(std::string("deep") + name, "surface deep" + std::string(name) + "(output varying float shown = 0) { " +
+                                                    std::string(body) + " shown = comp(sum, 0); Oi = 1; Ci = .1 + .5 * sum; }\n");
         for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
             Settings s;
             s.hider = h;
@@ -284,7 +289,8 @@ TEST(Stop, NestedSamplesEndPromptlyInBoundedMemory) {
             s.roulette = false;
             Scene scene("WorldBegin\nSides 2\nAttribute \"trace\" \"int maxdiffusedepth\" 4 \"int maxspeculardepth\" 4\n"
                         "Attribute \"visibility\" \"int diffuse\" 1 \"int specular\" 1 \"int transmission\" 1\nSurface \"deep" +
-                            std::string(name) + "\"\nSphere 1 -1 1 360\nWorldEnd\n", s);
+                            std::string(name) + "\"\nSphere 1 -1 1 360\nWorldEnd\n",
+                        s);
             ASSERT_TRUE(scene.world);
             SCOPED_TRACE(std::string(name) + " " + std::to_string(int(h)));
             expectPromptStop(scene, std::vector<CameraRay>(2000, rayTo({0, 0, 0}, {.1f, .2f, 1})), 600);
@@ -292,22 +298,27 @@ TEST(Stop, NestedSamplesEndPromptlyInBoundedMemory) {
     }
 }
 
-// Counts that ask for nothing, for no number, or for far too much: a message, a value that is finite, and a bounded number of rays.
+// Counts that ask for nothing, for no number, or for far too much: a message, a value that is finite, and a bounded number of
+// rays.
 TEST(Growth, CountsThatMakeNoSense) {
-    const struct { const char *name, *call; } kCalls[] = {
-        {"trace", "trace(P, up, \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samples\", k)"},
-        {"indirect", "indirectdiffuse(P, up, k)"},
-        {"occlusion", "color occlusion(P, up, k)"},
-        {"transmission", "transmission(P, P + up, \"samplecone\", .5, \"samples\", k)"},
-        {"environment", "environment(\"raytrace\", up, \"samples\", k, \"samplecone\", 1)"}};
+    const struct {
+        const char *name, *call;
+    } kCalls[] = {{"trace", "trace(P, up, \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samples\", k)"},
+                  {"indirect", "indirectdiffuse(P, up, k)"},
+                  {"occlusion", "color occlusion(P, up, k)"},
+                  {"transmission", "transmission(P, P + up, \"samplecone\", .5, \"samples\", k)"},
+                  {"environment", "environment(\"raytrace\", up, \"samples\", k, \"samplecone\", 1)"}};
     for (const auto& [name, call] : kCalls) {
-        writeShader(std::string("senseless") + name, "surface senseless" + std::string(name) + "(float n = 1) { vector up = vector(0, 0, -1); float k = n; "
-                                                         "if (n == 77) k = 0 * sqrt(-1 - n); Oi = 1; Ci = " + call + "; }\n");
+        writeShader(std::string("senseless") + name, "surface senseless" + std::string(name) +
+                                                         "(float n = 1) { vector up = vector(0, 0, -1); float k = n; "
+                                                         "if (n == 77) k = 0 * sqrt(-1 - n); Oi = 1; Ci = " +
+                                                         call + "; }\n");
         for (const char* n : {"0", "-1", "77", "1e9"}) {
             Settings s;
             s.hider = Hider::Path;
             Scene scene("WorldBegin\nSides 2\nSurface \"senseless" + std::string(name) + "\" \"n\" " + n +
-                            "\nPolygon \"P\" [-1 -1 1  1 -1 1  1 1 1  -1 1 1]\nWorldEnd\n", s);
+                            "\nPolygon \"P\" [-1 -1 1  1 -1 1  1 1 1  -1 1 1]\nWorldEnd\n",
+                        s);
             ASSERT_TRUE(scene.world);
             Counters c;
             const CameraRay ray = rayTo({0, 0, 0}, {.1f, .2f, 1});
@@ -315,7 +326,8 @@ TEST(Growth, CountsThatMakeNoSense) {
             EXPECT_TRUE(std::isfinite(got.x)) << name << " " << n;
             const uint64_t rays = c.diffuse + c.specular + c.transmission + c.shadow;
             EXPECT_LE(rays, 4096u * 2) << name << " " << n;
-            EXPECT_EQ(scene.messages().find("4096 rays at most") != std::string::npos, std::string(n) == "1e9") << name << " " << n << scene.messages();
+            EXPECT_EQ(scene.messages().find("4096 rays at most") != std::string::npos, std::string(n) == "1e9")
+                << name << " " << n << scene.messages();
         }
     }
 }

@@ -1,4 +1,5 @@
-// One class that displaces and shades: what its displacement() writes to members its other methods see (rsl.md 7.2), with derivatives.
+// One class that displaces and shades: what its displacement() writes to members its other methods see (rsl.md 7.2), with
+// derivatives.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -71,15 +72,14 @@ const char* const kDune = R"(class dune(float what = 0; output varying float lef
 TEST(LeftMembers, SurfaceSeesWhatDisplacementWrote) {
     writeShader("dune", kDune);
     const float u = .6f, v = .3f, height = .5f * u * u;
-    const Color wants[] = {{height, u, 0},                 // d(u*u/2)/du = u
-                           {5, 5 - height, v},             // begin() saw the surface where it was
-                           {1, 2 * u, 1}, {5, 3 * v, 2}, {u, 20, 2},
-                           {1, 2, .5f}};                   // begin() ran once
+    const Color wants[] = {{height, u, 0},                                              // d(u*u/2)/du = u
+                           {5, 5 - height, v},                                          // begin() saw the surface where it was
+                           {1, 2 * u, 1},      {5, 3 * v, 2}, {u, 20, 2}, {1, 2, .5f}}; // begin() ran once
     for (const Hider h : kHiders)
         for (int what = 0; what < 6; ++what)
             for (const bool mixed : {false, h == Hider::Hidden})
-                expectColor(seen("Surface \"dune\" \"float what\" " + std::to_string(what) + "\n" + kPatch, h, u, v, mixed), wants[what],
-                            "what " + std::to_string(what) + ", hider " + std::to_string(int(h)));
+                expectColor(seen("Surface \"dune\" \"float what\" " + std::to_string(what) + "\n" + kPatch, h, u, v, mixed),
+                            wants[what], "what " + std::to_string(what) + ", hider " + std::to_string(int(h)));
     // An array that grows is as long as displacement() made it at this point.
     expectColor(seen("Surface \"dune\" \"float what\" 3\n" + kPatch, Hider::Hidden, .4f, v), {5, 3 * v, 1}, "u below 1/2");
 }
@@ -88,7 +88,9 @@ TEST(LeftMembers, OpacityStopsRaysByThem) {
     writeShader("dune", kDune);
     writeShader("through", "surface through() { Oi = 1; Ci = transmission(P, P - vector(0, 0, 6)); }\n");
     // A wall behind the dune, and the eye between the two: what goes through the dune is its height.
-    const std::string scene = "AttributeBegin\nAttribute \"visibility\" \"integer transmission\" 1\nAttribute \"shade\" \"string transmissionhitmode\" \"shader\"\nSurface \"dune\"\n" + kPatch +
+    const std::string scene = "AttributeBegin\nAttribute \"visibility\" \"integer transmission\" 1\nAttribute \"shade\" \"string "
+                              "transmissionhitmode\" \"shader\"\nSurface \"dune\"\n" +
+                              kPatch +
                               "AttributeEnd\nSurface \"through\"\nPatch \"bilinear\" \"P\" [-2 -2 9  2 -2 9  -2 2 9  2 2 9]\n";
     for (const Hider h : kHiders) {
         Scene s(world(scene), withShaders(h));

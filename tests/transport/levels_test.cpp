@@ -8,13 +8,15 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 std::string pane(const std::string& levels, const std::string& colour) {
-    return "AttributeBegin Attribute \"detail\" \"float[2] __level\" [" + levels + "] Surface \"constant\" Color " + colour + " Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n";
+    return "AttributeBegin Attribute \"detail\" \"float[2] __level\" [" + levels + "] Surface \"constant\" Color " + colour +
+           " Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n";
 }
 
 TEST(FadingLevels, EverySampleSeesOne) {
     const std::string panes = pane("0 .75", "1 0 0") + pane("0.75 1", "0 0 1");
     const CameraRay above = rayTo({.3f, 3, -.4f}, {0, 1, 0}), below = rayTo({.3f, .4f, -.4f}, {0, 0, 0});
-    writeShader("looksup", "surface looksup() { Oi = 1; vector up = vector \"world\" (0, 1, 0); Ci = trace(P, up) + color(0, 1, 0) * transmission(P, P + 5 * up); }\n");
+    writeShader("looksup", "surface looksup() { Oi = 1; vector up = vector \"world\" (0, 1, 0); Ci = trace(P, up) + color(0, 1, "
+                           "0) * transmission(P, P + 5 * up); }\n");
     Scene s(world(panes + std::string("Surface \"looksup\" ") + kFloor), withShaders(Hider::Raytrace));
     const int n = samples(4000);
     const Moments seen = s.estimate(above, n), reflected = s.estimate(below, n);

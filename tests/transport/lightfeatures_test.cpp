@@ -58,7 +58,8 @@ TEST(LightBlocks, AllOfThemLight) {
 )");
     const double second = 8 * (2 / std::sqrt(5.0)) / 5;
     for (int on : {1, 0}) {
-        std::string rib = scene("LightSource \"fourlights\" 1 \"float on\" " + std::to_string(on) + "\n", "\"matte\" \"float Ka\" 1 \"float Kd\" 1");
+        std::string rib = scene("LightSource \"fourlights\" 1 \"float on\" " + std::to_string(on) + "\n",
+                                "\"matte\" \"float Ka\" 1 \"float Kd\" 1");
         double want = 2 + on * second + .5;
         Scene hidden(rib, under(Hider::Hidden));
         EXPECT_NEAR(hidden.one(kView).x, want, 1e-5);
@@ -69,10 +70,12 @@ TEST(LightBlocks, AllOfThemLight) {
 }
 // A category or Illuminate switches all blocks of a light.
 TEST(LightBlocks, SwitchedTogether) {
-    writeShader("twolights", "light twolights() { solar(vector(0, -1, 0), 0) Cl = .5; illuminate(point \"world\" (0, 2, 0)) Cl = 4; }\n");
+    writeShader("twolights",
+                "light twolights() { solar(vector(0, -1, 0), 0) Cl = .5; illuminate(point \"world\" (0, 2, 0)) Cl = 4; }\n");
     Scene on(scene("LightSource \"twolights\" 1\n", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), under(Hider::Hidden));
     EXPECT_NEAR(on.one(kView).x, 4.5, 1e-5);
-    Scene off(scene("LightSource \"twolights\" 1\nIlluminate 1 0\n", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), under(Hider::Hidden));
+    Scene off(scene("LightSource \"twolights\" 1\nIlluminate 1 0\n", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"),
+              under(Hider::Hidden));
     EXPECT_EQ(off.one(kView).x, 0);
 }
 // Both blocks of an area light emit: 5 seen from the front, half of the light from a block of 2 and one of 3.
@@ -88,7 +91,8 @@ TEST(LightBlocks, OfAnAreaLight) {
 // The loop's sky: radiance L from everywhere is L; a half plane takes half.
 TEST(SkyInLoops, WholeAndHalf) {
     writeLooks();
-    std::string half = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [0 .5 -9000  9000 .5 -9000  9000 .5 9000  0 .5 9000]\nAttributeEnd\n";
+    std::string half = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [0 .5 -9000  9000 .5 -9000  9000 .5 "
+                       "9000  0 .5 9000]\nAttributeEnd\n";
     std::string sky = "LightSource \"envlight\" 1 \"float intensity\" 3\n";
     CameraRay view = rayTo({-.3f, .2f, -.4f}, {0, 0, 0});
     for (const char* look : {"\"floorloop\"", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"}) {
@@ -102,18 +106,24 @@ TEST(SkyInLoops, WholeAndHalf) {
 }
 // A narrow cone about the normal of half angle a sees sin^2 a of the sky.
 TEST(SkyInLoops, Cone) {
-    writeShader("conesky", "surface conesky() { color c = 0; illuminance(P, normal(0, 1, 0), .4) { c += Cl * (normalize(L) . vector(0, 1, 0)); } Ci = c; Oi = 1; }\n");
+    writeShader("conesky", "surface conesky() { color c = 0; illuminance(P, normal(0, 1, 0), .4) { c += Cl * (normalize(L) . "
+                           "vector(0, 1, 0)); } Ci = c; Oi = 1; }\n");
     Scene s(scene("LightSource \"envlight\" 1 \"float intensity\" 3\n", "\"conesky\""), under(Hider::Path));
     expectMean(s.estimate(kView, samples(10000)), 3 * std::pow(std::sin(.4), 2), .01, "cone");
 }
 // The strategy gives a light to illuminance or to trace(); diffuse() always has all.
 TEST(SamplingStrategy, Partitions) {
     writeLooks();
-    const struct { const char* strategy; bool loop, trace; } cases[] = {{"", true, true}, {"illuminance", true, false}, {"trace", false, true}};
+    const struct {
+        const char* strategy;
+        bool loop, trace;
+    } cases[] = {{"", true, true}, {"illuminance", true, false}, {"trace", false, true}};
     for (const auto& c : cases) {
-        std::string attribute = *c.strategy ? std::string("Attribute \"light\" \"samplingstrategy\" \"") + c.strategy + "\"\n" : "";
+        std::string attribute =
+            *c.strategy ? std::string("Attribute \"light\" \"samplingstrategy\" \"") + c.strategy + "\"\n" : "";
         for (bool sky : {false, true}) {
-            std::string light = sky ? attribute + "LightSource \"envlight\" 7 \"float intensity\" 5\n" : disk(attribute, "\"slrect\" 7 \"float intensity\" 5");
+            std::string light = sky ? attribute + "LightSource \"envlight\" 7 \"float intensity\" 5\n"
+                                    : disk(attribute, "\"slrect\" 7 \"float intensity\" 5");
             double value = sky ? 5 : kDiskValue;
             std::string what = std::string(c.strategy) + (sky ? " sky" : " disk");
             for (const char* look : {"\"floorloop\"", "\"floortrace\"", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"}) {
@@ -127,12 +137,14 @@ TEST(SamplingStrategy, Partitions) {
     }
 }
 
-// I / d^2 from an area light: read as radiance pi I / A, so that far away it is a point light of intensity I. On a disk's axis: I / (R^2 + h^2).
+// I / d^2 from an area light: read as radiance pi I / A, so that far away it is a point light of intensity I. On a disk's axis: I
+// / (R^2 + h^2).
 TEST(IntensityLight, IsDetectedAndSpread) {
     writeShader("oldarea", "light oldarea(float intensity = 1;) { illuminate(P, N, PI / 2) Cl = intensity / (L . L); }\n");
     writeLooks();
     for (int mode : {0, 1, 2, 3}) {
-        Scene s(scene(disk("", "\"oldarea\" 7 \"float intensity\" 5"), mode == 3 ? "\"floorloop\"" : "\"matte\" \"float Ka\" 0 \"float Kd\" 1"),
+        Scene s(scene(disk("", "\"oldarea\" 7 \"float intensity\" 5"),
+                      mode == 3 ? "\"floorloop\"" : "\"matte\" \"float Ka\" 0 \"float Kd\" 1"),
                 under(Hider::Path, mode == 3 ? 0 : mode));
         expectMean(s.estimate(kView, samples(mode == 1 ? 200000 : 20000)), 5 / 4.49, .01, "mode " + std::to_string(mode));
         EXPECT_NE(s.messages().find("divides by the distance itself"), std::string::npos) << s.messages();
@@ -147,7 +159,8 @@ TEST(ManyLights, SumStaysTheSame) {
     std::string lights;
     double want = 0;
     for (int i = 0; i < 60; ++i) {
-        double x = std::sin(i * 1.7) * (1 + i % 7), z = std::cos(i * 2.3) * (1 + i % 5), y = .6 + .31 * (i % 4), power = .2 + i % 3;
+        double x = std::sin(i * 1.7) * (1 + i % 7), z = std::cos(i * 2.3) * (1 + i % 5), y = .6 + .31 * (i % 4),
+               power = .2 + i % 3;
         double d2 = x * x + y * y + z * z;
         if (i % 10 == 9) { // a sphere wholly above the horizon: L (R / d)^2 cos a
             double radius = .2;
@@ -158,8 +171,8 @@ TEST(ManyLights, SumStaysTheSame) {
                       std::to_string(i + 1) + " 1\n";
             want += power * 8 * radius * radius / d2 * y / std::sqrt(d2);
         } else {
-            lights += "LightSource \"pointlight\" " + std::to_string(i + 1) + " \"float intensity\" " + std::to_string(power) + " \"point from\" [" + std::to_string(x) + " " +
-                      std::to_string(y) + " " + std::to_string(z) + "]\n";
+            lights += "LightSource \"pointlight\" " + std::to_string(i + 1) + " \"float intensity\" " + std::to_string(power) +
+                      " \"point from\" [" + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "]\n";
             want += power * y / std::sqrt(d2) / d2;
         }
     }
@@ -180,20 +193,23 @@ TEST(ManyLights, SumStaysTheSame) {
 TEST(ClippingPlane, CutsWhatTheCameraSees) {
     auto wall = [](double z, const char* color) {
         std::string at = std::to_string(z);
-        return std::string("AttributeBegin\nSurface \"constant\"\nColor ") + color + "\nPolygon \"P\" [-9 -9 " + at + " 9 -9 " + at + " 9 9 " + at + " -9 9 " + at + "]\nAttributeEnd\n";
+        return std::string("AttributeBegin\nSurface \"constant\"\nColor ") + color + "\nPolygon \"P\" [-9 -9 " + at + " 9 -9 " +
+               at + " 9 9 " + at + " -9 9 " + at + "]\nAttributeEnd\n";
     };
     std::string world = "WorldBegin\nSides 2\n" + wall(4, "1 0 0") + wall(6, "0 1 0") + wall(8, "0 0 1") + "WorldEnd\n";
-    const struct { const char* planes; Color want; } cases[] = {
-        {"", {1, 0, 0}},
-        {"ClippingPlane 0 0 5 0 0 1\n", {1, 0, 0}},
-        {"ClippingPlane 0 0 5 0 0 -1\n", {0, 1, 0}},
-        {"ClippingPlane 0 0 7 0 0 -1\n", {0, 0, 1}},
-        {"ClippingPlane 0 0 9 0 0 -1\n", {0, 0, 0}},
-        {"ClippingPlane 0 0 3 0 0 1\n", {0, 0, 0}},
-        {"ClippingPlane 0 0 5 0 0 -1\nClippingPlane 0 0 5.5 0 0 1\n", {0, 0, 0}},
-        {"ClippingPlane 0 0 5 0 0 -1\nClippingPlane 0 0 7 0 0 1\n", {0, 1, 0}},
-        {"ClippingPlane 0 1 0 0 1 0\n", {1, 0, 0}},   // along the ray, on the side that stays
-        {"ClippingPlane 0 -1 0 0 1 0\n", {0, 0, 0}}}; // and on the other
+    const struct {
+        const char* planes;
+        Color want;
+    } cases[] = {{"", {1, 0, 0}},
+                 {"ClippingPlane 0 0 5 0 0 1\n", {1, 0, 0}},
+                 {"ClippingPlane 0 0 5 0 0 -1\n", {0, 1, 0}},
+                 {"ClippingPlane 0 0 7 0 0 -1\n", {0, 0, 1}},
+                 {"ClippingPlane 0 0 9 0 0 -1\n", {0, 0, 0}},
+                 {"ClippingPlane 0 0 3 0 0 1\n", {0, 0, 0}},
+                 {"ClippingPlane 0 0 5 0 0 -1\nClippingPlane 0 0 5.5 0 0 1\n", {0, 0, 0}},
+                 {"ClippingPlane 0 0 5 0 0 -1\nClippingPlane 0 0 7 0 0 1\n", {0, 1, 0}},
+                 {"ClippingPlane 0 1 0 0 1 0\n", {1, 0, 0}},   // along the ray, on the side that stays
+                 {"ClippingPlane 0 -1 0 0 1 0\n", {0, 0, 0}}}; // and on the other
     for (Hider h : {Hider::Hidden, Hider::Path})
         for (const auto& c : cases) {
             Scene s(c.planes + world, under(h));
@@ -201,8 +217,11 @@ TEST(ClippingPlane, CutsWhatTheCameraSees) {
             for (int k = 0; k < 3; ++k) EXPECT_EQ(got[k], c.want[k]) << c.planes;
         }
     // A roof that is cut away still shades the floor from a distant light above it.
-    std::string roofed = "ClippingPlane 0 .5 0 0 1 0\nWorldBegin\nSides 2\nLightSource \"distantlight\" 1 \"point from\" [0 1 0] \"point to\" [0 0 0]\n"
-                         "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 1 -1  1 1 -1  1 1 1  -1 1 1]\nAttributeEnd\nSurface \"matte\"\n" + std::string(kFloor) + "WorldEnd\n";
+    std::string roofed = "ClippingPlane 0 .5 0 0 1 0\nWorldBegin\nSides 2\nLightSource \"distantlight\" 1 \"point from\" [0 1 0] "
+                         "\"point to\" [0 0 0]\n"
+                         "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 1 -1  1 1 -1  1 1 1  -1 1 "
+                         "1]\nAttributeEnd\nSurface \"matte\"\n" +
+                         std::string(kFloor) + "WorldEnd\n";
     Scene s(roofed, under(Hider::Path));
     EXPECT_EQ(s.one(rayTo({.1f, 2, .1f}, {0, 0, 0})).x, 0);
     EXPECT_NEAR(s.estimate(rayTo({5, 2, .1f}, {5, 0, 0}), 100).mean(), 1, .05);

@@ -1,5 +1,5 @@
-// illuminance in all its forms, and lights by their handles. A large floor y = 0 seen at the origin; a point light of intensity I at
-// height h straight above gives Cl = I / h^2 there, L = (0, h, 0). Under path the same, for nothing lies between.
+// illuminance in all its forms, and lights by their handles. A large floor y = 0 seen at the origin; a point light of intensity I
+// at height h straight above gives Cl = I / h^2 there, L = (0, h, 0). Under path the same, for nothing lies between.
 #include "base/limits.h"
 #include "transport/floorscene.h"
 
@@ -18,13 +18,16 @@ void surfaceOf(const std::string& name, const std::string& body, const std::stri
 }
 /// Light of constant Cl = c, h above the origin, of categories.
 void writeLights() {
-    writeShader("flat", R"(light flat(float c = 1; float h = 2; string __category = ""; float __nondiffuse = 0; float __nonspecular = 0;) {
+    writeShader(
+        "flat",
+        R"(light flat(float c = 1; float h = 2; string __category = ""; float __nondiffuse = 0; float __nonspecular = 0;) {
     illuminate(point "world" (0, h, 0)) Cl = c;
 }
 )");
 }
 std::string flat(int handle, float c, float h = 2, const std::string& more = "") {
-    return "LightSource \"flat\" " + std::to_string(handle) + " \"float c\" " + std::to_string(c) + " \"float h\" " + std::to_string(h) + " " + more + "\n";
+    return "LightSource \"flat\" " + std::to_string(handle) + " \"float c\" " + std::to_string(c) + " \"float h\" " +
+           std::to_string(h) + " " + more + "\n";
 }
 std::string category(const std::string& c) { return "\"string __category\" \"" + c + "\""; }
 
@@ -34,7 +37,9 @@ void expectEverywhere(const std::string& rib, Color want, const std::string& wha
         for (bool suspend : {false, true}) {
             Scene s(rib, under(h, suspend));
             const Color c = s.one(kView);
-            for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], want[k], 1e-5 * std::max(1.f, want[k])) << what << ", hider " << int(h) << (suspend ? ", suspended" : "") << s.messages();
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(c[k], want[k], 1e-5 * std::max(1.f, want[k]))
+                    << what << ", hider " << int(h) << (suspend ? ", suspended" : "") << s.messages();
             EXPECT_EQ(s.diagnostics.warnings(), 0) << what << s.messages();
         }
 }
@@ -42,11 +47,24 @@ void expectEverywhere(const std::string& rib, Color want, const std::string& wha
 TEST(Illuminance, Forms) {
     writeLights();
     const std::string lights = flat(1, 1, 2, category("a")) + flat(2, 4, 3, category("b")) + flat(3, 16, -2, category("a,b"));
-    const struct { const char* head; float want; } cases[] = {
-        {"P", 21}, {"\"\", P", 21}, {"\"a\", P", 17}, {"\"b\", P", 20}, {"\"-a\", P", 4}, {"\"a|b\", P", 21}, {"\"a&b\", P", 16}, {"\"a,-b\", P", 1},
-        {"P, normal \"world\" (0, 1, 0), PI / 2", 5}, {"P, vector \"world\" (0, 1, 0), .1", 5}, {"P, vector \"world\" (0, -1, 0), .1", 16},
-        {"P, vector \"world\" (1, 0, 0), 1", 0}, {"\"a\", P, normal \"world\" (0, 1, 0), PI / 2", 1},
-        {"P, \"lightcache\", \"reuse\"", 21}, {"\"b\", P, vector \"world\" (0, 1, 0), 1, \"lightcache\", \"refresh\"", 4}};
+    const struct {
+        const char* head;
+        float want;
+    } cases[] = {{"P", 21},
+                 {"\"\", P", 21},
+                 {"\"a\", P", 17},
+                 {"\"b\", P", 20},
+                 {"\"-a\", P", 4},
+                 {"\"a|b\", P", 21},
+                 {"\"a&b\", P", 16},
+                 {"\"a,-b\", P", 1},
+                 {"P, normal \"world\" (0, 1, 0), PI / 2", 5},
+                 {"P, vector \"world\" (0, 1, 0), .1", 5},
+                 {"P, vector \"world\" (0, -1, 0), .1", 16},
+                 {"P, vector \"world\" (1, 0, 0), 1", 0},
+                 {"\"a\", P, normal \"world\" (0, 1, 0), PI / 2", 1},
+                 {"P, \"lightcache\", \"reuse\"", 21},
+                 {"\"b\", P, vector \"world\" (0, 1, 0), 1, \"lightcache\", \"refresh\"", 4}};
     for (const auto& c : cases) {
         surfaceOf("forms", std::string("    illuminance(") + c.head + ") Ci += Cl;");
         expectEverywhere(scene(lights, "\"forms\""), Color(c.want), c.head);
@@ -56,7 +74,9 @@ TEST(Illuminance, Forms) {
 TEST(Illuminance, CategoryKnownOnlyWhenItRuns) {
     writeLights();
     // One of the categories on each side of the floor.
-    surfaceOf("later", "    string which = \"a\"; if (xcomp(transform(\"world\", P)) > 0) which = \"b\";\n    illuminance(which, P) Ci += Cl;");
+    surfaceOf(
+        "later",
+        "    string which = \"a\"; if (xcomp(transform(\"world\", P)) > 0) which = \"b\";\n    illuminance(which, P) Ci += Cl;");
     Scene s(scene(flat(1, 1, 2, category("a")) + flat(2, 4, 3, category("b")), "\"later\""), under(Hider::Hidden));
     EXPECT_NEAR(s.one(rayTo({-1, 2, 0}, {-1, 0, 0.1f})).x, 1, 1e-5);
     EXPECT_NEAR(s.one(rayTo({1, 2, 0}, {1, 0, 0.1f})).x, 4, 1e-5);
@@ -77,7 +97,10 @@ TEST(Illuminance, ACategoryThatCannotBeReadIsSaid) {
 TEST(Illuminance, BreakContinueReturn) {
     writeLights();
     const std::string lights = flat(1, 1) + flat(2, 10) + flat(3, 100);
-    const struct { const char* body; float want; } cases[] = {
+    const struct {
+        const char* body;
+        float want;
+    } cases[] = {
         {"illuminance(P) { Ci += Cl; if (comp(Cl, 0) > 5) break; }", 11},
         {"illuminance(P) { if (comp(Cl, 0) > 5 && comp(Cl, 0) < 50) continue; Ci += Cl; }", 101},
         {"float i; for (i = 0; i < 3; i += 1) { illuminance(P) { Ci += Cl; if (comp(Cl, 0) > 5) break 2; } }", 11},
@@ -92,18 +115,22 @@ TEST(Illuminance, BreakContinueReturn) {
 
 // Parameters of the light after it has run: outputs that it has written, others as given.
 TEST(Illuminance, ParametersOfTheLight) {
-    writeShader("tells", R"(light tells(float c = 2; output varying float doubled = 0; output varying color tint = 0; string name = "sun";) {
+    writeShader(
+        "tells",
+        R"(light tells(float c = 2; output varying float doubled = 0; output varying color tint = 0; string name = "sun";) {
     illuminate(point "world" (0, 2, 0)) { doubled = 2 * c; tint = color(length(L), 1, 0); Cl = c; }
 }
 )");
-    const struct { const char* body; Color want; } cases[] = {
-        {"float d = 0; illuminance(P, \"light:doubled\", d) Ci += d;", {6, 6, 6}},
-        {"float d = 9; illuminance(P, \"light:missing\", d) Ci += d;", {9, 9, 9}},
-        {"float d = 9; illuminance(P, \"light:name\", d) Ci += d;", {9, 9, 9}}, // of another type
-        {"string n = \"\"; illuminance(P, \"light:name\", n) { if (n == \"sun\") Ci += 1; }", {1, 1, 1}},
-        {"color t = 0; float d = 0; illuminance(P, \"light:tint\", t, \"light:doubled\", d) Ci += t * d;", {12, 6, 0}},
-        {"float c = 0; illuminance(P, \"light:c\", c) Ci += c;", {3, 3, 3}},
-        {"illuminance(P) { float d = 0; Ci += lightsource(\"doubled\", d); Ci += d; }", {7, 7, 7}}};
+    const struct {
+        const char* body;
+        Color want;
+    } cases[] = {{"float d = 0; illuminance(P, \"light:doubled\", d) Ci += d;", {6, 6, 6}},
+                 {"float d = 9; illuminance(P, \"light:missing\", d) Ci += d;", {9, 9, 9}},
+                 {"float d = 9; illuminance(P, \"light:name\", d) Ci += d;", {9, 9, 9}}, // of another type
+                 {"string n = \"\"; illuminance(P, \"light:name\", n) { if (n == \"sun\") Ci += 1; }", {1, 1, 1}},
+                 {"color t = 0; float d = 0; illuminance(P, \"light:tint\", t, \"light:doubled\", d) Ci += t * d;", {12, 6, 0}},
+                 {"float c = 0; illuminance(P, \"light:c\", c) Ci += c;", {3, 3, 3}},
+                 {"illuminance(P) { float d = 0; Ci += lightsource(\"doubled\", d); Ci += d; }", {7, 7, 7}}};
     for (const auto& c : cases) {
         surfaceOf("asks", std::string("    ") + c.body);
         expectEverywhere(scene("LightSource \"tells\" 1 \"float c\" 3\n", "\"asks\""), c.want, c.body);
@@ -115,17 +142,23 @@ TEST(Illuminance, SentParameters) {
     illuminate(point "world" (0, 2, 0)) { seen = c; Cl = c * tint; if (mode == "double") Cl *= 2; }
 }
 )");
-    const struct { const char* body; Color want; } cases[] = {
+    const struct {
+        const char* body;
+        Color want;
+    } cases[] = {
         {"illuminance(P) Ci += Cl;", {2, 2, 2}},
         {"illuminance(P, \"send:light:c\", 5) Ci += Cl;", {5, 5, 5}},
         {"illuminance(P, \"send:light:tint\", color(1, 2, 3), \"send:light:c\", 3) Ci += Cl;", {3, 6, 9}},
         {"illuminance(P, \"send:light:mode\", \"double\") Ci += Cl;", {4, 4, 4}},
         {"illuminance(P, \"send:light:nothing\", 1) Ci += Cl;", {2, 2, 2}},
         {"illuminance(P, \"send:light:tint\", 4) Ci += Cl;", {2, 2, 2}}, // of another size
-        {"illuminance(P, \"send:light:c\", 5) Ci += Cl; illuminance(P) Ci += 10 * Cl; illuminance(P, \"send:light:c\", 7) Ci += 100 * Cl;", {725, 725, 725}},
+        {"illuminance(P, \"send:light:c\", 5) Ci += Cl; illuminance(P) Ci += 10 * Cl; illuminance(P, \"send:light:c\", 7) Ci += "
+         "100 * Cl;",
+         {725, 725, 725}},
         {"float s = 0; illuminance(P, \"send:light:c\", 5, \"light:seen\", s) Ci += s;", {5, 5, 5}},
         {"float s = 0; illuminance(P, \"send:light:c\", 5, \"light:c\", s) Ci += s;", {5, 5, 5}},
-        {"string m = \"\"; illuminance(P, \"send:light:mode\", \"double\", \"light:mode\", m) { if (m == \"double\") Ci += 1; }", {1, 1, 1}},
+        {"string m = \"\"; illuminance(P, \"send:light:mode\", \"double\", \"light:mode\", m) { if (m == \"double\") Ci += 1; }",
+         {1, 1, 1}},
         {"illuminance(\"x\", P, \"send:light:c\", 5) Ci += Cl;", {0, 0, 0}}};
     for (const auto& c : cases) {
         surfaceOf("sends", std::string("    ") + c.body);
@@ -142,19 +175,22 @@ TEST(Illuminance, SentParameters) {
 
 // How often a light runs is seen by what it prints.
 TEST(Illuminance, ResultsAreKept) {
-    writeShader("prints", "light prints(float c = 2;) { illuminate(point \"world\" (0, 2, 0)) { Cl = c; printf(\"ran\\n\"); } }\n");
-    const struct { const char* body; int runs; } cases[] = {
-        {"illuminance(P) Ci += Cl;", 1},
-        {"illuminance(P) Ci += Cl; illuminance(P) Ci += Cl;", 1},
-        {"illuminance(P) Ci += Cl; illuminance(P, normal \"world\" (0, 1, 0), 1) Ci += Cl;", 1},
-        {"Ci = diffuse(normalize(N)) + specular(normalize(N), -normalize(I), .1);", 1},
-        {"illuminance(P) Ci += Cl; illuminance(P, \"lightcache\", \"reuse\") Ci += Cl;", 1},
-        {"illuminance(P) Ci += Cl; illuminance(P, \"lightcache\", \"refresh\") Ci += Cl;", 2},
-        {"illuminance(P) Ci += Cl; illuminance(P + vector(1, 0, 0)) Ci += Cl;", 2},
-        {"illuminance(P) Ci += Cl; illuminance(P, \"send:light:c\", 3) Ci += Cl;", 2},
-        {"illuminance(P, \"send:light:c\", 3) Ci += Cl; illuminance(P, \"send:light:c\", 3) Ci += Cl;", 1},
-        {"illuminance(P) Ci += Cl; N = normal(1, 0, 0); illuminance(P) Ci += Cl;", 2},
-        {"float i; for (i = 0; i < 4; i += 1) illuminance(P) Ci += Cl;", 1}};
+    writeShader("prints",
+                "light prints(float c = 2;) { illuminate(point \"world\" (0, 2, 0)) { Cl = c; printf(\"ran\\n\"); } }\n");
+    const struct {
+        const char* body;
+        int runs;
+    } cases[] = {{"illuminance(P) Ci += Cl;", 1},
+                 {"illuminance(P) Ci += Cl; illuminance(P) Ci += Cl;", 1},
+                 {"illuminance(P) Ci += Cl; illuminance(P, normal \"world\" (0, 1, 0), 1) Ci += Cl;", 1},
+                 {"Ci = diffuse(normalize(N)) + specular(normalize(N), -normalize(I), .1);", 1},
+                 {"illuminance(P) Ci += Cl; illuminance(P, \"lightcache\", \"reuse\") Ci += Cl;", 1},
+                 {"illuminance(P) Ci += Cl; illuminance(P, \"lightcache\", \"refresh\") Ci += Cl;", 2},
+                 {"illuminance(P) Ci += Cl; illuminance(P + vector(1, 0, 0)) Ci += Cl;", 2},
+                 {"illuminance(P) Ci += Cl; illuminance(P, \"send:light:c\", 3) Ci += Cl;", 2},
+                 {"illuminance(P, \"send:light:c\", 3) Ci += Cl; illuminance(P, \"send:light:c\", 3) Ci += Cl;", 1},
+                 {"illuminance(P) Ci += Cl; N = normal(1, 0, 0); illuminance(P) Ci += Cl;", 2},
+                 {"float i; for (i = 0; i < 4; i += 1) illuminance(P) Ci += Cl;", 1}};
     for (const auto& c : cases) {
         surfaceOf("counts", std::string("    ") + c.body);
         Scene s(scene("LightSource \"prints\" 1\n", "\"counts\""), under(Hider::Hidden));
@@ -170,7 +206,8 @@ TEST(Illuminance, ResultsAreKept) {
 
 // What a light reads of the normal is the shader's, once that has set it.
 TEST(Illuminance, TheNormalThatLightsSee) {
-    writeShader("seesnormal", "light seesnormal() { illuminate(point \"world\" (0, 2, 0)) { vector n = vtransform(\"world\", vector(Ns)); Cl = color(xcomp(n), ycomp(n), zcomp(n)); } }\n");
+    writeShader("seesnormal", "light seesnormal() { illuminate(point \"world\" (0, 2, 0)) { vector n = vtransform(\"world\", "
+                              "vector(Ns)); Cl = color(xcomp(n), ycomp(n), zcomp(n)); } }\n");
     surfaceOf("turned", "    N = ntransform(\"world\", \"current\", normal(1, 0, 0)); illuminance(P) Ci += Cl;");
     expectEverywhere(scene("LightSource \"seesnormal\" 1\n", "\"turned\""), {1, 0, 0}, "turned");
 }
@@ -206,16 +243,21 @@ TEST(Illuminance, OutputsOfTheSurfaceAreReadByLights) {
     }
 }
 )");
-    const struct { const char* body; Color want; } cases[] = {
-        {"illuminance(P) Ci += Cl;", {.5f, .5f, .5f}}, // 0 times tint, and what is given
-        {"strength = 3; tint = color(1, 2, 0); illuminance(P) Ci += Cl;", {3.5f, 6.5f, .5f}},
-        {"strength = 3; illuminance(P) Ci += Cl; strength = 5; illuminance(P) Ci += Cl;", {9, 9, 9}},
-        {"strength = 4; Ci = diffuse(normal \"world\" (0, 1, 0));", {4.5f, 4.5f, 4.5f}},
-        // A shader that waits for a ray: as the outputs are when it asks for light.
-        {"strength = 3; tint = color(1, 2, 0); if (comp(trace(P, vector \"world\" (0, 1, 0)), 0) > 7) strength = 50; normal n = normal \"world\" (0, 1, 0);"
-         "Ci = diffuse(n); strength = 5; Ci += diffuse(n);", {9, 17, 1}}};
+    const struct {
+        const char* body;
+        Color want;
+    } cases[] = {{"illuminance(P) Ci += Cl;", {.5f, .5f, .5f}}, // 0 times tint, and what is given
+                 {"strength = 3; tint = color(1, 2, 0); illuminance(P) Ci += Cl;", {3.5f, 6.5f, .5f}},
+                 {"strength = 3; illuminance(P) Ci += Cl; strength = 5; illuminance(P) Ci += Cl;", {9, 9, 9}},
+                 {"strength = 4; Ci = diffuse(normal \"world\" (0, 1, 0));", {4.5f, 4.5f, 4.5f}},
+                 // A shader that waits for a ray: as the outputs are when it asks for light.
+                 {"strength = 3; tint = color(1, 2, 0); if (comp(trace(P, vector \"world\" (0, 1, 0)), 0) > 7) strength = 50; "
+                  "normal n = normal \"world\" (0, 1, 0);"
+                  "Ci = diffuse(n); strength = 5; Ci += diffuse(n);",
+                  {9, 17, 1}}};
     for (const auto& c : cases) {
-        surfaceOf("isread", std::string("    ") + c.body, "float given = .5; output varying float strength = 0; output varying color tint = 1;");
+        surfaceOf("isread", std::string("    ") + c.body,
+                  "float given = .5; output varying float strength = 0; output varying color tint = 1;");
         std::string rib = scene("LightSource \"readssurface\" 1\n", "\"isread\"");
         for (Hider h : {Hider::Hidden, Hider::Path}) {
             Scene s(rib, under(h));
@@ -240,10 +282,13 @@ TEST(Illuminance, OutputsAreReadWhereRaysMeetLights) {
                              "7\nSurface \"constant\"\nColor 0 0 0\n"
                              "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
     const char* kUp = "normal n = normal \"world\" (0, 1, 0); ";
-    const struct { const char *body, *what; } cases[] = {
+    const struct {
+        const char *body, *what;
+    } cases[] = {
         {"strength = 4; Ci = diffuse(n);", "summed up"},
         {"strength = 4; if (comp(trace(P, -n), 0) > 7) strength = 50; Ci = diffuse(n);", "waiting"},
-        {"strength = 4; Ci = trace(P, n, \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samplearealights\", 1);", "trace"}};
+        {"strength = 4; Ci = trace(P, n, \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samplearealights\", 1);",
+         "trace"}};
     for (const auto& c : cases) {
         surfaceOf("isreadbyarea", std::string("    ") + kUp + c.body, "output varying float strength = 0;");
         for (int way = 0; way < 3; ++way) {
@@ -251,7 +296,10 @@ TEST(Illuminance, OutputsAreReadWhereRaysMeetLights) {
             set.bsdfOnly = way == 1;
             set.lightOnly = way == 2;
             Scene s(scene(disk, "\"isreadbyarea\""), set);
-            expectMean(s.estimate(kView, samples(6000)), 4 * .49 / 4.49, way == 1 ? .05 : .015, c.what + std::string(way == 0 ? "" : way == 1 ? ", rays" : ", samples"));
+            expectMean(s.estimate(kView, samples(6000)), 4 * .49 / 4.49, way == 1 ? .05 : .015,
+                       c.what + std::string(way == 0   ? ""
+                                            : way == 1 ? ", rays"
+                                                       : ", samples"));
         }
     }
 }
@@ -301,13 +349,18 @@ TEST(LightWeights, NonDiffuseAndNonSpecular) {
     writeLights();
     // The light shines along the normal, and so does the eye look: every lobe is 1 there.
     const CameraRay straight = rayTo({0, .8f, 0}, {0, 0, 0});
-    const struct { const char* body; bool diffuse; } cases[] = {
-        {"Ci = diffuse(normalize(faceforward(N, I)));", true}, {"Ci = specularstd(normalize(faceforward(N, I)), -normalize(I), .1);", false},
-        {"Ci = phong(normalize(faceforward(N, I)), -normalize(I), 10);", false}, {"Ci = specular(normalize(faceforward(N, I)), -normalize(I), .1);", false}};
+    const struct {
+        const char* body;
+        bool diffuse;
+    } cases[] = {{"Ci = diffuse(normalize(faceforward(N, I)));", true},
+                 {"Ci = specularstd(normalize(faceforward(N, I)), -normalize(I), .1);", false},
+                 {"Ci = phong(normalize(faceforward(N, I)), -normalize(I), 10);", false},
+                 {"Ci = specular(normalize(faceforward(N, I)), -normalize(I), .1);", false}};
     for (const auto& c : cases)
         for (float w : {0.f, .25f, 1.f}) {
             surfaceOf("weighs", std::string("    ") + c.body);
-            const std::string weight = std::string("\"float __non") + (c.diffuse ? "diffuse" : "specular") + "\" " + std::to_string(w);
+            const std::string weight =
+                std::string("\"float __non") + (c.diffuse ? "diffuse" : "specular") + "\" " + std::to_string(w);
             const std::string other = std::string("\"float __non") + (c.diffuse ? "specular" : "diffuse") + "\" 1";
             const double want = 8 * (1 - w);
             Scene hidden(scene(flat(1, 8, 2, weight + " " + other), "\"weighs\""), under(Hider::Hidden));
@@ -328,7 +381,8 @@ TEST(LightWeights, OfEmittersMetByRays) {
         set.bsdfOnly = mode == 1;
         set.lightOnly = mode == 2;
         Scene s(scene(disk, "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), set);
-        expectMean(s.estimate(kView, samples(mode == 1 ? 200000 : 20000)), .25 * 5 * .49 / 4.49, .02, "mode " + std::to_string(mode));
+        expectMean(s.estimate(kView, samples(mode == 1 ? 200000 : 20000)), .25 * 5 * .49 / 4.49, .02,
+                   "mode " + std::to_string(mode));
     }
     writeShader("weighedsky", "light weighedsky(float __nondiffuse = .75;) { solar() Cl = 4; }\n");
     Scene sky(scene("LightSource \"weighedsky\" 1\n", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), under(Hider::Path));
@@ -350,13 +404,18 @@ TEST(Solar, ConeOfDirections) {
             expectMean(soft.estimate(kView, samples(4000)), 1 + std::cos(half), .01, look);
         }
     // A half plane that hides half of the cone takes half of its light.
-    const std::string wall = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [0 .5 -90  90 .5 -90  90 .5 90  0 .5 90]\nAttributeEnd\n";
-    Scene shaded(scene("LightSource \"sun\" 1 \"float angle\" .6\n" + wall, "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), under(Hider::Path));
+    const std::string wall = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [0 .5 -90  90 .5 -90  90 .5 90  0 "
+                             ".5 90]\nAttributeEnd\n";
+    Scene shaded(scene("LightSource \"sun\" 1 \"float angle\" .6\n" + wall, "\"matte\" \"float Ka\" 0 \"float Kd\" 1"),
+                 under(Hider::Path));
     expectMean(shaded.estimate(rayTo({-.3f, .2f, -.4f}, {0, 0, 0}), samples(20000)), (1 + std::cos(half)) / 2, .02, "half");
 }
 TEST(Solar, TheSkyKnowsItsDirection) {
-    writeShader("upsky", "light upsky() { solar() { vector d = normalize(vtransform(\"world\", L)); Cl = -ycomp(d); } }\n"); // cosine above
-    surfaceOf("skyloop", "    illuminance(P, normal \"world\" (0, 1, 0), PI / 2) Ci += Cl * (normalize(L) . normalize(vector \"world\" (0, 1, 0)));");
+    writeShader(
+        "upsky",
+        "light upsky() { solar() { vector d = normalize(vtransform(\"world\", L)); Cl = -ycomp(d); } }\n"); // cosine above
+    surfaceOf("skyloop", "    illuminance(P, normal \"world\" (0, 1, 0), PI / 2) Ci += Cl * (normalize(L) . normalize(vector "
+                         "\"world\" (0, 1, 0)));");
     // Mean of cos^2 over the hemisphere by 1 / pi: 2 pi / 3 / pi.
     for (const char* look : {"\"skyloop\"", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"}) {
         Scene s(scene("LightSource \"upsky\" 1\n", look), under(Hider::Path));
@@ -367,8 +426,11 @@ TEST(Solar, TheSkyKnowsItsDirection) {
 // Without rays a sky is one light that faces the surface: diffuse() gets from it what an even sky gives, from either side.
 TEST(Solar, WithoutRaysTheSkyFacesTheSurface) {
     writeShader("evensky", "light evensky() { solar() Cl = color(2, .5, .25); }\n");
-    surfaceOf("onelight", "    illuminance(P, faceforward(normalize(N), I), PI / 2) Ci += Cl * (normalize(L) . faceforward(normalize(N), I));");
-    surfaceOf("anylight", "    shader all[] = getlights(); illuminance(P) Ci += Cl * arraylength(all) * abs(normalize(L) . normalize(N));");
+    surfaceOf(
+        "onelight",
+        "    illuminance(P, faceforward(normalize(N), I), PI / 2) Ci += Cl * (normalize(L) . faceforward(normalize(N), I));");
+    surfaceOf("anylight",
+              "    shader all[] = getlights(); illuminance(P) Ci += Cl * arraylength(all) * abs(normalize(L) . normalize(N));");
     for (const char* look : {"\"matte\" \"float Ka\" 0 \"float Kd\" 1", "\"onelight\"", "\"anylight\""})
         for (const char* attribute : {"", "Attribute \"light\" \"integer samples\" [4]\n"}) {
             Scene s(scene(attribute + std::string("LightSource \"evensky\" 1\n"), look), under(Hider::Hidden));
@@ -382,21 +444,27 @@ TEST(Solar, WithoutRaysTheSkyFacesTheSurface) {
 TEST(LightHandles, LoopsByHand) {
     writeLights();
     const std::string lights = flat(1, 1, 2, category("a")) + flat(2, 4, 3, category("b")) + flat(3, 16, 5, category("a,b"));
-    const struct { const char* body; float want; } cases[] = {
-        {"shader l[] = getlights(); Ci = arraylength(l);", 3},
-        {"shader l[] = getlights(\"category\", \"a\"); Ci = arraylength(l);", 2},
-        {"shader l[] = getlights(\"category\", \"a&-b\"); Ci = arraylength(l);", 1},
-        {"shader l[] = getlights(\"category\", \"none\"); Ci = arraylength(l);", 0},
-        {"vector D; color C; shader l[] = getlights(); float i; for (i = 0; i < arraylength(l); i += 1) { l[i]->light(D, C); Ci += C; }", 21},
-        {"vector D; color C; shader l[] = getlights(\"category\", \"a\"); uniform float n = arraylength(l), i; for (i = 0; i < n; i += 1) "
-         "{ l[i]->light(D, C); Ci += C * (vector \"world\" (0, 1, 0) . normalize(-D)); }", 17},
-        {"vector D; color C; getlight(\"2\")->light(D, C); Ci = length(D);", 3},
-        {"vector D = 7; color C = 5; shader s = getlight(\"9\"); s->light(D, C); Ci = C;", 5},
-        {"shader s = getlight(\"3\"); Ci = s->h;", 5},
-        {"float v = 0; shader s = getlight(\"2\"); Ci = 10 * getvar(s, \"c\", v); Ci += v;", 14},
-        {"float v = 3; shader s = getlight(\"2\"); Ci = 10 * getvar(s, \"nothing\", v); Ci += v;", 3},
-        {"illuminance(P) Ci += islightcategory(\"a\") * Cl;", 17},
-        {"illuminance(P) Ci += islightcategory(\"a&b\") * Cl;", 16}};
+    const struct {
+        const char* body;
+        float want;
+    } cases[] = {{"shader l[] = getlights(); Ci = arraylength(l);", 3},
+                 {"shader l[] = getlights(\"category\", \"a\"); Ci = arraylength(l);", 2},
+                 {"shader l[] = getlights(\"category\", \"a&-b\"); Ci = arraylength(l);", 1},
+                 {"shader l[] = getlights(\"category\", \"none\"); Ci = arraylength(l);", 0},
+                 {"vector D; color C; shader l[] = getlights(); float i; for (i = 0; i < arraylength(l); i += 1) { "
+                  "l[i]->light(D, C); Ci += C; }",
+                  21},
+                 {"vector D; color C; shader l[] = getlights(\"category\", \"a\"); uniform float n = arraylength(l), i; for (i = "
+                  "0; i < n; i += 1) "
+                  "{ l[i]->light(D, C); Ci += C * (vector \"world\" (0, 1, 0) . normalize(-D)); }",
+                  17},
+                 {"vector D; color C; getlight(\"2\")->light(D, C); Ci = length(D);", 3},
+                 {"vector D = 7; color C = 5; shader s = getlight(\"9\"); s->light(D, C); Ci = C;", 5},
+                 {"shader s = getlight(\"3\"); Ci = s->h;", 5},
+                 {"float v = 0; shader s = getlight(\"2\"); Ci = 10 * getvar(s, \"c\", v); Ci += v;", 14},
+                 {"float v = 3; shader s = getlight(\"2\"); Ci = 10 * getvar(s, \"nothing\", v); Ci += v;", 3},
+                 {"illuminance(P) Ci += islightcategory(\"a\") * Cl;", 17},
+                 {"illuminance(P) Ci += islightcategory(\"a&b\") * Cl;", 16}};
     for (const auto& c : cases) {
         surfaceOf("byhand", std::string("    ") + c.body);
         expectEverywhere(scene(lights, "\"byhand\""), Color(c.want), c.body);
@@ -422,9 +490,11 @@ TEST(Illuminance, MoreLightsThanAreKept) {
     Scene s(scene(lights, "\"twice\""), under(Hider::Hidden));
     EXPECT_NEAR(s.one(kView).x, 3 * count, 1e-2);
 }
-// Lights with several samples give as many turns, and the kept samples are those of the first loop: a difference of two loops is nothing.
+// Lights with several samples give as many turns, and the kept samples are those of the first loop: a difference of two loops is
+// nothing.
 TEST(Illuminance, SamplesAreKeptOneByOne) {
-    surfaceOf("difference", "    color a = 0, b = 0; illuminance(P) { a += Cl * length(L); } illuminance(P) { b += Cl * length(L); } Ci = abs(comp(a - b, 0)); Ci += a;");
+    surfaceOf("difference", "    color a = 0, b = 0; illuminance(P) { a += Cl * length(L); } illuminance(P) { b += Cl * "
+                            "length(L); } Ci = abs(comp(a - b, 0)); Ci += a;");
     const std::string disk = "AttributeBegin\nAttribute \"light\" \"integer samples\" [5]\nAttribute \"light\" \"string units\" "
                              "\"radiance\" AreaLightSource \"slrect\" 7\nSurface \"constant\"\nColor 0 0 0\n"
                              "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
@@ -437,12 +507,14 @@ TEST(Illuminance, SamplesAreKeptOneByOne) {
 // What does not fit is said where it stands.
 TEST(Illuminance, PairsThatMeanNothingAreSaid) {
     writeLights();
-    const struct { const char* body; const char* said; } cases[] = {
-        {"illuminance(P, \"lightcache\", \"maybe\") Ci += Cl;", "\"reuse\" or \"refresh\""},
-        {"illuminance(P, \"shadow\", 1) Ci += Cl;", "means nothing to illuminance"},
-        {"string a[2] = {\"x\", \"y\"}; illuminance(P, \"send:light:c\", a) Ci += Cl;", "it is not sent"},
-        {"string s = format(\"%f\", xcomp(P)); illuminance(P, \"send:light:mode\", s) Ci += Cl;", "it is not sent"},
-        {"Ci = 1 + islightcategory(\"a\");", "there is none here"}};
+    const struct {
+        const char* body;
+        const char* said;
+    } cases[] = {{"illuminance(P, \"lightcache\", \"maybe\") Ci += Cl;", "\"reuse\" or \"refresh\""},
+                 {"illuminance(P, \"shadow\", 1) Ci += Cl;", "means nothing to illuminance"},
+                 {"string a[2] = {\"x\", \"y\"}; illuminance(P, \"send:light:c\", a) Ci += Cl;", "it is not sent"},
+                 {"string s = format(\"%f\", xcomp(P)); illuminance(P, \"send:light:mode\", s) Ci += Cl;", "it is not sent"},
+                 {"Ci = 1 + islightcategory(\"a\");", "there is none here"}};
     for (const auto& c : cases) {
         surfaceOf("unfit", std::string("    ") + c.body);
         Scene s(scene(flat(1, 1), "\"unfit\""), under(Hider::Hidden));
@@ -454,8 +526,10 @@ TEST(Illuminance, PairsThatMeanNothingAreSaid) {
 // Under path the light that a handle gives has its shadow.
 TEST(LightHandles, CastShadows) {
     writeLights();
-    surfaceOf("shadowed", "    vector D; color C; shader l[] = getlights(); float i; for (i = 0; i < arraylength(l); i += 1) { l[i]->light(D, C); Ci += C; }");
-    const std::string roof = "AttributeBegin\nSurface \"constant\"\nPolygon \"P\" [-1 1 -1  1 1 -1  1 1 1  -1 1 1]\nAttributeEnd\n";
+    surfaceOf("shadowed", "    vector D; color C; shader l[] = getlights(); float i; for (i = 0; i < arraylength(l); i += 1) { "
+                          "l[i]->light(D, C); Ci += C; }");
+    const std::string roof =
+        "AttributeBegin\nSurface \"constant\"\nPolygon \"P\" [-1 1 -1  1 1 -1  1 1 1  -1 1 1]\nAttributeEnd\n";
     Scene s(scene(flat(1, 1) + flat(2, 4, .5f) + roof, "\"shadowed\""), under(Hider::Path));
     EXPECT_NEAR(s.one(kView).x, 4, 1e-5);
 }

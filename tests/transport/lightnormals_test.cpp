@@ -1,4 +1,5 @@
-// Lights that send along the normal of what they light, as those that PRMan shipped do: shadingnormal(N) with N of the lit surface.
+// Lights that send along the normal of what they light, as those that PRMan shipped do: shadingnormal(N) with N of the lit
+// surface.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -9,10 +10,12 @@ namespace {
 
 // L is the normal turned toward the viewer, so that diffuse() has a cosine of 1 on both sides of a surface.
 TEST(LightNormals, ShadingNormalInALight) {
-    writeShader("alongnormal", "#include \"normals.h\"\nlight alongnormal(output float __nonspecular = 1;) {\n"
-                               "    normal n = shadingnormal(N);\n    illuminate(Ps + n) { Cl = color(1, .5, .25) * length(n); }\n}\n");
+    writeShader("alongnormal",
+                "#include \"normals.h\"\nlight alongnormal(output float __nonspecular = 1;) {\n"
+                "    normal n = shadingnormal(N);\n    illuminate(Ps + n) { Cl = color(1, .5, .25) * length(n); }\n}\n");
     for (const char* turned : {"", "ReverseOrientation\n"}) {
-        Scene s(world(std::string("LightSource \"alongnormal\" 1\nSurface \"matte\" \"Ka\" 0\n") + turned + kFloor), under(Hider::Hidden));
+        Scene s(world(std::string("LightSource \"alongnormal\" 1\nSurface \"matte\" \"Ka\" 0\n") + turned + kFloor),
+                under(Hider::Hidden));
         const Color c = s.one(kView);
         EXPECT_EQ(s.diagnostics.errors() + s.diagnostics.warnings(), 0) << s.messages();
         EXPECT_NEAR(c.x, 1, 1e-5) << turned;

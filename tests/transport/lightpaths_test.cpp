@@ -1,7 +1,7 @@
 // Outputs by light path: their parts are Ci's own light, told apart by what happened to it.
+#include "scene/lightpaths.h"
 #include "transport/box.h"
 #include "transport/floorscene.h"
-#include "scene/lightpaths.h"
 #include <cstring>
 
 using namespace alpenglow;
@@ -31,7 +31,8 @@ struct Told {
     }
 };
 
-Told tell(const std::string& rib, const std::vector<CameraRay>& rays, const std::vector<std::string>& expressions, int lanes = 16) {
+Told tell(const std::string& rib, const std::vector<CameraRay>& rays, const std::vector<std::string>& expressions,
+          int lanes = 16) {
     std::vector<scene::LightPaths::Source> sources;
     for (const std::string& e : expressions) sources.push_back({scene::lightPathOfWord(e).value_or(e), {}});
     Diagnostics d;
@@ -47,7 +48,8 @@ Told tell(const std::string& rib, const std::vector<CameraRay>& rays, const std:
     return t;
 }
 
-/// Ci is what it is without the outputs, and every sample's outputs are it, up to rounding; where only one part has light, exactly.
+/// Ci is what it is without the outputs, and every sample's outputs are it, up to rounding; where only one part has light,
+/// exactly.
 void expectWhole(const std::string& rib, const std::vector<CameraRay>& rays, const std::vector<std::string>& disjoint) {
     const Told t = tell(rib, rays, disjoint);
     Scene plain(rib, withShaders(Hider::Path));
@@ -63,7 +65,8 @@ void expectWhole(const std::string& rib, const std::vector<CameraRay>& rays, con
             lit += part != Color(0);
         }
         if (lit == 1) { EXPECT_EQ(sum, alone[i].color); }
-        for (int k = 0; k < 3; ++k) worst = std::max(worst, std::fabs(double(sum[k]) - alone[i].color[k]) / (1e-6 + alone[i].color[k]));
+        for (int k = 0; k < 3; ++k)
+            worst = std::max(worst, std::fabs(double(sum[k]) - alone[i].color[k]) / (1e-6 + alone[i].color[k]));
     }
     EXPECT_EQ(differ, 0);
     EXPECT_LT(worst, 4e-7 * double(t.paths->parts())); // a rounding a part
@@ -81,10 +84,12 @@ std::vector<CameraRay> many(CameraRay ray, int n) {
     return rays;
 }
 
-const char* const kTwoLights = "Attribute \"light\" \"string group\" \"warm\"\nLightSource \"pointlight\" \"key\" \"from\" [0 2 0] \"intensity\" 4\n"
-                               "Attribute \"light\" \"string group\" \"cold\"\n"
-                               "AttributeBegin\nAreaLightSource \"slrect\" \"panel\" \"intensity\" 3\nSurface \"constant\"\nColor 0 0 0\nReverseOrientation\n"
-                               "Polygon \"P\" [-1 3 -1  -1 3 1  1 3 1  1 3 -1]\nAttributeEnd\nIlluminate \"panel\" 1\n";
+const char* const kTwoLights =
+    "Attribute \"light\" \"string group\" \"warm\"\nLightSource \"pointlight\" \"key\" \"from\" [0 2 0] \"intensity\" 4\n"
+    "Attribute \"light\" \"string group\" \"cold\"\n"
+    "AttributeBegin\nAreaLightSource \"slrect\" \"panel\" \"intensity\" 3\nSurface \"constant\"\nColor 0 0 "
+    "0\nReverseOrientation\n"
+    "Polygon \"P\" [-1 3 -1  -1 3 1  1 3 1  1 3 -1]\nAttributeEnd\nIlluminate \"panel\" 1\n";
 
 TEST(LightPathOutputs, TheBoxIsTheSumOfItsPaths) {
     const auto rays = boxRays(3000, 5);
@@ -93,9 +98,10 @@ TEST(LightPathOutputs, TheBoxIsTheSumOfItsPaths) {
 }
 
 TEST(LightPathOutputs, GlassAndGroups) {
-    const std::string rib = world(std::string(kTwoLights) + "Surface \"slmaterial\" \"color diffusecolor\" [.6 .5 .4]\n" + kFloor +
-                                  "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [.9 .9 .9] \"float kn\" 1.5\n"
-                                  "Translate 0 1 0\nSphere .7 -.7 .7 360\n");
+    const std::string rib =
+        world(std::string(kTwoLights) + "Surface \"slmaterial\" \"color diffusecolor\" [.6 .5 .4]\n" + kFloor +
+              "Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [.9 .9 .9] \"float kn\" 1.5\n"
+              "Translate 0 1 0\nSphere .7 -.7 .7 360\n");
     const auto rays = many(rayTo({.3f, 1.5f, -3.f}, {0, .8f, 0}), 2000);
     expectWhole(rib, rays, {"C.*<L.'warm'>", "C.*<L.'cold'>", "C.*O", "other"});
     expectWhole(rib, rays, {"C.*<L.'key'>", "C<T[GS]>.*<L.'panel'>", "C<R.>.*<L.'panel'>", "other"});
@@ -127,19 +133,22 @@ TEST(LightPathOutputs, AFurnaceByTheNumberOfScatterings) {
     const Told t = tell(world("Surface \"glowing\"\nSphere 2 -2 2 360\n"), many(rayTo({.3f, .2f, -.4f}, {1.5f, .4f, .3f}), 4000),
                         {"CO", "CDO", "CD{2}O", "CD{3,}O", "direct", "indirect", "other"});
     const double expected[] = {1, .5, .25, .25, 1.5, .5, 0};
-    for (size_t k = 0; k < 7; ++k) EXPECT_NEAR(t.mean(k), expected[k], k < 2 || k == 4 ? 1e-5 : .03) << k; // late ones by roulette
-    const Told sky = tell(world(std::string("LightSource \"envlight\" 1 \"intensity\" 1\nSurface \"matte\" \"Ka\" 0 \"Kd\" .5\n") + kFloor),
-                          many(kView, 2000), {"direct", "indirect", "C<RD>B", "C<RD>L"});
+    for (size_t k = 0; k < 7; ++k)
+        EXPECT_NEAR(t.mean(k), expected[k], k < 2 || k == 4 ? 1e-5 : .03) << k; // late ones by roulette
+    const Told sky =
+        tell(world(std::string("LightSource \"envlight\" 1 \"intensity\" 1\nSurface \"matte\" \"Ka\" 0 \"Kd\" .5\n") + kFloor),
+             many(kView, 2000), {"direct", "indirect", "C<RD>B", "C<RD>L"});
     for (size_t k : {0, 2, 3}) EXPECT_NEAR(sky.mean(k), .5, 5e-3) << k;
     EXPECT_EQ(sky.mean(1), 0);
 }
 
 /// A pane before a light: only expressions that name s see it, however the light is found.
 TEST(LightPathOutputs, StraightPassages) {
-    const std::string rib = world(std::string(kTwoLights) + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor +
-                                  "Surface \"constant\"\nColor 0 0 0\nOpacity .5 .5 .5\nPolygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9]\n");
-    const Told t = tell(rib, many(rayTo({.3f, .5f, -.4f}, {0, 0, 0}), 2000),
-                        {"C<RD>L", "C<RD>sL", "C<RD>s{2}L", "C<RD>.L", "C<RD>[^s]*L"});
+    const std::string rib =
+        world(std::string(kTwoLights) + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor +
+              "Surface \"constant\"\nColor 0 0 0\nOpacity .5 .5 .5\nPolygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9]\n");
+    const Told t =
+        tell(rib, many(rayTo({.3f, .5f, -.4f}, {0, 0, 0}), 2000), {"C<RD>L", "C<RD>sL", "C<RD>s{2}L", "C<RD>.L", "C<RD>[^s]*L"});
     EXPECT_GT(t.mean(0), 0);
     EXPECT_GE(t.mean(1), .999 * t.mean(0)); // the panel cannot be met by other ways than through the pane
     EXPECT_EQ(t.mean(2), 0);
@@ -147,8 +156,10 @@ TEST(LightPathOutputs, StraightPassages) {
 
 /// What a kernel that waits makes of light is its own: O, and the sums stay whole.
 TEST(LightPathOutputs, KernelsThatWait) {
-    writeShader("stepped", "surface stepped() { color c = trace(P, N, \"distribution\", \"cosine\", \"samplecone\", PI/2, \"samplearealights\", 1);"
-                           " Oi = 1; Ci = comp(c, 0) > .1 ? c : color(.2); }");
+    writeShader(
+        "stepped",
+        "surface stepped() { color c = trace(P, N, \"distribution\", \"cosine\", \"samplecone\", PI/2, \"samplearealights\", 1);"
+        " Oi = 1; Ci = comp(c, 0) > .1 ? c : color(.2); }");
     const std::string rib = world(std::string(kTwoLights) + "Surface \"stepped\"\n" + kFloor);
     const auto rays = many(kView, 500);
     expectWhole(rib, rays, {"direct", "indirect", "other"});
@@ -157,7 +168,8 @@ TEST(LightPathOutputs, KernelsThatWait) {
 }
 
 TEST(LightPathOutputs, HandWrittenLoopsHaveTheLabelsOfTheirLights) {
-    writeShader("byhand", "surface byhand() { normal n = normalize(N); color c = 0; illuminance (P, n, PI/2) { c += Cl * (normalize(L) . n); } Oi = 1; Ci = .5 * c; }");
+    writeShader("byhand", "surface byhand() { normal n = normalize(N); color c = 0; illuminance (P, n, PI/2) { c += Cl * "
+                          "(normalize(L) . n); } Oi = 1; Ci = .5 * c; }");
     const Told t = tell(world(std::string(kTwoLights) + "Surface \"byhand\"\n" + kFloor), many(kView, 200),
                         {"C<RD'illuminance'><L.'warm'>", "C<RD'illuminance'><L.'cold'>", "other"});
     EXPECT_NEAR(t.mean(0), .5, 1e-4); // 4 / 4 * .5
@@ -167,7 +179,8 @@ TEST(LightPathOutputs, HandWrittenLoopsHaveTheLabelsOfTheirLights) {
 
 TEST(LightPathOutputs, SameBitsInEveryWidth) {
     const auto rays = boxRays(500, 9);
-    const Told a = tell(boxRib(true), rays, {"direct", "C<RS>.*L", "other"}, 4), b = tell(boxRib(true), rays, {"direct", "C<RS>.*L", "other"}, 16);
+    const Told a = tell(boxRib(true), rays, {"direct", "C<RS>.*L", "other"}, 4),
+               b = tell(boxRib(true), rays, {"direct", "C<RS>.*L", "other"}, 16);
     int differ = 0;
     for (size_t i = 0; i < rays.size(); ++i)
         for (size_t k = 0; k < a.samples[i].parts.size(); ++k)

@@ -5,8 +5,8 @@
 
 namespace alpenglow::transport::testing {
 
-/// An EXR file of three channels; value(x, y, c) is channel c of the pixel in column x and row y. `wrap`: modes in s and t, as textures carry
-/// them ("" none). The result is the path in the quotes of a RIB.
+/// An EXR file of three channels; value(x, y, c) is channel c of the pixel in column x and row y. `wrap`: modes in s and t, as
+/// textures carry them ("" none). The result is the path in the quotes of a RIB.
 template <class F> std::string writeMap(const std::string& name, int width, int height, F value, const std::string& wrap = "") {
     display::Image m = display::makeImage(width, height, display::defaultChannels(3));
     for (int y = 0; y < height; ++y)

@@ -1,6 +1,6 @@
 // Variables of primitives and the shaders of Interior and Exterior; how many volumes a ray is known to be in.
-#include "transport/floorscene.h"
 #include "base/limits.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -8,28 +8,35 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-const char kWall[] = "AttributeBegin Surface \"shine\" Color 1 1 1 Polygon \"P\" [-99 -99 9  -99 99 9  99 99 9  99 -99 9] AttributeEnd\n";
+const char kWall[] =
+    "AttributeBegin Surface \"shine\" Color 1 1 1 Polygon \"P\" [-99 -99 9  -99 99 9  99 99 9  99 -99 9] AttributeEnd\n";
 
 class MediaVariables : public ::testing::TestWithParam<Hider> {
 protected:
     void SetUp() override {
-        writeShader("beer", "volume beer(float k = 1; color tint = 1; string how = \"\";) { Ci *= tint * exp(-((how == \"twice\") ? 2 * k : k) * length(I)); }\n");
+        writeShader("beer", "volume beer(float k = 1; color tint = 1; string how = \"\";) { Ci *= tint * exp(-((how == "
+                            "\"twice\") ? 2 * k : k) * length(I)); }\n");
         writeShader("ahead", "surface ahead() { Oi = 1; Ci = trace(P, normalize(I)); }\n");
         writeShader("shine", "surface shine() { Oi = 1; Ci = Cs; }\n");
     }
-    struct Seen { Color c; std::string messages; };
+    struct Seen {
+        Color c;
+        std::string messages;
+    };
     /// Along z from (x, 0, -5).
     static Seen seen(const std::string& inside, float x = 0) {
         Settings settings = withShaders(GetParam());
         settings.maxDepth = 40;
         settings.roulette = false;
-        Scene s("WorldBegin\nSides 2\nAttribute \"trace\" \"maxspeculardepth\" 40\nTranslate 0 0 5\n" + inside + "WorldEnd\n", settings);
+        Scene s("WorldBegin\nSides 2\nAttribute \"trace\" \"maxspeculardepth\" 40\nTranslate 0 0 5\n" + inside + "WorldEnd\n",
+                settings);
         const Color c = s.one(rayTo({x, 0, 0}, {x, 0, 1}));
         return {c, s.messages()};
     }
     static std::string ball(float radius, const std::string& variables, const std::string& before = "") {
         const std::string r = std::to_string(radius);
-        return "AttributeBegin Surface \"ahead\" " + before + " Sphere " + r + " -" + r + " " + r + " 360 " + variables + " AttributeEnd\n";
+        return "AttributeBegin Surface \"ahead\" " + before + " Sphere " + r + " -" + r + " " + r + " 360 " + variables +
+               " AttributeEnd\n";
     }
 };
 
@@ -43,7 +50,8 @@ TEST_P(MediaVariables, ConstantOnesOverride) {
     const Color tinted = seen(kWall + ball(1, "\"constant color tint\" [1 .5 .25] \"constant string how\" [\"twice\"]", beer)).c;
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(tinted[k], std::exp(-1.2 * 2) / (1 << k), 2e-5);
     // Two balls beside each other under the same Interior.
-    const std::string two = std::string(kWall) + "AttributeBegin Surface \"ahead\" " + beer + "Sphere 1 -1 1 360 \"constant float k\" [.2]\nTranslate 3 0 0\n"
+    const std::string two = std::string(kWall) + "AttributeBegin Surface \"ahead\" " + beer +
+                            "Sphere 1 -1 1 360 \"constant float k\" [.2]\nTranslate 3 0 0\n"
                             "Sphere 1 -1 1 360 \"constant float k\" [.4]\nAttributeEnd\n";
     EXPECT_NEAR(seen(two).c[0], std::exp(-.2 * 2), 2e-5);
     EXPECT_NEAR(seen(two, 3).c[0], std::exp(-.4 * 2), 2e-5);
@@ -55,7 +63,8 @@ TEST_P(MediaVariables, OthersAreSaid) {
     EXPECT_NE(s.messages.find("\"k\" is not the same everywhere on the primitive"), std::string::npos) << s.messages;
 }
 
-// Balls in balls, each with its own volume: as many as are known are left one after the other; of more the outermost is forgotten, and said.
+// Balls in balls, each with its own volume: as many as are known are left one after the other; of more the outermost is
+// forgotten, and said.
 TEST_P(MediaVariables, VolumesInVolumes) {
     for (const int deep : {limits::kMedia, limits::kMedia + 1}) {
         std::string balls;
@@ -73,22 +82,26 @@ TEST_P(MediaVariables, VolumesInVolumes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Hiders, MediaVariables, ::testing::Values(Hider::Raytrace, Hider::Path), [](const auto& i) { return i.param == Hider::Path ? "Path" : "Raytrace"; });
+INSTANTIATE_TEST_SUITE_P(Hiders, MediaVariables, ::testing::Values(Hider::Raytrace, Hider::Path),
+                         [](const auto& i) { return i.param == Hider::Path ? "Path" : "Raytrace"; });
 
 // getshaders() with a category made when the shader runs looks at all shaders, and says when the array is short.
 TEST(ShaderLists, CategoriesMadeWhenTheShaderRuns) {
     writeShader("part", "class part(public float v = 1; string __category = \"\";) { public void nothing() {} }\n");
-    const std::string parts = "Shader \"part\" \"h1\" \"v\" 1 \"__category\" \"b\"\nShader \"part\" \"h2\" \"v\" 10 \"__category\" \"b\"\n"
-                              "Shader \"part\" \"h3\" \"v\" 100 \"__category\" \"a\"\n";
+    const std::string parts =
+        "Shader \"part\" \"h1\" \"v\" 1 \"__category\" \"b\"\nShader \"part\" \"h2\" \"v\" 10 \"__category\" \"b\"\n"
+        "Shader \"part\" \"h3\" \"v\" 100 \"__category\" \"a\"\n";
     const auto shows = [&](const std::string& name, const std::string& category, std::string& messages) {
-        writeShader(name, "class " + name + "() { public void surface(output color Ci, Oi) {\n    string c = \"" + category + "\"; if (u > 2) c = \"z\";\n"
-                          "    shader l[1] = getshaders(\"category\", c);\n    Oi = 1; Ci = l[0]->v;\n} }\n");
+        writeShader(name, "class " + name + "() { public void surface(output color Ci, Oi) {\n    string c = \"" + category +
+                              "\"; if (u > 2) c = \"z\";\n"
+                              "    shader l[1] = getshaders(\"category\", c);\n    Oi = 1; Ci = l[0]->v;\n} }\n");
         Settings settings = under(Hider::Hidden);
         Diagnostics d;
         struct Keeper final : scene::FrameConsumer {
             std::shared_ptr<const scene::Frame> frame;
             void render(std::shared_ptr<const scene::Frame> f) override { frame = std::move(f); }
-            void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}
+            void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&,
+                             const SourcePlace&) override {}
         } keeper;
         settings.shaderPaths.push_back(shaderFolder());
         ri::RibReader reader({}, keeper, d);

@@ -16,7 +16,8 @@ std::string inside(const std::string& parameters, const std::string& shape = kBa
 /// Behind everything, seen along +z, the same under every hider.
 std::string wall(const std::string& colour = "1 1 1") {
     writeShader("shine", "surface shine() { Oi = 1; Ci = Cs; }\n");
-    return "AttributeBegin Surface \"shine\" Color " + colour + " Polygon \"P\" [-99 -99 9  -99 99 9  99 99 9  99 -99 9] AttributeEnd\n";
+    return "AttributeBegin Surface \"shine\" Color " + colour +
+           " Polygon \"P\" [-99 -99 9  -99 99 9  99 99 9  99 -99 9] AttributeEnd\n";
 }
 /// Along z, so far beside the axis.
 CameraRay along(float x = 0) { return rayTo({x, 0, 0}, {x, 0, 1}); }
@@ -26,7 +27,8 @@ constexpr Hider kHiders[] = {Hider::Hidden, Hider::Raytrace, Hider::Path};
 
 TEST(Medium, AbsorptionIsExactUnderEveryHider) {
     for (const Hider h : kHiders) {
-        Scene s(at5(wall() + inside("\"color scattering\" [0 0 0] \"color absorption\" [.2 .5 1.1] \"scale\" 1.5")), withShaders(h));
+        Scene s(at5(wall() + inside("\"color scattering\" [0 0 0] \"color absorption\" [.2 .5 1.1] \"scale\" 1.5")),
+                withShaders(h));
         for (const float x : {0.f, .6f}) {
             const double way = 2 * std::sqrt(1 - x * x);
             const Color c = s.one(along(x));
@@ -39,7 +41,8 @@ TEST(Medium, AbsorptionIsExactUnderEveryHider) {
 TEST(Medium, EmissionIsExactUnderEveryHider) {
     for (const Hider h : kHiders) {
         Scene s(at5(wall("0 0 0") +
-                      inside("\"color scattering\" [0 0 0] \"color absorption\" [0 .5 2] \"color emission\" [.3 .3 .3]")), withShaders(h));
+                    inside("\"color scattering\" [0 0 0] \"color absorption\" [0 .5 2] \"color emission\" [.3 .3 .3]")),
+                withShaders(h));
         const Color c = s.one(along());
         EXPECT_NEAR(c.x, .3 * 2, 2e-6) << int(h);
         EXPECT_NEAR(c.y, .3 * (1 - std::exp(-1.)) / .5, 2e-6) << int(h);
@@ -50,15 +53,20 @@ TEST(Medium, EmissionIsExactUnderEveryHider) {
 // Rays whose light fades with the distance, through a medium and a pane in it, and through a wall that bounds nothing there.
 TEST(Medium, DimsWhatFades) {
     writeShader("shine", "surface shine() { Oi = Os; Ci = Os * Cs; }\n");
-    writeShader("looker", "surface looker() { Oi = 1; Ci = indirectdiffuse(P, vector \"camera\" (0, 0, 1), 1, \"coneangle\", .001, \"falloff\", .1); }\n");
+    writeShader("looker", "surface looker() { Oi = 1; Ci = indirectdiffuse(P, vector \"camera\" (0, 0, 1), 1, \"coneangle\", "
+                          ".001, \"falloff\", .1); }\n");
     const auto plane = [](const std::string& surface, const std::string& z, const std::string& size) {
-        return "AttributeBegin " + surface + " Translate 0 0 " + z + " Scale " + size + " " + size + " 1 Polygon \"P\" [-1 -1 0  -1 1 0  1 1 0  1 -1 0] AttributeEnd\n";
+        return "AttributeBegin " + surface + " Translate 0 0 " + z + " Scale " + size + " " + size +
+               " 1 Polygon \"P\" [-1 -1 0  -1 1 0  1 1 0  1 -1 0] AttributeEnd\n";
     };
     const std::string clear = "\"color scattering\" [0 0 0] \"color absorption\" [.2 .5 1.1]";
-    const std::string scene = plane("Surface \"looker\"", "5", "9") + plane("Surface \"shine\" Color .4 .4 .4 Opacity .5 .5 .5", "8", ".4") +
+    const std::string scene = plane("Surface \"looker\"", "5", "9") +
+                              plane("Surface \"shine\" Color .4 .4 .4 Opacity .5 .5 .5", "8", ".4") +
                               plane("Surface \"shine\"", "12", "99") + "Translate 0 0 8\n";
     for (const bool walls : {false, true}) {
-        const std::string ball = walls ? inside(clear + " \"priority\" 2") + inside("\"color scattering\" [0 0 0] \"priority\" 1", "Sphere .6 -.6 .6 360\n") : inside(clear);
+        const std::string ball = walls ? inside(clear + " \"priority\" 2") +
+                                             inside("\"color scattering\" [0 0 0] \"priority\" 1", "Sphere .6 -.6 .6 360\n")
+                                       : inside(clear);
         Scene s(world(scene + ball), withShaders(Hider::Path));
         const Moments m = s.estimate(along(), samples(4000));
         int k = 0;
@@ -75,9 +83,10 @@ TEST(Medium, DimsWhatFades) {
 TEST(Medium, DepthsOfWhatMovesBesideSuchWalls) {
     writeShader("shine", "surface shine() { Oi = 1; Ci = Cs; }\n");
     const std::string clear = "\"color scattering\" [0 0 0] \"priority\" ";
-    Scene s("Shutter 0 1\n" +
-                world("AttributeBegin Surface \"shine\" MotionBegin [0 1] Translate 0 0 9 Translate 0 0 10 MotionEnd Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0] AttributeEnd\n" +
-                      inside(clear + "2", "Sphere 50 -50 50 360\n") + "Translate -2 0 5\n" + inside(clear + "1", "Sphere .5 -.5 .5 360\n", "shine")),
+    Scene s("Shutter 0 1\n" + world("AttributeBegin Surface \"shine\" MotionBegin [0 1] Translate 0 0 9 Translate 0 0 10 "
+                                    "MotionEnd Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0] AttributeEnd\n" +
+                                    inside(clear + "2", "Sphere 50 -50 50 360\n") + "Translate -2 0 5\n" +
+                                    inside(clear + "1", "Sphere .5 -.5 .5 360\n", "shine")),
             withShaders(Hider::Hidden));
     std::vector<CameraRay> rays;
     for (int i = 0; i < 40; ++i) {
@@ -106,8 +115,8 @@ TEST(Medium, WhatTheCameraSeesThroughItIsNoMatterOfChance) {
 }
 
 /// Light that is scattered once on the way from a to b, by quadrature: light of a place in a ball about the origin of radius 1.
-Color scatteredOnce(const Vec3d& a, const Vec3d& b, const Vec3d& lamp, double intensity, const double* sigmaS, const double* sigmaT,
-                    double g) {
+Color scatteredOnce(const Vec3d& a, const Vec3d& b, const Vec3d& lamp, double intensity, const double* sigmaS,
+                    const double* sigmaT, double g) {
     const Vec3d way = b - a;
     const double length = std::sqrt(dot(way, way));
     const Vec3d dir = way / length;
@@ -135,7 +144,7 @@ TEST_P(Once, IsThatOfQuadrature) {
     set.indirect = false;
     const std::string at = std::to_string(beside);
     Scene s(at5("LightSource \"pointlight\" 1 \"intensity\" 3 \"from\" [0 " + at + " .2]\n" +
-                  inside("\"color scattering\" [.4 .8 1.6] \"color absorption\" [.1 0 .8] \"anisotropy\" " + std::to_string(g))),
+                inside("\"color scattering\" [.4 .8 1.6] \"color absorption\" [.1 0 .8] \"anisotropy\" " + std::to_string(g))),
             set);
     const Moments m = s.estimate(along(.1f), samples(40000));
     const double half = std::sqrt(1 - .01);
@@ -165,23 +174,25 @@ TEST(Medium, PointsNearALampAreWorthTheirWhile) {
     EXPECT_LT(m[0].se(), .3 * m[1].se());
 }
 
-// What is scattered twice and more about a lamp: rays that pass the lamp bring the more the nearer they come, so by the phase function alone
-// a few samples bring most of it.
+// What is scattered twice and more about a lamp: rays that pass the lamp bring the more the nearer they come, so by the phase
+// function alone a few samples bring most of it.
 TEST(Medium, RaysThatPassALampBringNoOutliers) {
     Moments m[2];
     for (int k = 0; k < 2; ++k) {
         Settings set = withShaders(Hider::Path);
         set.mediumSampling = k ? MediumSampling::Distance : MediumSampling::Both;
-        Scene s(at5("LightSource \"pointlight\" 1 \"from\" [0 .6 .2]\n" + inside("\"color scattering\" [.4 .5 .7] \"anisotropy\" .4")), set);
+        Scene s(at5("LightSource \"pointlight\" 1 \"from\" [0 .6 .2]\n" +
+                    inside("\"color scattering\" [.4 .5 .7] \"anisotropy\" .4")),
+                set);
         m[k] = s.estimate(along(), samples(k ? 100000 : 40000));
     }
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(m[0].mean(c), m[1].mean(c), kZ * (m[0].se(c) + m[1].se(c))) << c;
     EXPECT_LT(m[0].se(), .01 * m[0].mean());
 }
 
-// The same from surfaces: a small floor in a ball of fog, on which the lamp itself does not shine, sees the fog about the lamp. What is
-// scattered once (the fog's depth allows no more) by quadrature over the angle off the lamp, the angle about that axis, and along each
-// ray the angle at the lamp: there the sines cancel. The fog before the eye is below 2 parts in a thousand.
+// The same from surfaces: a small floor in a ball of fog, on which the lamp itself does not shine, sees the fog about the lamp.
+// What is scattered once (the fog's depth allows no more) by quadrature over the angle off the lamp, the angle about that axis,
+// and along each ray the angle at the lamp: there the sines cancel. The fog before the eye is below 2 parts in a thousand.
 TEST(Medium, SurfacesSeeTheFogAboutALampWithoutOutliers) {
     const double sigma = .1, radius = 2, high = 1, aside = .5;
     const Vec3d lamp(aside, high, 0);
@@ -199,7 +210,8 @@ TEST(Medium, SurfacesSeeTheFogAboutALampWithoutOutliers) {
             for (int k = 0; k < n; ++k) {
                 const double angle = begin + (k + .5) / n * (end - begin), t = near + away * std::tan(angle);
                 // I pi / d^2 dt = I pi / away dangle; the floor gives back cos / pi, the solid angle is sin theta dtheta dphi.
-                sum += w.y / kPi * sigma * std::exp(-sigma * (t + away / std::cos(angle))) / (4 * kPi) * kPi / far * (end - begin);
+                sum +=
+                    w.y / kPi * sigma * std::exp(-sigma * (t + away / std::cos(angle))) / (4 * kPi) * kPi / far * (end - begin);
             }
         }
     const double want = sum * (kPi / n) * (2 * kPi / n) / n;
@@ -207,9 +219,12 @@ TEST(Medium, SurfacesSeeTheFogAboutALampWithoutOutliers) {
     for (int k = 0; k < 2; ++k) {
         Settings set = withShaders(Hider::Path);
         set.mediumSampling = k ? MediumSampling::Distance : MediumSampling::Both;
-        const std::string fog = "\"color scattering\" [.1 .1 .1]", floor = "Polygon \"P\" [-.01 0 -.01  -.01 0 .01  .01 0 .01  .01 0 -.01]\n";
-        Scene s(world("LightSource \"pointlight\" 1 \"from\" [" + std::to_string(aside) + " 1 0]\n" + "AttributeBegin Attribute \"trace\" \"integer maxdiffusedepth\" 0\n" + inside(fog, "Sphere 2 -2 2 360\n") + "AttributeEnd\n" +
-                      "AttributeBegin Illuminate 1 0 Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + floor + "AttributeEnd\n"),
+        const std::string fog = "\"color scattering\" [.1 .1 .1]",
+                          floor = "Polygon \"P\" [-.01 0 -.01  -.01 0 .01  .01 0 .01  .01 0 -.01]\n";
+        Scene s(world("LightSource \"pointlight\" 1 \"from\" [" + std::to_string(aside) + " 1 0]\n" +
+                      "AttributeBegin Attribute \"trace\" \"integer maxdiffusedepth\" 0\n" + inside(fog, "Sphere 2 -2 2 360\n") +
+                      "AttributeEnd\n" + "AttributeBegin Illuminate 1 0 Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + floor +
+                      "AttributeEnd\n"),
                 set);
         m[k] = s.estimate(rayTo({.002f, .005f, 0}, {0, 0, 0}), samples(40000));
         EXPECT_NEAR(m[k].mean(), want, kZ * m[k].se() + .002 * want) << k << s.messages();
@@ -225,7 +240,7 @@ TEST(Medium, ASpotLightOutsideOfTheCentreOfItsShader) {
     for (int k = 0; k < 3; ++k) {
         set.mediumSampling = MediumSampling(k);
         Scene s(at5("LightSource \"spotlight\" 1 \"intensity\" 5 \"from\" [0 2 0] \"to\" [0 0 0] \"coneangle\" .3\n" +
-                      inside("\"color scattering\" [.5 .5 .5]")),
+                    inside("\"color scattering\" [.5 .5 .5]")),
                 set);
         m[k] = s.estimate(along(), samples(40000));
         EXPECT_GT(m[k].mean(), 0);
@@ -234,8 +249,9 @@ TEST(Medium, ASpotLightOutsideOfTheCentreOfItsShader) {
 }
 
 TEST(Medium, AreaLightsByEveryTechnique) {
-    const std::string lamp = "AttributeBegin AreaLightSource \"arealight\" 1 \"intensity\" 4 Surface \"constant\" Translate 0 2 0 Rotate 90 1 0 0 "
-                             "Disk 0 .8 360 AttributeEnd\nIlluminate 1 1\n";
+    const std::string lamp =
+        "AttributeBegin AreaLightSource \"arealight\" 1 \"intensity\" 4 Surface \"constant\" Translate 0 2 0 Rotate 90 1 0 0 "
+        "Disk 0 .8 360 AttributeEnd\nIlluminate 1 1\n";
     Moments m[3];
     for (int k = 0; k < 3; ++k) {
         Settings set = withShaders(Hider::Path);
@@ -282,25 +298,28 @@ struct H {
 };
 
 TEST(Medium, AHalfSpaceReflectsAsChandrasekharHasIt) {
-    // Light straight down on a half space, which a large ball stands for; radiance F w / 4 m0 / (m + m0) H(m) H(m0), pi F the light.
+    // Light straight down on a half space, which a large ball stands for; radiance F w / 4 m0 / (m + m0) H(m) H(m0), pi F the
+    // light.
     for (const double albedo : {.5, .9}) {
         const std::string ss = three(std::to_string(albedo)), aa = three(std::to_string(1 - albedo));
         Scene s(at5("LightSource \"distantlight\" 1 \"from\" [0 1 0] \"to\" [0 0 0]\nTranslate 0 -1000 0\n" +
-                      inside("\"color scattering\" " + ss + " \"color absorption\" " + aa, "Sphere 1000 -1000 1000 360\n")),
+                    inside("\"color scattering\" " + ss + " \"color absorption\" " + aa, "Sphere 1000 -1000 1000 360\n")),
                 withShaders(Hider::Path));
         const H h(albedo);
         for (const float tilt : {0.f, 1.f}) {
             const Vec3 from(std::sin(tilt), std::cos(tilt), 0);
             const Moments m = s.estimate(rayTo(from + Vec3(0, 0, 5), {0, 0, 5}), samples(60000));
             const double mu = std::cos(tilt), want = albedo / 4 / (mu + 1) * h(mu * .9999) * h(.9999);
-            EXPECT_NEAR(m.mean(), want, kZ * m.se() + 2e-3 * want) << albedo << " " << tilt; // mean free path over radius, and the rule
+            EXPECT_NEAR(m.mean(), want, kZ * m.se() + 2e-3 * want)
+                << albedo << " " << tilt; // mean free path over radius, and the rule
             EXPECT_LT(m.se(), .01 * want);
         }
     }
 }
 
-/// The source function of a slab of isotropic scattering, `depth` mean free paths deep, under light straight down of which pi F comes with
-/// F = 1: S(t) = albedo (1/2 integral of E1(|t - t'|) S(t') + exp(-t) / 4). In 400 layers, of which the kernel is integrated exactly.
+/// The source function of a slab of isotropic scattering, `depth` mean free paths deep, under light straight down of which pi F
+/// comes with F = 1: S(t) = albedo (1/2 integral of E1(|t - t'|) S(t') + exp(-t) / 4). In 400 layers, of which the kernel is
+/// integrated exactly.
 struct Slab {
     double depth, step;
     std::vector<double> s;
@@ -334,22 +353,28 @@ struct Slab {
 
 // What comes back from a slab, and what comes through it: light that is scattered any number of times.
 TEST(Medium, ASlabReflectsAndLetsThroughAsItsEquationSays) {
-    const std::string faces = "ReverseOrientation PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" "
-                              "[-100 -1 -100  100 -1 -100  -100 0 -100  100 0 -100  -100 -1 100  100 -1 100  -100 0 100  100 0 100]\n";
+    const std::string faces =
+        "ReverseOrientation PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" "
+        "[-100 -1 -100  100 -1 -100  -100 0 -100  100 0 -100  -100 -1 100  100 -1 100  -100 0 100  100 0 100]\n";
     EXPECT_NEAR(Slab(.5, 12).out(1, true), .5 / 8 * H(.5)(.9999) * H(.5)(.9999), 2e-4); // deep enough, it is the half space
-    struct Case { double albedo, depth; };
+    struct Case {
+        double albedo, depth;
+    };
     for (const Case& c : {Case{.9, 1}, {.99, 2}}) {
         const Slab slab(c.albedo, c.depth);
         Scene s(at5("LightSource \"distantlight\" 1 \"from\" [0 1 0] \"to\" [0 0 0]\n" +
                     inside("\"color scattering\" " + three(std::to_string(c.albedo * c.depth)) + " \"color absorption\" " +
-                               three(std::to_string((1 - c.albedo) * c.depth)), faces)),
+                               three(std::to_string((1 - c.albedo) * c.depth)),
+                           faces)),
                 withShaders(Hider::Path));
         for (const float tilt : {0.f, 1.f})
             for (const bool above : {true, false}) {
-                const Vec3 at(0, above ? 0.f : -1.f, 5), from = at + Vec3(std::sin(tilt), std::cos(tilt) * (above ? 1.f : -1.f), 0);
+                const Vec3 at(0, above ? 0.f : -1.f, 5),
+                    from = at + Vec3(std::sin(tilt), std::cos(tilt) * (above ? 1.f : -1.f), 0);
                 const Moments m = s.estimate(rayTo(from, at), samples(40000));
                 const double want = slab.out(double(std::cos(tilt)), above);
-                EXPECT_NEAR(m.mean(), want, kZ * m.se() + 1e-3 * want) << c.albedo << " " << c.depth << " " << tilt << " " << above;
+                EXPECT_NEAR(m.mean(), want, kZ * m.se() + 1e-3 * want)
+                    << c.albedo << " " << c.depth << " " << tilt << " " << above;
                 EXPECT_LT(m.se(), .01 * want);
             }
     }
@@ -359,8 +384,10 @@ TEST(Medium, OverlapsBelongToTheHigherPriority) {
     // Balls at z -.5 and .5: [-1.5, .5] and [-.5, 1.5]. Boundaries inside of the higher one are not there.
     const auto ball = [](const char* z, const char* absorption, int priority, const char* surface) {
         return "AttributeBegin Translate 0 0 " + std::string(z) + " " +
-               inside("\"color scattering\" [0 0 0] \"color absorption\" " + three(absorption) + " \"priority\" " + std::to_string(priority),
-                      kBall, surface) + "AttributeEnd\n";
+               inside("\"color scattering\" [0 0 0] \"color absorption\" " + three(absorption) + " \"priority\" " +
+                          std::to_string(priority),
+                      kBall, surface) +
+               "AttributeEnd\n";
     };
     writeShader("red", "surface red() { Oi = 1 - color(1, .5, .5); Ci = 0; }\n");
     for (const Hider h : kHiders) {
@@ -377,15 +404,18 @@ TEST(Medium, OverlapsBelongToTheHigherPriority) {
         Scene both(at5(wall() + ball("-.5", "0", 1, "red") + ball(".5", "0", 2, "null")), set);
         EXPECT_NEAR(both.one(along()).y, .5, 3e-6) << int(h);
         writeShader("litthrough", "surface litthrough() { Oi = 1; Ci = transmission(P, point \"world\" (0, 0, -2)); }\n");
-        Scene shadow(at5("Attribute \"visibility\" \"int transmission\" 1 \"int camera\" 1 AttributeBegin Surface \"litthrough\" Polygon \"P\" [-9 -9 2  -9 9 2  9 9 2  9 -9 2] AttributeEnd\n" +
-                           ball("-.5", "0", 2, "null") + ball(".5", "0", 1, "red")), set);
+        Scene shadow(at5("Attribute \"visibility\" \"int transmission\" 1 \"int camera\" 1 AttributeBegin Surface \"litthrough\" "
+                         "Polygon \"P\" [-9 -9 2  -9 9 2  9 9 2  9 -9 2] AttributeEnd\n" +
+                         ball("-.5", "0", 2, "null") + ball(".5", "0", 1, "red")),
+                     set);
         EXPECT_NEAR(shadow.one(rayTo({.2f, 0, 6.8f}, {0, 0, 7})).y, .5, 3e-6) << int(h);
     }
 }
 
 TEST(Medium, TheEyeInside) {
     for (const Hider h : kHiders) {
-        Scene s(world(wall() + inside("\"color scattering\" [0 0 0] \"color absorption\" [.6 .6 .6]", "Sphere 3 -3 3 360\n")), withShaders(h));
+        Scene s(world(wall() + inside("\"color scattering\" [0 0 0] \"color absorption\" [.6 .6 .6]", "Sphere 3 -3 3 360\n")),
+                withShaders(h));
         EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {0, 0, 1})).x, std::exp(-.6 * 3), 3e-6) << int(h);
     }
 }
@@ -394,8 +424,10 @@ TEST(Medium, ShadowsAreDimmed) {
     // A floor at y = -2 under a ball of fog under a lamp: without what the fog scatters there.
     Settings set = withShaders(Hider::Path);
     set.maxDepth = 0;
-    const std::string lit = "LightSource \"pointlight\" 1 \"intensity\" 9 \"from\" [0 3 0]\nAttributeBegin Surface \"matte\" \"Ka\" 0 \"Kd\" 1 "
-                            "Translate 0 -2 0 " + std::string(kFloor) + "AttributeEnd\n";
+    const std::string lit =
+        "LightSource \"pointlight\" 1 \"intensity\" 9 \"from\" [0 3 0]\nAttributeBegin Surface \"matte\" \"Ka\" 0 \"Kd\" 1 "
+        "Translate 0 -2 0 " +
+        std::string(kFloor) + "AttributeEnd\n";
     const CameraRay below = rayTo({4, -1, 5}, {0, -2, 5});
     Scene with(at5(lit + inside("\"color scattering\" [.2 .4 .6] \"color absorption\" [.1 .1 .1]")), set), without(at5(lit), set);
     const Color a = with.one(below), b = without.one(below);
@@ -409,8 +441,9 @@ TEST(Medium, ShadowsAreDimmed) {
 TEST(Medium, WhatHasNoEndIsSaidAndEnds) {
     // A sheet whose inside is half of space.
     Scene s(at5("LightSource \"envlight\" 1\nReverseOrientation " +
-                  inside("\"color scattering\" [1 1 1]", "Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0]\n") + "ReverseOrientation " +
-                  inside("\"color scattering\" [1 1 1]", "Polygon \"P\" [-9 -9 1  -9 9 1  9 9 1  9 -9 1]\n")),
+                inside("\"color scattering\" [1 1 1]", "Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0]\n") +
+                "ReverseOrientation " +
+                inside("\"color scattering\" [1 1 1]", "Polygon \"P\" [-9 -9 1  -9 9 1  9 9 1  9 -9 1]\n")),
             withShaders(Hider::Path));
     const Moments m = s.estimate(along(), 2000);
     EXPECT_TRUE(std::isfinite(m.mean()));
@@ -420,19 +453,22 @@ TEST(Medium, WhatHasNoEndIsSaidAndEnds) {
 
 TEST(Medium, WhatIsNoNumberOrNotTheSameEverywhereIsSaid) {
     writeShader("patchy", "volume patchy(output color __scattering = 0;) { __scattering = abs(xcomp(P)); Ci *= .5; }\n");
-    Scene patchy(at5(wall() + "AttributeBegin Surface \"null\" Interior \"patchy\" " + kBall + "AttributeEnd\n"), withShaders(Hider::Path));
+    Scene patchy(at5(wall() + "AttributeBegin Surface \"null\" Interior \"patchy\" " + kBall + "AttributeEnd\n"),
+                 withShaders(Hider::Path));
     EXPECT_NEAR(patchy.one(along()).x, .5, 1e-6); // as the shader has it
     EXPECT_NE(patchy.messages().find("not the same everywhere"), std::string::npos) << patchy.messages();
-    Scene negative(at5(wall() + inside("\"color scattering\" [-1 0 0] \"color absorption\" [.5 .5 .5]")), withShaders(Hider::Path));
+    Scene negative(at5(wall() + inside("\"color scattering\" [-1 0 0] \"color absorption\" [.5 .5 .5]")),
+                   withShaders(Hider::Path));
     EXPECT_NEAR(negative.one(along()).x, std::exp(-1.), 3e-6);
     EXPECT_NE(negative.messages().find("__scattering"), std::string::npos) << negative.messages();
 }
 
 TEST(Medium, NoBitDependsOnWhoSharesABatch) {
-    const std::string rib = at5("LightSource \"pointlight\" 1 \"from\" [.2 .4 0] LightSource \"envlight\" 2 \"intensity\" .2\n" + wall(".2 .3 .4") +
-                                  inside("\"color scattering\" [1 2 3] \"anisotropy\" .5 \"priority\" 1") +
-                                  "AttributeBegin Translate .5 0 .5 " + inside("\"color scattering\" [.3 .3 .3] \"color absorption\" [.1 .2 .4]") +
-                                  "AttributeEnd AttributeBegin Surface \"matte\" Translate 0 -.9 0 Sphere .3 -.3 .3 360 AttributeEnd\n");
+    const std::string rib =
+        at5("LightSource \"pointlight\" 1 \"from\" [.2 .4 0] LightSource \"envlight\" 2 \"intensity\" .2\n" + wall(".2 .3 .4") +
+            inside("\"color scattering\" [1 2 3] \"anisotropy\" .5 \"priority\" 1") + "AttributeBegin Translate .5 0 .5 " +
+            inside("\"color scattering\" [.3 .3 .3] \"color absorption\" [.1 .2 .4]") +
+            "AttributeEnd AttributeBegin Surface \"matte\" Translate 0 -.9 0 Sphere .3 -.3 .3 360 AttributeEnd\n");
     std::vector<CameraRay> rays;
     for (int i = 0; i < 200; ++i) {
         rays.push_back(along(float(i) * .012f - 1.2f));
@@ -452,23 +488,28 @@ TEST(Medium, NoBitDependsOnWhoSharesABatch) {
 }
 
 TEST(Slfog, ItsThreeModesAreExact) {
-    struct Mode { const char* given; std::function<double(double)> f; };
+    struct Mode {
+        const char* given;
+        std::function<double(double)> f;
+    };
     const Mode modes[] = {{"\"mode\" 0 \"start\" 3 \"end\" 20", [](double z) { return (20 - z) / 17; }},
                           {"\"mode\" 1 \"density\" .07", [](double z) { return std::exp(-.07 * z); }},
                           {"\"mode\" 2 \"density\" .07", [](double z) { return std::exp(-.07 * z * .07 * z); }},
-                          {"\"mode\" 0 \"start\" 1 \"end\" 8", [](double z) { return (8 - z) / 7; }},  // beyond its end
+                          {"\"mode\" 0 \"start\" 1 \"end\" 8", [](double z) { return (8 - z) / 7; }}, // beyond its end
                           {"\"mode\" 1 \"density\" .07 \"clipfar\" 5", [](double) { return std::exp(-.35); }}};
     const double fog[] = {.2, .5, .9}, seen[] = {.8, .3, .6};
     for (const Hider h : kHiders)
         for (const Mode& m : modes) {
-            Scene s(world("Atmosphere \"slfog\" " + std::string(m.given) + " \"color fogcolor\" [.2 .5 .9]\n" + wall(".8 .3 .6")), withShaders(h));
+            Scene s(world("Atmosphere \"slfog\" " + std::string(m.given) + " \"color fogcolor\" [.2 .5 .9]\n" + wall(".8 .3 .6")),
+                    withShaders(h));
             const Color c = s.one(rayTo({0, 0, 0}, {0, 0, 1})); // the wall is 9 away
             const double f = m.f(9);
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(c[k], std::clamp(f * seen[k] + (1 - f) * fog[k], 0., 1.), 2e-6) << int(h) << " " << m.given;
         }
     // The far plane of Clipping is where it ends by itself.
-    Scene s("Clipping 1 4\n" + world("Atmosphere \"slfog\" \"mode\" 1 \"density\" .1 \"color fogcolor\" [0 0 0]\n" + wall()), withShaders(Hider::Raytrace));
+    Scene s("Clipping 1 4\n" + world("Atmosphere \"slfog\" \"mode\" 1 \"density\" .1 \"color fogcolor\" [0 0 0]\n" + wall()),
+            withShaders(Hider::Raytrace));
     EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {0, 0, 1})).x, std::exp(-.4), 2e-6);
 }
 

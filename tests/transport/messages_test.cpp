@@ -1,4 +1,5 @@
-// What the shaders of a primitive tell each other, in rendered scenes: parameters and outputs of surface, displacement and atmosphere.
+// What the shaders of a primitive tell each other, in rendered scenes: parameters and outputs of surface, displacement and
+// atmosphere.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -11,7 +12,9 @@ const std::string kSquare = "Polygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2]\n";
 /// Meets the square at (.2, .3).
 const CameraRay kMiddle = rayTo({0, 0, 0}, {.2f, .3f, 2});
 
-std::string displaced(const std::string& shaders) { return world("Attribute \"displacementbound\" \"float sphere\" [1]\n" + shaders + kSquare); }
+std::string displaced(const std::string& shaders) {
+    return world("Attribute \"displacementbound\" \"float sphere\" [1]\n" + shaders + kSquare);
+}
 
 void expectNear(const Color& c, const Color& want, float tolerance, const std::string& what) {
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], want[k], tolerance) << what << " " << k;
@@ -19,7 +22,8 @@ void expectNear(const Color& c, const Color& want, float tolerance, const std::s
 
 /// hump = 3 x + 5 y in world space; the square stays flat.
 void writeHump() {
-    writeShader("humps", R"(displacement humps(float given = 7; output varying float hump = 1; output varying color tints[2] = {0, 0};
+    writeShader("humps",
+                R"(displacement humps(float given = 7; output varying float hump = 1; output varying color tints[2] = {0, 0};
                                                output varying point where = 0; output varying string word = "none"; output uniform float plain = 4;) {
     point Q = transform("world", P);
     hump = 3 * xcomp(Q) + 5 * ycomp(Q);
@@ -53,7 +57,9 @@ TEST_P(Hiders, OutputsOfTheDisplacement) {
 // Its derivatives are those of the displacement shader: u and v of a polygon are object x and y.
 TEST_P(Hiders, OutputsOfTheDisplacementHaveDerivatives) {
     writeHump();
-    writeShader("slopes", "surface slopes() { float h = 0; displacement(\"hump\", h); Oi = 1; Ci = color(Du(h), Dv(h), h * 0 + Du(h * h)); }\n");
+    writeShader(
+        "slopes",
+        "surface slopes() { float h = 0; displacement(\"hump\", h); Oi = 1; Ci = color(Du(h), Dv(h), h * 0 + Du(h * h)); }\n");
     Scene s(displaced("Attribute \"shade\" \"string derivatives\" \"exact\"\nDisplacement \"humps\"\nSurface \"slopes\"\n"),
             under(GetParam()));
     const float h = 3 * .2f + 5 * .3f;
@@ -79,14 +85,19 @@ TEST_P(Hiders, OutputsOfTheDisplacementOfEveryKind) {
     else Ci = color(h, g, distance(p, P));
 }
 )");
-    auto of = [&](const char* what) { return Scene(displaced(std::string("Displacement \"humps\"\nSurface \"hearsall\" \"what\" ") + what + "\n"), under(GetParam())).one(kMiddle); };
+    auto of = [&](const char* what) {
+        return Scene(displaced(std::string("Displacement \"humps\"\nSurface \"hearsall\" \"what\" ") + what + "\n"),
+                     under(GetParam()))
+            .one(kMiddle);
+    };
     expectNear(of("0"), Color(4, 2, 1), 1e-5f, "found");
     expectNear(of("1"), Color(.2f, .3f, 7), 1e-5f, "fixed array");
     expectNear(of("2"), Color(.2f, .3f, 7), 1e-5f, "growing array");
     expectNear(of("3"), Color(3 * .2f + 5 * .3f, 7, 0), 1e-5f, "by name");
 }
 
-// What does not fit leaves the variable: another type, a varying output for a uniform variable, an array for a single value, a longer array.
+// What does not fit leaves the variable: another type, a varying output for a uniform variable, an array for a single value, a
+// longer array.
 TEST_P(Hiders, WhatDoesNotFitIsNotTold) {
     writeHump();
     writeShader("misfits", R"(surface misfits() {
@@ -100,7 +111,8 @@ TEST_P(Hiders, WhatDoesNotFitIsNotTold) {
     EXPECT_EQ(s.one(kMiddle), Color(10, 5 + 6 + 7 + 8, 14));
 }
 
-// While dicing and when it runs again at the point the displacement shader finds the other shaders of the primitive, and their names.
+// While dicing and when it runs again at the point the displacement shader finds the other shaders of the primitive, and their
+// names.
 TEST_P(Hiders, TheDisplacementAsksTheOthers) {
     writeShader("asksothers", R"(displacement asksothers() {
     float push = 0, haze = 0, own = 0;
@@ -115,10 +127,12 @@ TEST_P(Hiders, TheDisplacementAsksTheOthers) {
     EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {.1f, .2f, 1.2f})).x, 2 - .8f, 1e-4);
 }
 
-// An atmosphere finds parameters of the others, outputs of the surface as they are when it has run, and those of the displacement.
+// An atmosphere finds parameters of the others, outputs of the surface as they are when it has run, and those of the
+// displacement.
 TEST_P(Hiders, TheAtmosphereAsksTheOthers) {
     writeHump();
-    writeShader("tells", "surface tells(float given = 5; output varying float out = 1; output varying color list[2] = {0, 0};) { out = 10 * xcomp(transform(\"world\", P)); list[1] = color(0, 0, 3); Oi = 1; Ci = .5; }\n");
+    writeShader("tells", "surface tells(float given = 5; output varying float out = 1; output varying color list[2] = {0, 0};) { "
+                         "out = 10 * xcomp(transform(\"world\", P)); list[1] = color(0, 0, 3); Oi = 1; Ci = .5; }\n");
     writeShader("listens", R"(volume listens(float what = 0;) {
     float out = -1, given = -1, hump = -1;
     color list[2] = {0, 0};
@@ -130,7 +144,10 @@ TEST_P(Hiders, TheAtmosphereAsksTheOthers) {
 }
 )");
     auto of = [&](const char* what) {
-        return Scene(displaced(std::string("Displacement \"humps\"\nSurface \"tells\"\nAtmosphere \"listens\" \"what\" ") + what + "\n"), under(GetParam())).one(kMiddle);
+        return Scene(displaced(std::string("Displacement \"humps\"\nSurface \"tells\"\nAtmosphere \"listens\" \"what\" ") + what +
+                               "\n"),
+                     under(GetParam()))
+            .one(kMiddle);
     };
     expectNear(of("0"), Color(4, 2, 5), 1e-5f, "outputs of the surface");
     expectNear(of("1"), Color(3 * .2f + 5 * .3f, 3, 3), 1e-5f, "displacement");
@@ -140,7 +157,9 @@ TEST_P(Hiders, TheAtmosphereAsksTheOthers) {
 TEST_P(Hiders, ParametersThatThePrimitiveOverrides) {
     writeShader("bump", "displacement bump(varying float height = 1;) { P += 0 * N; }\n");
     writeShader("asksbump", "surface asksbump() { float h = 0; displacement(\"height\", h); Oi = 1; Ci = h; }\n");
-    Scene s(world("Displacement \"bump\"\nSurface \"asksbump\"\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2] \"varying float height\" [0 2 2 0]\n"), under(GetParam()));
+    Scene s(world("Displacement \"bump\"\nSurface \"asksbump\"\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2] \"varying float "
+                  "height\" [0 2 2 0]\n"),
+            under(GetParam()));
     EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {.5f, .1f, 2})).x, 1.5f, 1e-5); // 0 at x = -1, 2 at x = 1
 }
 
@@ -148,9 +167,11 @@ TEST_P(Hiders, ParametersThatThePrimitiveOverrides) {
 TEST(Messages, OpacityHearsTheDisplacement) {
     writeShader("veil", "displacement veil(output varying float cover = 0;) { cover = .75; }\n");
     writeShader("veiled", "surface veiled() { float c = 0; displacement(\"cover\", c); Oi = c; Ci = 0; }\n");
-    writeShader("sun", "light sun() { solar(vector \"world\" (0, -1, 0), 0) Cl = transmission(Ps, Ps + vector \"world\" (0, 9, 0)); }\n");
+    writeShader(
+        "sun", "light sun() { solar(vector \"world\" (0, -1, 0), 0) Cl = transmission(Ps, Ps + vector \"world\" (0, 9, 0)); }\n");
     writeShader("sums1", "surface sums1() { Oi = 1; Ci = 0; illuminance(P, vector \"world\" (0, 1, 0), PI) Ci += Cl; }\n");
-    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"transmission\" 1\nAttribute \"displacementbound\" \"float sphere\" [.1]\nDisplacement \"veil\"\nSurface \"veiled\"\n"
+    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"transmission\" 1\nAttribute \"displacementbound\" "
+                             "\"float sphere\" [.1]\nDisplacement \"veil\"\nSurface \"veiled\"\n"
                              "Polygon \"P\" [-9 5 -9  -9 5 9  9 5 9  9 5 -9]\nAttributeEnd\n";
     Scene s(world("LightSource \"sun\" 1\n" + card + "Surface \"sums1\"\n" + kFloor), under(Hider::Raytrace));
     expectNear(s.one(kView), Color(.25f), 1e-5f, "shadow");

@@ -14,12 +14,16 @@ TEST(OldVisibility, ScenesThatSayNothingMeanEverything) {
         s.hider = h;
         s.shaderPaths.push_back(shaderFolder());
         const bool path = h == Hider::Path;
-        const struct { std::string first, ofCard; bool seen; } cases[] = {
+        const struct {
+            std::string first, ofCard;
+            bool seen;
+        } cases[] = {
             {"", "", true},
             {"", "Attribute \"visibility\" \"int transmission\" 1\n", true}, // says nothing on reflections
             {"", "Attribute \"visibility\" \"int trace\" 1\n", true},
             {"", "Attribute \"visibility\" \"int specular\" 0\n", false},
-            {"AttributeBegin Attribute \"visibility\" \"int trace\" 1 Translate 0 -90 0 Sphere 1 -1 1 360 AttributeEnd\n", "", path}};
+            {"AttributeBegin Attribute \"visibility\" \"int trace\" 1 Translate 0 -90 0 Sphere 1 -1 1 360 AttributeEnd\n", "",
+             path}};
         for (const auto& c : cases) {
             Scene scene("WorldBegin\n" + c.first + floor + "AttributeBegin\n" + c.ofCard + card + "AttributeEnd\nWorldEnd\n", s);
             const Color seen = scene.one(rayTo({.3f, 1, -.4f}, {0, 0, 0}));
@@ -33,16 +37,18 @@ TEST(OldVisibility, ScenesThatSayNothingMeanEverything) {
 TEST(OldVisibility, BmrtsFlags) {
     writeShader("threeways", "surface threeways() { Oi = 1; color there = trace(P, vector(0, 1, 0));"
                              " Ci = color(comp(there, 0), comp(transmission(P, P + vector(0, 9, 0)), 0), 0); }\n");
-    const std::string floor = "AttributeBegin Surface \"threeways\" Polygon \"P\" [-9 0 -9  -9 0 9  9 0 9  9 0 -9] AttributeEnd\n";
+    const std::string floor =
+        "AttributeBegin Surface \"threeways\" Polygon \"P\" [-9 0 -9  -9 0 9  9 0 9  9 0 -9] AttributeEnd\n";
     const std::string card = "Surface \"constant\" Color 1 1 1 Polygon \"P\" [-9 2 -9  -9 2 9  9 2 9  9 2 -9]\n";
     Settings s;
     s.hider = Hider::Hidden;
     s.shaderPaths.push_back(shaderFolder());
     for (int flags = 0; flags < 8; ++flags) {
-        Scene scene("WorldBegin\n" + floor + "AttributeBegin Attribute \"render\" \"integer visibility\" [" + std::to_string(flags) + "]\n" +
-                        card + "AttributeEnd\nWorldEnd\n",
+        Scene scene("WorldBegin\n" + floor + "AttributeBegin Attribute \"render\" \"integer visibility\" [" +
+                        std::to_string(flags) + "]\n" + card + "AttributeEnd\nWorldEnd\n",
                     s);
-        const Color fromBelow = scene.one(rayTo({.3f, 1, -.4f}, {0, 0, 0})), fromAbove = scene.one(rayTo({.3f, 4, -.4f}, {0, 0, 0}));
+        const Color fromBelow = scene.one(rayTo({.3f, 1, -.4f}, {0, 0, 0})),
+                    fromAbove = scene.one(rayTo({.3f, 4, -.4f}, {0, 0, 0}));
         EXPECT_NEAR(fromBelow.x, flags & 2 ? 1 : 0, 1e-6) << flags << scene.messages();
         EXPECT_NEAR(fromBelow.y, flags & 4 ? 0 : 1, 1e-6) << flags;
         EXPECT_NEAR(fromAbove.z, flags & 1 ? 1 : 0, 1e-6) << flags; // the card itself, or the floor through it

@@ -12,9 +12,11 @@ namespace {
 const char* kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
 const char* kSun = "LightSource \"distantlight\" 1 \"point from\" [0 1 0] \"point to\" [0 0 0]\n";
 
-// A pane of [-1, 1]^2 at height 1 with u along x; the floor below is seen from beside it. Rays that leave the floor bring nothing.
+// A pane of [-1, 1]^2 at height 1 with u along x; the floor below is seen from beside it. Rays that leave the floor bring
+// nothing.
 std::string underPane(const std::string& pane) {
-    return std::string("WorldBegin\nSides 2\n") + kSun + "AttributeBegin\n" + pane + "\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\nAttributeEnd\nSurface \"matte\"\n" + kFloor +
+    return std::string("WorldBegin\nSides 2\n") + kSun + "AttributeBegin\n" + pane +
+           "\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\nAttributeEnd\nSurface \"matte\"\n" + kFloor +
            "WorldEnd\n";
 }
 Color floorAt(Scene& s, float x, float z) { return s.one(rayTo({x, .5f, z - .3f}, {x, 0, z})); }
@@ -61,7 +63,8 @@ TEST(ShadowOpacity, OfTheShader) {
 }
 TEST(ShadowOpacity, TwoPanesMultiply) {
     writeShader("ramp", "surface ramp() { Oi = u; Ci = 0; }\n");
-    std::string two = std::string("WorldBegin\nSides 2\n") + kSun + "Surface \"ramp\"\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\n" +
+    std::string two = std::string("WorldBegin\nSides 2\n") + kSun +
+                      "Surface \"ramp\"\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\n" +
                       "Patch \"bilinear\" \"P\" [-1 2 -1  1 2 -1  -1 2 1  1 2 1]\nSurface \"matte\"\n" + kFloor + "WorldEnd\n";
     Settings set;
     set.hider = Hider::Path;
@@ -70,13 +73,15 @@ TEST(ShadowOpacity, TwoPanesMultiply) {
 }
 TEST(ShadowOpacity, HitModes) {
     writeShader("ramp", "surface ramp() { Oi = u; Ci = 0; }\n");
-    const struct { const char* attribute; double want; } cases[] = {
-        {"", .5},
-        {"Attribute \"shade\" \"transmissionhitmode\" \"shader\"\n", .5},
-        {"Attribute \"shade\" \"transmissionhitmode\" \"primitive\"\n", .75},
-        {"Attribute \"visibility\" \"string transmission\" \"Os\"\n", .75},
-        {"Attribute \"visibility\" \"string transmission\" \"opaque\"\n", 0},
-        {"Attribute \"visibility\" \"string transmission\" \"transparent\"\n", 1}};
+    const struct {
+        const char* attribute;
+        double want;
+    } cases[] = {{"", .5},
+                 {"Attribute \"shade\" \"transmissionhitmode\" \"shader\"\n", .5},
+                 {"Attribute \"shade\" \"transmissionhitmode\" \"primitive\"\n", .75},
+                 {"Attribute \"visibility\" \"string transmission\" \"Os\"\n", .75},
+                 {"Attribute \"visibility\" \"string transmission\" \"opaque\"\n", 0},
+                 {"Attribute \"visibility\" \"string transmission\" \"transparent\"\n", 1}};
     Settings set;
     set.hider = Hider::Path;
     for (const auto& c : cases) {
@@ -86,8 +91,10 @@ TEST(ShadowOpacity, HitModes) {
 }
 // An opacity that varies as a primitive variable, on a shader that hands it on.
 TEST(ShadowOpacity, PrimitiveVariable) {
-    std::string rib = std::string("WorldBegin\nSides 2\n") + kSun + "AttributeBegin\nSurface \"matte\"\nColor 0 0 0\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1] "
-                      "\"Os\" [0 0 0  1 1 1  0 0 0  1 1 1]\nAttributeEnd\nSurface \"matte\"\n" + kFloor + "WorldEnd\n";
+    std::string rib = std::string("WorldBegin\nSides 2\n") + kSun +
+                      "AttributeBegin\nSurface \"matte\"\nColor 0 0 0\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1] "
+                      "\"Os\" [0 0 0  1 1 1  0 0 0  1 1 1]\nAttributeEnd\nSurface \"matte\"\n" +
+                      kFloor + "WorldEnd\n";
     Settings set;
     set.hider = Hider::Path;
     Scene s(rib, set);
@@ -100,7 +107,8 @@ TEST(ShadowOpacity, TransmissionCall) {
     for (Hider h : {Hider::Hidden, Hider::Path}) {
         Settings set;
         set.hider = h;
-        Scene s("WorldBegin\nSides 2\nAttributeBegin\nSurface \"onlyshadow\"\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\nAttributeEnd\nSurface \"looktransmission\"\n" +
+        Scene s("WorldBegin\nSides 2\nAttributeBegin\nSurface \"onlyshadow\"\nPatch \"bilinear\" \"P\" [-1 1 -1  1 1 -1  -1 1 1  "
+                "1 1 1]\nAttributeEnd\nSurface \"looktransmission\"\n" +
                     std::string(kFloor) + "WorldEnd\n",
                 set);
         EXPECT_NEAR(floorAt(s, .2f, .1f).x, .25, 1e-5);
@@ -117,7 +125,9 @@ TEST(ShadowOpacity, Layers) {
         }
         Settings set;
         set.hider = Hider::Path;
-        Scene s(std::string("WorldBegin\nSides 2\n") + kSun + panes + "AttributeEnd\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor + "WorldEnd\n", set);
+        Scene s(std::string("WorldBegin\nSides 2\n") + kSun + panes +
+                    "AttributeEnd\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor + "WorldEnd\n",
+                set);
         EXPECT_NEAR(floorAt(s, .2f, .1f).x, extra < 0 ? 1 : 0, 1e-5);
     }
 }
@@ -130,9 +140,12 @@ TEST(ShadowOpacity, AllEstimatorsAgree) {
         set.hider = Hider::Path;
         set.bsdfOnly = mode == 1;
         set.lightOnly = mode == 2;
-        Scene s("WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"slrect\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\n"
-                "Disk 0 .7 360\nAttributeEnd\nIlluminate 7 1\nAttributeBegin\nSurface \"noisypane\"\nPatch \"bilinear\" \"P\" [-4 1.2 -4  4 1.2 -4  -4 1.2 4  4 1.2 4]\nAttributeEnd\n"
-                "Surface \"matte\"\n" + std::string(kFloor) + "WorldEnd\n",
+        Scene s("WorldBegin\nSides 2\nAttributeBegin\nAreaLightSource \"slrect\" 7 \"float intensity\" 5\nSurface "
+                "\"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\n"
+                "Disk 0 .7 360\nAttributeEnd\nIlluminate 7 1\nAttributeBegin\nSurface \"noisypane\"\nPatch \"bilinear\" \"P\" "
+                "[-4 1.2 -4  4 1.2 -4  -4 1.2 4  4 1.2 4]\nAttributeEnd\n"
+                "Surface \"matte\"\n" +
+                    std::string(kFloor) + "WorldEnd\n",
                 set);
         Moments m = s.estimate(rayTo({.3f, .8f, -.4f}, {0, 0, 0}), samples(mode == 1 ? 200000 : 20000));
         EXPECT_LE(std::fabs(m.mean() - want), kZ * m.se() + .01 * want) << mode;
@@ -149,28 +162,34 @@ TEST(Atmosphere, AttenuatesEmitters) {
         double r = R * (i + .5) / n, d2 = r * r + h * h;
         sum += 5 * std::exp(-std::sqrt(d2) / D) * 2 * r * h * h / (d2 * d2) * R / n;
     }
-    writeShader("floorloop2", "surface floorloop2() { color c = 0; illuminance(P, normal(0, 1, 0), PI / 2) { c += Cl * (normalize(L) . vector(0, 1, 0)); } Ci = c; Oi = 1; }\n");
+    writeShader("floorloop2", "surface floorloop2() { color c = 0; illuminance(P, normal(0, 1, 0), PI / 2) { c += Cl * "
+                              "(normalize(L) . vector(0, 1, 0)); } Ci = c; Oi = 1; }\n");
     for (int mode = 0; mode < 4; ++mode) {
         Settings set;
         set.hider = Hider::Path;
         set.bsdfOnly = mode == 1;
         set.lightOnly = mode == 2;
-        Scene s(std::string("WorldBegin\nSides 2\nAttributeBegin\nAtmosphere \"fog\" \"float distance\" 3\nAreaLightSource \"slrect\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
-                            "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\nSurface \"") + (mode == 3 ? "floorloop2" : "matte") + "\"\n" + kFloor + "WorldEnd\n",
+        Scene s(std::string("WorldBegin\nSides 2\nAttributeBegin\nAtmosphere \"fog\" \"float distance\" 3\nAreaLightSource "
+                            "\"slrect\" 7 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
+                            "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\nSurface \"") +
+                    (mode == 3 ? "floorloop2" : "matte") + "\"\n" + kFloor + "WorldEnd\n",
                 set);
         EXPECT_NEAR(s.one(rayTo({0, .5f, 0}, {0, 2, 0})).x, 5 * std::exp(-.5), 1e-4); // 1.5 away
-        expectMean(s.estimate(rayTo({.3f, .8f, -.4f}, {0, 0, 0}), samples(mode == 1 ? 200000 : 20000)), sum, .01, "mode " + std::to_string(mode));
+        expectMean(s.estimate(rayTo({.3f, .8f, -.4f}, {0, 0, 0}), samples(mode == 1 ? 200000 : 20000)), sum, .01,
+                   "mode " + std::to_string(mode));
     }
 }
 // What a shader asks for later loses as much as what it knows at once: a lit floor in fog, per channel, with a background.
 TEST(Atmosphere, ScalesRequests) {
     writeShader("tintedfog", "volume tintedfog() { color t = color(.2, .5, .8); Ci = Ci * t + color(.1, .2, .3); Oi = 1; }\n");
-    writeShader("loopfog", "volume loopfog() { float i; for (i = 0; i < 3; i += 1) Ci = mix(Ci, color(1, 0, 0), .5); if (length(I) > 100) Ci = 0; Oi = 1; }\n");
+    writeShader("loopfog", "volume loopfog() { float i; for (i = 0; i < 3; i += 1) Ci = mix(Ci, color(1, 0, 0), .5); if "
+                           "(length(I) > 100) Ci = 0; Oi = 1; }\n");
     Settings set;
     set.hider = Hider::Path;
     std::string head = "WorldBegin\nSides 2\nLightSource \"pointlight\" 1 \"float intensity\" 8 \"point from\" [0 2 0]\n";
     CameraRay view = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
-    Scene tinted(head + "Atmosphere \"tintedfog\"\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor + "WorldEnd\n", set);
+    Scene tinted(head + "Atmosphere \"tintedfog\"\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor + "WorldEnd\n",
+                 set);
     Color c = tinted.one(view);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], 2 * (.2 + .3 * k) + .1 * (k + 1), 1e-5);
     Scene looped(head + "Atmosphere \"loopfog\"\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor + "WorldEnd\n", set);
@@ -186,7 +205,10 @@ TEST(Atmosphere, SlopeIsProved) {
     rsl::ShaderCompiler compiler;
     rsl::KernelOptions o;
     o.outputs = {"Ci", "Oi", "slope:Ci"};
-    const struct { const char* name; bool affine; } cases[] = {{"fog", true}, {"depthcue", true}, {"squarefog", false}, {"channelfog", false}};
+    const struct {
+        const char* name;
+        bool affine;
+    } cases[] = {{"fog", true}, {"depthcue", true}, {"squarefog", false}, {"channelfog", false}};
     for (const auto& c : cases) {
         Diagnostics d;
         auto shader = compiler.load(c.name, {shaderFolder(), ALPENGLOW_SOURCE_DIR "/shaders"}, d);
@@ -199,7 +221,9 @@ TEST(Atmosphere, SlopeIsProved) {
     }
     Settings set;
     set.hider = Hider::Path;
-    Scene s(std::string("WorldBegin\nSides 2\nAtmosphere \"squarefog\"\nSurface \"constant\"\nColor .5 .5 .5\n") + kFloor + "WorldEnd\n", set);
+    Scene s(std::string("WorldBegin\nSides 2\nAtmosphere \"squarefog\"\nSurface \"constant\"\nColor .5 .5 .5\n") + kFloor +
+                "WorldEnd\n",
+            set);
     EXPECT_NEAR(s.one(rayTo({.3f, .8f, -.4f}, {0, 0, 0})).x, .25, 1e-6); // constant light is squared exactly
     EXPECT_NE(s.messages().find("not affine in Ci"), std::string::npos);
 }

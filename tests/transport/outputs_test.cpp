@@ -1,4 +1,5 @@
-// Outputs as displays ask for them, arrays of other shaders, and variables of the primitive: rendered scenes against closed forms.
+// Outputs as displays ask for them, arrays of other shaders, and variables of the primitive: rendered scenes against closed
+// forms.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -7,7 +8,8 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-std::vector<float> aovs(const std::string& rib, Hider h, const std::vector<std::string>& outputs, const std::vector<int>& widths = {}) {
+std::vector<float> aovs(const std::string& rib, Hider h, const std::vector<std::string>& outputs,
+                        const std::vector<int>& widths = {}) {
     Settings set = under(h);
     set.outputs = outputs;
     set.outputWidths = widths;
@@ -17,9 +19,12 @@ std::vector<float> aovs(const std::string& rib, Hider h, const std::vector<std::
 }
 using Floats = std::vector<float>;
 
-// As many numbers as the shader has: a float one, an array all of its elements, an element one; what nobody gives, as the display says.
+// As many numbers as the shader has: a float one, an array all of its elements, an element one; what nobody gives, as the display
+// says.
 TEST(Outputs, AsManyNumbersAsTheShaderHas) {
-    writeShader("gives", R"(surface gives(output varying float q = 0; output varying float list[3] = {0, 0, 0}; output varying color tones[2] = {0, 0};) {
+    writeShader(
+        "gives",
+        R"(surface gives(output varying float q = 0; output varying float list[3] = {0, 0, 0}; output varying color tones[2] = {0, 0};) {
     q = 7; list[0] = 1; list[1] = 2; list[2] = 3; tones[1] = color(4, 5, 6);
     float made[2] = {8, 9};
     outputchannel("made", made);
@@ -39,7 +44,8 @@ TEST(Outputs, AsManyNumbersAsTheShaderHas) {
 
 // An output that only the atmosphere has: what it gives, also by outputchannel(); that of the surface comes first.
 TEST(Outputs, OfTheAtmosphere) {
-    writeShader("mist", "volume mist(output varying float thick = 0;) { thick = length(I); outputchannel(\"mist\", color(1, 2, 3)); outputchannel(\"both\", 5.0); Ci = Ci; Oi = Oi; }\n");
+    writeShader("mist", "volume mist(output varying float thick = 0;) { thick = length(I); outputchannel(\"mist\", color(1, 2, "
+                        "3)); outputchannel(\"both\", 5.0); Ci = Ci; Oi = Oi; }\n");
     writeShader("below", "surface below(output varying float both = 0;) { both = 6; Oi = 1; Ci = 0; }\n");
     const float way = length(Vec3(.3f, .8f, -.4f));
     for (Hider h : {Hider::Hidden, Hider::Path}) {
@@ -69,8 +75,10 @@ TEST(Outputs, OfLights) {
 
 // A surface that makes its names when it runs may give any: where it does not, what the atmosphere and the lights give is shown.
 TEST(Outputs, NamesMadeByTheSurfaceHideNobody) {
-    writeShader("mist", "volume mist(output varying float thick = 0;) { thick = length(I); outputchannel(\"mist\", color(1, 2, 3)); outputchannel(\"both\", 5.0); Ci = Ci; Oi = Oi; }\n");
-    writeShader("names", "surface names(string mine = \"own\"; float way = 0;) { string n = (xcomp(P) > 1000) ? \"nobody\" : mine; outputchannel(n, color(7, 8, 9)); Oi = 1; Ci = diffuse(faceforward(N, I)); }\n");
+    writeShader("mist", "volume mist(output varying float thick = 0;) { thick = length(I); outputchannel(\"mist\", color(1, 2, "
+                        "3)); outputchannel(\"both\", 5.0); Ci = Ci; Oi = Oi; }\n");
+    writeShader("names", "surface names(string mine = \"own\"; float way = 0;) { string n = (xcomp(P) > 1000) ? \"nobody\" : "
+                         "mine; outputchannel(n, color(7, 8, 9)); Oi = 1; Ci = diffuse(faceforward(N, I)); }\n");
     writeShader("far", "light far() { illuminate(point \"world\" (0, 2, 0)) { Cl = 1; outputchannel(\"far\", length(L)); } }\n");
     const float way = length(Vec3(.3f, .8f, -.4f));
     for (Hider h : {Hider::Hidden, Hider::Path}) {
@@ -85,16 +93,22 @@ TEST(Outputs, NamesMadeByTheSurfaceHideNobody) {
     }
 }
 
-// Zero is a value: what a shader gives under a name that it makes when it runs hides what others give, and two lights do not overwrite
-// each other's outputs with what they do not give.
+// Zero is a value: what a shader gives under a name that it makes when it runs hides what others give, and two lights do not
+// overwrite each other's outputs with what they do not give.
 TEST(Outputs, AZeroThatIsGivenHidesOthers) {
     writeShader("mists", "volume mists() { outputchannel(\"mist\", 3.0); Ci = Ci; Oi = Oi; }\n");
-    writeShader("zeroes", "surface zeroes(string mine = \"own\";) { string n = (xcomp(P) > 1000) ? \"nobody\" : mine; outputchannel(n, 0.0); Oi = 1; Ci = diffuse(faceforward(N, I)); }\n");
-    writeShader("lists", "light lists(string mine = \"a\"; float by = 1;) { string n = (xcomp(Ps) > 1000) ? \"nobody\" : mine; float both[2] = {by, by + 1}; illuminate(point \"world\" (0, 2, 0)) { Cl = 1; outputchannel(n, both); } }\n");
+    writeShader("zeroes", "surface zeroes(string mine = \"own\";) { string n = (xcomp(P) > 1000) ? \"nobody\" : mine; "
+                          "outputchannel(n, 0.0); Oi = 1; Ci = diffuse(faceforward(N, I)); }\n");
+    writeShader("lists",
+                "light lists(string mine = \"a\"; float by = 1;) { string n = (xcomp(Ps) > 1000) ? \"nobody\" : mine; float "
+                "both[2] = {by, by + 1}; illuminate(point \"world\" (0, 2, 0)) { Cl = 1; outputchannel(n, both); } }\n");
     for (Hider h : {Hider::Hidden, Hider::Path}) {
         EXPECT_EQ(aovs("Atmosphere \"mists\"\nSurface \"zeroes\" \"mine\" \"mist\"\n", h, {"mist"}), (Floats{0}));
         EXPECT_EQ(aovs("Atmosphere \"mists\"\nSurface \"zeroes\" \"mine\" \"other\"\n", h, {"mist"}), (Floats{3}));
-        EXPECT_EQ(aovs("LightSource \"lists\" 1 \"mine\" \"a\" \"by\" 5\nLightSource \"lists\" 2 \"mine\" \"b\" \"by\" 7\nSurface \"matte\"\n", h, {"a", "b"}), (Floats{5, 6, 7, 8}));
+        EXPECT_EQ(aovs("LightSource \"lists\" 1 \"mine\" \"a\" \"by\" 5\nLightSource \"lists\" 2 \"mine\" \"b\" \"by\" "
+                       "7\nSurface \"matte\"\n",
+                       h, {"a", "b"}),
+                  (Floats{5, 6, 7, 8}));
     }
 }
 
@@ -120,7 +134,8 @@ TEST(Outputs, AnArrayAndOneOfItsElements) {
     writeShader("lightlist", "light lightlist() { illuminate(point \"world\" (0, 2, 0)) { Cl = 1; " + gives + "} }\n");
     writeShader("airlist", "volume airlist() { " + gives + "Ci = Ci; Oi = Oi; }\n");
     for (Hider h : {Hider::Hidden, Hider::Path})
-        for (const char* rib : {"Surface \"surfacelist\"\n", "LightSource \"lightlist\" 1\nSurface \"matte\"\n", "Atmosphere \"airlist\"\nSurface \"constant\"\n"}) {
+        for (const char* rib : {"Surface \"surfacelist\"\n", "LightSource \"lightlist\" 1\nSurface \"matte\"\n",
+                                "Atmosphere \"airlist\"\nSurface \"constant\"\n"}) {
             EXPECT_EQ(aovs(rib, h, {"list", "list[1]"}), (Floats{7, 8, 9, 8})) << rib;
             EXPECT_EQ(aovs(rib, h, {"list[2]", "list"}), (Floats{9, 7, 8, 9})) << rib;
         }
@@ -153,10 +168,11 @@ TEST(Outputs, AnImagerSeesTheAttributesAtWorldBegin) {
     alpha = lens + 10 * rate;
 }
 )");
-    Scene s("Imager \"seesattributes\"\nAttribute \"user\" \"uniform float lens\" 2\n"
-            "Attribute \"identifier\" \"name\" \"camera\"\nShadingRate 4\nColor .25 .5 .75\n" +
-                world(std::string("Attribute \"user\" \"uniform float lens\" 7 \"uniform float later\" 8\nColor 1 1 1\n") + kFloor),
-            under(Hider::Hidden));
+    Scene s(
+        "Imager \"seesattributes\"\nAttribute \"user\" \"uniform float lens\" 2\n"
+        "Attribute \"identifier\" \"name\" \"camera\"\nShadingRate 4\nColor .25 .5 .75\n" +
+            world(std::string("Attribute \"user\" \"uniform float lens\" 7 \"uniform float later\" 8\nColor 1 1 1\n") + kFloor),
+        under(Hider::Hidden));
     const float x[1] = {.5f}, y[1] = {.5f};
     float r[1] = {1}, g[1] = {1}, b[1] = {1}, a[1] = {1};
     ASSERT_TRUE(s.world->runImager(1, x, y, r, g, b, a, s.diagnostics));
@@ -167,7 +183,8 @@ TEST(Outputs, AnImagerSeesTheAttributesAtWorldBegin) {
 
 // A light and a surface in a file that is named after neither, or of which one has the name: a request means the one of its kind.
 TEST(Outputs, AFileWithShadersOfSeveralKinds) {
-    writeShader("pair", "surface first() { Oi = 1; Ci = diffuse(faceforward(N, I)); }\nlight second() { solar(vector \"world\" (0, -1, 0), 0) { Cl = color(1, 2, 3); } }\n");
+    writeShader("pair", "surface first() { Oi = 1; Ci = diffuse(faceforward(N, I)); }\nlight second() { solar(vector \"world\" "
+                        "(0, -1, 0), 0) { Cl = color(1, 2, 3); } }\n");
     Scene s(world(std::string("LightSource \"pair\" 1\nSurface \"pair\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     EXPECT_EQ(s.one(kView), Color(1, 2, 3));
@@ -175,7 +192,8 @@ TEST(Outputs, AFileWithShadersOfSeveralKinds) {
 
 // Arrays of co-shaders: by element, as a whole, their length, through getvar(); of two that a handle can mean.
 TEST(Outputs, ArraysOfCoShaders) {
-    writeShader("table", "class table(float tab[3] = {1, 2, 3}; color tones[2] = {0, 0}; float open[] = {5, 6}; color tint = color(.25, .5, .75); string __category = \"t\";) {\n"
+    writeShader("table", "class table(float tab[3] = {1, 2, 3}; color tones[2] = {0, 0}; float open[] = {5, 6}; color tint = "
+                         "color(.25, .5, .75); string __category = \"t\";) {\n"
                          "    public float made[4] = {0, 0, 0, 0};\n    public void begin() { made[3] = tab[0] + 100; }\n}\n");
     writeShader("readstable", R"(class readstable(float what = 0;) {
     public void surface(output color Ci, Oi) {
@@ -194,7 +212,8 @@ TEST(Outputs, ArraysOfCoShaders) {
     }
 }
 )");
-    const std::string two = "Shader \"table\" \"one\" \"float tab[3]\" [4 5 6] \"color tones[2]\" [1 1 1 .1 .2 .3]\nShader \"table\" \"two\"\n";
+    const std::string two =
+        "Shader \"table\" \"one\" \"float tab[3]\" [4 5 6] \"color tones[2]\" [1 1 1 .1 .2 .3]\nShader \"table\" \"two\"\n";
     auto of = [&](const char* what) {
         Scene s(world(two + "Surface \"readstable\" \"what\" " + what + "\n" + kFloor), under(Hider::Hidden));
         EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
@@ -209,7 +228,8 @@ TEST(Outputs, ArraysOfCoShaders) {
 
 // Arrays of the light of the turn and of lights by handle; growing arrays take as many as there are.
 TEST(Outputs, ArraysOfLightsAndVolumes) {
-    writeShader("rows", "light rows(float w[3] = {1, 2, 3}; output varying float out[2] = {0, 0};) { illuminate(point \"world\" (0, 2, 0)) { Cl = 1; out[1] = 40 + w[0]; } }\n");
+    writeShader("rows", "light rows(float w[3] = {1, 2, 3}; output varying float out[2] = {0, 0};) { illuminate(point \"world\" "
+                        "(0, 2, 0)) { Cl = 1; out[1] = 40 + w[0]; } }\n");
     writeShader("dense", "volume dense(float layers[2] = {7, 8}; string names[2] = {\"a\", \"b\"};) { Ci = Ci; Oi = Oi; }\n");
     writeShader("asksrows", R"(float exterior() {
     float l[2] = {0, 0}, o[] = {};
@@ -229,11 +249,14 @@ surface asksrows() {
     Ci = color(found, w[2] + 10 * arraylength(more) + 100 * out[1], h[0] + 10 * v[1]);
 }
 )");
-    Scene s(world(std::string("LightSource \"rows\" 1 \"float w[3]\" [5 6 7]\nExterior \"dense\"\nSurface \"asksrows\"\n") + kFloor), under(Hider::Hidden));
+    Scene s(
+        world(std::string("LightSource \"rows\" 1 \"float w[3]\" [5 6 7]\nExterior \"dense\"\nSurface \"asksrows\"\n") + kFloor),
+        under(Hider::Hidden));
     EXPECT_EQ(s.one(kView), Color(3 + 1 + 3, 7 + 30 + 4500, 5 + 60));
 }
 
-// getvar(null, ...): numbers, arrays and texts of the primitive, by names that are made when the shader runs too; a light asks for its own geometry.
+// getvar(null, ...): numbers, arrays and texts of the primitive, by names that are made when the shader runs too; a light asks
+// for its own geometry.
 TEST(Outputs, VariablesOfThePrimitive) {
     writeShader("asksvars", R"(surface asksvars(float what = 0;) {
     string s = "", names[2] = {"weight", "nosuch"};
@@ -249,8 +272,11 @@ TEST(Outputs, VariablesOfThePrimitive) {
     else Ci = color(st[0], st[1], n);
 }
 )");
-    const std::string floor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60] \"uniform string label\" [\"here\"] \"constant float weight\" [4] \"constant float[2] pair\" [2 3] \"st\" [0 0 0 1 1 1 1 0]\n";
-    auto of = [&](const char* what) { return Scene(world(std::string("Surface \"asksvars\" \"what\" ") + what + "\n" + floor), under(Hider::Hidden)).one(kView); };
+    const std::string floor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60] \"uniform string label\" [\"here\"] "
+                              "\"constant float weight\" [4] \"constant float[2] pair\" [2 3] \"st\" [0 0 0 1 1 1 1 0]\n";
+    auto of = [&](const char* what) {
+        return Scene(world(std::string("Surface \"asksvars\" \"what\" ") + what + "\n" + floor), under(Hider::Hidden)).one(kView);
+    };
     EXPECT_EQ(of("0"), Color(6 + 10 + 100, 1, 4));
     EXPECT_EQ(of("1"), Color(32, 2 + 30, 0));
     const Color st = of("2");
@@ -273,7 +299,9 @@ TEST(Outputs, ImagersHaveCoShaders) {
     alpha = format[0];
 }
 )");
-    Scene s("Format 40 30 1\nShader \"grade\" \"look\" \"color by\" [2 3 5]\nImager \"graded\"\n" + world(std::string("Shader \"grade\" \"later\"\n") + kFloor), under(Hider::Hidden));
+    Scene s("Format 40 30 1\nShader \"grade\" \"look\" \"color by\" [2 3 5]\nImager \"graded\"\n" +
+                world(std::string("Shader \"grade\" \"later\"\n") + kFloor),
+            under(Hider::Hidden));
     const float x[1] = {.5f}, y[1] = {.5f};
     float r[1] = {1}, g[1] = {1}, b[1] = {1}, a[1] = {1};
     ASSERT_TRUE(s.world->runImager(1, x, y, r, g, b, a, s.diagnostics));
@@ -308,7 +336,8 @@ TEST(Outputs, ImagersHaveDerivatives) {
 // The method of a class is an imager too, and finds the same co-shaders.
 TEST(Outputs, AClassIsAnImager) {
     writeShader("grade", "class grade(color by = color(1, 2, 4);) { public void tone(output color c) { c *= by; } }\n");
-    writeShader("classed", "class classed(float gain = 2;) { public void imager(output varying color Ci, Oi) { shader g = getshader(\"look\"); g->tone(Ci); Ci *= gain; } }\n");
+    writeShader("classed", "class classed(float gain = 2;) { public void imager(output varying color Ci, Oi) { shader g = "
+                           "getshader(\"look\"); g->tone(Ci); Ci *= gain; } }\n");
     Scene s("Shader \"grade\" \"look\"\nImager \"classed\" \"gain\" 3\n" + world(kFloor), under(Hider::Hidden));
     const float x[1] = {.5f}, y[1] = {.5f};
     float r[1] = {1}, g[1] = {1}, b[1] = {1}, a[1] = {1};
@@ -319,13 +348,19 @@ TEST(Outputs, AClassIsAnImager) {
 
 // Published imagers put a colour behind the picture and say Oi = 1, without a word on alpha: the mean of Oi is the alpha then.
 TEST(Outputs, WhatAnImagerMakesOpaqueHasAlpha) {
-    writeShader("opaque", "imager opaque(color behind = color(0, 0, 1);) { Ci += (1 - alpha) * behind; Oi = color(.25, .5, 1); }\n");
-    writeShader("opaqueclass", "class opaqueclass() { public void imager(output varying color Ci, Oi) { Ci += (1 - Oi) * color(0, 0, 1); Oi = 1; } }\n");
+    writeShader("opaque",
+                "imager opaque(color behind = color(0, 0, 1);) { Ci += (1 - alpha) * behind; Oi = color(.25, .5, 1); }\n");
+    writeShader(
+        "opaqueclass",
+        "class opaqueclass() { public void imager(output varying color Ci, Oi) { Ci += (1 - Oi) * color(0, 0, 1); Oi = 1; } }\n");
     writeShader("bothways", "imager bothways() { Oi = 1; alpha = .125; }\n");
     writeShader("neither", "imager neither() { Ci *= Oi; }\n");
     writeShader("someopaque", "imager someopaque() { if (alpha > .5) Oi = 1; }\n");
-    const std::pair<const char*, std::pair<float, float>> all[] = {
-        {"opaque", {1.75f / 3, 1.75f / 3}}, {"opaqueclass", {1, 1}}, {"bothways", {.125f, .125f}}, {"neither", {.25f, .75f}}, {"someopaque", {.25f, 1}}};
+    const std::pair<const char*, std::pair<float, float>> all[] = {{"opaque", {1.75f / 3, 1.75f / 3}},
+                                                                   {"opaqueclass", {1, 1}},
+                                                                   {"bothways", {.125f, .125f}},
+                                                                   {"neither", {.25f, .75f}},
+                                                                   {"someopaque", {.25f, 1}}};
     for (const auto& [name, wanted] : all) {
         Scene s("Imager \"" + std::string(name) + "\"\n" + world(kFloor), under(Hider::Hidden));
         const float x[2] = {.5f, 1.5f}, y[2] = {.5f, .5f};

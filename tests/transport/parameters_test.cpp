@@ -10,9 +10,7 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 /// A map of one colour.
-std::string plain(const std::string& name, int width, Color c) {
-    return "\"map\" " + writeMap(name, width, 16, c);
-}
+std::string plain(const std::string& name, int width, Color c) { return "\"map\" " + writeMap(name, width, 16, c); }
 
 void near(const Color& got, const Color& want, double tolerance, const std::string& what) {
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(got[k], want[k], tolerance) << what << ", component " << k;
@@ -103,7 +101,9 @@ TEST(Parameters, SlopesOfBump) {
     Ci = color(Du(xcomp(g)) / (k * k) - 0.3 * sin(k * x), Dv(xcomp(g)) / (k * k) - 0.2 * sin(k * x), xcomp(g) / k + cos(k * x));
 }
 )");
-    const std::string wave = writeMap("parameters_wave.exr", 256, 256, [](int x, int, int) { return float(std::sin(2 * kPi * (x + .5) / 256)); }, "periodic,periodic");
+    const std::string wave = writeMap(
+        "parameters_wave.exr", 256, 256, [](int x, int, int) { return float(std::sin(2 * kPi * (x + .5) / 256)); },
+        "periodic,periodic");
     Scene s(world("Attribute \"shade\" \"derivatives\" \"exact\"\nSurface \"slopebump\" \"map\" " + wave + "\n" + kFloor),
             under(Hider::Hidden));
     // Slopes of .36 at most, two texels of phase off (2 pi / 256 each): .018.

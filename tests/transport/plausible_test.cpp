@@ -1,5 +1,5 @@
-// Class surfaces of PRMan that know themselves only by how they answer to directions: directlighting() asks the lights, indirectspecular()
-// sends the rays that the material wants.
+// Class surfaces of PRMan that know themselves only by how they answer to directions: directlighting() asks the lights,
+// indirectspecular() sends the rays that the material wants.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -12,7 +12,8 @@ namespace {
 const char* kTwoLights = "LightSource \"distantlight\" 1 \"intensity\" 2 \"from\" [0 1 1.7320508] \"to\" [0 0 0]\n"
                          "LightSource \"distantlight\" 2 \"lightcolor\" [.5 .5 .5] \"from\" [0 1 0] \"to\" [0 0 0]\n";
 
-/// Diffuse like a matte of the colour (1, .5, .25), and a "specular" that is the same everywhere: a quarter per steradian over pi.
+/// Diffuse like a matte of the colour (1, .5, .25), and a "specular" that is the same everywhere: a quarter per steradian over
+/// pi.
 std::string material(const std::string& methods) {
     return R"(class material(output varying color apart = 0;) {
     shader m_lights[];
@@ -25,7 +26,8 @@ std::string material(const std::string& methods) {
             else samples[i]->setMaterialResponse(.25 / PI, .1);
         }
     }
-)" + methods + "}\n";
+)" + methods +
+           "}\n";
 }
 
 // The light of two lights at 1/2 and at 1: diffuse is 1.5, the other lobe a quarter of 2 + 1/2.
@@ -51,14 +53,17 @@ TEST(Plausible, LightsByTheAnswersOfTheMaterial) {
 
 // Without lighting() the two halves come one after the other, each with its own part; the second finds the first in Ci.
 TEST(Plausible, HalvesOfTheLighting) {
-    writeShader("halves", material("public void diffuselighting(output color Ci, Oi, Ii) { Ci = directlighting(this, m_lights); Oi = 1; }\n"
-                                   "public void specularlighting(output color Ci, Oi) { Ci = color(comp(Ci, 0), comp(directlighting(this, m_lights), 0), 0); }\n"));
+    writeShader("halves",
+                material("public void diffuselighting(output color Ci, Oi, Ii) { Ci = directlighting(this, m_lights); Oi = 1; }\n"
+                         "public void specularlighting(output color Ci, Oi) { Ci = color(comp(Ci, 0), comp(directlighting(this, "
+                         "m_lights), 0), 0); }\n"));
     const Color c = Scene(world(kTwoLights + std::string("Surface \"halves\"\n") + kFloor), under(Hider::Hidden)).one(kView);
     EXPECT_NEAR(c[0], 1.5, 1e-5);
     EXPECT_NEAR(c[1], .625, 1e-5);
 }
 
-// A card of colour (.5, .25, 1) above the floor, where two of three rays go: one answers 1/2 with density 1/4, one 1/2 with density 1.
+// A card of colour (.5, .25, 1) above the floor, where two of three rays go: one answers 1/2 with density 1/4, one 1/2 with
+// density 1.
 TEST(Plausible, RaysWhereTheMaterialWantsThem) {
     writeShader("card", "surface card() { Oi = 1; Ci = color(.5, .25, 1); }\n");
     writeShader("mirrors", material(R"(public void generateSamples(string type; output __radiancesample samples[]) {
@@ -72,7 +77,8 @@ TEST(Plausible, RaysWhereTheMaterialWantsThem) {
     }
     public void lighting(output color Ci, Oi) { Ci = indirectspecular(this, "samplebase", 1); Oi = 1; }
 )"));
-    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
+    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 "
+                             "1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
     const Color c = Scene(world(card + "Surface \"mirrors\"\n" + kFloor), under(Hider::Raytrace)).one(kView);
     const float each = 2.5f / 3;
     EXPECT_NEAR(c[0], .5 * each, 1e-5);
@@ -80,7 +86,8 @@ TEST(Plausible, RaysWhereTheMaterialWantsThem) {
     EXPECT_NEAR(c[2], 1 * each, 1e-5);
 }
 
-// Of another shader object, and of some of the lights only: the light at 60 degrees gives 1 (diffuse) and 2 / 4, the other 1/2 and 1/8.
+// Of another shader object, and of some of the lights only: the light at 60 degrees gives 1 (diffuse) and 2 / 4, the other 1/2
+// and 1/8.
 TEST(Plausible, OtherObjectsAndChosenLights) {
     writeShader("other", material(""));
     writeShader("listing", material(R"(public void lighting(output color Ci, Oi) {
@@ -112,7 +119,9 @@ TEST(Plausible, OtherObjectsAndChosenLights) {
         EXPECT_NEAR(listed[0], 1.5, 1e-5);
         EXPECT_NEAR(listed[1], 1, 1e-5);
         EXPECT_NEAR(listed[2], .625, 1e-5);
-        const Color asked = Scene(world(kTwoLights + std::string("Shader \"other\" \"material\"\nSurface \"asks\"\n") + kFloor), under(h)).one(kView);
+        const Color asked =
+            Scene(world(kTwoLights + std::string("Shader \"other\" \"material\"\nSurface \"asks\"\n") + kFloor), under(h))
+                .one(kView);
         EXPECT_NEAR(asked[0], .625 + 10 * 2.125, 1e-4);
         EXPECT_NEAR(asked[1], .5 + 10 * 3 * 1.5, 1e-4);
         EXPECT_NEAR(asked[2], .125 + 10 * 3 * .625, 1e-4);
@@ -140,8 +149,10 @@ TEST(Plausible, RaysWhereAnotherMaterialWantsThem) {
         if (comp(indirectspecular(m, "bias", .01, "maxdist", .5, "label", "near", "subset", "", "hitmode", "default", "hitsides", "both"), 0) != 0) Ci = -1;
         Oi = 1; } }
 )");
-    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
-    const Color c = Scene(world(card + "Shader \"wants\" \"material\"\nSurface \"sends\"\n" + kFloor), under(Hider::Raytrace)).one(kView);
+    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 "
+                             "1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
+    const Color c =
+        Scene(world(card + "Shader \"wants\" \"material\"\nSurface \"sends\"\n" + kFloor), under(Hider::Raytrace)).one(kView);
     EXPECT_NEAR(c[0], .5, 1e-5); // 2 / 2 of the card's .5
     EXPECT_NEAR(c[1], .25, 1e-5);
     EXPECT_NEAR(c[2], 1, 1e-5);

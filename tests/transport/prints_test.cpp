@@ -74,21 +74,25 @@ TEST(Prints, InTheOrderOfSamples) {
 
     auto shuffled = all;
     std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
-    EXPECT_EQ(whole, printed(scene, [&] {
-                  for (size_t i = 0; i < shuffled.size(); i += 23)
-                      scene.trace(std::span(shuffled).subspan(i, std::min<size_t>(23, shuffled.size() - i)));
-              })) << "small calls in another order";
-    EXPECT_EQ(whole, printed(scene, [&] {
-                  std::vector<std::thread> threads;
-                  for (int t = 0; t < 3; ++t)
-                      threads.emplace_back([&, t] {
-                          Integrator mine(scene.world, scene.diagnostics);
-                          std::vector<SampleResult> results(50);
-                          for (size_t i = size_t(t) * 50; i < all.size(); i += 150)
-                              mine.trace(std::span(all).subspan(i, 50), results, nullptr);
-                      });
-                  for (auto& t : threads) t.join();
-              })) << "threads";
+    EXPECT_EQ(whole, printed(scene,
+                             [&] {
+                                 for (size_t i = 0; i < shuffled.size(); i += 23)
+                                     scene.trace(std::span(shuffled).subspan(i, std::min<size_t>(23, shuffled.size() - i)));
+                             }))
+        << "small calls in another order";
+    EXPECT_EQ(whole, printed(scene,
+                             [&] {
+                                 std::vector<std::thread> threads;
+                                 for (int t = 0; t < 3; ++t)
+                                     threads.emplace_back([&, t] {
+                                         Integrator mine(scene.world, scene.diagnostics);
+                                         std::vector<SampleResult> results(50);
+                                         for (size_t i = size_t(t) * 50; i < all.size(); i += 150)
+                                             mine.trace(std::span(all).subspan(i, 50), results, nullptr);
+                                     });
+                                 for (auto& t : threads) t.join();
+                             }))
+        << "threads";
     for (int lanes : {4, 8}) {
         Scene other(rib, settings(lanes));
         EXPECT_EQ(whole, printed(other, [&] { other.trace(all); })) << lanes << " lanes";

@@ -11,7 +11,8 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 const std::string kSeen = "Attribute \"visibility\" \"integer transmission\" 1 \"integer diffuse\" 1 \"integer specular\" 1\n";
-const std::string kWall = "AttributeBegin Surface \"constant\" Color 1 1 1 Polygon \"P\" [.5 0 -9000  .5 0 9000  .5 1 9000  .5 1 -9000] AttributeEnd\n";
+const std::string kWall =
+    "AttributeBegin Surface \"constant\" Color 1 1 1 Polygon \"P\" [.5 0 -9000  .5 0 9000  .5 1 9000  .5 1 -9000] AttributeEnd\n";
 
 /// What a wall of that height at distance x takes of the hemisphere over a floor, by the cosine; and how that changes with x.
 double ofWall(double x, double h) { return (1 - x / std::sqrt(x * x + h * h)) / 2; }
@@ -61,12 +62,13 @@ TEST(Records, ReachAsManyPixelsAsTheyMay) {
     const auto of = [](float pixel, float most) {
         LightRecord r;
         r.change = .2f;
-        r.take({Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}, 2, 6, std::vector<Color>(12, Color(1)), std::vector<float>(12, 1.f), pixel, most);
+        r.take({Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}, 2, 6, std::vector<Color>(12, Color(1)), std::vector<float>(12, 1.f),
+               pixel, most);
         return r.distance * r.change;
     };
-    EXPECT_NEAR(of(.01f, 1000), .2, 1e-6);  // the harmonic mean of the distances, 1, times the change
+    EXPECT_NEAR(of(.01f, 1000), .2, 1e-6); // the harmonic mean of the distances, 1, times the change
     EXPECT_NEAR(of(.01f, 10), .1, 1e-6);
-    EXPECT_NEAR(of(1, 10), 1.5, 1e-6);      // a pixel and a half at least
+    EXPECT_NEAR(of(1, 10), 1.5, 1e-6); // a pixel and a half at least
 }
 
 TEST(Records, DoNotDependOnTheirOrder) {
@@ -103,7 +105,8 @@ TEST(Records, DoNotDependOnTheirOrder) {
 struct Interpolated {
     Scene scene;
     explicit Interpolated(const std::string& name, const std::string& value, Hider h, bool backwards = false)
-        : scene(world((writeShader(name, "surface " + name + "() { vector up = vector \"world\" (0, 1, 0); Ci = " + value + "; Oi = 1; }\n"),
+        : scene(world((writeShader(name, "surface " + name + "() { vector up = vector \"world\" (0, 1, 0); Ci = " + value +
+                                             "; Oi = 1; }\n"),
                        kSeen + "Surface \"" + name + "\"\n" + kFloor + kWall)),
                 withShaders(h)) {
         for (int step = 4; step >= 1; step /= 2) {
@@ -111,7 +114,8 @@ struct Interpolated {
             for (int y = 0; y < 16; y += step)
                 for (int x = 0; x < 16; x += step) rays.push_back(at(x, y)), rays.back().records = true;
             if (backwards) std::reverse(rays.begin(), rays.end());
-            for (size_t i = 0; i < rays.size(); i += 7) scene.trace(std::span(rays).subspan(i, std::min<size_t>(7, rays.size() - i)));
+            for (size_t i = 0; i < rays.size(); i += 7)
+                scene.trace(std::span(rays).subspan(i, std::min<size_t>(7, rays.size() - i)));
             records = scene.world->keepRecords();
         }
     }
@@ -128,8 +132,9 @@ struct Interpolated {
 
 TEST(Records, GiveWhatExactCallsGive) {
     for (const Hider h : {Hider::Raytrace, Hider::Path})
-        for (const char* value : {"indirectdiffuse(P, up, 1024, \"maxvariation\", .04)", "color occlusion(P, up, 1024, \"maxvariation\", .04)",
-                                  "color (pow(occlusion(P, up, 1024, \"maxvariation\", .04), 1))"}) {
+        for (const char* value :
+             {"indirectdiffuse(P, up, 1024, \"maxvariation\", .04)", "color occlusion(P, up, 1024, \"maxvariation\", .04)",
+              "color (pow(occlusion(P, up, 1024, \"maxvariation\", .04), 1))"}) {
             Interpolated i("recwall", value, h);
             EXPECT_TRUE(i.scene.world->interpolates());
             EXPECT_GT(i.records, 3u);
@@ -163,14 +168,17 @@ TEST(Records, AreTheSameInAnyOrder) {
 }
 
 TEST(Records, OnlyWhereTheyAreAskedFor) {
-    for (const char* value : {"indirectdiffuse(P, up, 16)", "color occlusion(P, up, 16)", "color occlusion(P, up, 16, \"maxerror\", .5, \"maxpixeldist\", 20)"}) {
+    for (const char* value : {"indirectdiffuse(P, up, 16)", "color occlusion(P, up, 16)",
+                              "color occlusion(P, up, 16, \"maxerror\", .5, \"maxpixeldist\", 20)"}) {
         Interpolated i("recnone", value, Hider::Raytrace);
         EXPECT_FALSE(i.scene.world->interpolates()) << value;
         EXPECT_EQ(i.records, 0u);
     }
     // Asked for, but not of what records hold, or with 0.
-    for (const char* value : {"indirectdiffuse(P, up, 16, \"maxvariation\", 0)", "indirectdiffuse(P, up, 16, \"maxvariation\", .1, \"coneangle\", 1)",
-                              "color occlusion(P, up, 16, \"maxvariation\", .1, \"axis\", up)", "color occlusion(P, up, 16, \"maxvariation\", sqrt(-1) * 0 / 0)"}) {
+    for (const char* value :
+         {"indirectdiffuse(P, up, 16, \"maxvariation\", 0)", "indirectdiffuse(P, up, 16, \"maxvariation\", .1, \"coneangle\", 1)",
+          "color occlusion(P, up, 16, \"maxvariation\", .1, \"axis\", up)",
+          "color occlusion(P, up, 16, \"maxvariation\", sqrt(-1) * 0 / 0)"}) {
         Interpolated i("recpart", value, Hider::Raytrace);
         EXPECT_EQ(i.records, 0u) << value;
     }
@@ -178,11 +186,14 @@ TEST(Records, OnlyWhereTheyAreAskedFor) {
 
 // Two halves of a floor, side by side, of one shader: rays of one do not meet the wall. Each keeps records of its own.
 TEST(Records, AreOfTheRaysThatTheirSurfacesSend) {
-    writeShader("recgroups", "surface recgroups() { vector up = vector \"world\" (0, 1, 0); Oi = 1; Ci = color occlusion(P, up, 256, \"maxvariation\", .2); }\n");
+    writeShader("recgroups", "surface recgroups() { vector up = vector \"world\" (0, 1, 0); Oi = 1; Ci = color occlusion(P, up, "
+                             "256, \"maxvariation\", .2); }\n");
     const auto half = [](const char* subset, const char* x) {
-        return "AttributeBegin Attribute \"grouping\" \"string tracesubset\" \"" + std::string(subset) + "\" Surface \"recgroups\" Polygon \"P\" [" + x + "] AttributeEnd\n";
+        return "AttributeBegin Attribute \"grouping\" \"string tracesubset\" \"" + std::string(subset) +
+               "\" Surface \"recgroups\" Polygon \"P\" [" + x + "] AttributeEnd\n";
     };
-    Scene s(world(kSeen + half("walls", "-60 0 -60  -60 0 0  60 0 0  60 0 -60") + half("others", "-60 0 0  -60 0 60  60 0 60  60 0 0") +
+    Scene s(world(kSeen + half("walls", "-60 0 -60  -60 0 0  60 0 0  60 0 -60") +
+                  half("others", "-60 0 0  -60 0 60  60 0 60  60 0 0") +
                   "Attribute \"grouping\" \"string membership\" \"walls\"\n" + kWall),
             withShaders(Hider::Raytrace));
     for (int step = 4; step >= 1; step /= 2) {

@@ -1,6 +1,7 @@
-// Class lights of PRMan that have no illuminate() and no light() of their own: they send what generateSamples() gives, each sample one nth.
-#include "transport/floorscene.h"
+// Class lights of PRMan that have no illuminate() and no light() of their own: they send what generateSamples() gives, each
+// sample one nth.
 #include "base/limits.h"
+#include "transport/floorscene.h"
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
@@ -12,8 +13,11 @@ const char* kWhite = "Surface \"white\"\n";
 
 void writeWhite() {
     writeShader("white", "surface white() { Oi = Os; Ci = Os * diffuse(normalize(N)); }\n");
-    writeShader("loops", "surface loops() { Oi = 1; Ci = 0; illuminance(P, normalize(N), PI/2) Ci += Cl * (normalize(N) . normalize(L)); }\n");
-    writeShader("turns", "surface turns() { float n = 0, far = 0; illuminance(P) { n += 1; far += length(L); } Oi = 1; Ci = color(n, far, 0); }\n");
+    writeShader(
+        "loops",
+        "surface loops() { Oi = 1; Ci = 0; illuminance(P, normalize(N), PI/2) Ci += Cl * (normalize(N) . normalize(L)); }\n");
+    writeShader("turns", "surface turns() { float n = 0, far = 0; illuminance(P) { n += 1; far += length(L); } Oi = 1; Ci = "
+                         "color(n, far, 0); }\n");
     writeShader("answers", R"(class answers() {
         public void evaluateSamples(string distribution; output __radiancesample samples[]) {
             uniform float i;
@@ -57,7 +61,9 @@ void writeWhite() {
 /// The light stands 2 above the origin of the floor.
 std::string above(const std::string& light) { return "TransformBegin\nTranslate 0 2 0\n" + light + "TransformEnd\n"; }
 /// The same with z of the light's space down.
-std::string facingDown(const std::string& light) { return "TransformBegin\nTranslate 0 2 0\nRotate 90 1 0 0\n" + light + "TransformEnd\n"; }
+std::string facingDown(const std::string& light) {
+    return "TransformBegin\nTranslate 0 2 0\nRotate 90 1 0 0\n" + light + "TransformEnd\n";
+}
 
 class SampledLights : public ::testing::TestWithParam<Hider> {};
 
@@ -84,12 +90,15 @@ TEST_P(SampledLights, SquareOfSeveralSamples) {
     // More samples than have turns share those.
     for (const std::string& n : {std::string("1"), std::string("4"), std::to_string(limits::kLightTurns + 36)})
         for (const char* surface : {"white", "loops"}) {
-            Scene s(world(facingDown(std::string("LightSource \"shape\" 1 \"n\" ") + n + "\n") + "Surface \"" + surface + "\"\n" + kFloor), under(GetParam()));
+            Scene s(world(facingDown(std::string("LightSource \"shape\" 1 \"n\" ") + n + "\n") + "Surface \"" + surface + "\"\n" +
+                          kFloor),
+                    under(GetParam()));
             expectMean(s.estimate(kView, samples(n.size() > 1 ? 4000 : 16000)), factor, .01, std::string(surface) + " " + n);
         }
 }
 
-// A sphere of radius 1/2 whose centre is 2 above the floor sends pi sin^2 of its half angle: (1/2 / 2)^2 of what an even sky sends.
+// A sphere of radius 1/2 whose centre is 2 above the floor sends pi sin^2 of its half angle: (1/2 / 2)^2 of what an even sky
+// sends.
 TEST_P(SampledLights, SphereOfSeveralSamples) {
     writeWhite();
     Scene s(world(above("LightSource \"shape\" 1 \"n\" 8 \"shape\" \"sphere\"\n") + kWhite + kFloor), under(GetParam()));
@@ -127,11 +136,13 @@ TEST_P(SampledLights, ByTheirHandles) {
     expectMean(s.estimate(kView, samples(10000)), factor, .01, "handle");
 }
 
-// A card between the light and the floor: under path every light has traced shadows, elsewhere a light with shadowSamples() has them.
+// A card between the light and the floor: under path every light has traced shadows, elsewhere a light with shadowSamples() has
+// them.
 TEST_P(SampledLights, Shadows) {
     writeWhite();
-    const std::string card = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nAttribute \"visibility\" \"camera\" 0 \"transmission\" \"opaque\"\n"
-                             "Polygon \"P\" [-5 1 -5  -5 1 5  5 1 5  5 1 -5]\nAttributeEnd\n";
+    const std::string card =
+        "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nAttribute \"visibility\" \"camera\" 0 \"transmission\" \"opaque\"\n"
+        "Polygon \"P\" [-5 1 -5  -5 1 5  5 1 5  5 1 -5]\nAttributeEnd\n";
     Scene s(world(facingDown("LightSource \"shape\" 1 \"n\" 4\n") + card + kWhite + kFloor), withShaders(GetParam()));
     EXPECT_EQ(s.one(kView), Color(0));
     const std::string light = above("LightSource \"onepoint\" 1 \"intensity\" 9.42477796\n");
@@ -157,7 +168,9 @@ TEST_P(SampledLights, RejectedSamples) {
     }
 )");
     // Densities 1 and 3: (1 + 1/3) / 2.
-    EXPECT_NEAR(Scene(world(above("LightSource \"some\" 1\n") + std::string("Surface \"loops\"\n") + kFloor), under(GetParam())).one(kView)[0], 2. / 3, 1e-5);
+    EXPECT_NEAR(Scene(world(above("LightSource \"some\" 1\n") + std::string("Surface \"loops\"\n") + kFloor), under(GetParam()))
+                    .one(kView)[0],
+                2. / 3, 1e-5);
 }
 
 // A light() that does more than say zero is asked as ever, and so are surfaces with generateSamples().
@@ -178,10 +191,14 @@ TEST_P(SampledLights, LayersAreNoLights) {
         public float gives() { return k; }
     }
 )");
-    writeShader("layered", "class layered() { public void surface(output color Ci, Oi) { shader l = getshader(\"one\"); Oi = 1; Ci = l->gives(); } }\n");
-    EXPECT_EQ(Scene(world("Shader \"layer\" \"one\" \"k\" .25\nSurface \"layered\"\n" + std::string(kFloor)), under(GetParam())).one(kView)[0], .25f);
+    writeShader("layered", "class layered() { public void surface(output color Ci, Oi) { shader l = getshader(\"one\"); Oi = 1; "
+                           "Ci = l->gives(); } }\n");
+    EXPECT_EQ(Scene(world("Shader \"layer\" \"one\" \"k\" .25\nSurface \"layered\"\n" + std::string(kFloor)), under(GetParam()))
+                  .one(kView)[0],
+              .25f);
 }
 
-INSTANTIATE_TEST_SUITE_P(Hiders, SampledLights, ::testing::Values(Hider::Hidden, Hider::Path), [](const auto& i) { return i.param == Hider::Path ? "Path" : "Hidden"; });
+INSTANTIATE_TEST_SUITE_P(Hiders, SampledLights, ::testing::Values(Hider::Hidden, Hider::Path),
+                         [](const auto& i) { return i.param == Hider::Path ? "Path" : "Hidden"; });
 
 } // namespace

@@ -1,5 +1,5 @@
-// Displaced surfaces end where their closed forms do, to a pixel: near and far, in mirrors, moving. A ball is displaced to an ellipsoid, which
-// rays meet by the sign of a quadratic's discriminant.
+// Displaced surfaces end where their closed forms do, to a pixel: near and far, in mirrors, moving. A ball is displaced to an
+// ellipsoid, which rays meet by the sign of a quadratic's discriminant.
 #include "transport/floorscene.h"
 
 using namespace alpenglow;
@@ -8,7 +8,7 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-constexpr int kSide = 400;   ///< of the picture, whose field is 60 degrees
+constexpr int kSide = 400; ///< of the picture, whose field is 60 degrees
 const double kTangent = std::tan(30 * kPi / 180), kPixel = 2 * kTangent / kSide;
 
 /// x^2 + (y / tall)^2 + z^2 < 1 about a centre.
@@ -28,7 +28,8 @@ class Silhouettes : public ::testing::TestWithParam<Hider> {
 protected:
     void SetUp() override {
         writeShader("eggs", "displacement eggs(float tall = 1.6) { point p = transform(\"object\", P);\n"
-                            "    P = transform(\"object\", \"current\", point(2 * xcomp(p), 2 * tall * ycomp(p), 2 * zcomp(p))); N = calculatenormal(P); }\n");
+                            "    P = transform(\"object\", \"current\", point(2 * xcomp(p), 2 * tall * ycomp(p), 2 * zcomp(p))); "
+                            "N = calculatenormal(P); }\n");
         writeShader("glows", "surface glows() { Oi = 1; Ci = 1; }\n");
         writeShader("glass", "surface glass() { Oi = 1; Ci = trace(P, reflect(normalize(I), normalize(N))); }\n");
     }
@@ -36,14 +37,16 @@ protected:
         return "Attribute \"displacementbound\" \"float sphere\" 3 Displacement \"eggs\" Surface \"glows\" " + shape + "\n";
     }
     static std::string scene(const std::string& inside, const std::string& before = {}) {
-        return "Format " + std::to_string(kSide) + " " + std::to_string(kSide) + " 1\nProjection \"perspective\" \"fov\" 60\n" + before +
-               "WorldBegin\nSides 2\nAttribute \"visibility\" \"int specular\" 1 \"int camera\" 1\n" + inside + "WorldEnd\n";
+        return "Format " + std::to_string(kSide) + " " + std::to_string(kSide) + " 1\nProjection \"perspective\" \"fov\" 60\n" +
+               before + "WorldBegin\nSides 2\nAttribute \"visibility\" \"int specular\" 1 \"int camera\" 1\n" + inside +
+               "WorldEnd\n";
     }
     static CameraRay through(double x, double y) { return rayTo({0, 0, 0}, {float(x * kTangent), float(y * kTangent), 1}); }
 
-    /// Rays a pixel inside and outside the silhouette `meets` (by direction from the eye), in all directions from (cx, cy) of the picture of
-    /// -1 to 1: what is met and should not be, or the other way about.
-    template <class Meets> static void expectSilhouette(Scene& s, const Meets& meets, double cx, double cy, const std::string& what, float time = 0) {
+    /// Rays a pixel inside and outside the silhouette `meets` (by direction from the eye), in all directions from (cx, cy) of the
+    /// picture of -1 to 1: what is met and should not be, or the other way about.
+    template <class Meets>
+    static void expectSilhouette(Scene& s, const Meets& meets, double cx, double cy, const std::string& what, float time = 0) {
         std::vector<CameraRay> rays;
         std::vector<bool> want;
         for (int k = 0; k < 64; ++k) {
@@ -83,18 +86,25 @@ TEST_P(Silhouettes, NearAndFar) {
     for (const double far : {1.3, 2.5, 9., 60., 400.}) {
         const Egg egg{{0.2, 0.1, far}, 1.6};
         Scene s(scene("Translate .2 .1 " + std::to_string(far) + " " + this->egg(kForms[0])), settings());
-        expectSilhouette(s, [&](const Vec3d& d) { return egg.meets({}, d); }, 0.2 / far / kTangent, 0.1 / far / kTangent, "at " + std::to_string(far));
+        expectSilhouette(
+            s, [&](const Vec3d& d) { return egg.meets({}, d); }, 0.2 / far / kTangent, 0.1 / far / kTangent,
+            "at " + std::to_string(far));
     }
 }
 
 TEST_P(Silhouettes, InAMirror) {
-    // A mirror at z = 6 that faces the eye; balls behind the eye and beside it, which it does not see itself. Their images lie as far behind it.
+    // A mirror at z = 6 that faces the eye; balls behind the eye and beside it, which it does not see itself. Their images lie as
+    // far behind it.
     for (const double z : {-1.5, -12., -150.}) {
         const double x = z < -2 ? 0.3 : 4;
         const Egg image{{x, 0, 12 - z}, 1.6};
-        Scene s(scene("AttributeBegin Surface \"glass\" Polygon \"P\" [-99 -99 6  -99 99 6  99 99 6  99 -99 6] AttributeEnd Translate " + std::to_string(x) + " 0 " +
-                      std::to_string(z) + " " + egg(kForms[1])), settings());
-        expectSilhouette(s, [&](const Vec3d& d) { return image.meets({}, d); }, x / (12 - z) / kTangent, 0, "mirrored at " + std::to_string(z));
+        Scene s(scene("AttributeBegin Surface \"glass\" Polygon \"P\" [-99 -99 6  -99 99 6  99 99 6  99 -99 6] AttributeEnd "
+                      "Translate " +
+                      std::to_string(x) + " 0 " + std::to_string(z) + " " + egg(kForms[1])),
+                settings());
+        expectSilhouette(
+            s, [&](const Vec3d& d) { return image.meets({}, d); }, x / (12 - z) / kTangent, 0,
+            "mirrored at " + std::to_string(z));
     }
 }
 
@@ -110,8 +120,9 @@ TEST_P(Silhouettes, Moving) {
             // Twice as large means twice the ellipsoid: seen at half the distance.
             const Vec3d at = placed ? Vec3d(-1 + 2 * t, 0.5 * t, 8 - 3 * t) : Vec3d(0, 0, 8 / (1 + t));
             const Egg now{at, 1.6};
-            expectSilhouette(s, [&](const Vec3d& d) { return now.meets({}, d); }, at.x / at.z / kTangent, at.y / at.z / kTangent,
-                             (placed ? "placed " : "growing ") + std::to_string(t), t);
+            expectSilhouette(
+                s, [&](const Vec3d& d) { return now.meets({}, d); }, at.x / at.z / kTangent, at.y / at.z / kTangent,
+                (placed ? "placed " : "growing ") + std::to_string(t), t);
         }
     }
 }

@@ -1,5 +1,5 @@
-// world/skytable.h: densities add up to one, directions come with the frequency that the density says, and what is known of a sky is
-// what integrals say.
+// world/skytable.h: densities add up to one, directions come with the frequency that the density says, and what is known of a sky
+// is what integrals say.
 #include "base/exact.h"
 #include "statistics/chisquare.h"
 #include "statistics/nightly.h"
@@ -13,7 +13,11 @@ using transport::SkyTable;
 
 namespace {
 
-struct Sky { const char* name; int width, height; std::vector<float> weights; };
+struct Sky {
+    const char* name;
+    int width, height;
+    std::vector<float> weights;
+};
 
 std::vector<Sky> skies() {
     std::mt19937 rng(3);
@@ -29,7 +33,9 @@ std::vector<Sky> skies() {
             of("a sun", 64, 32, [](int x, int y) { return x == 40 && y == 9 ? 1e5f : .1f; }),
             of("a sun alone at the pole", 32, 16, [](int, int y) { return y == 0 ? 5.f : 0.f; }),
             of("black rows and columns", 16, 8, [](int x, int y) { return x % 3 && y % 2 ? 1.f : 0.f; }),
-            of("no numbers among them", 16, 8, [](int x, int y) { return x == 2 ? NAN : x == 3 ? INFINITY : x == 5 ? -1.f : float(y); })};
+            of("no numbers among them", 16, 8, [](int x, int y) {
+                return x == 2 ? NAN : x == 3 ? INFINITY : x == 5 ? -1.f : float(y);
+            })};
 }
 
 /// Solid angle of a cell, in a way of its own.
@@ -78,7 +84,8 @@ TEST(SkyTable, FrequenciesAreTheDensities) {
         std::vector<double> seen(kZ * kTurn), expected(kZ * kTurn);
         const auto cell = [&](const Vec3& w) {
             const double turn = std::atan2(double(w.y), double(w.x)) / (2 * kPi);
-            return size_t(std::clamp(int((w.z + 1) / 2 * kZ), 0, kZ - 1) * kTurn + std::clamp(int((turn < 0 ? turn + 1 : turn) * kTurn), 0, kTurn - 1));
+            return size_t(std::clamp(int((w.z + 1) / 2 * kZ), 0, kZ - 1) * kTurn +
+                          std::clamp(int((turn < 0 ? turn + 1 : turn) * kTurn), 0, kTurn - 1));
         };
         for (int i = 0; i < n; ++i) {
             Vec3 w;
@@ -96,7 +103,8 @@ TEST(SkyTable, FrequenciesAreTheDensities) {
                 const Vec3 w(float(away * std::cos(turn)), float(away * std::sin(turn)), float(z));
                 expected[cell(w)] += n * double(table.pdf(w)) * 4 * kPi / kFine / kFine;
             }
-        std::vector<double> a, b; // cells that hold enough, and what the quadrature's steps at the edges of bright cells do not decide
+        std::vector<double> a,
+            b; // cells that hold enough, and what the quadrature's steps at the edges of bright cells do not decide
         double restA = 0, restB = 0;
         for (size_t i = 0; i < seen.size(); ++i)
             if (expected[i] > 50) a.push_back(seen[i]), b.push_back(expected[i]);

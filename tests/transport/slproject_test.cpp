@@ -33,9 +33,11 @@ TEST(SlProject, AListOfColoursIsAPictureOfHeightOne) {
         const double x = (u - std::floor(u)) * 4 - .5, i = std::floor(x), f = x - i;
         const int a = (int(i) + 4) % 4, b = (int(i) + 1) % 4;
         const float want = float((1 - f) * double(red[a]) + f * double(red[b]));
-        expectNear(valueOf("color list[4] = {color(.1, 0, 0), color(.7, 1, 0), color(.4, 2, 0), color(.9, 3, 0)}; Ci = slTexture1D(list, " + number(u) +
-                           "); setcomp(Ci, 1, 0);"),
-                   {want, 0, 0}, "u " + number(u));
+        expectNear(
+            valueOf(
+                "color list[4] = {color(.1, 0, 0), color(.7, 1, 0), color(.4, 2, 0), color(.9, 3, 0)}; Ci = slTexture1D(list, " +
+                number(u) + "); setcomp(Ci, 1, 0);"),
+            {want, 0, 0}, "u " + number(u));
     }
 }
 
@@ -53,30 +55,50 @@ TEST(SlProject, PicturesRepeatAndBeginBelow) {
         }
         expectNear(valueOf("Ci = slTexture2D(map, " + number(u) + ", " + number(v) + ");", map), want, "plain");
         // The same place by a texture matrix of scale 2 and an offset.
-        expectNear(valueOf("Ci = slTexture2D(map, " + number((u - .25) / 2) + ", " + number((v - .5) / 2) + ", 2, 2, .25, .5);", map), want, "matrix");
+        expectNear(
+            valueOf("Ci = slTexture2D(map, " + number((u - .25) / 2) + ", " + number((v - .5) / 2) + ", 2, 2, .25, .5);", map),
+            want, "matrix");
     }
 }
 
 TEST(SlProject, StacksOverABox) {
-    const std::string map = writeMap("slp3.exr", 4, 16, [](int x, int y, int c) { return c == 0 ? (float(x) + .5f) / 4 : c == 1 ? 1 - (float(y % 4) + .5f) / 4 : (float(y / 4) + .5f) / 4; });
+    const std::string map = writeMap("slp3.exr", 4, 16, [](int x, int y, int c) {
+        return c == 0 ? (float(x) + .5f) / 4 : c == 1 ? 1 - (float(y % 4) + .5f) / 4 : (float(y / 4) + .5f) / 4;
+    });
     std::string stack = map;
     stack.insert(stack.size() - 1, "*4"); // inside of the quotes
     // r, g, b grow with x, y and z of the box; y is turned over. Between voxel centres that is exact.
-    expectNear(valueOf("Ci = slTexture3D(map, point \"object\" (.5, 2.2, -3), point(0, 2, -4), point(1, 3, -2));", stack), {.5f, .2f, .5f}, "box");
-    expectNear(valueOf("Ci = slTexture3D(map, point \"object\" (1.5, 2.2, -3), point(0, 2, -4), point(1, 3, -2));", stack), {0, 0, 0}, "beside it");
-    expectNear(valueOf("float a; vector g; slTexture3D(map, point \"object\" (.5, 2.5, -3), point(0, 2, -4), point(1, 3, -2), a, g); Ci = color(a, xcomp(g), 0);", stack),
+    expectNear(valueOf("Ci = slTexture3D(map, point \"object\" (.5, 2.2, -3), point(0, 2, -4), point(1, 3, -2));", stack),
+               {.5f, .2f, .5f}, "box");
+    expectNear(valueOf("Ci = slTexture3D(map, point \"object\" (1.5, 2.2, -3), point(0, 2, -4), point(1, 3, -2));", stack),
+               {0, 0, 0}, "beside it");
+    expectNear(valueOf("float a; vector g; slTexture3D(map, point \"object\" (.5, 2.5, -3), point(0, 2, -4), point(1, 3, -2), a, "
+                       "g); Ci = color(a, xcomp(g), 0);",
+                       stack),
                {.5f, 0, 0}, "grey into alpha");
 }
 
 TEST(SlProject, SixFacesByDirection) {
     const char* names[6] = {"px", "nx", "py", "ny", "pz", "nz"};
-    for (int f = 0; f < 6; ++f) writeMap(std::string("slpcube_") + names[f] + ".exr", 8, 8, [f](int x, int y, int c) { return c == 0 ? float(f) : c == 1 ? (float(x) + .5f) / 8 : (float(y) + .5f) / 8; });
+    for (int f = 0; f < 6; ++f)
+        writeMap(std::string("slpcube_") + names[f] + ".exr", 8, 8, [f](int x, int y, int c) {
+            return c == 0 ? float(f) : c == 1 ? (float(x) + .5f) / 8 : (float(y) + .5f) / 8;
+        });
     const std::string map = "\"" + shaderFolder() + "/slpcube_<FACE>.exr\"";
-    struct Case { const char* direction; int face; float uc, vc; };
+    struct Case {
+        const char* direction;
+        int face;
+        float uc, vc;
+    };
     // uc, vc of pathtracer.md 10.2 over the greatest component; u = (uc + 1) / 2, and the row from above (1 - vc) / 2.
-    for (const Case& k : {Case{"2, .4, -.6", 0, .3f, .2f}, {"-2, .4, -.6", 1, -.3f, .2f}, {".4, 2, .6", 2, .2f, -.3f}, {".4, -2, .6", 3, .2f, .3f},
-                          {".4, .6, 2", 4, .2f, .3f}, {".4, .6, -2", 5, -.2f, .3f}})
-        expectNear(valueOf(std::string("Ci = slTextureCube(map, vector(") + k.direction + "));", map), {float(k.face), (k.uc + 1) / 2, (1 - k.vc) / 2}, k.direction);
+    for (const Case& k : {Case{"2, .4, -.6", 0, .3f, .2f},
+                          {"-2, .4, -.6", 1, -.3f, .2f},
+                          {".4, 2, .6", 2, .2f, -.3f},
+                          {".4, -2, .6", 3, .2f, .3f},
+                          {".4, .6, 2", 4, .2f, .3f},
+                          {".4, .6, -2", 5, -.2f, .3f}})
+        expectNear(valueOf(std::string("Ci = slTextureCube(map, vector(") + k.direction + "));", map),
+                   {float(k.face), (k.uc + 1) / 2, (1 - k.vc) / 2}, k.direction);
 }
 
 TEST(SlProject, BumpsByHeightsAndNormals) {
@@ -84,17 +106,23 @@ TEST(SlProject, BumpsByHeightsAndNormals) {
     const std::string map = writeMap("slpbump_H.exr", 8, 8, at);
     // At the middle of texel (5, 3), where v is 1 - 3.5 / 8; v grows upward.
     const float du = -3 * (at(6, 3, 0) - at(4, 3, 0)), dv = -3 * (at(5, 2, 0) - at(5, 4, 0));
-    expectNear(valueOf("float a, b; slSlopes(map, \"height\", 5.5 / 8, 1 - 3.5 / 8, 3, a, b); Ci = color(a, b, 0);", map), {du, dv, 0}, "heights");
+    expectNear(valueOf("float a, b; slSlopes(map, \"height\", 5.5 / 8, 1 - 3.5 / 8, 3, a, b); Ci = color(a, b, 0);", map),
+               {du, dv, 0}, "heights");
     expectNear(valueOf("float a, b; slSlopes(map, \"normal\", 5.5 / 8, 1 - 3.5 / 8, 3, a, b); Ci = color(a, b, 0);", map),
                {2 * at(5, 3, 0) - 1, 2 * at(5, 3, 1) - 1, 0}, "normals");
-    expectNear(valueOf("float a, b; slSlopes(map, \"diffuse\", .4, .4, 3, a, b); Ci = color(a, b, 0);", map), {0, 0, 0}, "others");
+    expectNear(valueOf("float a, b; slSlopes(map, \"diffuse\", .4, .4, 3, a, b); Ci = color(a, b, 0);", map), {0, 0, 0},
+               "others");
 }
 
 TEST(SlProject, KindsByNames) {
-    const std::pair<const char*, const char*> names[] = {{"wood_C.png", "diffuse"}, {"wood_D.jpg", "diffuse"}, {"wood_N.png", "normal"}, {"wood_H.tif", "height"},
-        {"wood_S.png", "specular"}, {"wood_G.png", "specular"}, {"wood_R.png", "roughness"}, {"wood_M.png", "metallic"}, {"wood_O.png", "occlusion"},
-        {"wood_A.png", "occlusion"}, {"arial_F.png", "font"}, {"sky.hdr", "hdr"}, {"rockHeight.png", "height"}, {"rock-albedo.png", "diffuse"}, {"rock_nrm2.png", "normal"}, {"thing.png", "diffuse"}};
+    const std::pair<const char*, const char*> names[] = {
+        {"wood_C.png", "diffuse"},    {"wood_D.jpg", "diffuse"},      {"wood_N.png", "normal"},    {"wood_H.tif", "height"},
+        {"wood_S.png", "specular"},   {"wood_G.png", "specular"},     {"wood_R.png", "roughness"}, {"wood_M.png", "metallic"},
+        {"wood_O.png", "occlusion"},  {"wood_A.png", "occlusion"},    {"arial_F.png", "font"},     {"sky.hdr", "hdr"},
+        {"rockHeight.png", "height"}, {"rock-albedo.png", "diffuse"}, {"rock_nrm2.png", "normal"}, {"thing.png", "diffuse"}};
     std::string body = "float n = 0;";
-    for (const auto& [name, kind] : names) body += std::string(" if (slTextureType(\"") + name + "\") == \"" + kind + "\") n += 1; else printf(\"" + name + "\\n\");";
+    for (const auto& [name, kind] : names)
+        body +=
+            std::string(" if (slTextureType(\"") + name + "\") == \"" + kind + "\") n += 1; else printf(\"" + name + "\\n\");";
     expectNear(valueOf(body + " Ci = n;"), Color(float(std::size(names))), "names");
 }

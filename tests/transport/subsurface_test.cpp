@@ -1,6 +1,7 @@
-// subsurface(): walks below surfaces against the half space of Chandrasekhar, furnaces, and the closed forms of the diffusion models.
-#include "transport/floorscene.h"
+// subsurface(): walks below surfaces against the half space of Chandrasekhar, furnaces, and the closed forms of the diffusion
+// models.
 #include "lobes/dipole.h"
+#include "transport/floorscene.h"
 #include "wave/subsurface.h"
 #include <random>
 
@@ -13,17 +14,26 @@ namespace {
 class Subsurface : public ::testing::Test {
 protected:
     void SetUp() override {
-        writeShader("skin", "surface skin(color sc = 1, ab = 0; float ior = 1, sc_ = 1; string group = \"\";) { Oi = 1;\n"
-                            "    Ci = subsurface(P, normalize(N), \"scattering\", sc, \"absorption\", ab, \"ior\", ior, \"scale\", sc_); }\n");
+        writeShader(
+            "skin",
+            "surface skin(color sc = 1, ab = 0; float ior = 1, sc_ = 1; string group = \"\";) { Oi = 1;\n"
+            "    Ci = subsurface(P, normalize(N), \"scattering\", sc, \"absorption\", ab, \"ior\", ior, \"scale\", sc_); }\n");
         writeShader("plain", "surface plain() { Oi = 1; Ci = subsurface(P); }\n");
-        writeShader("dipole", "surface dipole(float ior = 1.3; color r = .5, mfp = 1;) { Oi = 1;\n"
-                              "    Ci = subsurface(P, N, \"model\", \"jensen\", \"reflectance\", r, \"meanfreepath\", mfp, \"ior\", ior); }\n");
-        writeShader("better", "surface better(float ior = 1.3; color r = .5, mfp = 1;) { Oi = 1;\n"
-                              "    Ci = subsurface(P, N, \"model\", \"grosjean\", \"reflectance\", r, \"meanfreepath\", mfp, \"ior\", ior); }\n");
-        writeShader("coloured", "surface coloured(color r = .5; float ior = 1.3;) { Oi = 1;\n"
-                                "    Ci = subsurface(\"raytrace\", P, N, \"reflectance\", r, \"meanfreepath\", .2, \"ior\", ior); }\n");
-        writeShader("waits", "surface waits(color r = .5;) { Oi = 1; color c = subsurface(P, N, \"reflectance\", r, \"meanfreepath\", .2);\n"
-                             "    Ci = (c == color(0)) ? color(0) : c; }\n");
+        writeShader(
+            "dipole",
+            "surface dipole(float ior = 1.3; color r = .5, mfp = 1;) { Oi = 1;\n"
+            "    Ci = subsurface(P, N, \"model\", \"jensen\", \"reflectance\", r, \"meanfreepath\", mfp, \"ior\", ior); }\n");
+        writeShader(
+            "better",
+            "surface better(float ior = 1.3; color r = .5, mfp = 1;) { Oi = 1;\n"
+            "    Ci = subsurface(P, N, \"model\", \"grosjean\", \"reflectance\", r, \"meanfreepath\", mfp, \"ior\", ior); }\n");
+        writeShader("coloured",
+                    "surface coloured(color r = .5; float ior = 1.3;) { Oi = 1;\n"
+                    "    Ci = subsurface(\"raytrace\", P, N, \"reflectance\", r, \"meanfreepath\", .2, \"ior\", ior); }\n");
+        writeShader(
+            "waits",
+            "surface waits(color r = .5;) { Oi = 1; color c = subsurface(P, N, \"reflectance\", r, \"meanfreepath\", .2);\n"
+            "    Ci = (c == color(0)) ? color(0) : c; }\n");
     }
 };
 const std::string kSky = "LightSource \"envlight\" 1\n";
@@ -63,7 +73,8 @@ TEST_F(Subsurface, TheHalfSpaceOfTheTableIsThatOfACount) {
     for (const double index : {1., 1.3, 1.5, .8})
         for (const double albedo : {.3, .9}) {
             const int n = 400000;
-            EXPECT_NEAR(HalfSpace(index).reflectance(albedo), counted(albedo, index, n), 3.5 * .5 / std::sqrt(double(n))) << index << " " << albedo;
+            EXPECT_NEAR(HalfSpace(index).reflectance(albedo), counted(albedo, index, n), 3.5 * .5 / std::sqrt(double(n)))
+                << index << " " << albedo;
         }
     const HalfSpace h(1.3);
     for (const double r : {.01, .2, .5, .8, .97}) EXPECT_NEAR(h.reflectance(h.albedo(r)), r, 1e-9);
@@ -93,7 +104,9 @@ TEST_F(Subsurface, WithoutABoundaryItIsChandrasekhars) {
 TEST_F(Subsurface, AFurnaceGivesWhatComesIn) {
     for (const char* ior : {"1", "1.3"})
         for (const char* shape : {"Sphere 1 -1 1 360\n", "Rotate 20 1 2 0 Torus .8 .3 0 360 360\n"}) {
-            Scene s(world(kSky + "Translate 0 0 5 Surface \"skin\" \"color sc\" [3 2 5] \"ior\" " + std::string(ior) + " " + shape), withShaders(Hider::Path));
+            Scene s(
+                world(kSky + "Translate 0 0 5 Surface \"skin\" \"color sc\" [3 2 5] \"ior\" " + std::string(ior) + " " + shape),
+                withShaders(Hider::Path));
             const Moments m = s.estimate(rayTo({.7f, .1f, 0}, {.7f, .1f, 5}), samples(20000));
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), 1, kZ * m.se(k) + 1e-4) << ior << shape << k;
             EXPECT_LT(m.se(), .02);
@@ -103,7 +116,9 @@ TEST_F(Subsurface, AFurnaceGivesWhatComesIn) {
 TEST_F(Subsurface, AHalfSpaceReflectsAsTheClosedFormHasIt) {
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
         for (const char* ior : {"1", "1.375"}) {
-            Scene s(world(kAbove + "Surface \"skin\" \"color sc\" [.3 .8 .99] \"color ab\" [.7 .2 .01] \"sc_\" 20 \"ior\" " + std::string(ior) + " " + kFloor), withShaders(h));
+            Scene s(world(kAbove + "Surface \"skin\" \"color sc\" [.3 .8 .99] \"color ab\" [.7 .2 .01] \"sc_\" 20 \"ior\" " +
+                          std::string(ior) + " " + kFloor),
+                    withShaders(h));
             const Moments m = s.estimate(kView, h == Hider::Path ? samples(20000) : 1500); // of 16 walks each
             int k = 0;
             const HalfSpace half(std::atof(ior));
@@ -123,13 +138,16 @@ TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
             const Moments m = s.estimate(kView, h == Hider::Path ? samples(20000) : 1500);
             int k = 0;
             for (const double r : {.2, .5, .9}) {
-        EXPECT_NEAR(m.mean(k), .5 * r, kZ * m.se(k) + 2e-5) << shader << int(h) << k;
-        ++k;
-    }
+                EXPECT_NEAR(m.mean(k), .5 * r, kZ * m.se(k) + 2e-5) << shader << int(h) << k;
+                ++k;
+            }
         }
     // The same by attributes.
-    Scene s(world(kAbove + "Attribute \"subsurface\" \"color reflectance\" [.2 .5 .9] \"color meanfreepath\" [.1 .1 .1] \"float scale\" 2 "
-                           "\"float refractionindex\" 1.5 Surface \"plain\" " + kFloor), withShaders(Hider::Path));
+    Scene s(world(kAbove +
+                  "Attribute \"subsurface\" \"color reflectance\" [.2 .5 .9] \"color meanfreepath\" [.1 .1 .1] \"float scale\" 2 "
+                  "\"float refractionindex\" 1.5 Surface \"plain\" " +
+                  kFloor),
+            withShaders(Hider::Path));
     const Moments m = s.estimate(kView, samples(20000));
     int k = 0;
     for (const double r : {.2, .5, .9}) {
@@ -141,7 +159,8 @@ TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
 TEST_F(Subsurface, TheDiffusionModelsAreTheirIntegrals) {
     for (const char* shader : {"dipole", "better"})
         for (const char* ior : {"1", "1.3"}) {
-            Scene s(world(kAbove + "Surface \"" + std::string(shader) + "\" \"color r\" [.2 .5 .8] \"color mfp\" [.1 .05 .2] \"ior\" " + ior + " " + kFloor),
+            Scene s(world(kAbove + "Surface \"" + std::string(shader) +
+                          "\" \"color r\" [.2 .5 .8] \"color mfp\" [.1 .05 .2] \"ior\" " + ior + " " + kFloor),
                     withShaders(Hider::Path));
             const Moments m = s.estimate(kView, samples(30000));
             int k = 0;
@@ -171,14 +190,15 @@ TEST_F(Subsurface, TheDiffusionModelsAreTheirIntegrals) {
 
 // Where nothing is scattered in one colour the others are as bright as without it.
 TEST_F(Subsurface, TheDiffusionModelsOfSomeColoursAlone) {
-    writeShader("some", "surface some(color sc = 1, ab = .1;) { Oi = 1; Ci = subsurface(P, N, \"model\", \"jensen\", \"scattering\", sc, \"absorption\", ab, \"ior\", 1); }\n");
+    writeShader("some", "surface some(color sc = 1, ab = .1;) { Oi = 1; Ci = subsurface(P, N, \"model\", \"jensen\", "
+                        "\"scattering\", sc, \"absorption\", ab, \"ior\", 1); }\n");
     const double absorbs[3] = {2, 1, 3};
     for (int dark = 0; dark < 3; ++dark) {
         double scatters[3] = {20, 40, 30};
         scatters[dark] = 0;
         char text[200];
-        std::snprintf(text, sizeof text, "Surface \"some\" \"color sc\" [%g %g %g] \"color ab\" [%g %g %g] ", scatters[0], scatters[1], scatters[2],
-                      absorbs[0], absorbs[1], absorbs[2]);
+        std::snprintf(text, sizeof text, "Surface \"some\" \"color sc\" [%g %g %g] \"color ab\" [%g %g %g] ", scatters[0],
+                      scatters[1], scatters[2], absorbs[0], absorbs[1], absorbs[2]);
         Scene s(world(kAbove + text + kFloor), withShaders(Hider::Path));
         const Moments m = s.estimate(kView, samples(20000));
         for (int k = 0; k < 3; ++k) {
@@ -190,9 +210,11 @@ TEST_F(Subsurface, TheDiffusionModelsOfSomeColoursAlone) {
 }
 
 TEST_F(Subsurface, GroupsBoundOneInside) {
-    // Two halves of a ball with attributes of their own: alone each is open, together they are a ball, of which a furnace gives 1.
+    // Two halves of a ball with attributes of their own: alone each is open, together they are a ball, of which a furnace
+    // gives 1.
     const auto halves = [](const std::string& group) {
-        return "Translate 0 0 5 AttributeBegin " + group + "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 0 1 360 AttributeEnd AttributeBegin " + group +
+        return "Translate 0 0 5 AttributeBegin " + group +
+               "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 0 1 360 AttributeEnd AttributeBegin " + group +
                "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 -1 0 360 AttributeEnd\n";
     };
     const CameraRay ray = rayTo({.3f, .1f, 0}, {.3f, .1f, 5});
@@ -203,13 +225,15 @@ TEST_F(Subsurface, GroupsBoundOneInside) {
     EXPECT_TRUE(std::isfinite(apart.estimate(ray, 2000).mean()));
     // What comes out of a half whose own shader asks for no light is lit there all the same.
     const std::string group = "Attribute \"subsurface\" \"string groupname\" \"ball\" ";
-    Scene mute(world(kSky + "Translate 0 0 5 AttributeBegin " + group + "Surface \"constant\" Sphere 1 0 1 360 AttributeEnd AttributeBegin " + group +
-                       "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 -1 0 360 AttributeEnd\n"),
-                 withShaders(Hider::Path));
+    Scene mute(world(kSky + "Translate 0 0 5 AttributeBegin " + group +
+                     "Surface \"constant\" Sphere 1 0 1 360 AttributeEnd AttributeBegin " + group +
+                     "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 -1 0 360 AttributeEnd\n"),
+               withShaders(Hider::Path));
     const Moments half = mute.estimate(ray, samples(5000));
     EXPECT_NEAR(half.mean(), 1, kZ * half.se() + 1e-3);
     // Balls that overlap in a group are one.
-    Scene both(world(kSky + "Attribute \"subsurface\" \"string groupname\" \"pair\" Surface \"skin\" \"color sc\" [.7 .7 .7] Translate -.4 0 5 Sphere 1 -1 1 360 Translate .8 0 0 Sphere 1 -1 1 360\n"),
+    Scene both(world(kSky + "Attribute \"subsurface\" \"string groupname\" \"pair\" Surface \"skin\" \"color sc\" [.7 .7 .7] "
+                            "Translate -.4 0 5 Sphere 1 -1 1 360 Translate .8 0 0 Sphere 1 -1 1 360\n"),
                withShaders(Hider::Path));
     const Moments b = both.estimate(rayTo({.2f, .1f, 0}, {.2f, .1f, 5}), samples(5000));
     EXPECT_NEAR(b.mean(), 1, kZ * b.se() + 1e-3);
@@ -217,37 +241,54 @@ TEST_F(Subsurface, GroupsBoundOneInside) {
 
 TEST_F(Subsurface, ScaleIsMillimetresInAUnit) {
     const auto seen = [](const std::string& values) {
-        Scene s(world("LightSource \"pointlight\" 1 \"from\" [0 2 3] Translate 0 0 5 Surface \"skin\" " + values + " Sphere 1 -1 1 360\n"), withShaders(Hider::Path));
+        Scene s(world("LightSource \"pointlight\" 1 \"from\" [0 2 3] Translate 0 0 5 Surface \"skin\" " + values +
+                      " Sphere 1 -1 1 360\n"),
+                withShaders(Hider::Path));
         return s.estimate(rayTo({.3f, .1f, 0}, {.3f, .1f, 5}), 300).mean();
     };
-    EXPECT_EQ(seen("\"color sc\" [3 3 3] \"color ab\" [.5 .5 .5] \"sc_\" 2"), seen("\"color sc\" [6 6 6] \"color ab\" [1 1 1] \"sc_\" 1"));
+    EXPECT_EQ(seen("\"color sc\" [3 3 3] \"color ab\" [.5 .5 .5] \"sc_\" 2"),
+              seen("\"color sc\" [6 6 6] \"color ab\" [1 1 1] \"sc_\" 1"));
 }
 
 // "albedo" is a reflectance; on a plane under even light no path length changes what comes back.
 TEST_F(Subsurface, OtherNamesOfParameters) {
-    writeShader("named", "surface named() { Oi = 1; Ci = subsurface(P, N, \"albedo\", color(.5), \"meanfreepath\", .2, \"ior\", 1.3); }\n");
-    writeShader("diffusely", "surface diffusely() { Oi = 1; Ci = subsurface(P, N, \"model\", \"jensen\", \"albedo\", color(.5), \"diffusemeanfreepath\", .2, \"ior\", 1.3); }\n");
+    writeShader(
+        "named",
+        "surface named() { Oi = 1; Ci = subsurface(P, N, \"albedo\", color(.5), \"meanfreepath\", .2, \"ior\", 1.3); }\n");
+    writeShader("diffusely", "surface diffusely() { Oi = 1; Ci = subsurface(P, N, \"model\", \"jensen\", \"albedo\", color(.5), "
+                             "\"diffusemeanfreepath\", .2, \"ior\", 1.3); }\n");
     const auto seen = [](const std::string& shader) {
         return Scene(world(kAbove + "Surface \"" + shader + "\" " + kFloor), withShaders(Hider::Path)).estimate(kView, 4000);
     };
     for (const auto& [a, b] : {std::pair("named", "coloured"), std::pair("diffusely", "dipole")}) {
         const Moments x = seen(a), y = seen(b);
         EXPECT_GT(x.mean(), .05) << a;
-        EXPECT_LE(std::fabs(x.mean() - y.mean()), kZ * std::hypot(x.se(), y.se()) + 1e-6) << a << " " << x.mean() << " " << y.mean();
+        EXPECT_LE(std::fabs(x.mean() - y.mean()), kZ * std::hypot(x.se(), y.se()) + 1e-6)
+            << a << " " << x.mean() << " " << y.mean();
     }
 }
 
 TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
-    writeShader("everyword", "surface everyword() { Oi = 1; Ci = subsurface(P, N, \"label\", \"s1\", \"subset\", \"s1\", \"bias\", 1, \"hitmode\", \"s1\", \"hitsides\", \"s1\", \"maxdist\", 1, \"samplecone\", 1, \"samples\", 1, \"type\", \"s1\", \"weight\", color(1, 2, 3), \"minsamples\", 1, \"samplebase\", 1, \"excludesubset\", \"s1\", \"raytype\", \"s1\", \"raylabel\", \"s1\", \"maxhitdist\", 1, \"model\", \"s1\", \"irradiance\", color(1, 2, 3), \"scattering\", color(1, 2, 3), \"absorption\", color(1, 2, 3), \"meanfreepath\", color(1, 2, 3), \"reflectance\", color(1, 2, 3), \"albedo\", color(1, 2, 3), \"diffusemeanfreepath\", color(1, 2, 3), \"ior\", 1, \"refractionindex\", 1, \"scale\", 1, \"groupname\", \"s1\", \"unitlength\", 1, \"anisotropy\", .5); }\n");
+    writeShader("everyword",
+                "surface everyword() { Oi = 1; Ci = subsurface(P, N, \"label\", \"s1\", \"subset\", \"s1\", \"bias\", 1, "
+                "\"hitmode\", \"s1\", \"hitsides\", \"s1\", \"maxdist\", 1, \"samplecone\", 1, \"samples\", 1, \"type\", \"s1\", "
+                "\"weight\", color(1, 2, 3), \"minsamples\", 1, \"samplebase\", 1, \"excludesubset\", \"s1\", \"raytype\", "
+                "\"s1\", \"raylabel\", \"s1\", \"maxhitdist\", 1, \"model\", \"s1\", \"irradiance\", color(1, 2, 3), "
+                "\"scattering\", color(1, 2, 3), \"absorption\", color(1, 2, 3), \"meanfreepath\", color(1, 2, 3), "
+                "\"reflectance\", color(1, 2, 3), \"albedo\", color(1, 2, 3), \"diffusemeanfreepath\", color(1, 2, 3), \"ior\", "
+                "1, \"refractionindex\", 1, \"scale\", 1, \"groupname\", \"s1\", \"unitlength\", 1, \"anisotropy\", .5); }\n");
     Scene every(world(kAbove + "Surface \"everyword\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(every.one(kView).x));
     EXPECT_NE(every.messages().find("no type \"s1\""), std::string::npos) << every.messages();
-    writeShader("odd", "surface odd() { Oi = 1; Ci = subsurface(P, N, \"model\", \"mirror\", \"irradiance\", color(1)) + subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
+    writeShader("odd", "surface odd() { Oi = 1; Ci = subsurface(P, N, \"model\", \"mirror\", \"irradiance\", color(1)) + "
+                       "subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
     Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(s.one(kView).x));
-    for (const char* word : {"no model \"mirror\"", "\"irradiance\" is not used", "a point cloud is read where \"filename\" names one"})
+    for (const char* word :
+         {"no model \"mirror\"", "\"irradiance\" is not used", "a point cloud is read where \"filename\" names one"})
         EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
-    for (const char* bad : {"\"color sc\" [0 0 0]", "\"color sc\" [-1 -1 -1]", "\"sc_\" 0", "\"ior\" 0", "\"ior\" 1e9", "\"color sc\" [1e30 1e30 1e30] \"color ab\" [1e30 1e30 1e30]"}) {
+    for (const char* bad : {"\"color sc\" [0 0 0]", "\"color sc\" [-1 -1 -1]", "\"sc_\" 0", "\"ior\" 0", "\"ior\" 1e9",
+                            "\"color sc\" [1e30 1e30 1e30] \"color ab\" [1e30 1e30 1e30]"}) {
         Scene b(world(kAbove + "Surface \"skin\" " + std::string(bad) + " " + kFloor), withShaders(Hider::Path));
         const double v = b.estimate(kView, 50).mean();
         EXPECT_TRUE(std::isfinite(v) && v >= 0) << bad;
@@ -255,8 +296,10 @@ TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
 }
 
 TEST_F(Subsurface, NoBitDependsOnWhoSharesABatch) {
-    const std::string rib = world("LightSource \"pointlight\" 1 \"from\" [1 2 0] LightSource \"envlight\" 2 \"intensity\" .3\nTranslate 0 0 5 "
-                                  "Surface \"coloured\" \"color r\" [.3 .6 .9] Sphere 1 -1 1 360 AttributeBegin Surface \"dipole\" Translate .8 0 -.8 Sphere .5 -.5 .5 360 AttributeEnd\n");
+    const std::string rib =
+        world("LightSource \"pointlight\" 1 \"from\" [1 2 0] LightSource \"envlight\" 2 \"intensity\" .3\nTranslate 0 0 5 "
+              "Surface \"coloured\" \"color r\" [.3 .6 .9] Sphere 1 -1 1 360 AttributeBegin Surface \"dipole\" Translate .8 0 "
+              "-.8 Sphere .5 -.5 .5 360 AttributeEnd\n");
     std::vector<CameraRay> rays;
     for (int i = 0; i < 100; ++i) {
         rays.push_back(rayTo({0, 0, 0}, {float(i) * .02f - .7f, .1f, 4.5f}));

@@ -27,8 +27,11 @@ Looked looked(const std::string& before, const std::string& surface) {
 
 TEST(TextureMaps, TilesBySpellings) {
     for (int column : {0, 1})
-        writeMap("spelt." + std::to_string(1001 + column) + ".exr", 4, 4, [&](int, int, int c) { return c == column ? 1.f : 0.f; });
-    writeShader("spelt", "surface spelt(string map = \"\";) { Oi = 1; Ci = color texture(map, 1.5, .5) + 2 * color texture(map, .5, .5); }\n");
+        writeMap("spelt." + std::to_string(1001 + column) + ".exr", 4, 4,
+                 [&](int, int, int c) { return c == column ? 1.f : 0.f; });
+    writeShader(
+        "spelt",
+        "surface spelt(string map = \"\";) { Oi = 1; Ci = color texture(map, 1.5, .5) + 2 * color texture(map, .5, .5); }\n");
     for (const char* number : {"UDIM", "<UDIM>", "<udim>", "%(UDIM)d", "_MAPID_"}) {
         const Looked l = looked("", "Surface \"spelt\" \"string map\" [\"" + shaderFolder() + "/spelt." + number + ".exr\"]");
         EXPECT_EQ(l.said, "") << number;
@@ -38,19 +41,22 @@ TEST(TextureMaps, TilesBySpellings) {
 
 TEST(TextureMaps, AMissingMapIsOneErrorAndAChosenColour) {
     writeShader("lost", "surface lost() { Oi = 1; string made = (u < 2) ? \"lost2.tif\" : \"\";\n"
-                        "    Ci = color texture(\"lost.tif\", s, t) + color environment(\"lost.tif\", N) * 2 + 4 * color texture(made, s, t) + texture(\"\", s, t); }\n");
+                        "    Ci = color texture(\"lost.tif\", s, t) + color environment(\"lost.tif\", N) * 2 + 4 * color "
+                        "texture(made, s, t) + texture(\"\", s, t); }\n");
     const Looked chosen = looked("Option \"texture\" \"color missing\" [1 0 .5]\n", "Surface \"lost\"");
     expectColor(chosen.color, {7, 0, 3.5f});
     EXPECT_EQ(chosen.said.find("\"lost.tif\" was not found"), chosen.said.rfind("\"lost.tif\" was not found")) << chosen.said;
     expectColor(looked("", "Surface \"lost\"").color, {0, 0, 0});
-    writeShader("lostpart", "surface lostpart() { Oi = 1; float b = texture(\"lost.tif\"[2], s, t), o = texture(\"lost.tif\"[3], s, t, \"fill\", .25); Ci = color(b, o, 0); }\n");
+    writeShader("lostpart", "surface lostpart() { Oi = 1; float b = texture(\"lost.tif\"[2], s, t), o = texture(\"lost.tif\"[3], "
+                            "s, t, \"fill\", .25); Ci = color(b, o, 0); }\n");
     expectColor(looked("Option \"texture\" \"color missing\" [1 0 .5]\n", "Surface \"lostpart\"").color, {.5f, .25f, 0});
 }
 
 TEST(TextureMaps, AnUnknownFilterIsSaidOnce) {
     const std::string map = writeMap("plain.exr", 4, 4, Color(.5f));
-    writeShader("filters", "surface filters(string map = \"\";) { Oi = 1; string f = (u < 2) ? \"bux\" : \"box\";\n"
-                           "    Ci = color texture(map, s, t, \"filter\", \"boxx\") + color texture(map, s, t, \"filter\", f); }\n");
+    writeShader("filters",
+                "surface filters(string map = \"\";) { Oi = 1; string f = (u < 2) ? \"bux\" : \"box\";\n"
+                "    Ci = color texture(map, s, t, \"filter\", \"boxx\") + color texture(map, s, t, \"filter\", f); }\n");
     const Looked l = looked("", "Surface \"filters\" \"string map\" [" + map + "]");
     expectColor(l.color, {1, 1, 1});
     EXPECT_NE(l.said.find("there is no filter \"boxx\""), std::string::npos) << l.said;
@@ -69,11 +75,16 @@ TEST(TextureMaps, InformationAboutMaps) {
     o.sample = display::Sample::Float;
     o.policy = {shaderFolder(), false, -1};
     ASSERT_TRUE(display::writeImage("told.exr", m, o, d));
-    writeShader("told", "surface told(string map = \"\";) { Oi = 1; uniform matrix v = 0, p = 0; uniform string w = \"\", t = \"\", f = \"\"; uniform float r[2] = {0, 0}, faces = 7;\n"
-                        "    float found = textureinfo(map, \"viewingmatrix\", v) + textureinfo(map, \"projectionmatrix\", p) + textureinfo(map, \"wrapmodes\", w) + textureinfo(map, \"resolution\", r)\n"
-                        "        + textureinfo(map, \"type\", t) + textureinfo(map, \"format\", f) + textureinfo(map, \"facecount\", faces);\n"
-                        "    point a = transform(v, point \"world\" (0, 0, 0)), b = transform(p, point \"world\" (.5, .25, 0));\n"
-                        "    Ci = color(xcomp(a), 10 * xcomp(b) + ycomp(b), found + 10 * r[0] + 100 * r[1] + ((w == \"clamp,clamp\" && t == \"shadow\" && f == \"float\" && faces == 0) ? .5 : 0)); }\n");
+    writeShader(
+        "told",
+        "surface told(string map = \"\";) { Oi = 1; uniform matrix v = 0, p = 0; uniform string w = \"\", t = \"\", f = \"\"; "
+        "uniform float r[2] = {0, 0}, faces = 7;\n"
+        "    float found = textureinfo(map, \"viewingmatrix\", v) + textureinfo(map, \"projectionmatrix\", p) + textureinfo(map, "
+        "\"wrapmodes\", w) + textureinfo(map, \"resolution\", r)\n"
+        "        + textureinfo(map, \"type\", t) + textureinfo(map, \"format\", f) + textureinfo(map, \"facecount\", faces);\n"
+        "    point a = transform(v, point \"world\" (0, 0, 0)), b = transform(p, point \"world\" (.5, .25, 0));\n"
+        "    Ci = color(xcomp(a), 10 * xcomp(b) + ycomp(b), found + 10 * r[0] + 100 * r[1] + ((w == \"clamp,clamp\" && t == "
+        "\"shadow\" && f == \"float\" && faces == 0) ? .5 : 0)); }\n");
     const Looked l = looked("Translate 0 0 1\n", "Surface \"told\" \"string map\" [\"" + shaderFolder() + "/told.exr\"]");
     EXPECT_EQ(l.said, "");
     expectColor(l.color, {3, 5.25f, 7 + 80 + 600 + .5f}, 1e-4f);
@@ -81,11 +92,15 @@ TEST(TextureMaps, InformationAboutMaps) {
 
 // A lookup whose slopes somebody wants takes another way than one without: its value is the same.
 TEST(TextureMaps, ValuesWithAndWithoutSlopesAreTheSame) {
-    const std::string map = writeMap("slopes.exr", 64, 64, [](int x, int y, int c) { return float((x * 7 + y * 13 + c * 31) % 64) / 64; }, "periodic,black");
-    writeShader("slopes", "surface slopes(string map = \"\";) { Oi = 1; color a = color texture(map, 3 * s, 3 * t), b = color texture(map, 3 * s, 3 * t);\n"
+    const std::string map = writeMap(
+        "slopes.exr", 64, 64, [](int x, int y, int c) { return float((x * 7 + y * 13 + c * 31) % 64) / 64; }, "periodic,black");
+    writeShader("slopes", "surface slopes(string map = \"\";) { Oi = 1; color a = color texture(map, 3 * s, 3 * t), b = color "
+                          "texture(map, 3 * s, 3 * t);\n"
                           "    Ci = (a - b) * 1e6 + .001 * Du(b); }\n");
     const Looked l = looked("", "Surface \"slopes\" \"string map\" [" + map + "]");
-    writeShader("noslopes", "surface noslopes(string map = \"\";) { Oi = 1; color b = color texture(map, 3 * s, 3 * t); Ci = .001 * Du(b); }\n");
+    writeShader(
+        "noslopes",
+        "surface noslopes(string map = \"\";) { Oi = 1; color b = color texture(map, 3 * s, 3 * t); Ci = .001 * Du(b); }\n");
     const Looked n = looked("", "Surface \"noslopes\" \"string map\" [" + map + "]");
     expectColor(l.color, n.color, 1e-6f);
 }

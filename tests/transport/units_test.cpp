@@ -201,7 +201,8 @@ TEST_P(LightTable, Diffuse) {
 }
 TEST_P(LightTable, Illuminance) {
     const Row& r = GetParam();
-    bool sky = std::string(r.name) == "envlight"; // arrives as sampled directions under path, else as one light that faces the surface
+    bool sky =
+        std::string(r.name) == "envlight"; // arrives as sampled directions under path, else as one light that faces the surface
     for (Hider h : {Hider::Path, Hider::Hidden}) expect("look_loop", h, sky ? r.want : r.kind == Row::Sky ? 0 : r.want);
 }
 TEST_P(LightTable, Trace) {
@@ -329,7 +330,10 @@ TEST(Units, TheExponentOfSpecular) {
     writeLooks();
     const std::string light = "LightSource \"distantlight\" 1 \"from\" [.866025404 .5 0] \"to\" [0 0 0]\n";
     const double c = std::sqrt(.75);
-    struct Case { const char* option; const char* dialect; double exponent;
+    struct Case {
+        const char* option;
+        const char* dialect;
+        double exponent;
     } const cases[] = {{"", "", 80},      {"rispec", "", 10},      {"", "rispec", 10}, {"prman", "", 80},
                        {"", "prman", 80}, {"prman", "rispec", 10}, {"", "", 80}};
     for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})

@@ -1,6 +1,6 @@
 // The server of the page against what strangers send. No browser: raw sockets.
-#include "view/httpserver.h"
 #include "client.h"
+#include "view/httpserver.h"
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -92,18 +92,17 @@ TEST_F(Http, APortInUseIsSaid) {
 TEST_F(Http, WhatIsNoRequestIsRefusedInWords) {
     begin();
     const int port = server->port();
-    const std::pair<std::string, int> cases[] = {
-        {"hello\r\n\r\n", 400},
-        {"GET  HTTP/1.1\r\n\r\n", 400},
-        {"GET http://elsewhere/ HTTP/1.1\r\n\r\n", 400},
-        {"GET / HTTP/2\r\n\r\n", 400},
-        {std::string("\0\xff\x01\r\n\r\n", 7), 400},
-        {"DELETE / HTTP/1.1\r\n\r\n", 405},
-        {"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n", 411},
-        {"POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n", 400},
-        {"POST / HTTP/1.1\r\nContent-Length: 4\r\nContent-Length: 5\r\n\r\n", 400},
-        {"POST / HTTP/1.1\r\nContent-Length: 99999999999999999999\r\n\r\n", 413},
-        {"POST / HTTP/1.1\r\nContent-Length: 900000000\r\n\r\n", 413}};
+    const std::pair<std::string, int> cases[] = {{"hello\r\n\r\n", 400},
+                                                 {"GET  HTTP/1.1\r\n\r\n", 400},
+                                                 {"GET http://elsewhere/ HTTP/1.1\r\n\r\n", 400},
+                                                 {"GET / HTTP/2\r\n\r\n", 400},
+                                                 {std::string("\0\xff\x01\r\n\r\n", 7), 400},
+                                                 {"DELETE / HTTP/1.1\r\n\r\n", 405},
+                                                 {"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n", 411},
+                                                 {"POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n", 400},
+                                                 {"POST / HTTP/1.1\r\nContent-Length: 4\r\nContent-Length: 5\r\n\r\n", 400},
+                                                 {"POST / HTTP/1.1\r\nContent-Length: 99999999999999999999\r\n\r\n", 413},
+                                                 {"POST / HTTP/1.1\r\nContent-Length: 900000000\r\n\r\n", 413}};
     for (const auto& [text, status] : cases) {
         Socket s(port);
         s.send(text);

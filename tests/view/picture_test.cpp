@@ -55,7 +55,9 @@ float halfAt(const std::string& bytes, size_t n) {
 
 TEST(Pixels, HaveFourHalvesEach) {
     Picture p;
-    p.planes = {{"picture", filled(2, 1, {"r", "g", "b", "a", "z"}, 0)}, {"z", filled(2, 1, {"z"}, 10)}, {"N", filled(2, 1, {"N.x", "N.y", "N.z"}, 20)}};
+    p.planes = {{"picture", filled(2, 1, {"r", "g", "b", "a", "z"}, 0)},
+                {"z", filled(2, 1, {"z"}, 10)},
+                {"N", filled(2, 1, {"N.x", "N.y", "N.z"}, 20)}};
     const std::string a = halves(p, p.planes[0], {}), z = halves(p, p.planes[1], {}), n = halves(p, p.planes[2], {});
     ASSERT_EQ(a.size(), 16u);
     const float wanted[] = {0, 1, 2, 3, 5, 6, 7, 8};
@@ -68,7 +70,8 @@ TEST(Pixels, HaveFourHalvesEach) {
 
 TEST(Pixels, LightsAreDimmedByWhatTheyGive) {
     Picture p;
-    p.planes = {{"picture", filled(1, 1, {"r", "g", "b", "a", "z"}, 10)}, {"light:key", filled(1, 1, {"r", "g", "b"}, 1)},
+    p.planes = {{"picture", filled(1, 1, {"r", "g", "b", "a", "z"}, 10)},
+                {"light:key", filled(1, 1, {"r", "g", "b"}, 1)},
                 {"light:fill", filled(1, 1, {"r", "g", "b"}, 3)}};
     const std::string same = halves(p, p.planes[0], {{"key", 1}, {"nobody", 0}});
     EXPECT_EQ(halfAt(same, 0), 10);

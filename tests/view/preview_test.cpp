@@ -1,8 +1,8 @@
 // Pictures in the terminal, decoded again by what the protocols say, and pictures that a viewer gets over its socket.
-#include "view/preview.h"
 #include "../cli/command_folder.h"
 #include "client.h"
 #include "display/imageio.h"
+#include "view/preview.h"
 #include <cmath>
 #include <csignal>
 #include <gtest/gtest.h>
@@ -61,7 +61,9 @@ Bytes drawn(const std::string& s) {
                     if ((s[i] - '?') >> k & 1) {
                         EXPECT_LT(x, b.width);
                         EXPECT_LT(y + k, b.height);
-                        for (int c = 0; c < 3; ++c) b.rgb[(size_t(y + k) * size_t(b.width) + size_t(x)) * 3 + size_t(c)] = uint8_t(std::lround(palette[colour][size_t(c)] * 2.55));
+                        for (int c = 0; c < 3; ++c)
+                            b.rgb[(size_t(y + k) * size_t(b.width) + size_t(x)) * 3 + size_t(c)] =
+                                uint8_t(std::lround(palette[colour][size_t(c)] * 2.55));
                     }
         }
     }
@@ -75,8 +77,9 @@ TEST(Terminal, SixelsShowThePicture) {
         EXPECT_TRUE(s.starts_with("\x1bP") && s.ends_with("\x1b\\"));
         const Bytes d = drawn(s);
         ASSERT_EQ(d.rgb.size(), b.rgb.size());
-        for (size_t i = 0; i < b.rgb.size(); ++i) ASSERT_LE(std::abs(int(d.rgb[i]) - int(b.rgb[i])), 51) << i; // a step of the cube
-        for (size_t c = 0; c < 3 && w * h > 100; ++c) { // and right on average, which is what the dither is for
+        for (size_t i = 0; i < b.rgb.size(); ++i)
+            ASSERT_LE(std::abs(int(d.rgb[i]) - int(b.rgb[i])), 51) << i; // a step of the cube
+        for (size_t c = 0; c < 3 && w * h > 100; ++c) {                  // and right on average, which is what the dither is for
             double sum = 0;
             for (size_t i = c; i < b.rgb.size(); i += 3) sum += double(d.rgb[i]) - b.rgb[i];
             EXPECT_NEAR(sum / (w * h), 0, 4);
@@ -216,8 +219,10 @@ void takePackets(std::string& in, std::map<std::string, Seen>& images, int* pack
 }
 
 using PreviewProgram = alpenglow::cli::testing::CommandFolder;
-const char* const kScene = "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 20 16 1\nHider \"path\"\nPixelSamples 3 3\nPixelFilter \"box\" 1 1\nTranslate 0 0 3\nWorldBegin\n"
-                           "LightSource \"pointlight\" 1 \"from\" [1 1 -3] \"intensity\" 9\nSurface \"matte\"\nSphere 1 -1 1 360\nWorldEnd\n";
+const char* const kScene =
+    "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 20 16 1\nHider \"path\"\nPixelSamples 3 3\nPixelFilter \"box\" 1 "
+    "1\nTranslate 0 0 3\nWorldBegin\n"
+    "LightSource \"pointlight\" 1 \"from\" [1 1 -3] \"intensity\" 9\nSurface \"matte\"\nSphere 1 -1 1 360\nWorldEnd\n";
 
 TEST_F(PreviewProgram, TevGetsTheWholePicture) {
     write("s.rib", kScene);
@@ -241,7 +246,8 @@ TEST_F(PreviewProgram, TevGetsTheWholePicture) {
         }
         ::close(s);
     });
-    const std::string out = run("render -q --display openexr:n.exr:N --display tev:127.0.0.1:" + std::to_string(ntohs(a.sin_port)) + " s.rib", "2>&1");
+    const std::string out = run(
+        "render -q --display openexr:n.exr:N --display tev:127.0.0.1:" + std::to_string(ntohs(a.sin_port)) + " s.rib", "2>&1");
     tev.join();
     ::close(listener);
     EXPECT_EQ(status, 0) << out;

@@ -51,8 +51,9 @@ protected:
         return s.answer();
     }
     std::string path(const std::string& name) const { return "/" + token + "/" + name; }
-    static constexpr const char* kScene = "Display \"x.png\" \"png\" \"rgb\"\nFormat 8 8 1\nHider \"path\"\nPixelSamples 2 2\nTranslate 0 0 3\nWorldBegin\n"
-                                          "Surface \"constant\"\nSphere 1 -1 1 360\nWorldEnd\n";
+    static constexpr const char* kScene =
+        "Display \"x.png\" \"png\" \"rgb\"\nFormat 8 8 1\nHider \"path\"\nPixelSamples 2 2\nTranslate 0 0 3\nWorldBegin\n"
+        "Surface \"constant\"\nSphere 1 -1 1 360\nWorldEnd\n";
 };
 
 TEST_F(ViewProgram, ServesItsPageToWhoKnowsTheToken) {
@@ -66,7 +67,8 @@ TEST_F(ViewProgram, ServesItsPageToWhoKnowsTheToken) {
     EXPECT_EQ(bodyOf(page).find("//"), page.npos) << "something from outside";
     for (const char* name : {"page.js", "page.css", "stage.js"}) EXPECT_EQ(statusOf(ask(get(port, path(name)))), 200) << name;
     const std::string wrong = std::string(token[0] == '0' ? "1" : "0") + token.substr(1);
-    for (const std::string& p : {std::string("/"), std::string("/page.js"), "/" + wrong + "/", "/" + token, "/" + token.substr(1) + "/", std::string("//")}) {
+    for (const std::string& p : {std::string("/"), std::string("/page.js"), "/" + wrong + "/", "/" + token,
+                                 "/" + token.substr(1) + "/", std::string("//")}) {
         const std::string a = ask(get(port, p));
         EXPECT_EQ(statusOf(a), 403) << p;
         EXPECT_NE(bodyOf(a).find("token"), a.npos);
@@ -77,8 +79,8 @@ TEST_F(ViewProgram, ServesItsPageToWhoKnowsTheToken) {
 TEST_F(ViewProgram, ServesNoFileThatIsNotThePages) {
     write("s.rib", kScene);
     begin("s.rib");
-    for (const char* name : {"../../../../etc/passwd", "..%2f..%2f..%2fetc/passwd", "%2e%2e/s.rib", "s.rib", "./s.rib", "/etc/passwd", "//etc/passwd", "index.html/../s.rib",
-                             "page.js%00.rib", "picture/..", "do"})
+    for (const char* name : {"../../../../etc/passwd", "..%2f..%2f..%2fetc/passwd", "%2e%2e/s.rib", "s.rib", "./s.rib",
+                             "/etc/passwd", "//etc/passwd", "index.html/../s.rib", "page.js%00.rib", "picture/..", "do"})
         EXPECT_EQ(statusOf(ask(get(port, path(name)))), 404) << name;
     EXPECT_EQ(statusOf(ask(post(port, path("page.js"), "{}"))), 404);
 }
@@ -97,7 +99,8 @@ TEST_F(ViewProgram, PagesFromElsewhereAreRefused) {
 TEST_F(ViewProgram, HandsOutPixelsAndTakesRequests) {
     write("s.rib", kScene);
     begin("s.rib");
-    EXPECT_EQ(bodyOf(ask(post(port, path("do"), "{\"do\": \"set\", \"wishes\": {\"continuous\": false, \"spp\": 4}}"))), "{\"ok\":true}");
+    EXPECT_EQ(bodyOf(ask(post(port, path("do"), "{\"do\": \"set\", \"wishes\": {\"continuous\": false, \"spp\": 4}}"))),
+              "{\"ok\":true}");
     nlohmann::json state;
     std::string body;
     for (int i = 0; i < 200; ++i) {
@@ -119,7 +122,9 @@ TEST_F(ViewProgram, HandsOutPixelsAndTakesRequests) {
     const auto exact = nlohmann::json::parse(bodyOf(ask(get(port, path("pixel?x=4&y=4")))));
     EXPECT_EQ(exact["values"]["picture/r"], 1.0);
     EXPECT_NEAR(exact["values"]["picture/z"].get<double>(), 2, 0.1);
-    EXPECT_NE(bodyOf(ask(post(port, path("do"), "{\"do\": \"set\", \"wishes\": {\"spp\": -1}}"))).find("\"spp\\\" cannot be that"), std::string::npos);
+    EXPECT_NE(
+        bodyOf(ask(post(port, path("do"), "{\"do\": \"set\", \"wishes\": {\"spp\": -1}}"))).find("\"spp\\\" cannot be that"),
+        std::string::npos);
     EXPECT_EQ(statusOf(ask(post(port, path("do"), "{nonsense"))), 400);
     EXPECT_EQ(statusOf(ask(post(port, path("do"), std::string(60000, '[')))), 400); // as deep as it can be
     EXPECT_FALSE(std::filesystem::exists(dir / "x.png"));

@@ -1,7 +1,7 @@
 // A view without its page: what is rendered after what was asked for, against what render makes of the same scene.
+#include "display/imageio.h"
 #include "view/session.h"
 #include "view/viewserver.h"
-#include "display/imageio.h"
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
@@ -15,7 +15,8 @@ using Json = nlohmann::json;
 
 namespace {
 
-const char* const kScene = "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 40 30 1\nPixelFilter \"box\" 1 1\nHider \"path\"\nProjection \"perspective\" \"fov\" 40\n"
+const char* const kScene = "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 40 30 1\nPixelFilter \"box\" 1 1\nHider "
+                           "\"path\"\nProjection \"perspective\" \"fov\" 40\n"
                            "Translate 0 0 5\nWorldBegin\n"
                            "LightSource \"pointlight\" \"key\" \"from\" [2 3 -4] \"intensity\" 20\n"
                            "LightSource \"distantlight\" \"fill\" \"to\" [1 0 1] \"intensity\" 0.3\n"
@@ -90,7 +91,8 @@ protected:
             const Session::Shot shot = session->look(plane);
             const Json s = session->state(0, 0);
             picture = shot.picture;
-            return s["phase"] == "idle" && s["figures"]["spp"] == s["wishes"]["spp"] && s["done"] == true && picture && picture->plane(plane);
+            return s["phase"] == "idle" && s["figures"]["spp"] == s["wishes"]["spp"] && s["done"] == true && picture &&
+                   picture->plane(plane);
         }));
         return picture;
     }
@@ -134,7 +136,8 @@ TEST_F(ViewSession, ShowsWhatRenderMakesToTheLastBit) {
     EXPECT_EQ(p->figures.spp, 8);
     EXPECT_GT(p->figures.raysPerMS, 0);
     EXPECT_GT(p->figures.noiseRSE, 0);
-    EXPECT_NEAR(p->figures.efficiency, 1 / (p->figures.noiseRSE * p->figures.noiseRSE * p->figures.seconds), 1e-6 * p->figures.efficiency);
+    EXPECT_NEAR(p->figures.efficiency, 1 / (p->figures.noiseRSE * p->figures.noiseRSE * p->figures.seconds),
+                1e-6 * p->figures.efficiency);
 }
 
 TEST_F(ViewSession, GoesOnWhereItWasWhenMoreSamplesAreAskedFor) {
@@ -228,7 +231,7 @@ TEST_F(ViewSession, OutputsAndTheMapOfTheNoise) {
     ASSERT_TRUE(p);
     const display::Image& n = *p->plane("N")->image;
     ASSERT_EQ(n.channels.size(), 3u);
-    EXPECT_NEAR(n.pixel(20, 12)[2], -1, 0.35f); // the sphere looks back at the eye
+    EXPECT_NEAR(n.pixel(20, 12)[2], -1, 0.35f);                     // the sphere looks back at the eye
     EXPECT_EQ(difference(*p->planes[0].image, rendered(scene)), 0); // outputs change no picture
     set({{"channels", {"lpe:C<RD>L", "lpe:C<RD><RD>+L"}}});
     const auto paths = done("lpe:C<RD>L");
@@ -278,13 +281,15 @@ TEST_F(ViewSession, ParametersOfShadersAreChanged) {
     EXPECT_EQ(shaders[2]["name"], "matte");
     EXPECT_EQ(shaders[2]["values"]["Kd"], Json({0.5}));
     EXPECT_EQ(shaders[2]["place"]["line"], 10);
-    EXPECT_EQ(session->act({{"do", "parameter"}, {"shader", 2}, {"name", "Kd"}, {"type", "float"}, {"value", {0.9}}}), Json({{"ok", true}}));
+    EXPECT_EQ(session->act({{"do", "parameter"}, {"shader", 2}, {"name", "Kd"}, {"type", "float"}, {"value", {0.9}}}),
+              Json({{"ok", true}}));
     EXPECT_EQ(difference(*done()->planes[0].image, rendered(with(kScene, "\"Kd\" 0.5", "\"Kd\" 0.9"))), 0);
     // One that the call does not name.
-    EXPECT_EQ(session->act({{"do", "parameter"}, {"shader", 3}, {"name", "specularcolor"}, {"type", "color"}, {"value", {1, 0, 0}}}),
-              Json({{"ok", true}}));
-    EXPECT_EQ(difference(*done()->planes[0].image,
-                         rendered(with(with(kScene, "\"Kd\" 0.5", "\"Kd\" 0.9"), "\"plastic\"", "\"plastic\" \"color specularcolor\" [1 0 0]"))),
+    EXPECT_EQ(
+        session->act({{"do", "parameter"}, {"shader", 3}, {"name", "specularcolor"}, {"type", "color"}, {"value", {1, 0, 0}}}),
+        Json({{"ok", true}}));
+    EXPECT_EQ(difference(*done()->planes[0].image, rendered(with(with(kScene, "\"Kd\" 0.5", "\"Kd\" 0.9"), "\"plastic\"",
+                                                                 "\"plastic\" \"color specularcolor\" [1 0 0]"))),
               0);
 }
 
@@ -292,7 +297,8 @@ TEST_F(ViewSession, SavesWhatRenderWouldWrite) {
     ASSERT_TRUE(open());
     ASSERT_TRUE(done());
     for (const char* type : {"exr", "exr", "png"})
-        EXPECT_EQ(session->act({{"do", "save"}, {"type", type}, {"gain", 1}, {"gamma", 2.2}, {"srgb", false}}), Json({{"ok", true}}));
+        EXPECT_EQ(session->act({{"do", "save"}, {"type", type}, {"gain", 1}, {"gamma", 2.2}, {"srgb", false}}),
+                  Json({{"ok", true}}));
     ASSERT_TRUE(until([&] { return session->state(0, 0)["saved"].size() == 3; }));
     EXPECT_EQ(session->state(0, 0)["saved"], Json({"Pathtraced_8_0.exr", "Pathtraced_8_1.exr", "Pathtraced_8_0.png"}));
     Diagnostics diags;
@@ -326,7 +332,8 @@ TEST_F(ViewSession, ImagersWorkOnWhatExposureMade) {
     EXPECT_EQ(curve, Json({{"gain", 1.0}, {"gamma", 1.0}, {"srgb", false}})); // as render writes it
     const auto save = [&](const char* type, double gain, double gamma) {
         const size_t before = session->state(0, 0)["saved"].size();
-        EXPECT_EQ(session->act({{"do", "save"}, {"type", type}, {"gain", gain}, {"gamma", gamma}, {"srgb", false}}), Json({{"ok", true}}));
+        EXPECT_EQ(session->act({{"do", "save"}, {"type", type}, {"gain", gain}, {"gamma", gamma}, {"srgb", false}}),
+                  Json({{"ok", true}}));
         EXPECT_TRUE(until([&] { return session->state(0, 0)["saved"].size() > before; }));
         Diagnostics diags;
         return *display::readImage(session->state(0, 0)["saved"].back(), diags);
@@ -356,11 +363,13 @@ TEST_F(ViewSession, SavesNumbersAsExposureMadeThem) {
 
 // Tiles of the whole over the coarse picture, more and more of them.
 TEST_F(ViewSession, PicturesOfHiddenGrowTileByTile) {
-    write("busy.sl", "surface busy() { float i, s = 0; for (i = 0; i < 40; i += 1) s += noise(90 * s + 40 * transform(\"NDC\", P) * (1, 1, 0) + i);\n"
+    write("busy.sl", "surface busy() { float i, s = 0; for (i = 0; i < 40; i += 1) s += noise(90 * s + 40 * transform(\"NDC\", "
+                     "P) * (1, 1, 0) + i);\n"
                      "Ci = mod(s, 1); Oi = 1; }\n");
-    scene = "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 320 240 1\nPixelFilter \"box\" 1 1\nHider \"hidden\"\nPixelSamples 4 4\n"
-            "Projection \"perspective\" \"fov\" 40\nTranslate 0 0 5\nWorldBegin\nSurface \"busy\"\n"
-            "Polygon \"P\" [-9 -9 0  9 -9 0  9 9 0  -9 9 0]\nWorldEnd\n";
+    scene =
+        "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 320 240 1\nPixelFilter \"box\" 1 1\nHider \"hidden\"\nPixelSamples 4 4\n"
+        "Projection \"perspective\" \"fov\" 40\nTranslate 0 0 5\nWorldBegin\nSurface \"busy\"\n"
+        "Polygon \"P\" [-9 -9 0  9 -9 0  9 9 0  -9 9 0]\nWorldEnd\n";
     std::vector<std::shared_ptr<const Picture>> seen;
     ASSERT_TRUE(open(false, {{"continuous", false}, {"spp", 36}}));
     ASSERT_TRUE(until([&] {
@@ -402,7 +411,8 @@ TEST_F(ViewSession, GoesOnWhenASceneDoesNotFitIntoMemory) {
     ASSERT_TRUE(done());
     noMemory = true;
     EXPECT_EQ(session->act({{"do", "reload"}}), Json({{"ok", true}}));
-    ASSERT_TRUE(until([&] { return session->state(0, 0)["messages"].dump().find("given up: out of memory") != std::string::npos; }));
+    ASSERT_TRUE(
+        until([&] { return session->state(0, 0)["messages"].dump().find("given up: out of memory") != std::string::npos; }));
     noMemory = false;
     EXPECT_EQ(session->act({{"do", "reload"}}), Json({{"ok", true}}));
     ASSERT_TRUE(until([&] { return session->state(0, 0)["messages"].empty(); }));
@@ -468,17 +478,33 @@ TEST_F(ViewSession, WhatCannotBeIsSaidAndChangesNothing) {
     ASSERT_TRUE(open());
     ASSERT_TRUE(done());
     const Json before = session->state(0, 0)["wishes"];
-    const Json wrong[] = {
-        Json(7), Json::array(), {{"do", "nothing"}}, {{"do", 3}}, {{"do", "set"}, {"wishes", {{"spp", 0}}}}, {{"do", "set"}, {"wishes", {{"spp", 2.5}}}},
-        {{"do", "set"}, {"wishes", {{"spp", 1e99}}}}, {{"do", "set"}, {"wishes", {{"hider", "../x"}}}}, {{"do", "set"}, {"wishes", {{"crop", {0.5, 0.2, 0, 1}}}}},
-        {{"do", "set"}, {"wishes", {{"crop", {0, 1}}}}}, {{"do", "set"}, {"wishes", {{"channels", {"a b"}}}}}, {{"do", "set"}, {"wishes", {{"channels", Json::array({1})}}}},
-        {{"do", "set"}, {"wishes", {{"unknown", 1}}}}, {{"do", "set"}, {"wishes", {{"dim", {{"key", -1}}}}}}, {{"do", "set"}, {"wishes", {{"direct", "no"}}}},
-        {{"do", "set"}, {"wishes", 3}}, {{"do", "save"}, {"type", "../../x.png"}}, {{"do", "save"}, {"type", "png"}, {"gamma", 0}},
-        {{"do", "parameter"}, {"shader", 99}, {"name", "Kd"}, {"value", {1}}}, {{"do", "parameter"}, {"shader", 2}, {"name", "Kd"}, {"value", {1, 2}}},
-        {{"do", "parameter"}, {"shader", 2}, {"name", "Kd"}, {"value", {"x"}}}, {{"do", "parameter"}, {"shader", -1}, {"name", "Kd"}, {"value", {1}}},
-        {{"do", "parameter"}, {"shader", 2}, {"name", 5}, {"value", {1}}}, {{"do", "parameter"}}};
+    const Json wrong[] = {Json(7),
+                          Json::array(),
+                          {{"do", "nothing"}},
+                          {{"do", 3}},
+                          {{"do", "set"}, {"wishes", {{"spp", 0}}}},
+                          {{"do", "set"}, {"wishes", {{"spp", 2.5}}}},
+                          {{"do", "set"}, {"wishes", {{"spp", 1e99}}}},
+                          {{"do", "set"}, {"wishes", {{"hider", "../x"}}}},
+                          {{"do", "set"}, {"wishes", {{"crop", {0.5, 0.2, 0, 1}}}}},
+                          {{"do", "set"}, {"wishes", {{"crop", {0, 1}}}}},
+                          {{"do", "set"}, {"wishes", {{"channels", {"a b"}}}}},
+                          {{"do", "set"}, {"wishes", {{"channels", Json::array({1})}}}},
+                          {{"do", "set"}, {"wishes", {{"unknown", 1}}}},
+                          {{"do", "set"}, {"wishes", {{"dim", {{"key", -1}}}}}},
+                          {{"do", "set"}, {"wishes", {{"direct", "no"}}}},
+                          {{"do", "set"}, {"wishes", 3}},
+                          {{"do", "save"}, {"type", "../../x.png"}},
+                          {{"do", "save"}, {"type", "png"}, {"gamma", 0}},
+                          {{"do", "parameter"}, {"shader", 99}, {"name", "Kd"}, {"value", {1}}},
+                          {{"do", "parameter"}, {"shader", 2}, {"name", "Kd"}, {"value", {1, 2}}},
+                          {{"do", "parameter"}, {"shader", 2}, {"name", "Kd"}, {"value", {"x"}}},
+                          {{"do", "parameter"}, {"shader", -1}, {"name", "Kd"}, {"value", {1}}},
+                          {{"do", "parameter"}, {"shader", 2}, {"name", 5}, {"value", {1}}},
+                          {{"do", "parameter"}}};
     for (const Json& j : wrong) EXPECT_TRUE(session->act(j).contains("error")) << j;
-    const Json strange[] = {{{"do", "camera"}, {"orbit", "x"}}, {{"do", "camera"}, {"orbit", {1e300, 0}}}, {{"do", "camera"}, {"dolly", -5}}};
+    const Json strange[] = {
+        {{"do", "camera"}, {"orbit", "x"}}, {{"do", "camera"}, {"orbit", {1e300, 0}}}, {{"do", "camera"}, {"dolly", -5}}};
     for (const Json& j : strange) session->act(j);
     EXPECT_EQ(session->state(0, 0)["wishes"], before);
     ASSERT_TRUE(done());

@@ -9,19 +9,19 @@ class Other : public PictureDriver {
         Format f = formatOfExtension(s.name).value_or(Format::Tiff);
         if (findDriver(s.type)) // of an unknown type it has been said already (makeDriver)
             diags.report(Severity::Warning, Rie::Incapable, s.place,
-                             "display \"" + s.name + "\": type \"" + s.type + "\" is not available; " + toString(f) +
-                                 " is written under that name");
+                         "display \"" + s.name + "\": type \"" + s.type + "\" is not available; " + toString(f) +
+                             " is written under that name");
         return f;
     }
 };
 
 } // namespace
 
-const DriverDescriptor otherDriver{{"targa", "tga", "bmp", "bitmap", "gif", "sgi", "iff", "alias", "cineon", "avs",
-                                    "pic", "dspy_s_avs", "texture"},
-                                   "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
-                                   "its extension (OpenEXR, PNG, JPEG, "
-                                   "else TIFF), with a message.",
-                                   []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
+const DriverDescriptor otherDriver{
+    {"targa", "tga", "bmp", "bitmap", "gif", "sgi", "iff", "alias", "cineon", "avs", "pic", "dspy_s_avs", "texture"},
+    "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
+    "its extension (OpenEXR, PNG, JPEG, "
+    "else TIFF), with a message.",
+    []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
 
 } // namespace alpenglow::display

@@ -1,4 +1,5 @@
-// Display types "zfile" and "shadow", and "deepshad" with what is behind the first surface: depth as floats in OpenEXR under the given name, with the matrices that shadow() needs.
+// Display types "zfile" and "shadow", and "deepshad" with what is behind the first surface: depth as floats in OpenEXR under the
+// given name, with the matrices that shadow() needs.
 #include "display/drivers/picture.h"
 #include <algorithm>
 
@@ -36,7 +37,8 @@ public:
     bool open(const DriverSetup& s, Diagnostics& diags) override {
         if (!s.deep)
             diags.report(Severity::Warning, Rie::MissingData, s.place,
-                         "deep shadow map \"" + s.name + "\": a picture made of part files has no depths behind the first surfaces",
+                         "deep shadow map \"" + s.name +
+                             "\": a picture made of part files has no depths behind the first surfaces",
                          "render the map whole");
         return DepthDriver::open(s, diags);
     }
@@ -51,11 +53,12 @@ const DriverDescriptor zfileDriver{
     "MakeShadow and shadow() read it.",
     []() -> std::unique_ptr<Driver> { return std::make_unique<Zfile>(); }};
 
-const DriverDescriptor deepDriver{
-    {"deepshad", "dsm", "deepshadow", "dshadow"},
-    "Deep shadow map: for each pixel, with all of its samples, how much light of each colour is left behind every depth, so transparent, thin "
-    "and moving things cast the shadows that they do. Deep OpenEXR (channels Z, RA, GA, BA, A) whatever the extension and the mode; shadow() "
-    "and MakeShadow read it. Option \"limits\" \"float deepshadowerror\" says how exactly.",
-    []() -> std::unique_ptr<Driver> { return std::make_unique<DeepShadow>(); }};
+const DriverDescriptor deepDriver{{"deepshad", "dsm", "deepshadow", "dshadow"},
+                                  "Deep shadow map: for each pixel, with all of its samples, how much light of each colour is "
+                                  "left behind every depth, so transparent, thin "
+                                  "and moving things cast the shadows that they do. Deep OpenEXR (channels Z, RA, GA, BA, A) "
+                                  "whatever the extension and the mode; shadow() "
+                                  "and MakeShadow read it. Option \"limits\" \"float deepshadowerror\" says how exactly.",
+                                  []() -> std::unique_ptr<Driver> { return std::make_unique<DeepShadow>(); }};
 
 } // namespace alpenglow::display

@@ -1,7 +1,7 @@
 // OpenEXR: scan-line and tiled, flat, half/float/uint channels; MIP-mapped tiles for textures.
 // Deep pictures: exrdeep.cpp. Not read: subsampled chroma; of several parts the first.
-#include "base/limits.h"
 #include "display/formats/exr.h"
+#include "base/limits.h"
 #include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>

@@ -64,7 +64,9 @@ private:
     std::vector<std::vector<char*>> pointers_;
 };
 
-struct Taken { float z, back, opacity[3]; };
+struct Taken {
+    float z, back, opacity[3];
+};
 
 /// Samples of a pixel as a staircase.
 void addStairs(std::vector<Taken>& samples, std::vector<DeepStep>& out) {
@@ -97,7 +99,9 @@ struct Layout {
 };
 
 /// Whether so many samples can be in the file: zip makes nothing smaller than by a factor of 1032.
-bool fits(uint64_t samples, const Layout& l) { return samples <= limits::kDeepSteps && samples * 4 <= uint64_t(l.fileBytes) * 1100; }
+bool fits(uint64_t samples, const Layout& l) {
+    return samples <= limits::kDeepSteps && samples * 4 <= uint64_t(l.fileBytes) * 1100;
+}
 const char* const kTooMany = "it has more samples than it has bytes for";
 
 /// Appends pixels of a line that begin at a sample. "": fine.
@@ -109,7 +113,8 @@ std::string addPixels(const Line& line, const Layout& l, size_t from, int width,
         taken.clear();
         for (unsigned n = 0; n < line.count[from + size_t(x)]; ++n, ++at) {
             const auto value = [&](size_t c) { return line.values[c][at]; };
-            taken.push_back({value(0), l.slabs ? value(l.names.size() - 1) : 0,
+            taken.push_back({value(0),
+                             l.slabs ? value(l.names.size() - 1) : 0,
                              {value(1), value(l.coloured ? 2 : 1), value(l.coloured ? 3 : 1)}});
         }
         stairs.clear();
@@ -188,7 +193,8 @@ std::optional<Image> decodeDeep(Imf::MultiPartInputFile& file, const DecodeConte
     auto deep = std::make_shared<DeepSamples>();
     deep->first.reserve(size_t(m.width) * size_t(m.height) + 1);
     const bool tiles = h.hasType() && h.type() == Imf::DEEPTILE;
-    const std::string fault = (tiles ? readTiles : readLines)(file, Layout{names, coloured, slabs, dw.min.x, dw.min.y, ctx.fileBytes}, m, *deep);
+    const std::string fault =
+        (tiles ? readTiles : readLines)(file, Layout{names, coloured, slabs, dw.min.x, dw.min.y, ctx.fileBytes}, m, *deep);
     if (!fault.empty()) return ctx.refuse(fault, fault.find("more than") == std::string::npos ? Rie::BadFile : Rie::Limit);
     deep->first.push_back(deep->steps.size());
     m.deep = std::move(deep);

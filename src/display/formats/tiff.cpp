@@ -353,7 +353,8 @@ bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, std::str
     if (o.compression == "lzw") TIFFSetField(f, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
     else if (o.compression == "packbits") TIFFSetField(f, TIFFTAG_COMPRESSION, COMPRESSION_PACKBITS);
     else if (o.compression != "none") TIFFSetField(f, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
-    if (o.compression != "none" && o.compression != "packbits") TIFFSetField(f, TIFFTAG_PREDICTOR, bits == 32 ? PREDICTOR_FLOATINGPOINT : PREDICTOR_HORIZONTAL);
+    if (o.compression != "none" && o.compression != "packbits")
+        TIFFSetField(f, TIFFTAG_PREDICTOR, bits == 32 ? PREDICTOR_FLOATINGPOINT : PREDICTOR_HORIZONTAL);
     TIFFSetField(f, TIFFTAG_ROWSPERSTRIP, uint32_t(std::max<size_t>(1, (size_t(64) << 10) / std::max<size_t>(1, rowBytes))));
     auto text = [&](const char* key) {
         auto i = m.metadata.find(key);

@@ -16,6 +16,5 @@ namespace alpenglow::transport::AL_NAMESPACE {
 static constexpr LobeLanes kLobes[] = {
     lanesOf<Diffuse>(),    lanesOf<Specular>(),  lanesOf<Phong>(), lanesOf<UniformCone>(),      lanesOf<CosineCone>(),
     lanesOf<PhongTrace>(), lanesOf<OrenNayar>(), lanesOf<Blinn>(), lanesOf<AshikhminShirley>(), lanesOf<CookTorrance>(),
-    lanesOf<Ward>(),       lanesOf<Glass>(),     lanesOf<Hair>(), lanesOf<HenyeyGreenstein>(),
-    lanesOf<PhaseBesideLight>()};
+    lanesOf<Ward>(),       lanesOf<Glass>(),     lanesOf<Hair>(),  lanesOf<HenyeyGreenstein>(), lanesOf<PhaseBesideLight>()};
 } // namespace alpenglow::transport::AL_NAMESPACE

@@ -1,11 +1,11 @@
 // trace()'s reflections by small facets: "blinn", "ashikhmin-shirley", "cook-torrance", "ward". axis = normal. A facet is drawn
 // by its slope, and the light it mirrors to wo is asked for; what lies below the surface is lost.
 #pragma once
+#include "lobes/kinds/lobe.h"
 #include "shadeops/bsdf/ashikhmin_shirley.h"
 #include "shadeops/bsdf/blinn.h"
 #include "shadeops/bsdf/cook_torrance.h"
 #include "shadeops/bsdf/ward.h"
-#include "lobes/kinds/lobe.h"
 
 namespace alpenglow::transport::AL_NAMESPACE {
 

@@ -2,8 +2,8 @@
 // alone, 1: refraction alone. A facet is drawn by its slope; reflection or refraction by Fresnel's share at the normal, kept away
 // from 0 and 1.
 #pragma once
-#include "shadeops/bsdf/glass_ggx.h"
 #include "lobes/kinds/facets.h"
+#include "shadeops/bsdf/glass_ggx.h"
 
 namespace alpenglow::transport::AL_NAMESPACE {
 

@@ -1,8 +1,8 @@
 // trace()'s "hair": a fibre whose tip is axis. part: one lobe (R, TT, TRT, TRRT) alone. Directions are drawn evenly over the
 // sphere: exact for every set of lobes, and noisy for narrow ones.
 #pragma once
-#include "shadeops/bsdf/hair.h"
 #include "lobes/kinds/lobe.h"
+#include "shadeops/bsdf/hair.h"
 
 namespace alpenglow::transport::AL_NAMESPACE {
 

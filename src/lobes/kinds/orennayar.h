@@ -1,7 +1,7 @@
 // trace()'s "oren-nayar": axis = normal. Drawn by the cosine.
 #pragma once
-#include "shadeops/bsdf/oren_nayar.h"
 #include "lobes/kinds/lobe.h"
+#include "shadeops/bsdf/oren_nayar.h"
 
 namespace alpenglow::transport::AL_NAMESPACE {
 

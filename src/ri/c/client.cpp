@@ -52,7 +52,8 @@ Building::Building(const char* request) : client_(Client::current()) {
 
 void Building::drop(const std::string& why) {
     if (!client_) return;
-    client_->in.reporter.error(Rie::Consistency, client_->by.place, fmt::format("Ri{}, called by a library: {}", request_->name, why));
+    client_->in.reporter.error(Rie::Consistency, client_->by.place,
+                               fmt::format("Ri{}, called by a library: {}", request_->name, why));
     client_ = nullptr;
 }
 
@@ -99,7 +100,8 @@ Building& Building::texts(const RtToken* s, int64_t n) {
     return *this;
 }
 
-void Building::parameter(const char* token, const void* values, const scene::VariableCounts& counts, const std::string& category) {
+void Building::parameter(const char* token, const void* values, const scene::VariableCounts& counts,
+                         const std::string& category) {
     const Interpreter& in = client_->in;
     const Resolved r = in.declarations.resolve(token, category);
     if (!r.declaration) {
@@ -152,7 +154,8 @@ void Building::run() {
         call.request = request_;
         if (matchArguments(values_, call, in.reporter)) in.execute(call);
     } catch (const std::bad_alloc&) { // not through the frames of the library
-        in.reporter.error(Rie::NoMem, client_->by.place, fmt::format("Ri{}, called by a library: there is no memory for it", request_->name));
+        in.reporter.error(Rie::NoMem, client_->by.place,
+                          fmt::format("Ri{}, called by a library: there is no memory for it", request_->name));
     }
 }
 

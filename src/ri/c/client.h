@@ -1,5 +1,5 @@
-// The C binding (include/ri.h): what a library calls while it makes the content of a procedural becomes requests at the procedural's
-// place, by the same way as those of a file.
+// The C binding (include/ri.h): what a library calls while it makes the content of a procedural becomes requests at the
+// procedural's place, by the same way as those of a file.
 #pragma once
 #include "ri/interpreter.h"
 #include "scene/counts.h"
@@ -32,8 +32,8 @@ struct Pairs {
     std::vector<RtPointer> values;
 };
 
-/// A request under construction: the arguments of its RIB form, in order. Null pointers and negative counts are reported and drop it;
-/// without a client nothing happens.
+/// A request under construction: the arguments of its RIB form, in order. Null pointers and negative counts are reported and drop
+/// it; without a client nothing happens.
 class Building {
 public:
     explicit Building(const char* request);

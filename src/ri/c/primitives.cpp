@@ -36,7 +36,11 @@ int64_t sumOf(Building& b, const RtInt* counts, int64_t n) {
 /// One of the procedurals that every renderer has, with the strings that it takes.
 void builtIn(const char* kind, RtPointer data, int strings, const RtFloat* bound) {
     static const RtFloat kUnbounded[6] = {-RI_INFINITY, RI_INFINITY, -RI_INFINITY, RI_INFINITY, -RI_INFINITY, RI_INFINITY};
-    Building("Procedural").text(kind).texts(static_cast<const RtToken*>(data), strings).numbers(bound ? bound : kUnbounded, 6).run();
+    Building("Procedural")
+        .text(kind)
+        .texts(static_cast<const RtToken*>(data), strings)
+        .numbers(bound ? bound : kUnbounded, 6)
+        .run();
 }
 
 } // namespace
@@ -88,7 +92,8 @@ RtVoid RiPatchV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]) {
     b.variables(n, tokens, values, p).run();
 }
 
-RtVoid RiPatchMeshV(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, RtInt n, RtToken tokens[], RtPointer values[]) {
+RtVoid RiPatchMeshV(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, RtInt n, RtToken tokens[],
+                    RtPointer values[]) {
     Building b("PatchMesh");
     b.text(type).number(nu).text(uwrap).number(nv).text(vwrap);
     if (!b.client()) return;
@@ -174,26 +179,32 @@ RtVoid RiCurvesV(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, R
     b.variables(n, tokens, values, p).run();
 }
 
-RtVoid RiBlobbyV(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[], RtInt n,
-                 RtToken tokens[], RtPointer values[]) {
+RtVoid RiBlobbyV(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[],
+                 RtInt n, RtToken tokens[], RtPointer values[]) {
     Building b("Blobby");
     const scene::VariableCounts counts = points(nleaf);
     if (!b.may(nleaf, {})) return;
-    b.number(nleaf).ints(code, ncode).numbers(floats, nfloats).texts(strings, nstrings).parameters(n, tokens, values, &counts).run();
+    b.number(nleaf)
+        .ints(code, ncode)
+        .numbers(floats, nfloats)
+        .texts(strings, nstrings)
+        .parameters(n, tokens, values, &counts)
+        .run();
 }
 
 RtVoid RiGeometryV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]) {
     Building("Geometry").text(type).variables(n, tokens, values, kindOf("Geometry")).run();
 }
 
-#define ALPENGLOW_BOTH(name, parameters, arguments, last)                                                                    \
-    RtVoid name parameters {                                                                                                 \
-        ALPENGLOW_PAIRS(last);                                                                                               \
-        name##V arguments;                                                                                                   \
+#define ALPENGLOW_BOTH(name, parameters, arguments, last)                                                                        \
+    RtVoid name parameters {                                                                                                     \
+        ALPENGLOW_PAIRS(last);                                                                                                   \
+        name##V arguments;                                                                                                       \
     }
 ALPENGLOW_BOTH(RiPolygon, (RtInt nvertices, ...), (nvertices, ALPENGLOW_LIST), nvertices)
 ALPENGLOW_BOTH(RiGeneralPolygon, (RtInt nloops, RtInt nverts[], ...), (nloops, nverts, ALPENGLOW_LIST), nverts)
-ALPENGLOW_BOTH(RiPointsPolygons, (RtInt npolys, RtInt nverts[], RtInt verts[], ...), (npolys, nverts, verts, ALPENGLOW_LIST), verts)
+ALPENGLOW_BOTH(RiPointsPolygons, (RtInt npolys, RtInt nverts[], RtInt verts[], ...), (npolys, nverts, verts, ALPENGLOW_LIST),
+               verts)
 ALPENGLOW_BOTH(RiPointsGeneralPolygons, (RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], ...),
                (npolys, nloops, nverts, verts, ALPENGLOW_LIST), verts)
 ALPENGLOW_BOTH(RiPatch, (RtToken type, ...), (type, ALPENGLOW_LIST), type)
@@ -209,13 +220,15 @@ ALPENGLOW_BOTH(RiSubdivisionMesh,
                (scheme, nfaces, nverts, verts, ntags, tags, nargs, intargs, floatargs, ALPENGLOW_LIST), floatargs)
 ALPENGLOW_BOTH(RiSphere, (RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...),
                (radius, zmin, zmax, thetamax, ALPENGLOW_LIST), thetamax)
-ALPENGLOW_BOTH(RiCone, (RtFloat height, RtFloat radius, RtFloat thetamax, ...), (height, radius, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiCone, (RtFloat height, RtFloat radius, RtFloat thetamax, ...), (height, radius, thetamax, ALPENGLOW_LIST),
+               thetamax)
 ALPENGLOW_BOTH(RiCylinder, (RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...),
                (radius, zmin, zmax, thetamax, ALPENGLOW_LIST), thetamax)
 ALPENGLOW_BOTH(RiHyperboloid, (RtPoint a, RtPoint b, RtFloat thetamax, ...), (a, b, thetamax, ALPENGLOW_LIST), thetamax)
 ALPENGLOW_BOTH(RiParaboloid, (RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...),
                (rmax, zmin, zmax, thetamax, ALPENGLOW_LIST), thetamax)
-ALPENGLOW_BOTH(RiDisk, (RtFloat height, RtFloat radius, RtFloat thetamax, ...), (height, radius, thetamax, ALPENGLOW_LIST), thetamax)
+ALPENGLOW_BOTH(RiDisk, (RtFloat height, RtFloat radius, RtFloat thetamax, ...), (height, radius, thetamax, ALPENGLOW_LIST),
+               thetamax)
 ALPENGLOW_BOTH(RiTorus, (RtFloat major, RtFloat minor, RtFloat phimin, RtFloat phimax, RtFloat thetamax, ...),
                (major, minor, phimin, phimax, thetamax, ALPENGLOW_LIST), thetamax)
 ALPENGLOW_BOTH(RiPoints, (RtInt npoints, ...), (npoints, ALPENGLOW_LIST), npoints)
@@ -245,7 +258,9 @@ RtVoid RiProcedural(RtPointer data, RtBound bound, RtProcSubdivFunc subdivide, R
     if (free) free(data);
 }
 
-RtVoid RiReadArchiveV(RtToken name, RtArchiveCallback, RtInt, RtToken[], RtPointer[]) { Building("ReadArchive").text(name).run(); }
+RtVoid RiReadArchiveV(RtToken name, RtArchiveCallback, RtInt, RtToken[], RtPointer[]) {
+    Building("ReadArchive").text(name).run();
+}
 RtVoid RiReadArchive(RtToken name, RtArchiveCallback, ...) { RiReadArchiveV(name, nullptr, 0, nullptr, nullptr); }
 RtVoid RiArchiveRecord(RtToken, const char*, ...) {} // there is no archive that it could be written to
 

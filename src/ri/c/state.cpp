@@ -140,13 +140,13 @@ RtVoid RiAttribute(const char* name, ...) {
     RiAttributeV(name, ALPENGLOW_LIST);
 }
 
-#define ALPENGLOW_SHADER(request)                                                                                            \
-    RtVoid Ri##request##V(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {                                 \
-        Building(#request).text(name).parameters(n, tokens, values).run();                                                   \
-    }                                                                                                                        \
-    RtVoid Ri##request(const char* name, ...) {                                                                              \
-        ALPENGLOW_PAIRS(name);                                                                                               \
-        Ri##request##V(name, ALPENGLOW_LIST);                                                                                \
+#define ALPENGLOW_SHADER(request)                                                                                                \
+    RtVoid Ri##request##V(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {                                     \
+        Building(#request).text(name).parameters(n, tokens, values).run();                                                       \
+    }                                                                                                                            \
+    RtVoid Ri##request(const char* name, ...) {                                                                                  \
+        ALPENGLOW_PAIRS(name);                                                                                                   \
+        Ri##request##V(name, ALPENGLOW_LIST);                                                                                    \
     }
 ALPENGLOW_SHADER(Surface)
 ALPENGLOW_SHADER(Displacement)

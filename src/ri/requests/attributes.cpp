@@ -255,9 +255,12 @@ std::vector<Request> attributeRequests() {
                  std::copy(v.begin(), v.end(), in.attributes().detailRange);
          }},
         {"GeometricApproximation", "string type; number value", k, s, false,
-         "How closely shapes are followed. \"motionfactor\": what moves is diced by ShadingRate times this times a 16th of the pixels that "
-         "it moves. \"flatness\": pixels that facets of patches and subdivision surfaces without displacement may stray from the surface, 0.05 "
-         "by itself (quadrics and curves have no facets). \"focusfactor\", \"normaldeviation\", \"pointdeviation\" and \"tessellation\" are kept "
+         "How closely shapes are followed. \"motionfactor\": what moves is diced by ShadingRate times this times a 16th of the "
+         "pixels that "
+         "it moves. \"flatness\": pixels that facets of patches and subdivision surfaces without displacement may stray from the "
+         "surface, 0.05 "
+         "by itself (quadrics and curves have no facets). \"focusfactor\", \"normaldeviation\", \"pointdeviation\" and "
+         "\"tessellation\" are kept "
          "for shaders: what is out of focus is diced as finely as the rest.",
          "\"motionfactor\" 1", approximation},
         {"GeometricRepresentation", "string type", k, s, false, "Of RISpec 3.0; has no effect.", "\"primitive\"",

@@ -1,5 +1,5 @@
-// Requests of later renderers (PRMan 13 on, RIS, Aqsis): recognised so that the rest of their files renders. What has a meaning here is
-// done; the others are said once each.
+// Requests of later renderers (PRMan 13 on, RIS, Aqsis): recognised so that the rest of their files renders. What has a meaning
+// here is done; the others are said once each.
 #include "ri/interpreter.h"
 #include <fmt/format.h>
 
@@ -10,8 +10,9 @@ void notDone(Interpreter& in, const Call& c) { in.incapable(c, fmt::format("{} i
 
 /// Shading of the later kind is no RSL: one sentence for all of its requests.
 void ris(Interpreter& in, const Call& c) {
-    in.incapable(c, "Bxdf, Pattern, Integrator and their like belong to renderers without shading language and are left out; Surface, "
-                    "Shader, LightSource and Hider say the same here");
+    in.incapable(
+        c, "Bxdf, Pattern, Integrator and their like belong to renderers without shading language and are left out; Surface, "
+           "Shader, LightSource and Hider say the same here");
 }
 
 /// A volume primitive shader: the volume shader of the primitive.
@@ -36,13 +37,16 @@ void procedural2(Interpreter& in, const Call& c) {
     std::vector<float> bound;
     for (const scene::Param& p : in.bind(c, Use::Other)) {
         const bool text = !p.strings.empty();
-        if (text && (p.name == "filename" || p.name == "command" || p.name == "program" || p.name == "programname" || p.name == "dsoname")) name = p.strings[0];
+        if (text && (p.name == "filename" || p.name == "command" || p.name == "program" || p.name == "programname" ||
+                     p.name == "dsoname"))
+            name = p.strings[0];
         else if (text && (p.name == "data" || p.name == "params" || p.name == "string")) data = p.strings[0];
         else if ((p.name == "bound" || p.name == "__bound") && p.numbers.size() == 6) bound = p.numbers;
     }
     if (name.empty() && (kind == "DelayedReadArchive" || in.settings.allowExec)) {
         in.reporter.error(Rie::MissingData, c.place,
-                          kind == "DelayedReadArchive" ? "Procedural2: the archive has no \"string filename\"" : "Procedural2: there is no \"string command\"");
+                          kind == "DelayedReadArchive" ? "Procedural2: the archive has no \"string filename\""
+                                                       : "Procedural2: there is no \"string command\"");
         return;
     }
     in.procedural(kind, {name, data}, bound, c);
@@ -70,7 +74,8 @@ std::vector<Request> foreignRequests() {
          "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", layer},
         {"Procedural2", "string subdivide; string bound; ..", Kind::Primitive, kWorld | kObject, false,
          "Content from an archive (\"DelayedReadArchive2\"), by named parameters, or with --allow-exec from a program "
-         "(\"RunProgram2\": \"string command\", \"string data\") or a library (\"DynamicLoad2\": \"string dsoname\", \"string data\").",
+         "(\"RunProgram2\": \"string command\", \"string data\") or a library (\"DynamicLoad2\": \"string dsoname\", \"string "
+         "data\").",
          "\"RunProgram2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1]", procedural2},
         {"Bxdf", named, Kind::Shader, any, false, risDoc, "\"PxrSurface\" \"s\"", ris},
         {"Pattern", named, Kind::Shader, any, false, risDoc, "\"PxrTexture\" \"t\"", ris},

@@ -234,7 +234,9 @@ std::vector<Request> optionRequests() {
          "-1 1 -1 1", screenWindow},
         {"CropWindow", "number[4] window", k, kOptions, false, "xmin xmax ymin ymax of the part that is rendered, 0 to 1.",
          "[0 .5 .25 1]", cropWindow},
-        {"Projection", "string name; ..", k, kOptions, true, "\"perspective\" (\"fov\", degrees), \"stereo\" (also \"eyeseparation\", \"focaldistance\"; \"stereo\" sidebyside, topbottom, left, right) or \"orthographic\".",
+        {"Projection", "string name; ..", k, kOptions, true,
+         "\"perspective\" (\"fov\", degrees), \"stereo\" (also \"eyeseparation\", \"focaldistance\"; \"stereo\" sidebyside, "
+         "topbottom, left, right) or \"orthographic\".",
          "\"perspective\" \"fov\" [30]", projection},
         {"Clipping", "number near; number far", k, kOptions, false,
          "Distances along z between which things are seen. Camera rays begin at near; rays see what lies behind far.", "0.1 1000",

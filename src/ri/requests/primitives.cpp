@@ -116,7 +116,8 @@ void blobby(Interpreter& in, const Call& c) {
 }
 
 void geometry(Interpreter& in, const Call& c) {
-    static const std::map<std::string, const std::string& (*)()> kShapes = {{"teapot", teapotRequests}, {"cube", cubeRequests}, {"sphere", sphereRequests}};
+    static const std::map<std::string, const std::string& (*)()> kShapes = {
+        {"teapot", teapotRequests}, {"cube", cubeRequests}, {"sphere", sphereRequests}};
     const std::string& name = c.text(0);
     const auto shape = kShapes.find(name);
     const bool file = name == "ply" || name == "obj" || namedAsModel(name);
@@ -186,15 +187,20 @@ std::vector<Request> primitiveRequests() {
          "string scheme; int[] nverts; int[] verts; string[] tags?; int[] nargs?; int[] intargs?; number[] floatargs?; string[] "
          "stringargs?; ..",
          k, s, true, "A subdivision surface with edits at any level.", hierarchical, subdivision},
-        {"Points", "..", k, s, true, "Particles: discs that face the eye, or by \"type\" spheres and squares.", "\"P\" [0 0 0 1 0 0] \"constantwidth\" [.1]", polygon},
-        {"Curves", "string type; int[] nvertices; string wrap; ..", k, s, true, "Thin ribbons, flat by \"N\", or tubes (Attribute \"dice\" \"roundcurve\" 1).",
+        {"Points", "..", k, s, true, "Particles: discs that face the eye, or by \"type\" spheres and squares.",
+         "\"P\" [0 0 0 1 0 0] \"constantwidth\" [.1]", polygon},
+        {"Curves", "string type; int[] nvertices; string wrap; ..", k, s, true,
+         "Thin ribbons, flat by \"N\", or tubes (Attribute \"dice\" \"roundcurve\" 1).",
          "\"cubic\" [4] \"nonperiodic\" \"P\" [0 0 0 1 0 0 2 0 0 3 0 0] \"width\" [.1 .2]", curves},
         {"Blobby", "int nleaf; int[] code; number[] floats; string[] strings?; ..", k, s, true,
-         "An implicit surface of blobs: constants, ellipsoids, segments, repelling planes and all operators.", "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
-        {"Geometry", "string name; ..", k, s, true, "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\"; or the polygons of a file of .ply or .obj.", "\"teapot\"",
+         "An implicit surface of blobs: constants, ellipsoids, segments, repelling planes and all operators.",
+         "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
+        {"Geometry", "string name; ..", k, s, true,
+         "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\"; or the polygons of a file of .ply or .obj.", "\"teapot\"",
          geometry},
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
-         "A region that the Interior, or without one the Atmosphere, fills: \"box\", \"ellipsoid\", or along z \"cylinder\" and \"cone\", as large "
+         "A region that the Interior, or without one the Atmosphere, fills: \"box\", \"ellipsoid\", or along z \"cylinder\" and "
+         "\"cone\", as large "
          "as its bound. Constant variables are parameters of the shader.",
          "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", [](Interpreter& in, const Call& c) { in.volume(c); }},
         {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false,

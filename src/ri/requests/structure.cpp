@@ -33,12 +33,15 @@ void frameBegin(Interpreter& in, const Call& c) {
 }
 
 void solidBegin(Interpreter& in, const Call& c) {
-    static constexpr std::string_view kOperations[] = {"primitive", "union", "intersection", "difference"}; // as scene::SolidOperation
+    static constexpr std::string_view kOperations[] = {"primitive", "union", "intersection",
+                                                       "difference"}; // as scene::SolidOperation
     const auto op = std::find(std::begin(kOperations), std::end(kOperations), c.text(0));
     if (op == std::end(kOperations))
-        in.reporter.error(Rie::BadSolid, c.place, fmt::format("SolidBegin: \"{}\" is not a solid operation; a union is made", c.text(0)),
+        in.reporter.error(Rie::BadSolid, c.place,
+                          fmt::format("SolidBegin: \"{}\" is not a solid operation; a union is made", c.text(0)),
                           "primitive, union, intersection or difference");
-    in.beginSolid(op == std::end(kOperations) ? scene::SolidOperation::Union : scene::SolidOperation(op - std::begin(kOperations)), c);
+    in.beginSolid(
+        op == std::end(kOperations) ? scene::SolidOperation::Union : scene::SolidOperation(op - std::begin(kOperations)), c);
 }
 
 void errorHandler(Interpreter& in, const Call& c) {
@@ -74,7 +77,9 @@ std::vector<Request> structureRequests() {
         {"TransformBegin", "", Kind::Structure, all, false, "Saves the current transformation.", "", beginBlock<B::Transform>},
         {"TransformEnd", "", Kind::Structure, all, false, "Restores what TransformBegin saved.", "", endBlock<B::Transform>},
         {"SolidBegin", "string operation", Kind::Structure, kWorld | kObject, false,
-         "Starts a solid: primitive (a closed part), union, intersection or difference (the first less the others) of the solids in it.", "\"union\"", solidBegin},
+         "Starts a solid: primitive (a closed part), union, intersection or difference (the first less the others) of the solids "
+         "in it.",
+         "\"union\"", solidBegin},
         {"SolidEnd", "", Kind::Structure, all, false, "Ends a solid.", "", endBlock<B::Solid>},
         {"ObjectBegin", "handle object", Kind::Structure, all, false, "Stores the primitives up to ObjectEnd under a handle.",
          "1", [](Interpreter& in, const Call& c) { in.objectBegin(c); }},

@@ -20,7 +20,9 @@ const char* toString(ShaderKind);
 Context contextOf(ShaderKind);
 
 /// Position in the file set of a Program: file index, line and column from 1.
-struct Place { int file = 0, line = 0, column = 0; };
+struct Place {
+    int file = 0, line = 0, column = 0;
+};
 
 struct Expr;
 struct Stmt;
@@ -44,13 +46,14 @@ struct Symbol {
     Type type;
     Storage storage = Storage::Unspecified; ///< after checking: parameters of shaders default to Uniform, locals to Varying
     Origin origin = Origin::Local;
-    bool output = false;      ///< shader: AOV; function: by reference
-    bool writable = true;     ///< globals: by shader kind (rsl.md section 8)
-    bool isConstant = false;  ///< `constant`: written where the shader begins, then never again
-    bool handle = false;      ///< of type `shader`: its value (of base String) is the name of a shader, no text
-    bool open = false;        ///< parameter of a shader, `float x[]`: as long as what the scene gives; `type` has the length of the default
-    bool resizable = false;   ///< `float x[]`, local or a parameter of a function: its length may change
-    bool isExtern = false;    ///< only between parser and checker, which puts the outer variable in its place
+    bool output = false;     ///< shader: AOV; function: by reference
+    bool writable = true;    ///< globals: by shader kind (rsl.md section 8)
+    bool isConstant = false; ///< `constant`: written where the shader begins, then never again
+    bool handle = false;     ///< of type `shader`: its value (of base String) is the name of a shader, no text
+    bool open =
+        false; ///< parameter of a shader, `float x[]`: as long as what the scene gives; `type` has the length of the default
+    bool resizable = false; ///< `float x[]`, local or a parameter of a function: its length may change
+    bool isExtern = false;  ///< only between parser and checker, which puts the outer variable in its place
     Place place;
     Whole whole{}; ///< of a parameter of a function
 };
@@ -76,33 +79,65 @@ enum class ExprKind : uint8_t {
     Member,       ///< args[0]->text: a member of a structure (gone before checking) or of another shader
     Method        ///< args[0]->text(args[1], ...): a method of another shader
 };
-enum class ExprOp : uint8_t { None, Add, Sub, Mul, Div, Dot, Cross, Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, And, Or, Negate, Not, Assign };
+enum class ExprOp : uint8_t {
+    None,
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Dot,
+    Cross,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Equal,
+    NotEqual,
+    And,
+    Or,
+    Negate,
+    Not,
+    Assign
+};
 
-struct NamedArg { std::string name; ExprPtr value; bool output = false; Place place; };
+struct NamedArg {
+    std::string name;
+    ExprPtr value;
+    bool output = false;
+    Place place;
+};
 
 struct Expr {
     ExprKind kind{};
     ExprOp op = ExprOp::None;
     Type type;
-    bool varying = true;              ///< by declaration and operands; the IR infers more
+    bool varying = true; ///< by declaration and operands; the IR infers more
     Place place;
-    bool handle = false;              ///< Cast to `shader`, and the literal null (a String): a handle, no text
-    Whole whole{};                    ///< of an argument
-    int height = 1;                   ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
+    bool handle = false; ///< Cast to `shader`, and the literal null (a String): a handle, no text
+    Whole whole{};       ///< of an argument
+    int height = 1;      ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
-    std::string text;                 ///< String; callee name before binding
+    std::string text; ///< String; callee name before binding
     Symbol* symbol = nullptr;
     std::vector<ExprPtr> args;
-    ExprPtr space;                    ///< Tuple, MatrixTuple, Cast
-    ExprPtr channel;                  ///< texture-like calls
-    std::vector<NamedArg> pairs;      ///< token/value pairs of calls
+    ExprPtr space;               ///< Tuple, MatrixTuple, Cast
+    ExprPtr channel;             ///< texture-like calls
+    std::vector<NamedArg> pairs; ///< token/value pairs of calls
     const Shadeop* shadeop = nullptr;
     const Signature* signature = nullptr;
-    Function* function = nullptr;     ///< user's function, or the RSL body of a Lowering::Rsl shadeop (then shadeop is set too)
+    Function* function = nullptr; ///< user's function, or the RSL body of a Lowering::Rsl shadeop (then shadeop is set too)
 };
 
 enum class StmtKind : uint8_t {
-    Block, Declare, Expression, If, While, For, Break, Continue, Return,
+    Block,
+    Declare,
+    Expression,
+    If,
+    While,
+    For,
+    Break,
+    Continue,
+    Return,
     Illuminance, ///< exprs: P [, axis, angle]; category; pairs; body
     Illuminate,  ///< exprs: from [, axis, angle]; body
     Solar,       ///< exprs: nothing or axis, angle; body
@@ -112,19 +147,22 @@ enum class StmtKind : uint8_t {
 struct Stmt {
     StmtKind kind{};
     Place place;
-    std::vector<StmtPtr> body;        ///< Block: statements. Others: body[0]; For: init expr statements are exprs below
-    StmtPtr elseBody;                 ///< If, Gather
-    ExprPtr condition;                ///< If, While, For
-    ExprPtr init, step;               ///< For
-    ExprPtr value;                    ///< Expression, Return
-    int levels = 1;                   ///< Break, Continue
+    std::vector<StmtPtr> body; ///< Block: statements. Others: body[0]; For: init expr statements are exprs below
+    StmtPtr elseBody;          ///< If, Gather
+    ExprPtr condition;         ///< If, While, For
+    ExprPtr init, step;        ///< For
+    ExprPtr value;             ///< Expression, Return
+    int levels = 1;            ///< Break, Continue
     /// Declare: one symbol each, with optional initialisers.
-    struct Declarator { Symbol* symbol; ExprPtr init; };
+    struct Declarator {
+        Symbol* symbol;
+        ExprPtr init;
+    };
     std::vector<Declarator> declarators;
-    std::vector<ExprPtr> exprs;       ///< light statements
+    std::vector<ExprPtr> exprs; ///< light statements
     ExprPtr category;
     std::vector<NamedArg> pairs;
-    Function* definition = nullptr;   ///< Declare: the place of a nested function's definition (no declarators)
+    Function* definition = nullptr; ///< Declare: the place of a nested function's definition (no declarators)
 };
 
 struct Function {
@@ -132,7 +170,8 @@ struct Function {
     Type result;
     bool handle = false; ///< the result is of type `shader`
     std::vector<Symbol*> parameters;
-    std::vector<ExprPtr> defaults; ///< of a method: what a parameter is that a call leaves out; empty, or null where there is none
+    std::vector<ExprPtr>
+        defaults; ///< of a method: what a parameter is that a call leaves out; empty, or null where there is none
     StmtPtr body;
     std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters and locals
     std::vector<std::unique_ptr<Function>> nested;
@@ -151,7 +190,10 @@ struct ShaderParameter {
 
 /// A structure as the shader declares it, for who shows shaders; types in words.
 struct StructSummary {
-    struct Member { std::string type, name; Place place; }; ///< methods have no type
+    struct Member {
+        std::string type, name;
+        Place place;
+    }; ///< methods have no type
     std::string name;
     std::vector<Member> members;
     std::vector<Member> methods;
@@ -175,18 +217,18 @@ struct Shader {
 /// One source file with its includes: shaders (usually one) and functions.
 struct Program {
     std::map<std::string, Type> primitiveVariables; ///< what getvar() asks for, with the types of the variables it fills
-    bool rispecSpecular = false; ///< FrontOptions::rispecSpecular, or by the dialect
-    bool handles = false; ///< it uses members or methods of other shaders, or asks for them
+    bool rispecSpecular = false;                    ///< FrontOptions::rispecSpecular, or by the dialect
+    bool handles = false;                           ///< it uses members or methods of other shaders, or asks for them
     /// Outputs that outputchannel() makes, and their types; without "light:" or "local:".
     std::map<std::string, Type> channels;
-    std::vector<std::string> files;                 ///< Place::file indexes this
+    std::vector<std::string> files; ///< Place::file indexes this
     std::vector<std::unique_ptr<Shader>> shaders;
     /// Every function that a shader calls, once for each shader that calls it (its predefined variables and externs are then that
     /// shader's symbols); functions of the main file that nothing calls, once.
     std::vector<std::unique_ptr<Function>> functions;
-    std::vector<StructSummary> structs;             ///< in the order of the text
-    std::string preprocessed;                       ///< text after includes and macros: part of the cache key
-    std::vector<std::string> dependencies;          ///< every file read
+    std::vector<StructSummary> structs;                 ///< in the order of the text
+    std::string preprocessed;                           ///< text after includes and macros: part of the cache key
+    std::vector<std::string> dependencies;              ///< every file read
     std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order in which the text asks for them; calls refer to these
 };
 
@@ -201,7 +243,7 @@ struct FrontOptions {
     bool rispecSpecular = false; ///< specular() and specularbrdf() have the exponent that RISpec prints (shadeops/specular.h)
     std::vector<std::pair<std::string, std::string>> defines;
     PluginFinder plugin; ///< empty: code from outside is not run, and `plugin "name"` is an error that says so
-    bool lint = false; ///< warn about unused, uninitialised and the like, too (lint.h)
+    bool lint = false;   ///< warn about unused, uninitialised and the like, too (lint.h)
     /// The text of an included file that is newer than what the disk has (open in an editor); nothing: the disk's is right.
     std::function<std::optional<std::string>(const std::string& path)> openText{};
 };
@@ -211,7 +253,13 @@ std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions
 std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions&, Diagnostics&);
 
 /// A predefined variable (rsl.md section 8) in one kind of shader.
-struct GlobalVariable { const char* name; Type type; bool uniform; bool writable; const char* doc; };
+struct GlobalVariable {
+    const char* name;
+    Type type;
+    bool uniform;
+    bool writable;
+    const char* doc;
+};
 /// All predefined variables of a kind of shader.
 std::span<const GlobalVariable> globalVariables(ShaderKind);
 

@@ -10,7 +10,9 @@ bool isOneOf(const Token& t, std::initializer_list<std::string_view> words) {
     return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return t.is(w); });
 }
 
-bool isType(const Token& t) { return isOneOf(t, {"float", "color", "point", "vector", "normal", "matrix", "string", "bool", "int", "integer"}); }
+bool isType(const Token& t) {
+    return isOneOf(t, {"float", "color", "point", "vector", "normal", "matrix", "string", "bool", "int", "integer"});
+}
 
 } // namespace
 
@@ -26,10 +28,14 @@ void hashComments(SourceSet& sources, Preprocessed& p) {
             kept.push_back(p.tokens[i++]);
             continue;
         }
-        sources.warning(t.place, std::string(two ? "'##' begins no directive" : "'#' in the middle of a line begins no directive") +
-                                     "; the rest of the line is taken as a comment", "a comment begins with //");
+        sources.warning(t.place,
+                        std::string(two ? "'##' begins no directive" : "'#' in the middle of a line begins no directive") +
+                            "; the rest of the line is taken as a comment",
+                        "a comment begins with //");
         const Place line = t.place;
-        for (; i < p.tokens.size() && p.tokens[i].kind != Tok::End && p.tokens[i].place.file == line.file && p.tokens[i].place.line == line.line; ++i)
+        for (; i < p.tokens.size() && p.tokens[i].kind != Tok::End && p.tokens[i].place.file == line.file &&
+               p.tokens[i].place.line == line.line;
+             ++i)
             dropped.push_back(i - kept.size());
     }
     for (Annotation& a : p.annotations) a.token -= a.token < dropped.size() ? dropped[a.token] : 0;
@@ -52,9 +58,12 @@ void readBorrowedWords(SourceSet& sources, Preprocessed& p) {
             t.kind = Tok::Number;
             t.text = t.text == "true" ? "1" : "0";
         } else if (isOneOf(t, {"bool", "int", "integer"}) && at(i + 1).kind == Tok::Identifier) {
-            const bool begins = i == 0 || isOneOf(tokens[i - 1], {";", "{", "}", "(", ",", "uniform", "varying", "output", "public", "private", "constant", "const", "extern"});
+            const bool begins = i == 0 || isOneOf(tokens[i - 1], {";", "{", "}", "(", ",", "uniform", "varying", "output",
+                                                                  "public", "private", "constant", "const", "extern"});
             if (!begins) continue;
-            if (said.insert(t.text).second) sources.warning(t.place, "there is no type '" + std::string(t.text) + "'; float is taken, numbers are not rounded");
+            if (said.insert(t.text).second)
+                sources.warning(t.place,
+                                "there is no type '" + std::string(t.text) + "'; float is taken, numbers are not rounded");
             t.text = "float";
         }
     }

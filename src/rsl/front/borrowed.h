@@ -7,8 +7,8 @@ namespace alpenglow::rsl::front {
 /// '#' behind other words of a line: the rest of the line is a comment, with a warning. No directive can begin there.
 void hashComments(SourceSet&, Preprocessed&);
 
-/// Where a type stands, bool, int and integer become float, with a warning for each word; true and false become 1 and 0 unless the text
-/// gives them another meaning. Numbers are not rounded.
+/// Where a type stands, bool, int and integer become float, with a warning for each word; true and false become 1 and 0 unless
+/// the text gives them another meaning. Numbers are not rounded.
 void readBorrowedWords(SourceSet&, Preprocessed&);
 
 } // namespace alpenglow::rsl::front

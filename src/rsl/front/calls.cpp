@@ -12,7 +12,8 @@ std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Sha
     for (const auto& p : s.parameters) {
         const bool handle = p.name == "handle" && s.text.find("shader handle") != std::string::npos &&
                             s.text.find("(string handle") == std::string::npos;
-        const bool either = p.output || p.type.base == Base::Void || p.type.array != 0 || op.section == "Arrays" || op.name == "isoutput";
+        const bool either =
+            p.output || p.type.base == Base::Void || p.type.array != 0 || op.section == "Arrays" || op.name == "isoutput";
         v.push_back({p.type, p.output, either ? Handle::Either : handle ? Handle::Shader : Handle::Text});
     }
     return v;
@@ -49,7 +50,8 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
     if (output) {
         const Base have = cheapest(info);
         if (have == wanted.base) return 0;
-        return have != Base::Void && implicitCost(have, wanted.base) == kConversion ? kConversion : kNever; // among point, vector, normal
+        return have != Base::Void && implicitCost(have, wanted.base) == kConversion ? kConversion
+                                                                                    : kNever; // among point, vector, normal
     }
     return costTo(info, wanted.base);
 }
@@ -80,14 +82,16 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
         const Expr& name = *call.args[i];
         if (name.kind == ExprKind::String) continue;
         const Info& text = infos_.at(&name);
-        const bool variable = choice.shadeop && (name.kind == ExprKind::Variable || name.kind == ExprKind::Index) && text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader;
+        const bool variable = choice.shadeop && (name.kind == ExprKind::Variable || name.kind == ExprKind::Index) &&
+                              text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader;
         if (!variable) return false;
         choice.cost = std::min(kNever - 1, choice.cost + kLastResort);
     }
     return true;
 }
 
-/// shadow(map, P, "source", p1, p2, p3, p4): the four corners of an area light stand behind one token. Each gets a token of its own.
+/// shadow(map, P, "source", p1, p2, p3, p4): the four corners of an area light stand behind one token. Each gets a token of its
+/// own.
 static void nameSources(Expr& e) {
     if (e.text != "shadow" && e.text != "environment") return;
     const auto text = [&](size_t i) { return e.args[i]->kind == ExprKind::String; };
@@ -108,7 +112,10 @@ void Checker::surveyCall(Expr& e, Info& info) {
     nameSources(e);
     bool broken = false;
     for (auto& a : e.args) broken |= survey(*a).any;
-    if (e.text.empty()) { info.any = true; return; } // what is called was reported
+    if (e.text.empty()) {
+        info.any = true;
+        return;
+    }                                              // what is called was reported
     const bool shipped = e.text.starts_with("::"); // by a pass before this one: not what the shader calls so
     if (shipped) e.text.erase(0, 2);
     std::vector<std::string> candidates, notes;
@@ -156,8 +163,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
             offer(c, views(s, *op), s.repeats, s.pairs, s.text);
         }
     };
-    // A function of the shader's own joins those of its name, and the one that fits best is called; among functions that fit equally well
-    // the first counts: the shader's, then those of plug-ins.
+    // A function of the shader's own joins those of its name, and the one that fits best is called; among functions that fit
+    // equally well the first counts: the shader's, then those of plug-ins.
     if (unit_ == &main_ && !shipped)
         for (const auto& p : program_.plugins) offerAll(p->find(e.text));
     if (unit_ == &main_ || info.choices.empty()) offerAll(findShadeop(e.text));
@@ -187,7 +194,10 @@ void Checker::surveyCall(Expr& e, Info& info) {
             info.handle = fromArray ? infos_.at(e.args[0].get()).handle : handle ? Handle::Shader : Handle::Text;
         }
     for (const Choice& c : info.choices) {
-        if (c.result.array != 0) { info.array = c.result; continue; }
+        if (c.result.array != 0) {
+            info.array = c.result;
+            continue;
+        }
         int& cost = info.cost[int(c.result.base)];
         cost = std::min(cost, c.cost);
     }
@@ -229,13 +239,14 @@ const Expr* Checker::eitherOf(const Expr& call, const Info& info, const std::uno
     return found;
 }
 
-/// The types of the arguments decide first: what is wanted chooses only among functions that take them equally well. A function that
-/// fits worse stays where no better one gives anything that becomes what it gives.
+/// The types of the arguments decide first: what is wanted chooses only among functions that take them equally well. A function
+/// that fits worse stays where no better one gives anything that becomes what it gives.
 void Checker::bestByArguments(std::vector<Choice>& choices) {
     const std::vector<Choice> all = choices;
     std::erase_if(choices, [&](const Choice& c) {
         return std::any_of(all.begin(), all.end(), [&](const Choice& better) {
-            if (better.cost / kConversion >= c.cost / kConversion || (better.result.array != 0) != (c.result.array != 0)) return false;
+            if (better.cost / kConversion >= c.cost / kConversion || (better.result.array != 0) != (c.result.array != 0))
+                return false;
             return better.result == c.result || (c.result.array == 0 && implicitCost(better.result.base, c.result.base) < kNever);
         });
     });
@@ -271,7 +282,10 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
     for (size_t i = 0; i < choice.positional; ++i) {
         const ParameterView p = parameters[std::min(i, parameters.size() - 1)];
         ExprPtr& a = e.args[i];
-        if (infos_.at(a.get()).any) { settleCheapest(a); continue; }
+        if (infos_.at(a.get()).any) {
+            settleCheapest(a);
+            continue;
+        }
         if (p.output) {
             settleVariable(a);
             written(*a);
@@ -287,7 +301,8 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
             // printf("%s", h->name): what another shader gives, of whatever type it is.
             const bool element = a->kind == ExprKind::Index && a->args[0]->kind == ExprKind::Member;
             const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method || element;
-            if (member && p.type.base == Base::Void && choice.shadeop && choice.shadeop->section == "Strings") a->type = {Base::Void, 0};
+            if (member && p.type.base == Base::Void && choice.shadeop && choice.shadeop->section == "Strings")
+                a->type = {Base::Void, 0};
         }
     }
     settlePairs(e, choice.positional, choice.shadeop);

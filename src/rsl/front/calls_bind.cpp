@@ -1,7 +1,7 @@
 // What a call means once it is known which shadeop it is: the arguments become what its parameters are, tokens are looked up.
-#include "rsl/front/protocol.h"
 #include "base/limits.h"
 #include "rsl/front/checker.h"
+#include "rsl/front/protocol.h"
 #include <algorithm>
 #include <cstdlib>
 #include <set>
@@ -13,16 +13,25 @@ namespace alpenglow::rsl::front {
 namespace {
 /// How many optional parameters the text of a shadeop takes behind its own.
 size_t optionalInText(const Shadeop& op) {
-    static const std::set<std::string_view> kOps = {"bump",           "visibility",      "rayhittest",       "fulltrace",
-                                                    "wnoise",         "emit",            "areashadow",       "generateSamplesEnv",
-                                                    "directlighting", "diffuselighting", "specularlighting", "evaluateSamplesEnv",
+    static const std::set<std::string_view> kOps = {"bump",
+                                                    "visibility",
+                                                    "rayhittest",
+                                                    "fulltrace",
+                                                    "wnoise",
+                                                    "emit",
+                                                    "areashadow",
+                                                    "generateSamplesEnv",
+                                                    "directlighting",
+                                                    "diffuselighting",
+                                                    "specularlighting",
+                                                    "evaluateSamplesEnv",
                                                     "indirectspecular"};
     return kOps.count(op.name) ? op.optional.size() : 0;
 }
 } // namespace
 
-/// What is the same for all points when the arguments are: whether a message was found, what a file or the frame says, a length, and
-/// a picture read where the arguments say. What an argument holds that is put out does not count.
+/// What is the same for all points when the arguments are: whether a message was found, what a file or the frame says, a length,
+/// and a picture read where the arguments say. What an argument holds that is put out does not count.
 bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     const Shadeop& op = *choice.shadeop;
     if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
@@ -42,13 +51,17 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         const std::string name = written ? ChannelName::parse(e.args[0]->text).name : kAnyChannel + toString(type);
         const bool parameter = written && shaderParameters_.count(name) > 0;
         if (type.array < 0 && !parameter) {
-            sources_.warning(e.args[1]->place, "an array of open length is no output: displays would not know how many numbers it has",
+            sources_.warning(e.args[1]->place,
+                             "an array of open length is no output: displays would not know how many numbers it has",
                              "copy it to an array of fixed length, or give it to an output parameter");
         } else {
             const auto [i, fresh] = program_.channels.emplace(name, type);
             const Type first = i->second;
-            if (!fresh && !parameter && (componentCount(first.base) != componentCount(type.base) || (first.array != 0) != (type.array != 0)))
-                sources_.warning(e.args[1]->place, "output '" + name + "' is a " + toString(first) + " in an earlier call, and a " + toString(type) + " here; only the first is shown");
+            if (!fresh && !parameter &&
+                (componentCount(first.base) != componentCount(type.base) || (first.array != 0) != (type.array != 0)))
+                sources_.warning(e.args[1]->place, "output '" + name + "' is a " + toString(first) +
+                                                       " in an earlier call, and a " + toString(type) +
+                                                       " here; only the first is shown");
         }
     }
     if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
@@ -62,8 +75,9 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
         if (s && !open && s->type.base != Base::Void)
             sources_.error(e.args[0]->place, "the length of '" + s->name + "' is fixed",
-                           s->origin == Symbol::Origin::Local ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
-                                                              : "only local arrays and parameters of functions can change theirs");
+                           s->origin == Symbol::Origin::Local
+                               ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
+                               : "only local arrays and parameters of functions can change theirs");
     }
     if (op.name == "push" && e.args.size() == 2 && e.args[0]->symbol && e.args[1]->type.base == Base::String) {
         const Handle array = e.args[0]->symbol->handle ? Handle::Shader : Handle::Text;
@@ -81,7 +95,8 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     if (uniformResult(e, choice)) {
         e.varying = false; // a length is that of all points
         for (size_t i = 0; i < e.args.size() && op.section != "Arrays"; ++i)
-            if (!choice.signature->parameters[std::min(i, choice.signature->parameters.size() - 1)].output) e.varying |= e.args[i]->varying;
+            if (!choice.signature->parameters[std::min(i, choice.signature->parameters.size() - 1)].output)
+                e.varying |= e.args[i]->varying;
     } else if (op.lowering != Lowering::Runtime && op.lowering != Lowering::Special && op.lowering != Lowering::Rsl &&
                op.name != "format" && op.name != "concat") {
         e.varying = true;
@@ -89,7 +104,8 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     }
     if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives", false); // the same for the points of one batch, but of a ray
     // shadow("raytrace", ...) sends rays. A map by that name is known here only where it is written down.
-    const bool rays = op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
+    const bool rays =
+        op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
     if (op.lowering == Lowering::Unavailable && !rays && reportedUnavailable_.insert(&op).second)
         sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
                                       (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
@@ -103,7 +119,8 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
             if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
             else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
         } else if (optionalInText(op) > 0) {
-        } else if (op.name != "filterstep" && std::any_of(op.optional.begin(), op.optional.end(), [&](const OptionalParameter& o) { return o.name == p.name; })) {
+        } else if (op.name != "filterstep" && std::any_of(op.optional.begin(), op.optional.end(),
+                                                          [&](const OptionalParameter& o) { return o.name == p.name; })) {
             sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
         }
     }
@@ -112,8 +129,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const size_t count = choice.signature->parameters.size();
     for (const auto& f : unit.functions) {
         bool same = f->name == op.name && f->result == choice.signature->result && f->parameters.size() == count + behind;
-        for (size_t i = 0; same && i < count; ++i)
-            same = f->parameters[i]->type == choice.signature->parameters[i].type;
+        for (size_t i = 0; same && i < count; ++i) same = f->parameters[i]->type == choice.signature->parameters[i].type;
         if (!same) continue;
         if (behind) optionalArguments(e, op);
         e.kind = ExprKind::FunctionCall;
@@ -156,7 +172,8 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
     for (size_t i = positional; i + 1 < e.args.size(); i += 2) {
         if (e.args[i]->kind != ExprKind::String) { // a name that only the run knows
             if (op->lowering != Lowering::Unavailable)
-                sources_.warning(e.args[i]->place, "the name of a parameter of '" + op->name + "' must be known when the shader is compiled; this one is ignored");
+                sources_.warning(e.args[i]->place, "the name of a parameter of '" + op->name +
+                                                       "' must be known when the shader is compiled; this one is ignored");
             settle(e.args[i], {Base::String, 0});
             settleCheapest(e.args[i + 1]);
             continue;
@@ -175,7 +192,8 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
             if (o.name == pair.name) optional = &o;
         }
         // A space is named, or given as a matrix: PRMan takes what stands there.
-        const bool space = optional && optional->type == Type{Base::String, 0} && pair.name.ends_with("space") && cheapest(info) == Base::Matrix;
+        const bool space =
+            optional && optional->type == Type{Base::String, 0} && pair.name.ends_with("space") && cheapest(info) == Base::Matrix;
         if (info.any || space) {
             settleCheapest(value);
         } else if (!optional) {
@@ -205,7 +223,7 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
             }
         } else if (optional->type.array != 0 && !info.array.array && info.listLength < 0) {
             settle(value, costTo(info, optional->type.base) < kNever && cheapest(info) != Base::Float ? optional->type.element()
-                                                                                                   : Type{cheapest(info), 0});
+                                                                                                      : Type{cheapest(info), 0});
         } else {
             settle(value, optional->type);
         }

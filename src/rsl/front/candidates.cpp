@@ -19,7 +19,8 @@ std::string counted(size_t n, const char* what) { return std::to_string(n) + " "
 
 std::string typeText(Type t, bool handle) { return handle ? "shader" + toString(t).substr(6) : toString(t); }
 
-/// What was written at one place among arguments or parameters: a value, or a structure, which by now is as many as it has members.
+/// What was written at one place among arguments or parameters: a value, or a structure, which by now is as many as it has
+/// members.
 struct Written {
     size_t at;
     bool structure;
@@ -56,7 +57,8 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
     const auto given = asWritten(n, [&](size_t i) { return call.args[i]->whole; });
     const auto taken = asWritten(parameters.size(), [&](size_t i) { return parameters[i].whole; });
     if (given.size() != n || taken.size() != parameters.size()) {
-        if (given.size() != taken.size()) return "it takes " + counted(taken.size(), "argument") + ", not " + std::to_string(given.size());
+        if (given.size() != taken.size())
+            return "it takes " + counted(taken.size(), "argument") + ", not " + std::to_string(given.size());
         for (size_t k = 0; k < given.size(); ++k) {
             Expr& a = *call.args[given[k].at];
             const ParameterView& p = parameters[taken[k].at];
@@ -72,8 +74,8 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
         return "a structure does not fit";
     }
     if (n < parameters.size())
-        return "it takes " + std::string(repeats || pairs ? "at least " : "") + counted(parameters.size(), "argument") + ", not " +
-               std::to_string(n);
+        return "it takes " + std::string(repeats || pairs ? "at least " : "") + counted(parameters.size(), "argument") +
+               ", not " + std::to_string(n);
     size_t i = 0;
     for (; i < n; ++i) {
         const bool extra = i >= parameters.size();
@@ -91,8 +93,7 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
     return "behind argument " + std::to_string(i) + " stand pairs: a name in quotes, then its value";
 }
 
-void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::vector<std::string> notes,
-                      bool outputsOnly) {
+void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly) {
     std::string given;
     for (const Written& w : asWritten(e.args.size(), [&](size_t i) { return e.args[i]->whole; })) {
         Expr& a = *e.args[w.at];
@@ -101,9 +102,9 @@ void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::
     std::string hint = "it can be called as";
     for (size_t i = 0; i < candidates.size() && i < 6; ++i) hint += (i ? "; " : " ") + candidates[i];
     if (candidates.size() > 6) hint += "; and " + std::to_string(candidates.size() - 6) + " more";
-    const std::string what = outputsOnly ? "an output argument of '" + e.text + "' must be a variable of the same type"
+    const std::string what = outputsOnly     ? "an output argument of '" + e.text + "' must be a variable of the same type"
                              : given.empty() ? "'" + e.text + "' cannot be called without arguments"
-                                              : "'" + e.text + "' cannot be called with (" + given + ")";
+                                             : "'" + e.text + "' cannot be called with (" + given + ")";
     for (const auto& p : program_.plugins)
         if (p->find(e.text)) notes.push_back("'" + e.text + "' is a function of plug-in \"" + p->name + "\": " + p->path);
     sources_.error(e.place, what, hint, std::move(notes));

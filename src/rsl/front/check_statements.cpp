@@ -51,19 +51,23 @@ struct Known {
     std::map<const Function*, Result> functions{}; ///< that were looked at, as calls of calls would be looked at again and again
 };
 
-/// Is it the same for all points of a batch? That is what gridmin() and gridmax() give, what is made of it, and what functions make of it.
-/// Of a parameter that is neither uniform nor varying each call decides.
+/// Is it the same for all points of a batch? That is what gridmin() and gridmax() give, what is made of it, and what functions
+/// make of it. Of a parameter that is neither uniform nor varying each call decides.
 bool sameForAll(const Expr& e, Known& known) {
     if (!e.varying) return true;
     if (e.shadeop) return e.shadeop->name == "gridmin" || e.shadeop->name == "gridmax";
-    const auto all = [&] { return std::all_of(e.args.begin(), e.args.end(), [&](const ExprPtr& a) { return sameForAll(*a, known); }); };
+    const auto all = [&] {
+        return std::all_of(e.args.begin(), e.args.end(), [&](const ExprPtr& a) { return sameForAll(*a, known); });
+    };
     switch (e.kind) {
-    case ExprKind::Variable: return known.unclassed.count(e.symbol) > 0 && (known.met.insert(e.symbol), true);
+    case ExprKind::Variable:
+        return known.unclassed.count(e.symbol) > 0 && (known.met.insert(e.symbol), true);
     case ExprKind::Cast:
     case ExprKind::Unary:
     case ExprKind::Binary:
     case ExprKind::Conditional:
-    case ExprKind::Tuple: return all();
+    case ExprKind::Tuple:
+        return all();
     case ExprKind::FunctionCall: {
         if (!e.function) return false;
         auto answer = known.functions.find(e.function);
@@ -76,10 +80,13 @@ bool sameForAll(const Expr& e, Known& known) {
         if (!answer->second.same) return false;
         const auto& parameters = e.function->parameters;
         for (size_t i = 0; i < std::min(e.args.size(), parameters.size()); ++i) // those that are what they are given
-            if ((parameters[i]->storage == Storage::Uniform || answer->second.needs.count(parameters[i])) && !sameForAll(*e.args[i], known)) return false;
+            if ((parameters[i]->storage == Storage::Uniform || answer->second.needs.count(parameters[i])) &&
+                !sameForAll(*e.args[i], known))
+                return false;
         return true;
     }
-    default: return false;
+    default:
+        return false;
     }
 }
 
@@ -88,7 +95,8 @@ bool sameForAll(const Expr& e, Known& known) {
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
     const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
-    if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method) return; // what a handle gives is of the class that is wanted
+    if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method)
+        return; // what a handle gives is of the class that is wanted
     if (Known known{unclassed_}; sameForAll(value, known)) return;
     sources_.warning(value.place,
                      "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
@@ -96,7 +104,10 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
 
 /// `T x = value`, where x may be an array whose length comes from the value.
 void Checker::initialise(Symbol& s, ExprPtr& value) {
-    if (s.type.base == Base::Void) { value.reset(); return; }
+    if (s.type.base == Base::Void) {
+        value.reset();
+        return;
+    }
     if (s.origin == Symbol::Origin::ShaderParameter && s.type.array < 0) s.open = true;
     const int errors = sources_.errors();
     infos_.clear();
@@ -137,7 +148,10 @@ void Checker::checkDeclare(Stmt& s) {
     }
     std::vector<Stmt::Declarator> kept;
     for (auto& d : s.declarators) {
-        if (d.symbol->isExtern) { bindExtern(*d.symbol); continue; }
+        if (d.symbol->isExtern) {
+            bindExtern(*d.symbol);
+            continue;
+        }
         const bool open = d.symbol->type.array == -1 && d.symbol->type.base != Base::Void;
         if (d.init) initialise(*d.symbol, d.init);
         if (open) {
@@ -168,7 +182,9 @@ void Checker::check(StmtPtr& s) {
         for (auto& b : s->body) check(b);
         scopes_.pop_back();
         break;
-    case StmtKind::Declare: checkDeclare(*s); break;
+    case StmtKind::Declare:
+        checkDeclare(*s);
+        break;
     case StmtKind::Expression:
         whole(s->value);
         if (s->value->kind != ExprKind::Assign && s->value->kind != ExprKind::ShadeopCall &&
@@ -220,7 +236,9 @@ void Checker::check(StmtPtr& s) {
     case StmtKind::Illuminance:
     case StmtKind::Illuminate:
     case StmtKind::Solar:
-    case StmtKind::Gather: checkLight(*s); break;
+    case StmtKind::Gather:
+        checkLight(*s);
+        break;
     }
 }
 
@@ -331,13 +349,16 @@ void Checker::checkLight(Stmt& s) {
 
 bool Checker::endsInReturn(const Stmt& s) {
     switch (s.kind) {
-    case StmtKind::Return: return true;
+    case StmtKind::Return:
+        return true;
     case StmtKind::Block:
         for (const auto& b : s.body)
             if (b && endsInReturn(*b)) return true;
         return false;
-    case StmtKind::If: return s.elseBody && s.body[0] && endsInReturn(*s.body[0]) && endsInReturn(*s.elseBody);
-    default: return false;
+    case StmtKind::If:
+        return s.elseBody && s.body[0] && endsInReturn(*s.body[0]) && endsInReturn(*s.elseBody);
+    default:
+        return false;
     }
 }
 

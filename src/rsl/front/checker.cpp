@@ -181,17 +181,20 @@ void Checker::bindExtern(Symbol& declared) {
     }
     if (!outer) {
         std::string near = nearestName(declared.name, visibleNames());
-        sources_.error(declared.place, "there is no '" + declared.name + "' outside for this extern declaration" +
-                                           (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : ""),
+        sources_.error(declared.place,
+                       "there is no '" + declared.name + "' outside for this extern declaration" +
+                           (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : ""),
                        near.empty() ? "" : "did you mean '" + near + "'?");
         declared.type = {Base::Void, 0}; // poison
         outer = &declared;
     } else if (outer->type.base != Base::Void) {
         Type a = outer->type, b = declared.type;
         // Old shaders type everything point.
-        const bool same = outer->handle == declared.handle && (a.base == b.base || (a.isPointLike() && b.isPointLike())) && (a.array == b.array || b.array == -1);
+        const bool same = outer->handle == declared.handle && (a.base == b.base || (a.isPointLike() && b.isPointLike())) &&
+                          (a.array == b.array || b.array == -1);
         if (!same) {
-            sources_.error(declared.place, "'" + declared.name + "' is " + named(a, outer->handle ? Handle::Shader : Handle::Text) + " outside, not " +
+            sources_.error(declared.place, "'" + declared.name + "' is " +
+                                               named(a, outer->handle ? Handle::Shader : Handle::Text) + " outside, not " +
                                                named(b, declared.handle ? Handle::Shader : Handle::Text));
         }
     }
@@ -204,8 +207,7 @@ void Checker::declareLocal(Symbol& s) {
     if (fresh) return;
     if (at->second->type != s.type && at->second->type.base != Base::Void && s.type.base != Base::Void)
         sources_.error(s.place, "'" + s.name + "' was declared in this block already, as " + toString(at->second->type));
-    else
-        sources_.warning(s.place, "'" + s.name + "' was declared in this block already; this is a new variable");
+    else sources_.warning(s.place, "'" + s.name + "' was declared in this block already; this is a new variable");
     at->second = &s;
 }
 
@@ -220,8 +222,8 @@ std::vector<std::string> Checker::visibleNames() {
     return names;
 }
 
-/// What old shaders use without saying so: a parameter of the shader without `extern` (PRMan takes it), and what the specification
-/// gives to other kinds of shaders but has a meaning here too. Null when it is nothing of that.
+/// What old shaders use without saying so: a parameter of the shader without `extern` (PRMan takes it), and what the
+/// specification gives to other kinds of shaders but has a meaning here too. Null when it is nothing of that.
 Symbol* Checker::tolerated(Expr& e) {
     if (const auto p = shaderParameters_.find(e.text); p != shaderParameters_.end() && p->second->type.base != Base::Void) {
         sources_.warning(e.place, "'" + e.text + "' is a parameter of the shader, used without being declared extern",
@@ -231,7 +233,9 @@ Symbol* Checker::tolerated(Expr& e) {
     const bool onSurface = kind_ && (*kind_ == ShaderKind::Surface || *kind_ == ShaderKind::Displacement);
     if (onSurface && (e.text == "Ns" || e.text == "Ps")) {
         const std::string own = e.text.substr(0, 1);
-        const auto isLight = [](const auto& f) { return f->name == "light"; }; // a class that is a light, too: its methods speak so
+        const auto isLight = [](const auto& f) {
+            return f->name == "light";
+        }; // a class that is a light, too: its methods speak so
         if (std::any_of(shader_->nested.begin(), shader_->nested.end(), isLight)) return global(own);
         sources_.warning(e.place, "'" + e.text + "' belongs to light shaders; '" + own + "' is used");
         return global(own);

@@ -27,18 +27,18 @@ private:
         const Unit* unit = nullptr;
         Type result;
         int cost = 0;
-        size_t positional = 0;        ///< arguments before the token/value pairs
+        size_t positional = 0; ///< arguments before the token/value pairs
     };
     /// A string is a text or, of type `shader`, a handle; the two do not mix.
     enum class Handle : uint8_t { Text, Shader, Either };
     static bool alike(Handle a, Handle b) { return a == b || a == Handle::Either || b == Handle::Either; }
     struct Info {
         std::array<int, kBases> cost;
-        Type array;          ///< the expression is an array of this type
-        int listLength = -1; ///< it is written {a, b}: an array of whatever its elements become
-        bool any = false;    ///< erroneous, and reported: fits everywhere
+        Type array;                   ///< the expression is an array of this type
+        int listLength = -1;          ///< it is written {a, b}: an array of whatever its elements become
+        bool any = false;             ///< erroneous, and reported: fits everywhere
         Handle handle = Handle::Text; ///< what the string is, if it is one
-        bool channel = false;///< name[channel] of a string that is no array
+        bool channel = false;         ///< name[channel] of a string that is no array
         std::vector<Choice> choices;
         /// A call that differs only in what it returns, a float or a tuple, and makes the expression either. Not what is read
         /// from maps and rays: how many channels these bring is in the map, not in the text.
@@ -47,7 +47,12 @@ private:
             nullptr; ///< such a call that arithmetic with a number has made a float: docs/language.md has the rule
         Info() { cost.fill(kNever); }
     };
-    struct ParameterView { Type type; bool output; Handle handle = Handle::Text; Whole whole{}; };
+    struct ParameterView {
+        Type type;
+        bool output;
+        Handle handle = Handle::Text;
+        Whole whole{};
+    };
     static std::vector<ParameterView> views(const Signature&, const Shadeop&);
     static std::vector<ParameterView> views(const Function&);
     struct Scope {
@@ -114,11 +119,11 @@ private:
     // settle (settle.cpp, calls.cpp)
     void settle(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
     void settleCheapest(ExprPtr&);
-    void settleAs(ExprPtr&, Base);           ///< exactly this type, which must have a finite cost
+    void settleAs(ExprPtr&, Base); ///< exactly this type, which must have a finite cost
     void settleIndexed(ExprPtr&);
     void settleCondition(ExprPtr&);
     void settleArray(ExprPtr&, Type, Handle = Handle::Either);
-    void settleVariable(ExprPtr&);           ///< an output argument: no conversion
+    void settleVariable(ExprPtr&); ///< an output argument: no conversion
     void settleBinary(ExprPtr&, Base);
     void settleAssign(ExprPtr&);
     void settleCall(ExprPtr&, Type result);
@@ -137,7 +142,7 @@ private:
     Program& program_;
     // the shader being checked
     Shader* shader_ = nullptr;
-    std::optional<ShaderKind> kind_;   ///< none in a function that no shader calls
+    std::optional<ShaderKind> kind_; ///< none in a function that no shader calls
     std::vector<std::unique_ptr<Symbol>>* globalOwner_ = nullptr;
     std::unordered_map<std::string, Symbol*> globals_, shaderParameters_;
     std::map<std::pair<const Function*, std::string>, Function*> instances_;
@@ -146,7 +151,10 @@ private:
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
     std::set<const Shadeop*> reportedUnavailable_;
     std::set<const Symbol*> toldNotOutput_; ///< parameters that are given values though they are not output: said once
-    struct MadeNumber { std::string name; Base wanted; };
+    struct MadeNumber {
+        std::string name;
+        Base wanted;
+    };
     std::map<std::array<int, 3>, MadeNumber> madeNumbers_; ///< by place, for warnOfNumbers()
     // the function being checked
     const Unit* unit_ = nullptr;
@@ -155,7 +163,7 @@ private:
     int loops_ = 0;
     int instanceDepth_ = 0;
     std::map<const Function*, int> callHeight_; ///< how deep the calls inside of a function are nested
-    bool foreignLight_ = false; ///< in the block of a light that stands in another shader, which was reported
+    bool foreignLight_ = false;                 ///< in the block of a light that stands in another shader, which was reported
     std::unordered_map<const Expr*, Info> infos_;
 };
 

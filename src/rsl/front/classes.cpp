@@ -22,13 +22,17 @@ struct Entry {
 /// In the order in which they run.
 const std::vector<Entry>& entries() {
     using K = ShaderKind;
-    static const std::vector<Entry> all = {
-        {K::Surface, "opacity", {"Oi"}},           {K::Surface, "prelighting", {"Ci", "Oi"}},
-        {K::Surface, "lighting", {"Ci", "Oi"}},    {K::Surface, "diffuselighting", {"Ci", "Oi"}},
-        {K::Surface, "specularlighting", {"Ci", "Oi"}}, {K::Surface, "postlighting", {"Ci", "Oi"}},
-        {K::Surface, "surface", {"Ci", "Oi"}},     {K::Displacement, "displacement", {"P", "N"}},
-        {K::Light, "light", {"L", "Cl", "Ol"}},    {K::Volume, "volume", {"Ci", "Oi"}},
-        {K::Imager, "imager", {"Ci", "Oi", "alpha"}}};
+    static const std::vector<Entry> all = {{K::Surface, "opacity", {"Oi"}},
+                                           {K::Surface, "prelighting", {"Ci", "Oi"}},
+                                           {K::Surface, "lighting", {"Ci", "Oi"}},
+                                           {K::Surface, "diffuselighting", {"Ci", "Oi"}},
+                                           {K::Surface, "specularlighting", {"Ci", "Oi"}},
+                                           {K::Surface, "postlighting", {"Ci", "Oi"}},
+                                           {K::Surface, "surface", {"Ci", "Oi"}},
+                                           {K::Displacement, "displacement", {"P", "N"}},
+                                           {K::Light, "light", {"L", "Cl", "Ol"}},
+                                           {K::Volume, "volume", {"Ci", "Oi"}},
+                                           {K::Imager, "imager", {"Ci", "Oi", "alpha"}}};
     return all;
 }
 
@@ -83,7 +87,8 @@ public:
         if (names_.count("surface"))
             for (const char* part : {"prelighting", "lighting", "postlighting"})
                 if (names_.count(part) && !calls_["surface"].count(part) && !calls_["light"].count(part))
-                    sources_.warning(method(part)->place, std::string("method '") + part + "' is not run where there is a method 'surface'");
+                    sources_.warning(method(part)->place,
+                                     std::string("method '") + part + "' is not run where there is a method 'surface'");
         if (kinds.empty()) kinds.push_back(ShaderKind::Surface); // a shader for other shaders
         for (ShaderKind k : kinds) unit_.shaders.push_back(shader(k, k == kinds[0]));
     }
@@ -211,7 +216,10 @@ private:
             }
             if (!optional(i) && !irradiance && locals->declarators.empty())
                 sources_.warning(p.place, "parameter '" + p.name + "' has no default value; it is " +
-                                              (p.type.base != Base::String ? "zero" : p.handle ? "null" : "empty") + " unless set");
+                                              (p.type.base != Base::String ? "zero"
+                                               : p.handle                  ? "null"
+                                                                           : "empty") +
+                                              " unless set");
             auto symbol = std::make_unique<Symbol>(p);
             symbol->name = "(" + name + ")->" + p.name;
             symbol->origin = Symbol::Origin::Local;
@@ -245,7 +253,8 @@ private:
                     others.push_back(p);
                     values.push_back(i < f->defaults.size() ? std::move(f->defaults[i]) : nullptr);
                     if (!values.back() && !std::exchange(told, true))
-                        sources_.error(p->place, "the parameters of a method 'light' with illuminate() or solar() are L, Cl and Ol");
+                        sources_.error(p->place,
+                                       "the parameters of a method 'light' with illuminate() or solar() are L, Cl and Ol");
                 }
                 f->parameters.clear();
                 f->defaults.clear();

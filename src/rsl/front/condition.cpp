@@ -1,10 +1,10 @@
-// #if expressions: integers with all operators of C that make sense on them, and numbers with a fraction, which C refuses there, with
-// those of arithmetic and comparison.
+// #if expressions: integers with all operators of C that make sense on them, and numbers with a fraction, which C refuses there,
+// with those of arithmetic and comparison.
 #include "base/limits.h"
 #include "rsl/front/preprocessor.h"
-#include <optional>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 namespace alpenglow::rsl::front {
 
@@ -31,7 +31,10 @@ class Condition {
 public:
     Condition(const std::vector<Token>& t, Place p, SourceSet& s) : tokens_(t), place_(p), sources_(s) {}
     bool run() {
-        if (tokens_.empty()) { bad("#if needs an expression"); return false; }
+        if (tokens_.empty()) {
+            bad("#if needs an expression");
+            return false;
+        }
         const Value v = ternary();
         if (!failed_ && at_ < tokens_.size()) bad("unexpected '" + std::string(tokens_[at_].text) + "' in the condition");
         return !failed_ && v.yes();
@@ -39,7 +42,10 @@ public:
 
 private:
     bool accept(std::string_view s) {
-        if (at_ < tokens_.size() && tokens_[at_].is(s)) { ++at_; return true; }
+        if (at_ < tokens_.size() && tokens_[at_].is(s)) {
+            ++at_;
+            return true;
+        }
         return false;
     }
     void bad(std::string m) {
@@ -63,7 +69,10 @@ private:
         for (;;) {
             std::string_view op;
             for (auto o : kLevels[level])
-                if (accept(o)) { op = o; break; }
+                if (accept(o)) {
+                    op = o;
+                    break;
+                }
             if (op.empty()) return a;
             a = apply(op, a, binary(level + 1));
         }
@@ -99,12 +108,18 @@ private:
         if (op == "+") return (long long)(U(a) + U(b));
         if (op == "-") return (long long)(U(a) - U(b));
         if (op == "*") return (long long)(U(a) * U(b));
-        if (b == 0) { bad("division by zero in the condition"); return 0; }
+        if (b == 0) {
+            bad("division by zero in the condition");
+            return 0;
+        }
         if (b == -1) return op == "/" ? (long long)(0 - U(a)) : 0;
         return op == "/" ? a / b : a % b;
     }
     Value unary() {
-        if (++depth_ > limits::kExpressionDepth) { bad("this condition is nested too deeply"); return 0; }
+        if (++depth_ > limits::kExpressionDepth) {
+            bad("this condition is nested too deeply");
+            return 0;
+        }
         Value v = 0;
         if (accept("!")) v = !unary().yes();
         else if (accept("-")) {
@@ -142,8 +157,9 @@ private:
         if (t[0] != '0' || digits < 2 || t.substr(0, digits).find_first_of("89") != t.npos) return d < 9e18 ? (long long)d : 0;
         std::from_chars(begin, begin + digits, v, 8);
         if (double(v) != d)
-            sources_.warning(token.place, "'" + std::string(t) + "' is octal in a condition of the preprocessor: " + std::to_string(v),
-                             "in the shader itself it is " + std::string(t.substr(std::min(t.find_first_not_of('0'), digits - 1))));
+            sources_.warning(
+                token.place, "'" + std::string(t) + "' is octal in a condition of the preprocessor: " + std::to_string(v),
+                "in the shader itself it is " + std::string(t.substr(std::min(t.find_first_not_of('0'), digits - 1))));
         return v;
     }
     const std::vector<Token>& tokens_;

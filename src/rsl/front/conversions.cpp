@@ -38,8 +38,14 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
     const bool relation = op == ExprOp::Less || op == ExprOp::LessEqual || op == ExprOp::Greater || op == ExprOp::GreaterEqual ||
                           op == ExprOp::Equal || op == ExprOp::NotEqual;
     int cost = 0;
-    if (l == Base::Bool) { l = Base::Float; cost += 4 * kConversion; }
-    if (r == Base::Bool) { r = Base::Float; cost += 4 * kConversion; }
+    if (l == Base::Bool) {
+        l = Base::Float;
+        cost += 4 * kConversion;
+    }
+    if (r == Base::Bool) {
+        r = Base::Float;
+        cost += 4 * kConversion;
+    }
     if (l == Base::String || r == Base::String) {
         if (l != r || (op != ExprOp::Equal && op != ExprOp::NotEqual && op != ExprOp::Add)) return std::nullopt;
         return Operation{Base::String, op == ExprOp::Add ? Base::String : Base::Bool, cost};
@@ -47,7 +53,8 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
     if (l == Base::Void || r == Base::Void) return std::nullopt;
     if (l == Base::Matrix || r == Base::Matrix) {
         const bool fits = (l == Base::Matrix || l == Base::Float) && (r == Base::Matrix || r == Base::Float);
-        if (fits && (op == ExprOp::Equal || op == ExprOp::NotEqual)) return Operation{Base::Matrix, Base::Bool, cost + (l != r ? 4 * kConversion : 0)};
+        if (fits && (op == ExprOp::Equal || op == ExprOp::NotEqual))
+            return Operation{Base::Matrix, Base::Bool, cost + (l != r ? 4 * kConversion : 0)};
         if (!fits || (op != ExprOp::Mul && op != ExprOp::Div)) return std::nullopt;
         return Operation{Base::Matrix, Base::Matrix, cost + (l != r ? 4 * kConversion : 0)};
     }
@@ -62,8 +69,10 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
     Base common;
     bool promoted = false;
     if (l == r) common = l;
-    else if (l == Base::Float || r == Base::Float) { common = l == Base::Float ? r : l; promoted = true; }
-    else if (isPointLike(l) && isPointLike(r)) common = l == Base::Point || r == Base::Point ? Base::Point : Base::Vector;
+    else if (l == Base::Float || r == Base::Float) {
+        common = l == Base::Float ? r : l;
+        promoted = true;
+    } else if (isPointLike(l) && isPointLike(r)) common = l == Base::Point || r == Base::Point ? Base::Point : Base::Vector;
     else return std::nullopt;
     Base result = relation ? Base::Bool : common;
     // The difference of two positions is a direction.

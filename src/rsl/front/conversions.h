@@ -10,11 +10,11 @@ enum class ExprOp : uint8_t;
 namespace alpenglow::rsl::front {
 
 // Costs by weight: one of a kind outweighs some hundreds of those above it, which is more than people write in one expression.
-inline constexpr int kPromotion = 1;                 ///< a number meets a tuple in arithmetic: what `2 * c` means
-inline constexpr int kConversion = 1 << 8;           ///< the least that is a conversion: a point where a vector is wanted
-inline constexpr int kBroadcast = 16 * kConversion;  ///< a number becomes a tuple of three alike
+inline constexpr int kPromotion = 1;                ///< a number meets a tuple in arithmetic: what `2 * c` means
+inline constexpr int kConversion = 1 << 8;          ///< the least that is a conversion: a point where a vector is wanted
+inline constexpr int kBroadcast = 16 * kConversion; ///< a number becomes a tuple of three alike
 inline constexpr int kLastResort = 1 << 18; ///< Shadeop::lastResort; a tuple where arithmetic with a number makes a call a float
-inline constexpr int kCompared = 1 << 19;            ///< a tuple is compared with a number
+inline constexpr int kCompared = 1 << 19;   ///< a tuple is compared with a number
 inline constexpr int kNever = 1 << 28;
 inline constexpr int kBases = 9;
 
@@ -28,7 +28,7 @@ int conditionCost(Base from);
 struct Operation {
     Base operand; ///< both operands are brought to this type
     Base result;
-    int cost;     ///< of doing so
+    int cost;              ///< of doing so
     bool promotes = false; ///< one is a number, the other a tuple
 };
 /// What `left op right` means, if anything.

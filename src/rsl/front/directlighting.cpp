@@ -1,6 +1,6 @@
-// directlighting(this, lights, ...) and indirectspecular(this, ...) of PRMan's class surfaces. The first asks the lights, and the method
-// evaluateSamples() of the class what the material makes of each; the second sends rays where the method generateSamples() wants them.
-// Before anything is parsed they become methods of the class.
+// directlighting(this, lights, ...) and indirectspecular(this, ...) of PRMan's class surfaces. The first asks the lights, and the
+// method evaluateSamples() of the class what the material makes of each; the second sends rays where the method generateSamples()
+// wants them. Before anything is parsed they become methods of the class.
 #include "base/limits.h"
 #include "rsl/front/prelude.h"
 #include <array>
@@ -11,8 +11,8 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-// A light at a point or far away sends Cl as for diffuse(): a white surface that it stands straight over gives Cl. Materials answer per
-// steradian, so a factor of pi stands between the two. LIST: the parameter of the form that has a list of lights.
+// A light at a point or far away sends Cl as for diffuse(): a white surface that it stands straight over gives Cl. Materials
+// answer per steradian, so a factor of pi stands between the two. LIST: the parameter of the form that has a list of lights.
 constexpr const char* kOutputs = "    varying color __direct_d = 0, __direct_s = 0, __direct_ud = 0, __direct_us = 0;\n";
 constexpr const char* kDirect = R"(
     color NAME(uniform float part; uniform float angle;LIST output color d; output color s; output color ud; output color us) {
@@ -87,7 +87,9 @@ std::string methods(bool direct, bool indirect, bool evaluates, bool generates) 
     return indirect ? all + kIndirect : all;
 }
 
-struct Range { size_t begin, end; };
+struct Range {
+    size_t begin, end;
+};
 
 std::vector<Range> arguments(const Tokens& t, size_t open, size_t end) {
     std::vector<Range> all = {{open + 1, open + 1}};
@@ -119,8 +121,8 @@ Range valueOf(const Tokens& t, const Arguments& given, std::string_view name) {
 
 void append(Tokens& out, const Tokens& t, Range r) { out.insert(out.end(), t.begin() + long(r.begin), t.begin() + long(r.end)); }
 
-/// The call that stands for directlighting(this, ...) at `call`, whose brackets end before `end`. `part`: "0" all, "1" the diffuse
-/// part, "2" the specular one.
+/// The call that stands for directlighting(this, ...) at `call`, whose brackets end before `end`. `part`: "0" all, "1" the
+/// diffuse part, "2" the specular one.
 Tokens replacement(const Tokens& t, size_t call, size_t end, const char* part) {
     constexpr std::array<std::string_view, 4> kTokens = {"\"diffuseresult\"", "\"specularresult\"", "\"unshadoweddiffuseresult\"",
                                                          "\"unshadowedspecularresult\""};
@@ -154,10 +156,17 @@ Tokens replacement(const Tokens& t, size_t call, size_t end, const char* part) {
 
 /// The call that stands for indirectspecular(this, ...).
 Tokens indirectReplacement(const Tokens& t, size_t call, size_t end) {
-    struct Optional { std::string_view name; Tok kind; std::string_view otherwise; };
-    constexpr std::array<Optional, 6> kOptional = {{{"\"bias\"", Tok::Number, "-1"}, {"\"maxdist\"", Tok::Number, "1e38"},
-                                                    {"\"label\"", Tok::String, "\"\""}, {"\"subset\"", Tok::String, "\"\""},
-                                                    {"\"hitmode\"", Tok::String, "\"\""}, {"\"hitsides\"", Tok::String, "\"\""}}};
+    struct Optional {
+        std::string_view name;
+        Tok kind;
+        std::string_view otherwise;
+    };
+    constexpr std::array<Optional, 6> kOptional = {{{"\"bias\"", Tok::Number, "-1"},
+                                                    {"\"maxdist\"", Tok::Number, "1e38"},
+                                                    {"\"label\"", Tok::String, "\"\""},
+                                                    {"\"subset\"", Tok::String, "\"\""},
+                                                    {"\"hitmode\"", Tok::String, "\"\""},
+                                                    {"\"hitsides\"", Tok::String, "\"\""}}};
     const Arguments given = arguments(t, call + 1, end);
     Tokens out = {like(t[call], Tok::Identifier, "__indirect"), t[call + 1]};
     for (const Optional& o : kOptional) {
@@ -207,7 +216,8 @@ void addDirectLighting(SourceSet& sources, Preprocessed& p) {
         }
         if (!direct && !indirect) continue;
         copy(done, body + 1);
-        Preprocessed own = preprocess(sources, sources.add("<directlighting>", methods(direct, indirect, evaluates, generates)), {});
+        Preprocessed own =
+            preprocess(sources, sources.add("<directlighting>", methods(direct, indirect, evaluates, generates)), {});
         own.tokens.pop_back(); // the end
         out.insert(out.end(), std::make_move_iterator(own.tokens.begin()), std::make_move_iterator(own.tokens.end()));
         done = body + 1;

@@ -30,35 +30,48 @@ constexpr GlobalVariable kPatch[] = {{"dPdu", kV, V, R, "derivative of P by u"},
                                      {"dv", kF, V, R, "change of v to the next sample"},
                                      {"dPdtime", kV, V, R, "motion of P"}};
 
-template <size_t... N>
-constexpr auto join(const GlobalVariable (&... parts)[N]) {
+template <size_t... N> constexpr auto join(const GlobalVariable (&... parts)[N]) {
     std::array<GlobalVariable, (N + ...)> all{};
     size_t i = 0;
-    ([&] { for (const auto& g : parts) all[i++] = g; }(), ...);
+    (
+        [&] {
+            for (const auto& g : parts) all[i++] = g;
+        }(),
+        ...);
     return all;
 }
 
-constexpr GlobalVariable kSurfaceOwn[] = {
-    {"Cs", kC, V, W, "colour of the primitive"},   {"Os", kC, V, W, "opacity of the primitive"},
-    {"P", kP, V, R, "position"},                   {"N", kN, V, W, "shading normal"},
-    {"s", kF, V, W, "texture coordinate"},         {"t", kF, V, W, "texture coordinate"},
-    {"L", kV, V, R, "toward the light; in illuminance"}, {"Cl", kC, V, R, "light colour; in illuminance"},
-    {"Ol", kC, V, R, "light opacity; in illuminance"},   {"I", kV, V, R, "from the viewing point to P"},
-    {"Ci", kC, V, W, "result: colour times opacity"},    {"Oi", kC, V, W, "result: opacity"}};
+constexpr GlobalVariable kSurfaceOwn[] = {{"Cs", kC, V, W, "colour of the primitive"},
+                                          {"Os", kC, V, W, "opacity of the primitive"},
+                                          {"P", kP, V, R, "position"},
+                                          {"N", kN, V, W, "shading normal"},
+                                          {"s", kF, V, W, "texture coordinate"},
+                                          {"t", kF, V, W, "texture coordinate"},
+                                          {"L", kV, V, R, "toward the light; in illuminance"},
+                                          {"Cl", kC, V, R, "light colour; in illuminance"},
+                                          {"Ol", kC, V, R, "light opacity; in illuminance"},
+                                          {"I", kV, V, R, "from the viewing point to P"},
+                                          {"Ci", kC, V, W, "result: colour times opacity"},
+                                          {"Oi", kC, V, W, "result: opacity"}};
 constexpr GlobalVariable kDisplacementOwn[] = {
-    {"P", kP, V, W, "position, to be moved"}, {"N", kN, V, W, "shading normal, to be replaced"},
-    {"s", kF, V, W, "texture coordinate"},    {"t", kF, V, W, "texture coordinate"},
-    {"Cs", kC, V, R, "colour of the primitive"}, {"Os", kC, V, R, "opacity of the primitive"},
+    {"P", kP, V, W, "position, to be moved"},      {"N", kN, V, W, "shading normal, to be replaced"},
+    {"s", kF, V, W, "texture coordinate"},         {"t", kF, V, W, "texture coordinate"},
+    {"Cs", kC, V, R, "colour of the primitive"},   {"Os", kC, V, R, "opacity of the primitive"},
     {"I", kV, V, R, "from the viewing point to P"}};
-constexpr GlobalVariable kLightOwn[] = {
-    {"P", kP, V, R, "position on the light"},  {"N", kN, V, R, "normal of the area light"},
-    {"s", kF, V, R, "texture coordinate"},     {"t", kF, V, R, "texture coordinate"},
-    {"L", kV, V, W, "from the light to the surface; in illuminate and solar"}, {"Ps", kP, V, R, "point being lit"},
-    {"Ns", kN, V, R, "shading normal of the lit surface"}, {"Ngs", kN, V, R, "geometric normal of the lit surface; of 3Delight for Maya"}, {"I", kV, V, R, "incident ray at the lit point"},
-    {"Cl", kC, V, W, "result: colour of the light"}, {"Ol", kC, V, W, "result: opacity of the light"}};
+constexpr GlobalVariable kLightOwn[] = {{"P", kP, V, R, "position on the light"},
+                                        {"N", kN, V, R, "normal of the area light"},
+                                        {"s", kF, V, R, "texture coordinate"},
+                                        {"t", kF, V, R, "texture coordinate"},
+                                        {"L", kV, V, W, "from the light to the surface; in illuminate and solar"},
+                                        {"Ps", kP, V, R, "point being lit"},
+                                        {"Ns", kN, V, R, "shading normal of the lit surface"},
+                                        {"Ngs", kN, V, R, "geometric normal of the lit surface; of 3Delight for Maya"},
+                                        {"I", kV, V, R, "incident ray at the lit point"},
+                                        {"Cl", kC, V, W, "result: colour of the light"},
+                                        {"Ol", kC, V, W, "result: opacity of the light"}};
 constexpr GlobalVariable kVolumeOwn[] = {
-    {"P", kP, V, R, "end of the ray segment"}, {"I", kV, V, R, "the segment; it starts at P - I"},
-    {"Ci", kC, V, W, "colour at P, to be changed"}, {"Oi", kC, V, W, "opacity at P, to be changed"},
+    {"P", kP, V, R, "end of the ray segment"},           {"I", kV, V, R, "the segment; it starts at P - I"},
+    {"Ci", kC, V, W, "colour at P, to be changed"},      {"Oi", kC, V, W, "opacity at P, to be changed"},
     {"L", kV, V, R, "toward the light; in illuminance"}, {"Cl", kC, V, R, "light colour; in illuminance"},
     {"Ol", kC, V, R, "light opacity; in illuminance"}};
 constexpr GlobalVariable kImagerOwn[] = {{"P", kP, V, R, "pixel position in raster space"},
@@ -84,12 +97,18 @@ constexpr auto kTransformationAll = join(kTransformationOwn, kCamera);
 
 std::span<const GlobalVariable> globalVariables(ShaderKind k) {
     switch (k) {
-    case ShaderKind::Surface: return kSurfaceAll;
-    case ShaderKind::Displacement: return kDisplacementAll;
-    case ShaderKind::Light: return kLightAll;
-    case ShaderKind::Volume: return kVolumeAll;
-    case ShaderKind::Imager: return kImagerAll;
-    case ShaderKind::Transformation: return kTransformationAll;
+    case ShaderKind::Surface:
+        return kSurfaceAll;
+    case ShaderKind::Displacement:
+        return kDisplacementAll;
+    case ShaderKind::Light:
+        return kLightAll;
+    case ShaderKind::Volume:
+        return kVolumeAll;
+    case ShaderKind::Imager:
+        return kImagerAll;
+    case ShaderKind::Transformation:
+        return kTransformationAll;
     }
     return {};
 }

@@ -7,27 +7,29 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-struct OtherName { std::string_view name, header; };
+struct OtherName {
+    std::string_view name, header;
+};
 
 // The same functions went round under several names.
 constexpr OtherName kOtherNames[] = {
-    {"rmannotes.sl", "rmannotes.h"},   {"rmannotes", "rmannotes.h"},       {"rmanotes.h", "rmannotes.h"},
-    {"rmannotes2.h", "rmannotes.h"},   {"rmannotes2.sl", "rmannotes.h"},   {"rmnotes.h", "rmannotes.h"},
-    {"noise.h", "noises.h"},           {"oldnoises.h", "noises.h"},        {"oldnoise.h", "noises.h"},
-    {"noises.sl", "noises.h"},         {"fractal.h", "noises.h"},          {"fbm.h", "noises.h"},
-    {"turbulence.h", "noises.h"},      {"voronoi.h", "noises.h"},          {"extranoise.h", "noises.h"},
-    {"patterns.sl", "patterns.h"},     {"pattern.h", "patterns.h"},        {"pulse.h", "patterns.h"},
-    {"filters.h", "patterns.h"},       {"filter.h", "patterns.h"},         {"materials.h", "material.h"},
-    {"illum.h", "locillum.h"},         {"illumination.h", "locillum.h"},   {"oren_nayar.h", "locillum.h"},
-    {"orennayar.h", "locillum.h"},     {"reflection.h", "reflections.h"},  {"refl.h", "reflections.h"},
-    {"envmap.h", "reflections.h"},     {"filtwidth.h", "filterwidth.h"},   {"filter_width.h", "filterwidth.h"},
-    {"displacement.h", "displace.h"},  {"projection.h", "project.h"},      {"projections.h", "project.h"},
-    {"shadow.h", "shadows.h"},         {"rayserver_rsl.h", "rayserver.h"}, {"ray_sphere.h", "raysphere.h"},
-    {"proctex.h", "proctext.h"},       {"util.h", "rmannotes.h"},          {"utils.h", "rmannotes.h"},
-    {"utility.h", "rmannotes.h"},      {"math.h", "mathutil.h"},           {"mathutils.h", "mathutil.h"},
-    {"dpproctext.h", "proctext.h"},    {"proctexh.h", "proctext.h"},      {"oaktexture.h", "oak.h"},
-    {"bmrt.h", "rayserver.h"},         {"prman.h", "rayserver.h"},         {"stdrsl.h", "rmannotes.h"},
-    {"pxslrayutil.h", "pxslutil.h"},   {"rfm_blinn.h", "pxslutil.h"},      {"normals.h", "pxslutil.h"},
+    {"rmannotes.sl", "rmannotes.h"},  {"rmannotes", "rmannotes.h"},       {"rmanotes.h", "rmannotes.h"},
+    {"rmannotes2.h", "rmannotes.h"},  {"rmannotes2.sl", "rmannotes.h"},   {"rmnotes.h", "rmannotes.h"},
+    {"noise.h", "noises.h"},          {"oldnoises.h", "noises.h"},        {"oldnoise.h", "noises.h"},
+    {"noises.sl", "noises.h"},        {"fractal.h", "noises.h"},          {"fbm.h", "noises.h"},
+    {"turbulence.h", "noises.h"},     {"voronoi.h", "noises.h"},          {"extranoise.h", "noises.h"},
+    {"patterns.sl", "patterns.h"},    {"pattern.h", "patterns.h"},        {"pulse.h", "patterns.h"},
+    {"filters.h", "patterns.h"},      {"filter.h", "patterns.h"},         {"materials.h", "material.h"},
+    {"illum.h", "locillum.h"},        {"illumination.h", "locillum.h"},   {"oren_nayar.h", "locillum.h"},
+    {"orennayar.h", "locillum.h"},    {"reflection.h", "reflections.h"},  {"refl.h", "reflections.h"},
+    {"envmap.h", "reflections.h"},    {"filtwidth.h", "filterwidth.h"},   {"filter_width.h", "filterwidth.h"},
+    {"displacement.h", "displace.h"}, {"projection.h", "project.h"},      {"projections.h", "project.h"},
+    {"shadow.h", "shadows.h"},        {"rayserver_rsl.h", "rayserver.h"}, {"ray_sphere.h", "raysphere.h"},
+    {"proctex.h", "proctext.h"},      {"util.h", "rmannotes.h"},          {"utils.h", "rmannotes.h"},
+    {"utility.h", "rmannotes.h"},     {"math.h", "mathutil.h"},           {"mathutils.h", "mathutil.h"},
+    {"dpproctext.h", "proctext.h"},   {"proctexh.h", "proctext.h"},       {"oaktexture.h", "oak.h"},
+    {"bmrt.h", "rayserver.h"},        {"prman.h", "rayserver.h"},         {"stdrsl.h", "rmannotes.h"},
+    {"pxslrayutil.h", "pxslutil.h"},  {"rfm_blinn.h", "pxslutil.h"},      {"normals.h", "pxslutil.h"},
 };
 
 constexpr std::array<std::string_view, 8> kDialects = {"3delight", "prman", "aqsis", "bmrt", "pixie", "entropy", "air", "rispec"};

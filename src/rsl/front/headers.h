@@ -6,7 +6,9 @@
 namespace alpenglow::rsl::front {
 
 /// A header of ours, under a name that published shaders include. Its text lies in shaders/include.
-struct ShippedHeader { std::string_view name, text; };
+struct ShippedHeader {
+    std::string_view name, text;
+};
 
 /// All of them, by name.
 std::span<const ShippedHeader> shippedHeaders();

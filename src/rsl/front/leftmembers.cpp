@@ -36,8 +36,9 @@ Deeds deedsOf(const Shader& s, const std::function<bool(const std::string&)>& wa
         if (e.kind == ExprKind::Assign) write(e.args[0].get());
         for (size_t n = 0; n < e.args.size(); ++n) {
             const bool output = e.kind == ExprKind::Method ? n > 0 // its parameters are not known here
-                                : e.signature              ? n < e.signature->parameters.size() && e.signature->parameters[n].output
-                                                           : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
+                                : e.signature
+                                    ? n < e.signature->parameters.size() && e.signature->parameters[n].output
+                                    : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
             if (output && e.args[n]) write(e.args[n].get());
         }
         for (const NamedArg& p : e.pairs)
@@ -52,7 +53,8 @@ Deeds deedsOf(const Shader& s, const std::function<bool(const std::string&)>& wa
         if (f.body && seen.insert(&f).second) front::everyStmt(*f.body, statement, expression);
     };
     for (const StmtPtr& x : s.body->body)
-        if (x && x->kind == StmtKind::Expression && x->value && wanted(x->value->text)) front::everyStmt(*x, statement, expression);
+        if (x && x->kind == StmtKind::Expression && x->value && wanted(x->value->text))
+            front::everyStmt(*x, statement, expression);
     return d;
 }
 
@@ -74,7 +76,8 @@ std::vector<std::string> membersLeft(const Shader& displacement, const Shader& s
     std::vector<std::string> names;
     if (!displacement.object || !surface.object || !displacement.body || !surface.body) return names;
     Symbols written = deedsOf(displacement, [](const std::string& m) { return m == "displacement"; }).written;
-    if (const Deeds first = deedsOf(displacement, begins); first.looks) written.insert(first.written.begin(), first.written.end());
+    if (const Deeds first = deedsOf(displacement, begins); first.looks)
+        written.insert(first.written.begin(), first.written.end());
     const Deeds reader = deedsOf(surface, [](const std::string& m) { return !begins(m); });
     const auto add = [&](const Symbol* s) {
         const Symbol* there = ownMember(surface, s->name);

@@ -8,8 +8,8 @@ namespace {
 bool isDigit(int c) { return c >= '0' && c <= '9'; }
 bool isWord(int c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || isDigit(c); }
 bool isBlank(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v' || c == 0 || c == 0x1a; }
-constexpr std::array<std::string_view, 15> kLong = {"...", "##", "->", "+=", "-=", "*=", "/=", "==", "!=",
-                                                    "<=", ">=", "&&", "||", "<<", ">>"};
+constexpr std::array<std::string_view, 15> kLong = {
+    "...", "##", "->", "+=", "-=", "*=", "/=", "==", "!=", "<=", ">=", "&&", "||", "<<", ">>"};
 constexpr std::string_view kShort = "()[]{};,.?:=+-*/%^!<>&|~#";
 } // namespace
 
@@ -46,14 +46,19 @@ void Lexer::skipBlank(Token& t) {
         } else if (c == '/' && at(pos_ + 1) == '/') {
             while (at(pos_) >= 0 && at(pos_) != '\n') {
                 k = pos_;
-                if (joined(k)) { pos_ = lineBegin_ = k; ++line_; }
-                else ++pos_;
+                if (joined(k)) {
+                    pos_ = lineBegin_ = k;
+                    ++line_;
+                } else ++pos_;
             }
             t.space = true;
         } else if (c == '/' && at(pos_ + 1) == '*') {
             const Place begin{placeFile_, line_ + delta_, int(pos_ - lineBegin_) + 1};
             for (pos_ += 2; at(pos_) >= 0 && !(at(pos_) == '*' && at(pos_ + 1) == '/'); ++pos_)
-                if (at(pos_) == '\n') { ++line_; lineBegin_ = pos_ + 1; }
+                if (at(pos_) == '\n') {
+                    ++line_;
+                    lineBegin_ = pos_ + 1;
+                }
             if (at(pos_) < 0) {
                 sources_.error(begin, "this comment does not end");
                 sources_.cut = true;
@@ -99,11 +104,17 @@ Token Lexer::scan() {
     } else if (isDigit(c) || (c == '.' && isDigit(at(pos_ + 1)))) {
         t.kind = Tok::Number;
         step(isDigit);
-        if (at(pos_) == '.' && !(at(pos_ + 1) == '.')) { ++pos_; step(isDigit); }
+        if (at(pos_) == '.' && !(at(pos_ + 1) == '.')) {
+            ++pos_;
+            step(isDigit);
+        }
         if ((at(pos_) | 32) == 'e') {
             size_t k = pos_ + 1;
             if (at(k) == '+' || at(k) == '-') ++k;
-            if (isDigit(at(k))) { pos_ = k; step(isDigit); }
+            if (isDigit(at(k))) {
+                pos_ = k;
+                step(isDigit);
+            }
         }
         step(isWord); // letters that do not belong here; the parser says so
     } else if (c == '"') {
@@ -111,19 +122,32 @@ Token Lexer::scan() {
         for (++pos_;;) {
             const int d = at(pos_);
             size_t k = pos_;
-            if (d < 0 || d == '\n') { t.kind = Tok::Invalid; break; }
-            if (joined(k)) { pos_ = lineBegin_ = k; ++line_; broken = true; continue; }
+            if (d < 0 || d == '\n') {
+                t.kind = Tok::Invalid;
+                break;
+            }
+            if (joined(k)) {
+                pos_ = lineBegin_ = k;
+                ++line_;
+                broken = true;
+                continue;
+            }
             pos_ += d == '\\' && at(pos_ + 1) >= 0 && at(pos_ + 1) != '\n' ? 2 : 1;
             if (d == '"') break;
         }
     } else {
         t.kind = Tok::Invalid;
         for (auto p : kLong)
-            if (text_.compare(pos_, p.size(), p) == 0) { t.kind = Tok::Punct; pos_ += p.size(); break; }
+            if (text_.compare(pos_, p.size(), p) == 0) {
+                t.kind = Tok::Punct;
+                pos_ += p.size();
+                break;
+            }
         if (t.kind == Tok::Invalid) {
             ++pos_;
             if (kShort.find(char(c)) != kShort.npos) t.kind = Tok::Punct;
-            else while (c >= 0x80 && at(pos_) >= 0x80) ++pos_; // the rest of a character of several bytes
+            else
+                while (c >= 0x80 && at(pos_) >= 0x80) ++pos_; // the rest of a character of several bytes
         }
     }
     t.text = text_.substr(begin, pos_ - begin);
@@ -140,12 +164,18 @@ Token Lexer::scan() {
 }
 
 const Token& Lexer::peek() {
-    if (!peeked_) { ahead_ = scan(); peeked_ = true; }
+    if (!peeked_) {
+        ahead_ = scan();
+        peeked_ = true;
+    }
     return ahead_;
 }
 
 Token Lexer::next() {
-    if (peeked_) { peeked_ = false; return ahead_; }
+    if (peeked_) {
+        peeked_ = false;
+        return ahead_;
+    }
     return scan();
 }
 
@@ -153,7 +183,10 @@ std::string stringValue(std::string_view t) {
     if (t.size() >= 2) t = t.substr(1, t.size() - 2);
     std::string s;
     for (size_t i = 0; i < t.size(); ++i) {
-        if (t[i] != '\\' || i + 1 == t.size()) { s += t[i]; continue; }
+        if (t[i] != '\\' || i + 1 == t.size()) {
+            s += t[i];
+            continue;
+        }
         const char c = t[++i];
         if (c == 'n') s += '\n';
         else if (c == 't') s += '\t';

@@ -5,11 +5,12 @@
 namespace alpenglow::rsl::front {
 
 enum class Tok : uint8_t {
-    End, Identifier,
-    Number,  ///< as written, possibly with letters behind it that make it wrong
-    String,  ///< with its quotes and escapes
+    End,
+    Identifier,
+    Number, ///< as written, possibly with letters behind it that make it wrong
+    String, ///< with its quotes and escapes
     Punct,
-    Invalid  ///< a character that starts nothing, or a string without end; an error only if it reaches the parser
+    Invalid ///< a character that starts nothing, or a string without end; an error only if it reaches the parser
 };
 
 struct Token {

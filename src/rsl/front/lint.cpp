@@ -71,7 +71,7 @@ public:
 private:
     struct State {
         Bits always, sometimes; ///< by number in tracked_
-        bool dead = false; ///< no way leads here
+        bool dead = false;      ///< no way leads here
     };
 
     static State merged(const State& a, const State& b) {
@@ -96,7 +96,8 @@ private:
         if (s->name != "L" && s->name != "Cl" && s->name != "Ol") return;
         if (found_ && !*found_) *found_ = s;
         if (found_ || !told_.insert(s).second) return;
-        sources_.warning(place, "'" + s->name + "' is read outside illuminance()" + where + "; no light is meant there, and it is zero",
+        sources_.warning(place,
+                         "'" + s->name + "' is read outside illuminance()" + where + "; no light is meant there, and it is zero",
                          "illuminance (P, N, PI/2) { ... } runs once for each light; " +
                              std::string(s->name == "L" ? "I is the direction of view" : "diffuse(N) adds them all"));
     }
@@ -119,22 +120,29 @@ private:
         const Symbol* s = e.symbol;
         unlit(s, e.place, "");
         const auto at = tracked_.find(s);
-        if (found_ || !s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) || !told_.insert(s).second) return;
+        if (found_ || !s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) ||
+            !told_.insert(s).second)
+            return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
         sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is " +
-                                      (s->type.base != Base::String ? "zero" : s->handle ? "null" : "empty") + " then");
+                                      (s->type.base != Base::String ? "zero"
+                                       : s->handle                  ? "null"
+                                                                    : "empty") +
+                                      " then");
     }
 
     /// What stands left of an assignment, or is put out: its indices are read, itself it is written.
     void target(const Expr& e, bool alsoRead) {
         if (alsoRead) expression(e);
         else
-            for (const Expr* x = &e; x->kind == ExprKind::Index && x->args.size() > 1; x = x->args[0].get()) expression(*x->args[1]);
+            for (const Expr* x = &e; x->kind == ExprKind::Index && x->args.size() > 1; x = x->args[0].get())
+                expression(*x->args[1]);
         const Symbol* s = root(e);
         if (!found_) uniformHazard(e, s);
         if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
-            sources_.warning(e.place, "a surface shader that moves 'P' displaces its primitive, but not where light or rays decide how far",
-                             "a displacement shader is the place for it");
+            sources_.warning(
+                e.place, "a surface shader that moves 'P' displaces its primitive, but not where light or rays decide how far",
+                "a displacement shader is the place for it");
         if (s) assigned_.insert(s);
         given(s);
     }
@@ -146,15 +154,17 @@ private:
         for (size_t i = 0; i < e.args.size(); ++i) {
             if (!e.args[i] || e.args[i]->kind != ExprKind::Variable || !isOutput(e, i)) continue;
             if (outputs.insert(e.args[i]->symbol).second) continue;
-            sources_.warning(e.args[i]->place, "'" + e.args[i]->text + "' is given to two output parameters of '" + e.function->name +
-                                                   "'; they are one variable in this call");
+            sources_.warning(e.args[i]->place, "'" + e.args[i]->text + "' is given to two output parameters of '" +
+                                                   e.function->name + "'; they are one variable in this call");
             return;
         }
     }
 
     void expression(const Expr& e) {
         switch (e.kind) {
-        case ExprKind::Variable: read(e); return;
+        case ExprKind::Variable:
+            read(e);
+            return;
         case ExprKind::Assign:
             if (e.args.size() > 1) {
                 expression(*e.args[1]);
@@ -194,7 +204,8 @@ private:
                 else given(root(*e.args[i]));
             }
             return;
-        default: eachPart(e, [&](const Expr& x) { expression(x); });
+        default:
+            eachPart(e, [&](const Expr& x) { expression(x); });
         }
     }
 
@@ -213,8 +224,10 @@ private:
             else expression(*p.value);
         }
         if (s.kind == StmtKind::Illuminance && lightLoops_ > 0 && !now_.dead && !found_)
-            sources_.warning(s.place, "illuminance inside illuminance: the RenderMan specification forbids it, and other renderers may refuse it",
-                             "here the inner loop visits all its lights in every turn of the outer one");
+            sources_.warning(
+                s.place,
+                "illuminance inside illuminance: the RenderMan specification forbids it, and other renderers may refuse it",
+                "here the inner loop visits all its lights in every turn of the outer one");
         ++loops_;
         lightLoops_ += s.kind == StmtKind::Illuminance;
         statement(s.body.empty() ? nullptr : s.body[0].get());
@@ -229,14 +242,16 @@ private:
         now_ = after;
     }
 
-    /// How many varying conditions stand around the declaration: what lives in a block that only some points reach is theirs alone.
+    /// How many varying conditions stand around the declaration: what lives in a block that only some points reach is theirs
+    /// alone.
     int declaredUnder(const Symbol* s) const {
         const auto at = under_.find(s);
         return at == under_.end() ? 0 : at->second;
     }
 
     void uniformHazard(const Expr& target, const Symbol* u) {
-        if (!u || varyingConditions_ <= declaredUnder(u) || u->storage != Storage::Uniform || u->origin != Symbol::Origin::Local || u->type.base == Base::String)
+        if (!u || varyingConditions_ <= declaredUnder(u) || u->storage != Storage::Uniform ||
+            u->origin != Symbol::Origin::Local || u->type.base == Base::String)
             return;
         sources_.warning(target.place, "the uniform variable '" + u->name +
                                            "' is changed where only some points come, as the condition is varying; "
@@ -282,7 +297,9 @@ private:
         case StmtKind::While:
         case StmtKind::For:
         case StmtKind::Illuminance:
-        case StmtKind::Gather: loop(s); return;
+        case StmtKind::Gather:
+            loop(s);
+            return;
         case StmtKind::Illuminate:
         case StmtKind::Solar:
             for (const auto& e : s.exprs)
@@ -290,15 +307,19 @@ private:
             for (const auto& b : s.body) statement(b.get());
             return;
         case StmtKind::Break:
-        case StmtKind::Continue: now_.dead = true; return;
+        case StmtKind::Continue:
+            now_.dead = true;
+            return;
         case StmtKind::Return:
             if (s.value) expression(*s.value);
             now_.dead = true;
             return;
         default: {
-            everyStmt(s, [](const Stmt&) {}, [&](const Expr& e) {
-                if (e.kind == ExprKind::Assign && !e.args.empty()) given(root(*e.args[0]));
-            });
+            everyStmt(
+                s, [](const Stmt&) {},
+                [&](const Expr& e) {
+                    if (e.kind == ExprKind::Assign && !e.args.empty()) given(root(*e.args[0]));
+                });
             return;
         }
         }
@@ -308,7 +329,7 @@ private:
     const std::set<const Symbol*>& ignored_;
     const bool surface_, lit_;
     LightReads& reads_;
-    const Symbol** found_ = nullptr; ///< of a function that is looked into: nothing is told but this
+    const Symbol** found_ = nullptr;   ///< of a function that is looked into: nothing is told but this
     std::set<const Symbol*> assigned_; ///< by the statements so far
     std::unordered_map<const Symbol*, size_t> tracked_;
     std::set<const Symbol*> told_;
@@ -319,7 +340,8 @@ private:
 
 } // namespace
 
-void lint(const Program& program, const std::vector<Token>& tokens, const std::unordered_set<std::string>& skipped, SourceSet& sources) {
+void lint(const Program& program, const std::vector<Token>& tokens, const std::unordered_set<std::string>& skipped,
+          SourceSet& sources) {
     // Who is mentioned where: a variable that a nested function reaches for has a life that no order of statements tells.
     std::set<const Symbol*> used, reached;
     const auto mention = [&](std::set<const Symbol*>& set) {
@@ -333,22 +355,25 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
         for (const auto& p : s->parameters)
             if (p.defaultValue) everyExpr(*p.defaultValue, mention(used));
         for (const auto& n : s->nested)
-            everyFunction(*n, [&](const Function& f) { if (f.body) everyStmt(*f.body, skip, mention(reached)); });
+            everyFunction(*n, [&](const Function& f) {
+                if (f.body) everyStmt(*f.body, skip, mention(reached));
+            });
     }
     for (const auto& g : program.functions)
         everyFunction(*g, [&](const Function& f) {
             if (f.body) everyStmt(*f.body, skip, mention(&f == g.get() ? used : reached));
         });
     used.insert(reached.begin(), reached.end());
-    // A function is there once for each shader that calls it, a class once for each kind of shader it can be: what one of them uses
-    // is used.
+    // A function is there once for each shader that calls it, a class once for each kind of shader it can be: what one of them
+    // uses is used.
     std::set<std::array<int, 3>> usedPlaces;
     for (const Symbol* s : used) usedPlaces.insert({s->place.file, s->place.line, s->place.column});
 
     const std::string& main = sources.name(0);
     const auto ours = [&](const Place& p) { return p.file >= 0 && p.line > 0 && sources.name(p.file) == main; };
     const auto unused = [&](const Symbol& s, bool parameter) {
-        if (skipped.count(s.name) || usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) || s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0 || s.name.rfind("this->", 0) == 0)
+        if (skipped.count(s.name) || usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) ||
+            s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0 || s.name.rfind("this->", 0) == 0)
             return;
         sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
     };
@@ -357,12 +382,15 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
     bool surface = false, lit = false;
     const auto body = [&](const Stmt* b, Place where) {
         if (!b || !ours(where)) return;
-        everyStmt(*b, [&](const Stmt& s) {
-            for (const auto& d : s.declarators)
-                if (d.symbol) unused(*d.symbol, false);
-            if (s.condition) lintCondition(*s.condition, sources);
-            lintPairs(s, sources);
-        }, [&](const Expr& e) { lintCall(e, sources), lintMessage(e, program, sources); });
+        everyStmt(
+            *b,
+            [&](const Stmt& s) {
+                for (const auto& d : s.declarators)
+                    if (d.symbol) unused(*d.symbol, false);
+                if (s.condition) lintCondition(*s.condition, sources);
+                lintPairs(s, sources);
+            },
+            [&](const Expr& e) { lintCall(e, sources), lintMessage(e, program, sources); });
         Flow(sources, reached, surface, lit, reads).run(b);
     };
     for (const auto& s : program.shaders) {
@@ -376,14 +404,16 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
     }
     lit = false;
     // A method that is not public, of a name that the renderer does not know, and that no other calls.
-    const std::vector<std::string> entries = {"construct", "begin", "displacement", "opacity", "prelighting", "lighting", "diffuselighting",
-                                              "specularlighting", "postlighting", "surface", "volume", "light", "imager"};
+    const std::vector<std::string> entries = {
+        "construct",        "begin",        "displacement", "opacity", "prelighting", "lighting", "diffuselighting",
+        "specularlighting", "postlighting", "surface",      "volume",  "light",       "imager"};
     for (const auto& s : program.shaders)
         for (const auto& f : s->nested)
             if (s->object && f->anywhere && !s->publics.count(f->name) && ours(f->place)) {
                 const std::string near = nearestName(f->name, entries);
-                sources.warning(f->place, "method '" + f->name + "' is called by nobody: it is not public, and the renderer does not know it",
-                                near.empty() ? "" : "did you mean '" + near + "'?");
+                sources.warning(
+                    f->place, "method '" + f->name + "' is called by nobody: it is not public, and the renderer does not know it",
+                    near.empty() ? "" : "did you mean '" + near + "'?");
             }
     everyFunction(program, [&](const Function& f) {
         if (ours(f.place))

@@ -11,8 +11,9 @@ using Names = std::vector<std::string>;
 
 /// Filters of texture(), environment() and the like; some are kinds of one another.
 const Names& filters() {
-    static const Names all = {"box", "triangle", "gaussian", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc", "disk",
-                              "bessel", "b-spline", "blackman-harris", "radial-bspline", "point", "bspline", "catmullrom"};
+    static const Names all = {
+        "box",  "triangle", "gaussian", "catmull-rom",     "separable-catmull-rom", "mitchell", "lanczos", "sinc",
+        "disk", "bessel",   "b-spline", "blackman-harris", "radial-bspline",        "point",    "bspline", "catmullrom"};
     return all;
 }
 
@@ -29,33 +30,94 @@ struct NamedArgument {
 const std::vector<NamedArgument>& namedArguments() {
     static const Names spaces = {"current", "world", "camera", "object", "shader", "screen", "raster", "NDC", "eye"};
     static const std::vector<NamedArgument> all = {
-        {"rayinfo", 0, 2, true, "rayinfo", {"type", "label", "depth", "speculardepth", "diffusedepth", "origin", "direction", "length", "weight"}},
-        {"textureinfo", 1, 3, true, "textureinfo",
+        {"rayinfo",
+         0,
+         2,
+         true,
+         "rayinfo",
+         {"type", "label", "depth", "speculardepth", "diffusedepth", "origin", "direction", "length", "weight"}},
+        {"textureinfo",
+         1,
+         3,
+         true,
+         "textureinfo",
          {"resolution", "type", "channels", "viewingmatrix", "projectionmatrix", "exists", "bitsperchannel", "min", "max"}},
         {"rendererinfo", 0, 2, true, "rendererinfo", {"renderer", "version", "versionstring"}},
         {"area", 1, 2, true, "area", {"shading", "dicing"}},
-        {"spline", 0, 3, true, "basis",
-         {"catmull-rom", "catmullrom", "bezier", "b-spline", "bspline", "hermite", "linear", "solvecatmull-rom", "solvecatmullrom",
-          "solvebezier", "solveb-spline", "solvebspline", "solvehermite", "solvelinear"}},
+        {"spline",
+         0,
+         3,
+         true,
+         "basis",
+         {"catmull-rom", "catmullrom", "bezier", "b-spline", "bspline", "hermite", "linear", "solvecatmull-rom",
+          "solvecatmullrom", "solvebezier", "solveb-spline", "solvebspline", "solvehermite", "solvelinear"}},
         {"transform", 0, 2, false, "space", spaces},
         {"transform", 1, 3, false, "space", spaces},
         {"vtransform", 0, 2, false, "space", spaces},
         {"vtransform", 1, 3, false, "space", spaces},
         {"ntransform", 0, 2, false, "space", spaces},
         {"ntransform", 1, 3, false, "space", spaces},
-        {"option", 0, 2, false, "option",
-         {"Ri:Frame", "Ri:Format", "Ri:PixelSamples", "Ri:Shutter", "Ri:Clipping", "Ri:CropWindow", "Ri:FrameAspectRatio", "Ri:PixelVariance",
-          "Ri:ScreenWindow", "Ri:DepthOfField", "Ri:Hider", "Ri:Display", "trace:maxdepth"}},
-        {"attribute", 0, 2, false, "attribute",
-         {"Ri:ShadingRate", "Ri:Sides", "Ri:Matte", "Ri:Color", "Ri:Opacity", "Ri:Orientation", "Ri:TextureCoordinates", "Ri:DetailRange",
-          "Ri:Transformation", "GeometricApproximation:motionfactor", "displacementbound:sphere", "displacementbound:coordinatesystem",
-          "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal", "grouping:membership", "identifier:name", "trace:bias",
-          "trace:displacements", "trace:samplemotion", "trace:maxdiffusedepth", "trace:maxspeculardepth", "sides:doubleshaded",
-          "visibility:camera", "visibility:diffuse", "visibility:specular", "visibility:transmission", "visibility:photon", "photon:estimator",
-          "photon:shadingmodel", "photon:causticmap", "photon:globalmap", "dice:hair", "dice:rasterorient", "cull:backfacing", "cull:hidden",
-          "derivatives:smooth", "derivatives:centered", "subsurface:scale", "subsurface:refractionindex", "subsurface:shadingrate",
-          "subsurface:groupname", "light:samples", "light:emitphotons", "light:samplingstrategy", "light:units",
-          "irradiance:shadingrate", "irradiance:nsamples", "hider:composite"}}};
+        {"option",
+         0,
+         2,
+         false,
+         "option",
+         {"Ri:Frame", "Ri:Format", "Ri:PixelSamples", "Ri:Shutter", "Ri:Clipping", "Ri:CropWindow", "Ri:FrameAspectRatio",
+          "Ri:PixelVariance", "Ri:ScreenWindow", "Ri:DepthOfField", "Ri:Hider", "Ri:Display", "trace:maxdepth"}},
+        {"attribute",
+         0,
+         2,
+         false,
+         "attribute",
+         {"Ri:ShadingRate",
+          "Ri:Sides",
+          "Ri:Matte",
+          "Ri:Color",
+          "Ri:Opacity",
+          "Ri:Orientation",
+          "Ri:TextureCoordinates",
+          "Ri:DetailRange",
+          "Ri:Transformation",
+          "GeometricApproximation:motionfactor",
+          "displacementbound:sphere",
+          "displacementbound:coordinatesystem",
+          "geometry:backfacing",
+          "geometry:frontfacing",
+          "geometry:geometricnormal",
+          "grouping:membership",
+          "identifier:name",
+          "trace:bias",
+          "trace:displacements",
+          "trace:samplemotion",
+          "trace:maxdiffusedepth",
+          "trace:maxspeculardepth",
+          "sides:doubleshaded",
+          "visibility:camera",
+          "visibility:diffuse",
+          "visibility:specular",
+          "visibility:transmission",
+          "visibility:photon",
+          "photon:estimator",
+          "photon:shadingmodel",
+          "photon:causticmap",
+          "photon:globalmap",
+          "dice:hair",
+          "dice:rasterorient",
+          "cull:backfacing",
+          "cull:hidden",
+          "derivatives:smooth",
+          "derivatives:centered",
+          "subsurface:scale",
+          "subsurface:refractionindex",
+          "subsurface:shadingrate",
+          "subsurface:groupname",
+          "light:samples",
+          "light:emitphotons",
+          "light:samplingstrategy",
+          "light:units",
+          "irradiance:shadingrate",
+          "irradiance:nsamples",
+          "hider:composite"}}};
     return all;
 }
 
@@ -80,9 +142,11 @@ void name(const std::string& given, Place place, const NamedArgument& a, SourceS
     const std::string near = nearestName(given, a.names);
     if (!a.all && (near.empty() || near == given)) return;
     const std::string what = a.what;
-    if (what == "basis") sources.warning(place, "there is no spline basis \"" + given + "\"; linear is used", oneOf(near, a.names));
+    if (what == "basis")
+        sources.warning(place, "there is no spline basis \"" + given + "\"; linear is used", oneOf(near, a.names));
     else if (what == "area") sources.warning(place, "area() has no strategy \"" + given + "\"", oneOf(near, a.names));
-    else if (what == "space") sources.warning(place, "no predefined space is called \"" + given + "\"; the scene must have it", didYouMean(near));
+    else if (what == "space")
+        sources.warning(place, "no predefined space is called \"" + given + "\"; the scene must have it", didYouMean(near));
     else sources.warning(place, what + "() knows nothing of the name \"" + given + "\"", oneOf(near, a.names));
 }
 
@@ -125,25 +189,34 @@ void pattern(const Expr& e, SourceSet& sources) {
             const Expr& v = *e.args[n];
             const Base b = v.type.base;
             const bool triple = b == Base::Color || b == Base::Point || b == Base::Vector || b == Base::Normal;
-            const char* wants = c == 's' || c == 'h' ? (b == Base::String ? nullptr : c == 's' ? "strings" : "shaders")
-                                : c == 'm'           ? (b == Base::Matrix ? nullptr : "matrices")
-                                : c == 'p' || c == 'c'
-                                    ? (triple ? nullptr : c == 'p' ? "points, vectors and normals" : "colours")
-                                    : (b == Base::Float || b == Base::Bool || triple ? nullptr : "floats"); // a triple shows its parts
+            const char* wants =
+                c == 's' || c == 'h' ? (b == Base::String ? nullptr
+                                        : c == 's'        ? "strings"
+                                                          : "shaders")
+                : c == 'm'           ? (b == Base::Matrix ? nullptr : "matrices")
+                : c == 'p' || c == 'c'
+                    ? (triple     ? nullptr
+                       : c == 'p' ? "points, vectors and normals"
+                                  : "colours")
+                    : (b == Base::Float || b == Base::Bool || triple ? nullptr : "floats"); // a triple shows its parts
             if (wants)
                 sources.warning(v.place, std::string("'%") + c + "' is for " + wants + ", and this is a " +
                                              (v.handle || (v.symbol && v.symbol->handle) ? "shader" : toString(v.type)));
         } else {
-            sources.warning(e.args[0]->place, c ? std::string("'%") + c + "' is no conversion; it is shown as it stands"
-                                                : "the pattern ends in a '%', which is shown as it stands",
+            sources.warning(e.args[0]->place,
+                            c ? std::string("'%") + c + "' is no conversion; it is shown as it stands"
+                              : "the pattern ends in a '%', which is shown as it stands",
                             "%f %e %g %d for floats, %p %c for points and colours, %m for matrices, %s for strings; %% is a '%'");
         }
     }
     if (takes > values)
         sources.warning(e.args[0]->place, "the pattern takes " + counted(takes, "value") + ", and there " +
-                                              (values == 1 ? "is 1" : values == 0 ? "is none" : "are " + std::to_string(values)));
+                                              (values == 1   ? "is 1"
+                                               : values == 0 ? "is none"
+                                                             : "are " + std::to_string(values)));
     else if (takes < values)
-        sources.warning(e.args[takes + 1]->place, "the pattern takes " + (takes == 0 ? "no value" : "only " + counted(takes, "value")) +
+        sources.warning(e.args[takes + 1]->place, "the pattern takes " +
+                                                      (takes == 0 ? "no value" : "only " + counted(takes, "value")) +
                                                       "; this one is not shown");
 }
 
@@ -200,22 +273,25 @@ void lintMessage(const Expr& e, const Program& program, SourceSet& sources) {
             varying = s.get();
         }
     if (varying)
-        sources.warning(e.args[1]->place, "'" + to->symbol->name + "' is uniform and takes no varying parameter, as \"" + e.args[0]->text + "\" of '" +
-                                              varying->name + "' is: " + op + "() leaves it as it is", "a varying variable takes it");
+        sources.warning(e.args[1]->place,
+                        "'" + to->symbol->name + "' is uniform and takes no varying parameter, as \"" + e.args[0]->text +
+                            "\" of '" + varying->name + "' is: " + op + "() leaves it as it is",
+                        "a varying variable takes it");
 }
 
 void lintCondition(const Expr& e, SourceSet& sources) {
     const Expr& x = bare(e);
     if (x.kind == ExprKind::Assign && x.op == ExprOp::Assign)
         sources.warning(x.place, "this condition is an assignment: it is true unless the value is zero", "'==' compares");
-    if (x.kind == ExprKind::Unary || x.kind == ExprKind::Cast || (x.kind == ExprKind::Binary && (x.op == ExprOp::And || x.op == ExprOp::Or || x.op == ExprOp::NotEqual)))
+    if (x.kind == ExprKind::Unary || x.kind == ExprKind::Cast ||
+        (x.kind == ExprKind::Binary && (x.op == ExprOp::And || x.op == ExprOp::Or || x.op == ExprOp::NotEqual)))
         for (const auto& a : x.args)
             if (a) lintCondition(*a, sources);
 }
 
 void lintPairs(const Stmt& s, SourceSet& sources) {
     if (s.kind != StmtKind::Gather) return;
-    static const Names names = {"bias",     "maxdist", "samplebase", "distribution", "label",         "subset",    "hitmode",
+    static const Names names = {"bias",     "maxdist", "samplebase", "distribution", "label",         "subset",     "hitmode",
                                 "hitsides", "type",    "raytype",    "raylabel",     "excludesubset", "maxhitdist", "othreshold"};
     static const Names sends = {"surface", "displacement", "volume", "ray", "primitive", "attribute", "environment"};
     for (const NamedArg& p : s.pairs) {
@@ -232,7 +308,8 @@ void lintPairs(const Stmt& s, SourceSet& sources) {
 
 void lintCommas(const std::vector<Token>& tokens, SourceSet& sources) {
     for (size_t i = 0; i + 1 < tokens.size(); ++i)
-        if (tokens[i].is(",") && tokens[i + 1].is(")") && tokens[i].place.file >= 0 && sources.name(tokens[i].place.file) == sources.name(0))
+        if (tokens[i].is(",") && tokens[i + 1].is(")") && tokens[i].place.file >= 0 &&
+            sources.name(tokens[i].place.file) == sources.name(0))
             sources.warning(tokens[i].place, "nothing stands behind this ',' before the ')'; it is ignored");
 }
 

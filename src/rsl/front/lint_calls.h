@@ -1,5 +1,5 @@
-// The part of the warnings for who writes shaders (lint.h) that is about what calls are given: patterns of printf(), names that mean
-// nothing, conditions that are assignments.
+// The part of the warnings for who writes shaders (lint.h) that is about what calls are given: patterns of printf(), names that
+// mean nothing, conditions that are assignments.
 #pragma once
 #include "rsl/front/lexer.h"
 #include "rsl/front/source.h"

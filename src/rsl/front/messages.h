@@ -17,8 +17,8 @@ std::span<const MessageKind> messageKinds();
 /// The id for the words of a message; "rsl-error" for words that no kind describes.
 const char* messageId(std::string_view message);
 
-/// Fills in what follows from the words and the line of a message of the compiler, where it is missing: its id, the bytes of its line
-/// that it is about, and the fix-its that are obvious (a name with a slip, a forgotten semicolon).
+/// Fills in what follows from the words and the line of a message of the compiler, where it is missing: its id, the bytes of its
+/// line that it is about, and the fix-its that are obvious (a name with a slip, a forgotten semicolon).
 void complete(Diagnostic&);
 
 } // namespace alpenglow::rsl

@@ -9,10 +9,14 @@ namespace alpenglow::rsl {
 namespace {
 
 /// Words of other languages, and what stands there in this one.
-struct Borrowed { const char* word; const char* instead; };
-constexpr Borrowed kTypes[] = {{"double", "float"},   {"half", "float"},    {"real", "float"},    {"vec2", "vector"},  {"vec3", "vector"},
-                               {"vec4", "vector"},    {"float2", "vector"}, {"float3", "vector"}, {"float4", "color"}, {"Vector", "vector"},
-                               {"Color", "color"},    {"mat4", "matrix"},   {"char", "string"},   {"rgb", "color"}};
+struct Borrowed {
+    const char* word;
+    const char* instead;
+};
+constexpr Borrowed kTypes[] = {{"double", "float"}, {"half", "float"},    {"real", "float"},    {"vec2", "vector"},
+                               {"vec3", "vector"},  {"vec4", "vector"},   {"float2", "vector"}, {"float3", "vector"},
+                               {"float4", "color"}, {"Vector", "vector"}, {"Color", "color"},   {"mat4", "matrix"},
+                               {"char", "string"},  {"rgb", "color"}};
 constexpr Borrowed kOperators[] = {{"and", "&&"}, {"or", "||"}};
 
 bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -21,7 +25,9 @@ bool isName(const std::string& s) { return !s.empty() && isWord(s[0]) && !std::i
 bool isTriple(const std::string& type) { return type == "color" || type == "point" || type == "vector" || type == "normal"; }
 
 /// "cannot assign A to B", "expected a B, not A": what is there and what is wanted, both kinds of triples; else nothing.
-struct Unlike { std::string there, wanted; };
+struct Unlike {
+    std::string there, wanted;
+};
 Unlike unlike(const Diagnostic& d) {
     const auto between = [&](std::string_view a, std::string_view b) {
         const size_t begin = d.message.find(a);
@@ -38,7 +44,8 @@ Unlike unlike(const Diagnostic& d) {
 
 /// Is the missing bracket that the message asks for what ends a call or a pair of brackets before a ';'?
 bool bracketMissing(const Diagnostic& d) {
-    return d.id == "expected-token" && (d.message == "expected ',' or ')' after an argument before ';'" || d.message == "expected ')' before ';'");
+    return d.id == "expected-token" &&
+           (d.message == "expected ',' or ')' after an argument before ';'" || d.message == "expected ')' before ';'");
 }
 
 } // namespace
@@ -74,7 +81,9 @@ void advise(Diagnostic& d, const std::string& written, size_t at) {
         return;
     }
     if (!d.hint.empty()) return;
-    const size_t part = written.size() == 1 && at > 0 && at < line.size() && line[at - 1] == '.' ? std::string("xyzrgb").find(written) : std::string::npos;
+    const size_t part = written.size() == 1 && at > 0 && at < line.size() && line[at - 1] == '.'
+                            ? std::string("xyzrgb").find(written)
+                            : std::string::npos;
     if (is("undeclared") && part != std::string::npos) {
         const std::string n = std::to_string(part % 3);
         d.hint = "'.' is the dot product; a component is v[" + n + "] or comp(v, " + n + ")";
@@ -90,7 +99,8 @@ void advise(Diagnostic& d, const std::string& written, size_t at) {
             if (written == b.word) d.hint = std::string("did you mean '") + b.instead + "'?";
     } else if (is("expected-definition")) {
         const size_t word = line.find_first_not_of(" \t");
-        for (const std::string_view type : {"float ", "color ", "point ", "vector ", "normal ", "matrix ", "string ", "uniform ", "varying "})
+        for (const std::string_view type :
+             {"float ", "color ", "point ", "vector ", "normal ", "matrix ", "string ", "uniform ", "varying "})
             if (word != std::string::npos && line.compare(word, type.size(), type) == 0 && at > word)
                 d.hint = "variables stand inside of shaders and functions; what all may read is a #define";
     } else if (is("no-shader")) {
@@ -117,16 +127,18 @@ void addFix(Diagnostic& d, const std::string& written, size_t at) {
         if (d.id == "not-a-type" && written == b.word) put(at, int(written.size()), b.instead);
     bool operators = false;
     for (const Borrowed& b : kOperators)
-        if ((d.id == "expected-semicolon" || d.id == "expected-token") && written == b.word) operators = true, put(at, int(written.size()), b.instead);
+        if ((d.id == "expected-semicolon" || d.id == "expected-token") && written == b.word)
+            operators = true, put(at, int(written.size()), b.instead);
     // A statement that begins on the same line behind one without its ';'.
-    if (d.id == "expected-semicolon" && !operators && isName(written) && d.message.ends_with(" before '" + written + "'") && at > 0) {
+    if (d.id == "expected-semicolon" && !operators && isName(written) && d.message.ends_with(" before '" + written + "'") &&
+        at > 0) {
         size_t end = at;
         while (end > 0 && (line[end - 1] == ' ' || line[end - 1] == '\t')) --end;
         if (end > 0) put(end, 0, ";");
     }
     // v.x: a component, not a product.
-    if (d.id == "undeclared" && d.hint.rfind("'.' is the dot product", 0) == 0 && at > 1 && (isWord(line[at - 2]) || line[at - 2] == ')') &&
-        !isWord(at + 1 < line.size() ? line[at + 1] : ' '))
+    if (d.id == "undeclared" && d.hint.rfind("'.' is the dot product", 0) == 0 && at > 1 &&
+        (isWord(line[at - 2]) || line[at - 2] == ')') && !isWord(at + 1 < line.size() ? line[at + 1] : ' '))
         put(at - 1, 2, d.hint.substr(d.hint.find('['), 3));
     // One variable of another kind of triple.
     if (const Unlike u = unlike(d); !u.there.empty() && (u.there == "color") != (u.wanted == "color")) {
@@ -135,7 +147,8 @@ void addFix(Diagnostic& d, const std::string& written, size_t at) {
         size_t end = value;
         while (end < line.size() && isWord(line[end])) ++end;
         const size_t next = std::min(line.find_first_not_of(' ', end), line.size());
-        if (end > value && isName(line.substr(value, 1)) && next < line.size() && std::string_view(";,)").find(line[next]) != std::string_view::npos)
+        if (end > value && isName(line.substr(value, 1)) && next < line.size() &&
+            std::string_view(";,)").find(line[next]) != std::string_view::npos)
             put(value, 0, u.wanted + " ");
     }
 }

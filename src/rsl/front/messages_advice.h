@@ -7,8 +7,8 @@ namespace alpenglow::rsl {
 /// What stands between the quotes of "did you mean 'x'?", either kind of quotes; or nothing.
 std::string suggestion(const std::string& hint);
 
-/// Gives a message of the compiler that has no hint one, where its line shows what was meant, and takes away one that helps nobody.
-/// `written` is the token that begins at byte `at` of the line.
+/// Gives a message of the compiler that has no hint one, where its line shows what was meant, and takes away one that helps
+/// nobody. `written` is the token that begins at byte `at` of the line.
 void advise(Diagnostic&, const std::string& written, size_t at);
 
 /// Adds a fix-it where the cure is obvious.

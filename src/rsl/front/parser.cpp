@@ -100,7 +100,10 @@ void Parser::skipBalanced() {
 void Parser::recover() {
     for (;;) {
         if (peek().kind == Tok::End || at("}")) return;
-        if (at("{")) { skipBalanced(); return; }
+        if (at("{")) {
+            skipBalanced();
+            return;
+        }
         if (take().is(";")) return;
     }
 }
@@ -168,7 +171,10 @@ Unit Parser::parse() {
         } catch (const SyntaxError&) {
             // On to something that can begin a definition: behind a closing brace, or at a word at the start of a line.
             while (peek().kind != Tok::End) {
-                if (at("{")) { skipBalanced(); break; }
+                if (at("{")) {
+                    skipBalanced();
+                    break;
+                }
                 if (at_ != before && peek().lineStart && (atTypeName() || shaderKindNamed(peek().text)) &&
                     peek(1).kind == Tok::Identifier && peek(2).is("("))
                     break;
@@ -202,7 +208,8 @@ void Parser::topLevel() {
         if (first.text == "struct" && (peek(2).is("{") || !structs_.count(std::string(peek(1).text)))) return structure();
         if (first.text == "class" && (peek(2).is("(") || peek(2).is("{"))) return shaderObject();
     }
-    if (first.kind == Tok::Identifier && shaderKindNamed(first.text) && peek(1).kind == Tok::Identifier && peek(2).kind == Tok::Identifier) {
+    if (first.kind == Tok::Identifier && shaderKindNamed(first.text) && peek(1).kind == Tok::Identifier &&
+        peek(2).kind == Tok::Identifier) {
         const std::string name(peek(1).text), next(peek(2).text);
         fail(peek(2).place, "expected '(' after the name of shader '" + name + "' before '" + next + "'");
     }
@@ -223,7 +230,8 @@ void Parser::topLevel() {
     }
     auto f = function(ofType(s), type, typed);
     if (!f) return;
-    // Defined again, as when a file is included twice, or when a shader has its own version of what a header gave: the last counts.
+    // Defined again, as when a file is included twice, or when a shader has its own version of what a header gave: the last
+    // counts.
     for (auto& old : unit_.functions) {
         bool same = old->name == f->name && old->result == f->result && old->parameters.size() == f->parameters.size();
         for (size_t i = 0; same && i < f->parameters.size(); ++i) same = old->parameters[i]->type == f->parameters[i]->type;

@@ -14,7 +14,10 @@ struct ClassDefinition {
 };
 
 /// `plugin "name";`
-struct PluginUse { std::string name; Place place; };
+struct PluginUse {
+    std::string name;
+    Place place;
+};
 
 /// What one text declares, unchecked.
 struct Unit {
@@ -23,7 +26,7 @@ struct Unit {
     std::vector<std::unique_ptr<Function>> functions;
     std::vector<ClassDefinition> classes;
     std::vector<StructType> structs;
-    bool incomplete = false; ///< text is missing that nobody has seen: unknown names may be its fault
+    bool incomplete = false;                 ///< text is missing that nobody has seen: unknown names may be its fault
     std::unordered_set<std::string> skipped; ///< names in text that was skipped behind an error: it may have declared them
     /// Whether the name may be declared in text that was not read.
     bool hides(const std::string& n) const {
@@ -67,11 +70,16 @@ private:
     void recover();
     void skippedFrom(size_t begin); ///< the tokens from there to here were not understood
     bool atTypeName(size_t k = 0) const;
-    bool atStructWord() const { return at("struct") && structs_.count(std::string(peek(1).text)) && peek(2).kind == Tok::Identifier; }
-    bool atName() const;        ///< of a variable to be declared; old shaders call theirs vector, normal, matrix
+    bool atStructWord() const {
+        return at("struct") && structs_.count(std::string(peek(1).text)) && peek(2).kind == Tok::Identifier;
+    }
+    bool atName() const; ///< of a variable to be declared; old shaders call theirs vector, normal, matrix
     const Token& takeName();
-    Base takeBase();                          ///< sets handle_
-    Specifiers ofType(Specifiers s) const { s.handle = handle_; return s; } ///< with what takeBase() found
+    Base takeBase(); ///< sets handle_
+    Specifiers ofType(Specifiers s) const {
+        s.handle = handle_;
+        return s;
+    } ///< with what takeBase() found
     std::string shown() const;
 
     // declarations (parser.cpp)
@@ -79,7 +87,7 @@ private:
     void shader(ShaderKind);
     bool plugin(); ///< at `plugin "name"`, which may stand at file level and where statements stand
     void extends(StructType&);
-    void structure();    // parser_objects.cpp
+    void structure(); // parser_objects.cpp
     void shaderObject();
     void takeAccess();
     std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);
@@ -141,14 +149,14 @@ private:
     size_t at_ = 0;
     int depth_ = 0;
     bool tooDeep_ = false;
-    std::vector<StmtPtr> after_;  ///< statements that a declaration adds behind itself
-    Owner owner_;                 ///< of the function or shader being read
+    std::vector<StmtPtr> after_;                     ///< statements that a declaration adds behind itself
+    Owner owner_;                                    ///< of the function or shader being read
     std::unordered_set<std::string_view> typeWords_; ///< variables of it called like the types that came later
-    bool inObject_ = false;       ///< `this` is the shader object being read
-    bool handle_ = false;         ///< the last type taken was `shader`
-    bool returnsValue_ = false;   ///< a `return expression` was seen in it
-    std::unordered_map<std::string, int> structs_; ///< index in Unit::structs
-    std::unordered_set<std::string> told_;    ///< what was reported as not yet available
+    bool inObject_ = false;                          ///< `this` is the shader object being read
+    bool handle_ = false;                            ///< the last type taken was `shader`
+    bool returnsValue_ = false;                      ///< a `return expression` was seen in it
+    std::unordered_map<std::string, int> structs_;   ///< index in Unit::structs
+    std::unordered_set<std::string> told_;           ///< what was reported as not yet available
     size_t lastError_ = size_t(-1);
 };
 

@@ -60,8 +60,7 @@ Parser::Specifiers Parser::specifiers() {
         else if (accept("varying")) s.storage = Storage::Varying;
         else if (atStructWord()) take(); // "struct Name x", as in C
         // Words of later versions: only where a type or another specifier follows are they more than a name.
-        else if ((at("constant") || at("const") || at("public")) &&
-                 (atTypeName(1) || specifies(peek(1)))) {
+        else if ((at("constant") || at("const") || at("public")) && (atTypeName(1) || specifies(peek(1)))) {
             if (at("constant")) {
                 s.storage = Storage::Uniform;
                 s.isConstant = true;
@@ -95,11 +94,16 @@ int Parser::constantLength(const Expr& e, Place place, bool open) {
         const auto b = value(*x.args[1]);
         if (!a || !b) return std::nullopt;
         switch (x.op) {
-        case ExprOp::Add: return *a + *b;
-        case ExprOp::Sub: return *a - *b;
-        case ExprOp::Mul: return *a * *b;
-        case ExprOp::Div: return *b == 0 ? 0 : *a / *b;
-        default: return std::nullopt;
+        case ExprOp::Add:
+            return *a + *b;
+        case ExprOp::Sub:
+            return *a - *b;
+        case ExprOp::Mul:
+            return *a * *b;
+        case ExprOp::Div:
+            return *b == 0 ? 0 : *a / *b;
+        default:
+            return std::nullopt;
         }
     };
     const auto n = value(e);
@@ -162,7 +166,8 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                 continue;
             }
             if (accept(",")) continue;
-            const bool newGroup = atStructWord() || (atTypeName() && !(base && atName())) || at("output") || at("uniform") || at("varying") || at("extern") ||
+            const bool newGroup = atStructWord() || (atTypeName() && !(base && atName())) || at("output") || at("uniform") ||
+                                  at("varying") || at("extern") ||
                                   ((at("constant") || at("const") || at("public")) && (atTypeName(1) || specifies(peek(1))));
             if (newGroup) {
                 group = specifiers();
@@ -178,7 +183,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             }
             if (!base) failHere("expected the type of a parameter");
             if (*base == Base::Void) {
-                if (at(")")) continue; // (void), as in C
+                if (at(")")) continue;                                      // (void), as in C
                 sources_.error(peek().place, "a parameter cannot be void"); // calls with a value for it are no errors
             }
             Type type = dimensions({*base, 0});

@@ -30,8 +30,10 @@ ExprPtr Parser::expression() { return assignment(); }
 ExprPtr Parser::assignment() {
     Depth depth(*this);
     auto left = conditional();
-    static constexpr struct { std::string_view text; ExprOp op; } kOps[] = {
-        {"=", ExprOp::Assign}, {"+=", ExprOp::Add}, {"-=", ExprOp::Sub}, {"*=", ExprOp::Mul}, {"/=", ExprOp::Div}};
+    static constexpr struct {
+        std::string_view text;
+        ExprOp op;
+    } kOps[] = {{"=", ExprOp::Assign}, {"+=", ExprOp::Add}, {"-=", ExprOp::Sub}, {"*=", ExprOp::Mul}, {"/=", ExprOp::Div}};
     for (const auto& o : kOps)
         if (at(o.text)) {
             auto e = node(ExprKind::Assign, take().place, o.op);
@@ -43,13 +45,14 @@ ExprPtr Parser::assignment() {
 }
 
 bool Parser::atStep(size_t k) const {
-    return (peek(k).is("+") || peek(k).is("-")) && peek(k + 1).text == peek(k).text && !peek(k + 1).space && !peek(k + 1).lineStart;
+    return (peek(k).is("+") || peek(k).is("-")) && peek(k + 1).text == peek(k).text && !peek(k + 1).space &&
+           !peek(k + 1).lineStart;
 }
 
 /// variable += 1 or variable -= 1
 ExprPtr Parser::step(ExprPtr variable, const Token& sign) {
-    sources_.warning(sign.place, "'" + std::string(sign.text) + std::string(sign.text) + "' is not of this language; it is read as '" +
-                                     std::string(sign.text) + "= 1'");
+    sources_.warning(sign.place, "'" + std::string(sign.text) + std::string(sign.text) +
+                                     "' is not of this language; it is read as '" + std::string(sign.text) + "= 1'");
     auto e = node(ExprKind::Assign, sign.place, sign.text == "+" ? ExprOp::Add : ExprOp::Sub);
     auto one = node(ExprKind::Number, sign.place);
     one->number = 1;
@@ -82,14 +85,16 @@ ExprPtr Parser::conditional() {
 }
 
 namespace {
-struct BinaryOp { std::string_view text; int level; ExprOp op; };
+struct BinaryOp {
+    std::string_view text;
+    int level;
+    ExprOp op;
+};
 constexpr BinaryOp kBinary[] = {
-    {"||", 3, ExprOp::Or}, {"&&", 4, ExprOp::And},
-    {"==", 5, ExprOp::Equal}, {"!=", 5, ExprOp::NotEqual}, {"<", 5, ExprOp::Less}, {">", 5, ExprOp::Greater},
-    {"<=", 5, ExprOp::LessEqual}, {">=", 5, ExprOp::GreaterEqual},
-    {"+", 6, ExprOp::Add}, {"-", 6, ExprOp::Sub},
-    {"^", 7, ExprOp::Cross}, // looser than * and /, unlike anywhere else
-    {"*", 8, ExprOp::Mul}, {"/", 8, ExprOp::Div}, {"%", 8, ExprOp::None}, // % is mod()
+    {"||", 3, ExprOp::Or},  {"&&", 4, ExprOp::And},    {"==", 5, ExprOp::Equal},     {"!=", 5, ExprOp::NotEqual},
+    {"<", 5, ExprOp::Less}, {">", 5, ExprOp::Greater}, {"<=", 5, ExprOp::LessEqual}, {">=", 5, ExprOp::GreaterEqual},
+    {"+", 6, ExprOp::Add},  {"-", 6, ExprOp::Sub},     {"^", 7, ExprOp::Cross}, // looser than * and /, unlike anywhere else
+    {"*", 8, ExprOp::Mul},  {"/", 8, ExprOp::Div},     {"%", 8, ExprOp::None},  // % is mod()
     {".", 9, ExprOp::Dot}};
 } // namespace
 
@@ -117,7 +122,9 @@ ExprPtr Parser::unary() {
     if (at("-") || at("!") || at("+")) {
         Depth depth(*this);
         if (atStep(0) && peek(2).kind == Tok::Identifier)
-            sources_.warning(peek().place, "'" + std::string(2, peek().text[0]) + "' before a variable is two signs in an expression; nothing is changed",
+            sources_.warning(peek().place,
+                             "'" + std::string(2, peek().text[0]) +
+                                 "' before a variable is two signs in an expression; nothing is changed",
                              "the value before is " + std::string(peek(2).text) + std::string(2, peek().text[0]));
         const Token& t = take();
         if (t.text == "+") return unary();
@@ -142,7 +149,11 @@ ExprPtr Parser::castExpression() {
     e->type.base = takeBase();
     e->handle = handle_;
     if (e->type.base == Base::Void) fail(e->place, "'void' is not the type of a value");
-    if (at("[") && peek(1).is("]")) { take(); take(); e->type.array = -1; }
+    if (at("[") && peek(1).is("]")) {
+        take();
+        take();
+        e->type.array = -1;
+    }
     if (peek().kind == Tok::String && e->type.base != Base::String) {
         size_t k = 0;
         while (peek(k).kind == Tok::String) ++k;
@@ -195,7 +206,8 @@ ExprPtr Parser::postfix() {
             }
             e = std::move(member);
         } else if (atStep(0) && (e->kind == ExprKind::Variable || e->kind == ExprKind::Index) &&
-                   (peek(2).kind == Tok::End || (peek(2).kind == Tok::Punct && !peek(2).is("(") && !peek(2).is("!") && !peek(2).is("{")))) {
+                   (peek(2).kind == Tok::End ||
+                    (peek(2).kind == Tok::Punct && !peek(2).is("(") && !peek(2).is("!") && !peek(2).is("{")))) {
             const Token& sign = take();
             take();
             // The value is the one before: (i += 1) - 1.

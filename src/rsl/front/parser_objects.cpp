@@ -49,14 +49,24 @@ void Parser::structure() {
             takeAccess();
             const size_t begin = at_;
             const Specifiers s = specifiers();
-            if (peek().kind == Tok::Identifier && peek(1).is("(")) { skipMethod(begin); continue; }
-            if (at(type.name) && peek(1).kind == Tok::Identifier && peek(2).is("(")) { take(); skipMethod(begin); continue; }
+            if (peek().kind == Tok::Identifier && peek(1).is("(")) {
+                skipMethod(begin);
+                continue;
+            }
+            if (at(type.name) && peek(1).kind == Tok::Identifier && peek(2).is("(")) {
+                take();
+                skipMethod(begin);
+                continue;
+            }
             if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier)
                 fail(peek().place, "a structure cannot contain itself");
             if (!atTypeName()) failHere("expected the type of a member");
             const Base base = takeBase();
             const bool handle = handle_;
-            if (peek().kind == Tok::Identifier && peek(1).is("(")) { skipMethod(begin); continue; }
+            if (peek().kind == Tok::Identifier && peek(1).is("(")) {
+                skipMethod(begin);
+                continue;
+            }
             if (at("[") && peek(1).is("]") && peek(2).kind == Tok::Identifier && peek(3).is("(")) {
                 take(), take();
                 skipMethod(begin);
@@ -126,7 +136,8 @@ void Parser::structure() {
     at_ = behind;
 }
 
-/// "public" and "private" of members: what is public is what others see, and the rest they do not; nothing else depends on it here.
+/// "public" and "private" of members: what is public is what others see, and the rest they do not; nothing else depends on it
+/// here.
 void Parser::takeAccess() {
     if ((at("public") || at("private")) && peek(1).kind == Tok::Identifier) take();
 }
@@ -162,7 +173,8 @@ void Parser::shaderObject() {
             if (at("private")) takeAccess();
             const bool isPublic = at("public");
             StmtPtr member;
-            if (isPublic ? peek(2).is("(") && peek(1).kind == Tok::Identifier : peek().kind == Tok::Identifier && peek(1).is("(")) {
+            if (isPublic ? peek(2).is("(") && peek(1).kind == Tok::Identifier
+                         : peek().kind == Tok::Identifier && peek(1).is("(")) {
                 // A method without a type: void, or what it returns.
                 accept("public");
                 member = make(StmtKind::Declare, peek().place);

@@ -22,8 +22,9 @@ StmtPtr Parser::block() {
     expect("{", "");
     statements(*b);
     if (!accept("}")) {
-        if (lastError_ != at_ && !atCut()) sources_.error(peek().place, "expected '}' before the end of the file",
-                                              "the block began at line " + std::to_string(b->place.line));
+        if (lastError_ != at_ && !atCut())
+            sources_.error(peek().place, "expected '}' before the end of the file",
+                           "the block began at line " + std::to_string(b->place.line));
         lastError_ = at_;
         unit_.incomplete = true;
     }
@@ -54,7 +55,11 @@ StmtPtr Parser::statementOnce() {
     const Token& t = peek();
     if (t.kind == Tok::Punct) {
         if (t.text == "{") return block();
-        if (t.text == ";") { auto s = make(StmtKind::Block, t.place); take(); return s; }
+        if (t.text == ";") {
+            auto s = make(StmtKind::Block, t.place);
+            take();
+            return s;
+        }
     }
     if (t.kind != Tok::Identifier) return effects();
     const std::string_view w = t.text;
@@ -92,7 +97,10 @@ StmtPtr Parser::statementOnce() {
     }
     if (w == "return") {
         auto s = make(StmtKind::Return, take().place);
-        if (!at(";") && !at("}")) { s->value = expression(); returnsValue_ = true; }
+        if (!at(";") && !at("}")) {
+            s->value = expression();
+            returnsValue_ = true;
+        }
         expectSemicolon("return");
         return s;
     }
@@ -215,7 +223,10 @@ StmtPtr Parser::forLoop() {
         while (!at(";")) {
             auto e = effect();
             if (accept(",")) outer->body.push_back(expressionStatement(std::move(e)));
-            else { loop->init = std::move(e); break; }
+            else {
+                loop->init = std::move(e);
+                break;
+            }
         }
         expect(";", "after the start of 'for'");
     }
@@ -247,8 +258,16 @@ StmtPtr Parser::doLoop() {
     const Token& word = take();
     auto outer = make(StmtKind::Block, place);
     Symbol* first = declare(owner_, word, {Base::Float, 0}, {}); // "do": no variable of the shader can have that name
-    const auto number = [&](double v) { auto e = node(ExprKind::Number, place); e->number = v; return e; };
-    const auto variable = [&] { auto e = node(ExprKind::Variable, place); e->text = first->name; return e; };
+    const auto number = [&](double v) {
+        auto e = node(ExprKind::Number, place);
+        e->number = v;
+        return e;
+    };
+    const auto variable = [&] {
+        auto e = node(ExprKind::Variable, place);
+        e->text = first->name;
+        return e;
+    };
     auto d = make(StmtKind::Declare, place);
     d->declarators.push_back({first, number(1)});
     outer->body.push_back(std::move(d));

@@ -11,8 +11,8 @@ namespace alpenglow::rsl {
 /// Section of a plug-in's functions; Signature::symbol is then the name by which machine code knows the function.
 inline constexpr const char* kPluginSection = "Plug-ins";
 
-/// The names by which machine code knows the functions of plug-ins begin with this; then come the file and the signature, nothing that
-/// changes from run to run.
+/// The names by which machine code knows the functions of plug-ins begin with this; then come the file and the signature, nothing
+/// that changes from run to run.
 inline constexpr const char* kPluginSymbol = "rslplugin:";
 
 struct Plugin {
@@ -26,7 +26,7 @@ struct Plugin {
 };
 
 /// The plug-in that `plugin "name"` in a file of folder `beside` means. Null: the reason, and what may help, in the strings.
-using PluginFinder =
-    std::function<std::shared_ptr<const Plugin>(const std::string& name, const std::string& beside, std::string& why, std::string& hint)>;
+using PluginFinder = std::function<std::shared_ptr<const Plugin>(const std::string& name, const std::string& beside,
+                                                                 std::string& why, std::string& hint)>;
 
 } // namespace alpenglow::rsl

@@ -5,14 +5,17 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-struct BuiltIn { const char* name; const char* text; };
+struct BuiltIn {
+    const char* name;
+    const char* text;
+};
 
-// filterregion: where a shader wants a map to be read, as four corners in s and t or as four directions or points; `blurred` is given
-// to the map as its "blur", and spread is the half angle of the cone of directions.
+// filterregion: where a shader wants a map to be read, as four corners in s and t or as four directions or points; `blurred` is
+// given to the map as its "blur", and spread is the half angle of the cone of directions.
 // __radiancesample: a direction with what a light sends from there and what a surface makes of it.
-// normalizeMaterialResponse: of samples of several lobes, so many of each, one mean is taken over all; each lobe counts in full then.
-// accumulateMaterialResponse: the lobes of evaluateSamples() one after the other, each with a call of it, add up.
-// What names another stands before it.
+// normalizeMaterialResponse: of samples of several lobes, so many of each, one mean is taken over all; each lobe counts in full
+// then. accumulateMaterialResponse: the lobes of evaluateSamples() one after the other, each with a call of it, add up. What
+// names another stands before it.
 constexpr BuiltIn kBuiltIns[] = {{"normalizeMaterialResponse", R"(
 void normalizeMaterialResponse(output __radiancesample samples[]; uniform float counts[]) {
     uniform float lobes = arraylength(counts), n = arraylength(samples), first = 0, lobe, i;

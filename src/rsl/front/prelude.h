@@ -7,8 +7,8 @@ namespace alpenglow::rsl::front {
 /// Puts the definitions of the built-in structures that the text names before it (RSL 2: filterregion, __radiancesample).
 void addPrelude(SourceSet&, Preprocessed&);
 
-/// Gives classes that call directlighting() and have a method evaluateSamples(), or indirectspecular() and generateSamples(), methods
-/// that do it, which they call instead.
+/// Gives classes that call directlighting() and have a method evaluateSamples(), or indirectspecular() and generateSamples(),
+/// methods that do it, which they call instead.
 void addDirectLighting(SourceSet&, Preprocessed&);
 
 /// Gives class lights of PRMan that send their light through generateSamples() a method light() that takes it from there.

@@ -15,7 +15,10 @@ struct Preprocessed {
     std::vector<Annotation> annotations;
     std::vector<std::string> dependencies;
     bool incomplete = false; ///< an include was missing: unknown names later on may be its fault
-    struct Missing { Place place; std::string name; };
+    struct Missing {
+        Place place;
+        std::string name;
+    };
     std::vector<Missing> missing; ///< includes that were not found; whether that is an error depends on what is missed later
     /// The text after macros, one line for each line that gave a token.
     std::string text() const;

@@ -1,6 +1,6 @@
 // The lines that begin with #.
-#include "rsl/front/preprocessor_machine.h"
 #include "base/limits.h"
+#include "rsl/front/preprocessor_machine.h"
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -42,8 +42,14 @@ void Preprocessor::directive(Place hash) {
             return;
         }
         If& f = ifs_.back();
-        if (name == "endif") { ifs_.pop_back(); return; }
-        if (f.sawElse) { sources_.error(hash, "#" + std::string(name) + " after #else"); return; }
+        if (name == "endif") {
+            ifs_.pop_back();
+            return;
+        }
+        if (f.sawElse) {
+            sources_.error(hash, "#" + std::string(name) + " after #else");
+            return;
+        }
         const bool outer = ifs_.size() < 2 || ifs_[ifs_.size() - 2].taking;
         f.sawElse = name == "else";
         f.taking = outer && !f.taken && (name == "else" || condition(line, hash));
@@ -72,7 +78,8 @@ void Preprocessor::pragma(const std::vector<Token>& line) {
     if (line.size() < 2 || !line[1].is("annotation")) return;
     const auto isText = [&](size_t i) { return line[i].kind == Tok::String; };
     if (line.size() < 4 || !(isText(2) || line[2].kind == Tok::Identifier)) {
-        sources_.warning(line[1].place, "#pragma annotation needs a key and a value: it is ignored", "#pragma annotation \"key\" \"value\"");
+        sources_.warning(line[1].place, "#pragma annotation needs a key and a value: it is ignored",
+                         "#pragma annotation \"key\" \"value\"");
         return;
     }
     bool texts = true; // a key without quotes is common
@@ -110,7 +117,10 @@ bool Preprocessor::condition(std::vector<Token> line, Place hash) {
 }
 
 void Preprocessor::define(const std::vector<Token>& line, Place hash) {
-    if (line.size() < 2 || line[1].kind != Tok::Identifier) { sources_.error(hash, "#define needs a name"); return; }
+    if (line.size() < 2 || line[1].kind != Tok::Identifier) {
+        sources_.error(hash, "#define needs a name");
+        return;
+    }
     auto m = std::make_shared<Macro>();
     m->name = line[1].text;
     size_t i = 2;
@@ -118,11 +128,16 @@ void Preprocessor::define(const std::vector<Token>& line, Place hash) {
         m->function = true;
         for (++i; i < line.size() && !line[i].is(")"); ++i) {
             if (line[i].is(",")) continue;
-            if (line[i].is("...")) { m->variadic = true; m->parameters.push_back("__VA_ARGS__"); }
-            else if (line[i].kind == Tok::Identifier) m->parameters.push_back(line[i].text);
+            if (line[i].is("...")) {
+                m->variadic = true;
+                m->parameters.push_back("__VA_ARGS__");
+            } else if (line[i].kind == Tok::Identifier) m->parameters.push_back(line[i].text);
             else sources_.error(line[i].place, "a macro parameter is a name, not '" + std::string(line[i].text) + "'");
         }
-        if (i == line.size()) { sources_.error(hash, "the parameters of this macro have no ')'"); return; }
+        if (i == line.size()) {
+            sources_.error(hash, "the parameters of this macro have no ')'");
+            return;
+        }
         ++i;
     }
     m->body.assign(line.begin() + long(i), line.end());
@@ -142,7 +157,11 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
         name = spelled(line, 2);
         name = name.substr(0, name.find('>'));
     }
-    if (name.empty()) { sources_.error(hash, "#include needs \"file\" or <file>"); out_.incomplete = true; return; }
+    if (name.empty()) {
+        sources_.error(hash, "#include needs \"file\" or <file>");
+        out_.incomplete = true;
+        return;
+    }
     if (files_ > limits::kIncludeDepth) {
         if (!nestedTooDeep_)
             sources_.error(hash, "includes are nested more than " + std::to_string(limits::kIncludeDepth) + " deep");
@@ -175,7 +194,8 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     // A system that does not tell capitals from small letters found it.
     if (!shippedHeader(base) && includeAnyCase(folders, slashed)) {
         sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used",
-                         "did you mean \"" + slashed.substr(0, slashed.size() - base.size()) + fs::path(out_.dependencies.back()).filename().string() + "\"?");
+                         "did you mean \"" + slashed.substr(0, slashed.size() - base.size()) +
+                             fs::path(out_.dependencies.back()).filename().string() + "\"?");
         return;
     }
     const bool standard = slashed.find("stdrsl/") != slashed.npos; // PRMan's own, whose names are those of others
@@ -238,7 +258,8 @@ bool Preprocessor::includeAnyCase(const std::vector<std::string>& folders, const
         std::string found;
         int entries = 0;
         const fs::path in = fs::path(folder.empty() ? "." : folder) / path.parent_path();
-        for (fs::directory_iterator it(in, failed), end; !failed && it != end && ++entries <= limits::kFolderEntries; it.increment(failed)) {
+        for (fs::directory_iterator it(in, failed), end; !failed && it != end && ++entries <= limits::kFolderEntries;
+             it.increment(failed)) {
             const std::string own = it->path().filename().string();
             if (lower(own) == name && (found.empty() || own < found)) found = own;
         }

@@ -80,7 +80,10 @@ public:
     }
 
 private:
-    struct If { bool taking, taken, sawElse; Place place; };
+    struct If {
+        bool taking, taken, sawElse;
+        Place place;
+    };
 
     void pushFile(int file) {
         read_ += sources_.text(file).size();
@@ -117,14 +120,24 @@ private:
         while (!frames_.empty() && !stopped_) {
             Frame& f = frames_.back();
             if (!f.lexer) {
-                if (f.at < f.list.size()) { count(1); return f.list[f.at++]; }
+                if (f.at < f.list.size()) {
+                    count(1);
+                    return f.list[f.at++];
+                }
                 if (f.barrier) return {};
                 pop();
                 continue;
             }
             Token t = f.lexer->next();
-            if (t.kind == Tok::End) { last_ = t.place; pop(); continue; }
-            if (t.lineStart && t.is("#")) { directive(t.place); continue; }
+            if (t.kind == Tok::End) {
+                last_ = t.place;
+                pop();
+                continue;
+            }
+            if (t.lineStart && t.is("#")) {
+                directive(t.place);
+                continue;
+            }
             if (skipping()) continue;
             count(1);
             return t;
@@ -164,7 +177,10 @@ private:
             const auto found = macros_.find(t.text);
             if (found == macros_.end()) return t;
             const MacroPtr m = found->second;
-            if (m->active) { t.noExpand = true; return t; }
+            if (m->active) {
+                t.noExpand = true;
+                return t;
+            }
             std::vector<std::vector<Token>> arguments;
             if (m->function && (!nextIsOpen() || !gather(*m, t, arguments))) return t;
             auto list = substitute(*m, arguments, t);
@@ -194,8 +210,14 @@ private:
             if (t.is(")") && depth-- == 0) break;
             if (t.is("(")) ++depth;
             const bool last = m.variadic && arguments.size() == m.parameters.size();
-            if (t.is(",") && depth == 0 && !last) { arguments.emplace_back(); continue; }
-            if (t.lineStart) { t.lineStart = false; t.space = true; }
+            if (t.is(",") && depth == 0 && !last) {
+                arguments.emplace_back();
+                continue;
+            }
+            if (t.lineStart) {
+                t.lineStart = false;
+                t.space = true;
+            }
             arguments.back().push_back(t);
         }
         if (m.parameters.empty() && arguments.size() == 1 && arguments[0].empty()) arguments.clear();
@@ -203,7 +225,8 @@ private:
         if (arguments.size() != m.parameters.size()) {
             sources_.error(call.place, "macro '" + std::string(m.name) + "' takes " + std::to_string(m.parameters.size()) +
                                            " arguments, not " + std::to_string(arguments.size()));
-            // One mistake, one message: with the last argument in place of those missing the expansion is most likely well formed.
+            // One mistake, one message: with the last argument in place of those missing the expansion is most likely well
+            // formed.
             const std::vector<Token> filler = arguments.empty() ? std::vector<Token>{} : arguments.back();
             arguments.resize(m.parameters.size(), filler);
         }
@@ -275,7 +298,10 @@ private:
                     ++i;
                     const int r = m.parameter(m.body[i + 1].text);
                     if (r < 0) put(m.body[++i]);
-                    else { for (const Token& a : arguments[r]) put(a); ++i; }
+                    else {
+                        for (const Token& a : arguments[r]) put(a);
+                        ++i;
+                    }
                 }
             } else put(t);
         }
@@ -327,8 +353,8 @@ private:
     int files_ = 0, depth_ = 0;
     bool stopped_ = false;
     bool nestedTooDeep_ = false; ///< the limit of nested includes was reported
-    int includes_ = 0;    ///< #include lines that were followed
-    size_t read_ = 0;     ///< bytes of files so far
+    int includes_ = 0;           ///< #include lines that were followed
+    size_t read_ = 0;            ///< bytes of files so far
 };
 
 } // namespace alpenglow::rsl::front

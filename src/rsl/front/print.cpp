@@ -50,26 +50,40 @@ std::string declaration(const Symbol& s) {
 std::string print(const Expr& e) {
     const std::string type = ":" + toString(e.type);
     switch (e.kind) {
-    case ExprKind::Number: return number(e.number);
-    case ExprKind::String: return quoted(e.text);
-    case ExprKind::Variable: return e.symbol ? e.symbol->name : "?" + e.text;
-    case ExprKind::Index: return list(e, "index");
+    case ExprKind::Number:
+        return number(e.number);
+    case ExprKind::String:
+        return quoted(e.text);
+    case ExprKind::Variable:
+        return e.symbol ? e.symbol->name : "?" + e.text;
+    case ExprKind::Index:
+        return list(e, "index");
     case ExprKind::Unary:
-    case ExprKind::Binary: return list(e, word(e.op) + type);
+    case ExprKind::Binary:
+        return list(e, word(e.op) + type);
     case ExprKind::Assign: {
         static constexpr const char* kForms[] = {"", "+=", "-=", "*=", "/="};
         return list(e, e.op == ExprOp::Assign ? "=" : kForms[int(e.op)]);
     }
-    case ExprKind::Conditional: return list(e, "?" + type);
+    case ExprKind::Conditional:
+        return list(e, "?" + type);
     case ExprKind::Tuple:
-    case ExprKind::MatrixTuple: return list(e, toString(e.type));
-    case ExprKind::ArrayList: return list(e, "list" + type);
-    case ExprKind::Cast: return list(e, "cast" + type);
-    case ExprKind::ShadeopCall: return list(e, e.text + type);
-    case ExprKind::Sequence: return list(e, "then" + type);
-    case ExprKind::Member: return list(e, "->" + e.text + type);
-    case ExprKind::Method: return list(e, "->" + e.text + "()" + type);
-    case ExprKind::FunctionCall: return list(e, (e.shadeop ? "rsl " : "call ") + e.text + type);
+    case ExprKind::MatrixTuple:
+        return list(e, toString(e.type));
+    case ExprKind::ArrayList:
+        return list(e, "list" + type);
+    case ExprKind::Cast:
+        return list(e, "cast" + type);
+    case ExprKind::ShadeopCall:
+        return list(e, e.text + type);
+    case ExprKind::Sequence:
+        return list(e, "then" + type);
+    case ExprKind::Member:
+        return list(e, "->" + e.text + type);
+    case ExprKind::Method:
+        return list(e, "->" + e.text + "()" + type);
+    case ExprKind::FunctionCall:
+        return list(e, (e.shadeop ? "rsl " : "call ") + e.text + type);
     }
     return "?";
 }
@@ -83,18 +97,35 @@ std::string print(const Stmt& s) {
         t += ")";
     };
     switch (s.kind) {
-    case StmtKind::Block: t = "(block"; break;
+    case StmtKind::Block:
+        t = "(block";
+        break;
     case StmtKind::Declare:
         t = "(declare";
         for (const auto& d : s.declarators) t += " (" + declaration(*d.symbol) + (d.init ? " = " + print(*d.init) : "") + ")";
         return t + ")";
-    case StmtKind::Expression: return print(*s.value);
-    case StmtKind::If: t = "(if"; part(s.condition); break;
-    case StmtKind::While: t = "(while"; part(s.condition); break;
-    case StmtKind::For: t = "(for"; part(s.init); part(s.condition); part(s.step); break;
-    case StmtKind::Break: return "(break " + std::to_string(s.levels) + ")";
-    case StmtKind::Continue: return "(continue " + std::to_string(s.levels) + ")";
-    case StmtKind::Return: return s.value ? "(return " + print(*s.value) + ")" : "(return)";
+    case StmtKind::Expression:
+        return print(*s.value);
+    case StmtKind::If:
+        t = "(if";
+        part(s.condition);
+        break;
+    case StmtKind::While:
+        t = "(while";
+        part(s.condition);
+        break;
+    case StmtKind::For:
+        t = "(for";
+        part(s.init);
+        part(s.condition);
+        part(s.step);
+        break;
+    case StmtKind::Break:
+        return "(break " + std::to_string(s.levels) + ")";
+    case StmtKind::Continue:
+        return "(continue " + std::to_string(s.levels) + ")";
+    case StmtKind::Return:
+        return s.value ? "(return " + print(*s.value) + ")" : "(return)";
     case StmtKind::Illuminance:
     case StmtKind::Illuminate:
     case StmtKind::Solar:

@@ -31,9 +31,7 @@ int takeNumber(std::string_view& s, char mark) {
     if (n >= 0) s = s.substr(0, at);
     return n;
 }
-std::string elementOf(std::string text, int element) {
-    return element < 0 ? text : text + "[" + std::to_string(element) + "]";
-}
+std::string elementOf(std::string text, int element) { return element < 0 ? text : text + "[" + std::to_string(element) + "]"; }
 
 } // namespace
 
@@ -52,10 +50,16 @@ InputName InputName::parse(std::string_view s) {
 std::string InputName::text() const {
     std::string t;
     switch (kind) {
-    case Kind::Variable: return name;
-    case Kind::Parameter: t = kParameter; break;
-    case Kind::Displacement: t = kDisplacement; break;
-    case Kind::Space: return std::string(kSpace) + from + ">" + to;
+    case Kind::Variable:
+        return name;
+    case Kind::Parameter:
+        t = kParameter;
+        break;
+    case Kind::Displacement:
+        t = kDisplacement;
+        break;
+    case Kind::Space:
+        return std::string(kSpace) + from + ">" + to;
     }
     if (member) t += kMember;
     t += name;

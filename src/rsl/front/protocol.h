@@ -50,10 +50,10 @@ struct OutputName {
     bool parameter = false; ///< "param:": any parameter; else a variable, an output parameter or a channel
     bool member =
         false; ///< with `parameter`: a member of a class that displacement() leaves to its other methods, "param:this->NAME"
-    bool length = false;    ///< of that the number of elements, "param:this->NAME#"
-    std::string name;       ///< without all of that
-    int element = -1;       ///< of an array: "list[1]"; -1: the whole
-    int block = 0;          ///< of a light: the number of its illuminate or solar statement, from the second on "Cl#1"
+    bool length = false; ///< of that the number of elements, "param:this->NAME#"
+    std::string name;    ///< without all of that
+    int element = -1;    ///< of an array: "list[1]"; -1: the whole
+    int block = 0;       ///< of a light: the number of its illuminate or solar statement, from the second on "Cl#1"
 
     static OutputName parse(std::string_view);
     /// A variable or an output as displays name it.
@@ -104,7 +104,7 @@ struct HeardMember {
 };
 
 // Further string parameters that say how a kernel is to be built.
-inline constexpr char kBeginQuiet[] = "begin()";    ///< begin() of the class prints nothing
+inline constexpr char kBeginQuiet[] = "begin()";     ///< begin() of the class prints nothing
 inline constexpr char kOpacityAlone[] = "opacity()"; ///< what the method opacity() gives is Oi
 /// Under it the number of elements that the scene gave an array of open length.
 std::string lengthParameter(std::string_view array);
@@ -131,10 +131,10 @@ inline constexpr char kPairSetUp[] = "__setup";     ///< a loop over lights has 
 inline constexpr char kPairOutside[] = "__outside"; ///< outside of loops over lights
 inline constexpr char kPairPart[] = "__part";       ///< of the form of trace() that gives an array: which element
 inline constexpr char kPairOnce[] = "__once";       ///< in construct(): once for the shader
-inline constexpr char kPairGather[] = "__gather";   ///< of the two sites of a gather, its rays and a turn: its number in the shader
+inline constexpr char kPairGather[] = "__gather"; ///< of the two sites of a gather, its rays and a turn: its number in the shader
 inline constexpr char kPairPoints[] = "__points"; ///< a call that is answered from point clouds
 inline constexpr char kPairHemisphere[] = "__hemisphere"; ///< a trace() that is an indirectdiffuse(): over the hemisphere
-inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes the answer is uniform
+inline constexpr char kPairUniform[] = "__uniform";       ///< the variable that takes the answer is uniform
 
 /// ir::Site::resultNames of a query: its answer, and before that of an array of open length how long it is.
 std::string lengthResult(std::string_view name);

@@ -1,6 +1,7 @@
 // Class lights of PRMan that send their light through generateSamples(). Before anything is parsed they get a method light() that
-// asks for the samples and puts each into two outputs, from which light loops take a turn for each (transport: BoundLight::sentL).
-// And classes that say what they send by emit() in prelighting(): they get a light() that sends it from the surface of a primitive.
+// asks for the samples and puts each into two outputs, from which light loops take a turn for each (transport:
+// BoundLight::sentL). And classes that say what they send by emit() in prelighting(): they get a light() that sends it from the
+// surface of a primitive.
 #include "base/limits.h"
 #include "rsl/front/prelude.h"
 #include <algorithm>
@@ -16,9 +17,9 @@ constexpr const char* kOutputs = "output varying vector __sentL[MOST] = {0}; out
 /// Where the class wants shadows and does not say how: shadowSamples() of PRMan without areashadow().
 constexpr const char* kShadows = "uniform float __sentShadows = 1;";
 
-// What a sample with radiance R and density pdf of n adds to the irradiance over pi that Cl means is R / (pi pdf n). A density of zero
-// says that there is no sample. Those beyond MOST share the places of others: of two one is kept, in proportion to its luminance, for
-// both.
+// What a sample with radiance R and density pdf of n adds to the irradiance over pi that Cl means is R / (pi pdf n). A density of
+// zero says that there is no sample. Those beyond MOST share the places of others: of two one is kept, in proportion to its
+// luminance, for both.
 constexpr const char* kLight = R"(
     public void light(output vector L; output color Cl) {
         __radiancesample sent[];
@@ -85,7 +86,8 @@ struct Found {
     bool generates = false, surface = false;
     bool shadows = false, casts = false; ///< it has shadowSamples(); that calls areashadow()
     std::vector<size_t> emits;           ///< calls of emit() in prelighting(), which has two parameters
-    bool domain = false; ///< generateSamples() has a parameter that lights of PRMan call so; layers of materials call theirs otherwise
+    bool domain =
+        false; ///< generateSamples() has a parameter that lights of PRMan call so; layers of materials call theirs otherwise
 };
 
 /// What stands between parameters or arguments from `begin` to the bracket before `end`.
@@ -100,8 +102,8 @@ int separators(const Tokens& t, size_t begin, size_t end) {
 }
 
 Found methodsOf(const Tokens& t, size_t body, size_t end) {
-    constexpr std::array<std::string_view, 8> kOthers = {"surface", "lighting", "diffuselighting", "specularlighting",
-                                                         "displacement", "volume", "imager", "opacity"};
+    constexpr std::array<std::string_view, 8> kOthers = {"surface",      "lighting", "diffuselighting", "specularlighting",
+                                                         "displacement", "volume",   "imager",          "opacity"};
     Found f;
     int depth = 0;
     for (size_t k = body + 1; k + 2 < end; ++k) {
@@ -125,7 +127,8 @@ Found methodsOf(const Tokens& t, size_t body, size_t end) {
         }
         if (t[k + 1].is("prelighting") && separators(t, k + 3, last) == 1)
             for (size_t i = last; i + 1 < close; ++i)
-                if (t[i].is("emit") && t[i + 1].is("(") && behind(t, i + 1) < close && t[behind(t, i + 1)].is(";")) f.emits.push_back(i);
+                if (t[i].is("emit") && t[i + 1].is("(") && behind(t, i + 1) < close && t[behind(t, i + 1)].is(";"))
+                    f.emits.push_back(i);
         for (std::string_view o : kOthers) f.surface |= t[k + 1].is(o);
     }
     return f;
@@ -138,7 +141,8 @@ std::string replaced(std::string text, const std::string& word, const std::strin
 
 /// The tokens of a text of our own.
 Tokens tokensOf(SourceSet& sources, const std::string& text) {
-    Preprocessed own = preprocess(sources, sources.add("<generateSamples>", replaced(text, "MOST", std::to_string(limits::kLightTurns))), {});
+    Preprocessed own =
+        preprocess(sources, sources.add("<generateSamples>", replaced(text, "MOST", std::to_string(limits::kLightTurns))), {});
     own.tokens.pop_back(); // the end
     return std::move(own.tokens);
 }
@@ -157,8 +161,8 @@ Tokens emission(const Tokens& t, size_t call) {
         if (t[end].is("(") || t[end].is("[") || t[end].is("{")) ++depth;
         if (t[end].is(")") || t[end].is("]") || t[end].is("}")) --depth;
     }
-    Tokens out = {token(Tok::Punct, "{"), token(Tok::Identifier, "__emitted"), token(Tok::Punct, "+="), token(Tok::Identifier, "color"),
-                  token(Tok::Punct, "(")};
+    Tokens out = {token(Tok::Punct, "{"), token(Tok::Identifier, "__emitted"), token(Tok::Punct, "+="),
+                  token(Tok::Identifier, "color"), token(Tok::Punct, "(")};
     out.insert(out.end(), t.begin() + long(call) + 2, t.begin() + long(end));
     out.push_back(token(Tok::Punct, ")"));
     out.push_back(token(Tok::Punct, ";"));
@@ -168,7 +172,8 @@ Tokens emission(const Tokens& t, size_t call) {
 } // namespace
 
 void addSampledLights(SourceSet& sources, Preprocessed& p) {
-    if (std::none_of(p.tokens.begin(), p.tokens.end(), [](const Token& t) { return t.is("generateSamples") || t.is("emit"); })) return;
+    if (std::none_of(p.tokens.begin(), p.tokens.end(), [](const Token& t) { return t.is("generateSamples") || t.is("emit"); }))
+        return;
     Tokens& t = p.tokens;
     Tokens out;
     std::vector<std::pair<size_t, size_t>> moved; // from this token on, so many more: the places of annotations

@@ -47,12 +47,14 @@ void Checker::settle(ExprPtr& e, Type want, Handle handle) {
     int cost = kNever;
     for (Base b : kAll) {
         const int c = info.cost[int(b)] + implicitCost(b, want.base);
-        if (c < cost) { cost = c; best = b; }
+        if (c < cost) {
+            cost = c;
+            best = b;
+        }
     }
     if (best == Base::Void || (want.base == Base::String && !alike(info.handle, handle))) {
         std::string hint;
-        if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple())
-            hint = componentHint(cheapest(info));
+        if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple()) hint = componentHint(cheapest(info));
         sources_.error(e->place, "expected a " + named(want, handle) + ", not " + describe(*e), hint);
         e->type = want;
         return;
@@ -109,12 +111,18 @@ void Checker::settleIndexed(ExprPtr& e) {
 
 void Checker::settleCondition(ExprPtr& e) {
     const Info& info = infos_.at(e.get());
-    if (info.any) { e->type = {Base::Bool, 0}; return; }
+    if (info.any) {
+        e->type = {Base::Bool, 0};
+        return;
+    }
     Base best = Base::Void;
     int cost = kNever;
     for (Base b : kAll) {
         const int c = info.cost[int(b)] + conditionCost(b);
-        if (c < cost) { cost = c; best = b; }
+        if (c < cost) {
+            cost = c;
+            best = b;
+        }
     }
     if (best == Base::Void) {
         sources_.error(e->place, describe(*e) + " cannot be a condition");
@@ -144,7 +152,10 @@ void Checker::settleCondition(ExprPtr& e) {
 
 void Checker::settleArray(ExprPtr& e, Type want, Handle handle) {
     const Info& info = infos_.at(e.get());
-    if (info.any) { e->type = want; return; }
+    if (info.any) {
+        e->type = want;
+        return;
+    }
     if (e->kind == ExprKind::ArrayList) {
         const int length = want.array > 0 ? want.array : std::max(1, info.listLength);
         if (int(e->args.size()) > length) {
@@ -202,7 +213,10 @@ void Checker::settleVariable(ExprPtr& e) {
 
 void Checker::settleAs(ExprPtr& e, Base t) {
     const Info& info = infos_.at(e.get());
-    if (info.any) { e->type = {t, 0}; return; }
+    if (info.any) {
+        e->type = {t, 0};
+        return;
+    }
     switch (e->kind) {
     case ExprKind::Number:
     case ExprKind::String:
@@ -247,8 +261,12 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         if (function_) varyingFunctions_.insert(function_);
         program_.handles = true;
         return;
-    case ExprKind::Binary: settleBinary(e, t); return;
-    case ExprKind::Assign: settleAssign(e); return;
+    case ExprKind::Binary:
+        settleBinary(e, t);
+        return;
+    case ExprKind::Assign:
+        settleAssign(e);
+        return;
     case ExprKind::Conditional:
         settleCondition(e->args[0]);
         // Truth values are no values: 0 and 1 where they meet as results.
@@ -269,7 +287,10 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         int cost = kNever;
         for (Base b : kAll) {
             const int c = a.cost[int(b)] + castCost(b, t);
-            if (c < cost) { cost = c; best = b; }
+            if (c < cost) {
+                cost = c;
+                best = b;
+            }
         }
         settleAs(e->args[0], best);
         becomesTuple(a, *e->args[0], t);
@@ -289,9 +310,12 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         e->type = {t, 0};
         break;
     }
-    case ExprKind::ShadeopCall: settleCall(e, {t, 0}); return;
+    case ExprKind::ShadeopCall:
+        settleCall(e, {t, 0});
+        return;
     case ExprKind::ArrayList:
-    case ExprKind::FunctionCall: return;
+    case ExprKind::FunctionCall:
+        return;
     }
     finish(*e);
 }
@@ -308,7 +332,12 @@ void Checker::settleBinary(ExprPtr& e, Base t) {
             const auto o = operation(e->op, a, b);
             if (!o || o->result != t) continue;
             const int c = l.cost[int(a)] + r.cost[int(b)] + operandCost(e->op, *o, l, a, r, b);
-            if (c < cost) { cost = c; left = a; right = b; best = *o; }
+            if (c < cost) {
+                cost = c;
+                left = a;
+                right = b;
+                best = *o;
+            }
         }
     if (best.operand == Base::Bool) {
         settleCondition(e->args[0]);
@@ -373,7 +402,11 @@ void Checker::settleAssign(ExprPtr& e) {
             const auto o = operation(e->op, target.base, b);
             if (!o || implicitCost(o->result, target.base) >= kNever) continue;
             const int c = r.cost[int(b)] + operandCost(e->op, *o, l, target.base, r, b) + implicitCost(o->result, target.base);
-            if (c < cost) { cost = c; best = b; operand = o->operand; }
+            if (c < cost) {
+                cost = c;
+                best = b;
+                operand = o->operand;
+            }
         }
         settleAs(e->args[1], best);
         if (!isPointLike(target.base) || e->op == ExprOp::Add || e->op == ExprOp::Sub) becomesTuple(r, *e->args[1], target.base);
@@ -416,13 +449,13 @@ void Checker::written(const Expr& variable) {
         return;
     }
     switch (s->origin) {
-    case Symbol::Origin::Local: break;
+    case Symbol::Origin::Local:
+        break;
     case Symbol::Origin::Global:
         if (s->writable || (foreignLight_ && (s->name == "Cl" || s->name == "Ol"))) break;
         // Old surfaces move P, as PRMan let them: the renderer displaces the primitive (world/displacement.cpp).
         if (kind_ == ShaderKind::Surface && s->name == "P") break;
-        if (s->storage == Storage::Uniform)
-            sources_.error(variable.place, name + " cannot be written");
+        if (s->storage == Storage::Uniform) sources_.error(variable.place, name + " cannot be written");
         else
             sources_.warning(variable.place, name + std::string(" is read-only") +
                                                  (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : "") +

@@ -45,8 +45,7 @@ std::string_view SourceSet::keep(std::string s) {
 
 bool SourceSet::tooMany() const { return errors_ >= limits::kFrontErrors; }
 
-void SourceSet::note(Severity severity, Place place, std::string message, std::string hint,
-                     std::vector<std::string> notes) {
+void SourceSet::note(Severity severity, Place place, std::string message, std::string hint, std::vector<std::string> notes) {
     if (muted) return;
     if (unused && severity >= Severity::Error) {
         severity = Severity::Warning;

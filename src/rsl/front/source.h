@@ -39,8 +39,19 @@ public:
     void flush(Diagnostics&);
 
 private:
-    struct Entry { std::string name; const std::string* text = nullptr; int view = -1; int delta = 0; };
-    struct Message { Place place; Severity severity; std::string text, hint; std::vector<std::string> notes; size_t order = 0; };
+    struct Entry {
+        std::string name;
+        const std::string* text = nullptr;
+        int view = -1;
+        int delta = 0;
+    };
+    struct Message {
+        Place place;
+        Severity severity;
+        std::string text, hint;
+        std::vector<std::string> notes;
+        size_t order = 0;
+    };
     void note(Severity, Place, std::string message, std::string hint, std::vector<std::string> notes = {});
     std::string line(Place) const;
     std::vector<Entry> entries_;

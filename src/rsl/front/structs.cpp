@@ -155,10 +155,14 @@ Type Lowering::typeOf(const Expr& e) const {
             if (f->second.parameters.size() == e.args.size() && isStruct(f->second.type)) return f->second.type;
         return kNone;
     }
-    case ExprKind::Conditional: return typeOf(*e.args[1]);
-    case ExprKind::Assign: return typeOf(*e.args[0]);
-    case ExprKind::Cast: return isStruct(e.type) ? e.type : kNone;
-    default: return kNone;
+    case ExprKind::Conditional:
+        return typeOf(*e.args[1]);
+    case ExprKind::Assign:
+        return typeOf(*e.args[0]);
+    case ExprKind::Cast:
+        return isStruct(e.type) ? e.type : kNone;
+    default:
+        return kNone;
     }
 }
 

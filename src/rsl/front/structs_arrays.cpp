@@ -1,6 +1,6 @@
-// Arrays of structures that hold arrays: a member of n elements in an array of m structures is one array of m * n. What one structure
-// has of it is a slice, an Index node with `text` "slice", args the variable and where it begins, `number` its length; no slice is left
-// when the pass is done.
+// Arrays of structures that hold arrays: a member of n elements in an array of m structures is one array of m * n. What one
+// structure has of it is a slice, an Index node with `text` "slice", args the variable and where it begins, `number` its length;
+// no slice is left when the pass is done.
 #include "base/limits.h"
 #include "rsl/front/clone.h"
 #include "rsl/front/structs_lowering.h"
@@ -24,7 +24,10 @@ ExprPtr number(double value, Place place) {
 /// a + b, a * b; of two numbers the number.
 ExprPtr joined(ExprOp op, ExprPtr a, ExprPtr b) {
     if (a->kind == ExprKind::Number && b->kind == ExprKind::Number)
-        return number(op == ExprOp::Add ? a->number + b->number : op == ExprOp::Mul ? a->number * b->number : a->number / b->number, a->place);
+        return number(op == ExprOp::Add   ? a->number + b->number
+                      : op == ExprOp::Mul ? a->number * b->number
+                                          : a->number / b->number,
+                      a->place);
     if (op == ExprOp::Add && a->kind == ExprKind::Number && a->number == 0) return b;
     if (op == ExprOp::Add && b->kind == ExprKind::Number && b->number == 0) return a;
     auto e = node(ExprKind::Binary, a->place, op);
@@ -44,7 +47,8 @@ ExprPtr shipped(const char* name, ExprPtr a, Place place) {
 /// How many structures so many elements are, of which each has `each`; what a scene gives may end within one.
 ExprPtr wholeStructures(ExprPtr elements, int each) {
     const Place place = elements->place;
-    return each == 1 ? std::move(elements) : shipped("floor", joined(ExprOp::Div, std::move(elements), number(each, place)), place);
+    return each == 1 ? std::move(elements)
+                     : shipped("floor", joined(ExprOp::Div, std::move(elements), number(each, place)), place);
 }
 
 ExprPtr indexed(ExprPtr array, ExprPtr at) {
@@ -79,7 +83,9 @@ const StructMember* Lowering::openMember(Type t) const {
 bool Lowering::arrayPossible(Type t, Place place) {
     if (t.array == 0) return true;
     if (const StructMember* open = openMember({t.base, 0})) {
-        sources_.error(place, "member '" + open->name + "' of " + shown({t.base, 0}) + " changes its length: there are no arrays of this structure",
+        sources_.error(place,
+                       "member '" + open->name + "' of " + shown({t.base, 0}) +
+                           " changes its length: there are no arrays of this structure",
                        "with a length of its own, as in " + open->name + "[8], there are");
         return false;
     }
@@ -92,14 +98,15 @@ bool Lowering::arrayPossible(Type t, Place place) {
     return true;
 }
 
-/// Which of `length` structures an index means: whole, and the nearest that there is. `array` has `each` elements for each of them.
+/// Which of `length` structures an index means: whole, and the nearest that there is. `array` has `each` elements for each of
+/// them.
 ExprPtr Lowering::bounded(ExprPtr index, int length, const Expr& array, int each) {
     const Place place = index->place;
     if (index->kind == ExprKind::Number && length > 0) {
         const double at = std::trunc(index->number), nearest = std::min(std::max(at, 0.0), double(length - 1));
         if (at != nearest)
-            sources_.warning(place, "index " + fmt::format("{:.9g}", at) + " is outside the array of length " + std::to_string(length) +
-                                        "; the nearest element is taken");
+            sources_.warning(place, "index " + fmt::format("{:.9g}", at) + " is outside the array of length " +
+                                        std::to_string(length) + "; the nearest element is taken");
         return number(nearest, place);
     }
     ExprPtr last = number(length - 1, place);
@@ -134,7 +141,9 @@ void Lowering::elements(ExprPtr array, Type type, List& pre, List& out) {
     const int n = type.array;
     if (array->kind == ExprKind::ArrayList) {
         List& given = array->args;
-        if (int(given.size()) > n) sources_.error(given[size_t(n)]->place, std::to_string(given.size()) + " elements for an array of " + std::to_string(n));
+        if (int(given.size()) > n)
+            sources_.error(given[size_t(n)]->place,
+                           std::to_string(given.size()) + " elements for an array of " + std::to_string(n));
         const ExprPtr last = array->text == "..." && !given.empty() ? clone(*given.back()) : nullptr;
         for (int k = 0; k < n; ++k) {
             if (k < int(given.size())) out.push_back(std::move(given[size_t(k)]));
@@ -168,7 +177,8 @@ void Lowering::store(ExprPtr left, ExprPtr right, Base base, Place place, List& 
     const int n = int(left->number);
     List values;
     elements(std::move(right), {base, n}, pre, values);
-    for (int k = 0; k < n; ++k) pre.push_back(assign(partAt(clone(*left), number(k, place), 0), std::move(values[size_t(k)]), place));
+    for (int k = 0; k < n; ++k)
+        pre.push_back(assign(partAt(clone(*left), number(k, place), 0), std::move(values[size_t(k)]), place));
 }
 
 /// A member of a structure that is an array of no structures.
@@ -233,7 +243,8 @@ bool Lowering::putsOut(const std::string& function, size_t arguments, size_t i) 
     return false;
 }
 
-/// A part of an argument: of a slice its values; where they are put out a variable that takes them, from which `after` has them back.
+/// A part of an argument: of a slice its values; where they are put out a variable that takes them, from which `after` has them
+/// back.
 ExprPtr Lowering::argument(ExprPtr part, Type type, bool output, List& pre, List& after) {
     if (!isSlice(*part)) return part;
     if (!output) return whole(std::move(part));
@@ -338,7 +349,8 @@ void Lowering::listOf(Expr& e, Type want, List& pre, List& out) {
     for (size_t i = 0; i < all.size(); ++i) {
         const size_t each = size_t(all[i].type.array), full = each * size_t(std::max(0, want.array));
         if (each && e.text == "...") // the last structure again for the rest
-            while (lists[i]->args.size() >= each && lists[i]->args.size() < full) adopt(*lists[i], clone(*lists[i]->args[lists[i]->args.size() - each]));
+            while (lists[i]->args.size() >= each && lists[i]->args.size() < full)
+                adopt(*lists[i], clone(*lists[i]->args[lists[i]->args.size() - each]));
         out.push_back(std::move(lists[i]));
     }
 }

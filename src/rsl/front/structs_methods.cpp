@@ -1,5 +1,5 @@
-// Methods of structures: each becomes a function whose first parameter, "this", is the structure. Bare names of members and methods
-// in its body mean those of this structure, unless a parameter or a local variable hides them.
+// Methods of structures: each becomes a function whose first parameter, "this", is the structure. Bare names of members and
+// methods in its body mean those of this structure, unless a parameter or a local variable hides them.
 #include "rsl/front/clone.h"
 #include "rsl/front/structs_lowering.h"
 #include <set>

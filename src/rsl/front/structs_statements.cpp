@@ -99,8 +99,12 @@ void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
         out.push_back(std::move(s));
         break;
     }
-    case StmtKind::Declare: declare(std::move(s), out); break;
-    case StmtKind::Expression: expression(std::move(s), out); break;
+    case StmtKind::Declare:
+        declare(std::move(s), out);
+        break;
+    case StmtKind::Expression:
+        expression(std::move(s), out);
+        break;
     case StmtKind::Return: {
         if (!isStruct(result_) || !s->value) {
             rewrite(s->value);

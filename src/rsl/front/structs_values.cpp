@@ -22,8 +22,7 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
     }
     const Type have = typeOf(*e);
     const bool fits = derives(have, want.base) && // of one that extends it the part that it extends
-                       (have.array != 0) == (want.array != 0) &&
-                      (have.array == want.array || have.array < 0 || want.array < 0);
+                      (have.array != 0) == (want.array != 0) && (have.array == want.array || have.array < 0 || want.array < 0);
     if (!fits) {
         if (isStruct(have)) sources_.error(place, "expected " + shown(want) + ", not " + shown(have));
         else {
@@ -99,8 +98,10 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
         }
         return;
     }
-    case ExprKind::Member: return pick(*e, pre, out);
-    case ExprKind::Cast: return flatten(std::move(e->args[0]), pre, out);
+    case ExprKind::Member:
+        return pick(*e, pre, out);
+    case ExprKind::Cast:
+        return flatten(std::move(e->args[0]), pre, out);
     case ExprKind::Conditional: {
         const std::string t = temporary({Base::Float, 0}, place);
         auto choose = node(ExprKind::Conditional, place);
@@ -155,7 +156,8 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
         }
         return;
     }
-    case ExprKind::Assign: return assignTo(*e, pre, &out);
+    case ExprKind::Assign:
+        return assignTo(*e, pre, &out);
     case ExprKind::ShadeopCall: {
         if (structNamed(e->text) >= 0) return construct(type, *e, pre, out);
         if (e->text == "pop") return popLast(*e, type, pre, out);
@@ -186,7 +188,8 @@ void Lowering::pick(Expr& e, List& pre, List& out) {
     for (const StructMember& m : structOf(type).members) {
         const size_t parts = isStruct(m.type) ? leaves(m.type).size() : 1;
         if (m.name == e.text)
-            for (size_t i = 0; i < parts; ++i) out.push_back(at + i < base.size() ? std::move(base[at + i]) : variable("", e.place));
+            for (size_t i = 0; i < parts; ++i)
+                out.push_back(at + i < base.size() ? std::move(base[at + i]) : variable("", e.place));
         at += parts;
     }
 }
@@ -205,7 +208,8 @@ void Lowering::assignTo(Expr& e, List& pre, List* value) {
     flatten(std::move(e.args[0]), pre, left);
     valueOf(std::move(e.args[1]), type, pre, right);
     if ((!simple || (list && !type.array)) && right.size() > 1) spill(right, type, pre, place); // a = S(a->y, a->x)
-    for (size_t i = 0; value && i < left.size(); ++i) value->push_back(clone(*left[i])); // indices are numbers and variables by now
+    for (size_t i = 0; value && i < left.size(); ++i)
+        value->push_back(clone(*left[i])); // indices are numbers and variables by now
     const auto all = leaves(type);
     for (size_t i = 0; i < left.size() && i < right.size() && i < all.size(); ++i)
         store(std::move(left[i]), std::move(right[i]), all[i].type.base, place, pre);
@@ -216,7 +220,8 @@ bool Lowering::path(const Expr& e) {
     return (e.kind == ExprKind::Index || e.kind == ExprKind::Member) && path(*e.args[0]);
 }
 
-/// Structures of the same members are not the same: behind this pass nobody could tell. Reported once for the first that does not fit.
+/// Structures of the same members are not the same: behind this pass nobody could tell. Reported once for the first that does not
+/// fit.
 void Lowering::checkArguments(Expr& call) {
     const auto [from, to] = functions_.equal_range(call.text);
     const Expr* wrong = nullptr;
@@ -244,9 +249,7 @@ void Lowering::checkArguments(Expr& call) {
     call.text.clear(); // nothing more is said about this call
 }
 
-Whole Lowering::wholeOf(Type t, size_t members, bool self) {
-    return {int(t.base) - kFirstStruct, int(members), t.array, self};
-}
+Whole Lowering::wholeOf(Type t, size_t members, bool self) { return {int(t.base) - kFirstStruct, int(members), t.array, self}; }
 
 void Lowering::arguments(Expr& call, List& pre, List& after) {
     checkArguments(call);
@@ -274,7 +277,8 @@ void Lowering::arguments(Expr& call, List& pre, List& after) {
         if (isStruct({want, 0}) && parts.size() > all.size()) parts.resize(all.size());
         const bool output = putsOut(call.text, given.size(), i);
         const size_t first = call.args.size();
-        for (size_t n = 0; n < parts.size(); ++n) adopt(call, argument(std::move(parts[n]), n < all.size() ? all[n].type : kNone, output, pre, after));
+        for (size_t n = 0; n < parts.size(); ++n)
+            adopt(call, argument(std::move(parts[n]), n < all.size() ? all[n].type : kNone, output, pre, after));
         const bool self = i == 0 && call.text.find("->") != call.text.npos;
         if (first < call.args.size()) call.args[first]->whole = wholeOf(type, call.args.size() - first, self);
     }
@@ -353,7 +357,8 @@ void Lowering::rewrite(ExprPtr& e) {
                 std::vector<std::string> names;
                 for (const StructMember& x : structOf(t).members) names.push_back(x.name);
                 const std::string near = nearestName(e->text, names);
-                if (t.array) sources_.error(e->place, "this is an array of " + shown(t), "its elements have members: a[i]->" + e->text);
+                if (t.array)
+                    sources_.error(e->place, "this is an array of " + shown(t), "its elements have members: a[i]->" + e->text);
                 else
                     sources_.error(e->place, shown(t) + " has no member '" + e->text + "'",
                                    near.empty() ? "" : "did you mean '" + near + "'?");
@@ -371,7 +376,8 @@ void Lowering::rewrite(ExprPtr& e) {
                 e->height = std::max(e->height, e->args[0]->height + 1);
                 return;
             }
-            if (array && !pre.empty()) sources_.error(place, "an array in the result of a call must be stored in a variable first");
+            if (array && !pre.empty())
+                sources_.error(place, "an array in the result of a call must be stored in a variable first");
             sequence(e, std::move(pre));
             return;
         }

@@ -16,7 +16,10 @@ Base Checker::cheapest(const Info& info) {
     Base best = Base::Void;
     int cost = info.cost[0];
     for (Base b : kAll)
-        if (info.cost[int(b)] < cost) { cost = info.cost[int(b)]; best = b; }
+        if (info.cost[int(b)] < cost) {
+            cost = info.cost[int(b)];
+            best = b;
+        }
     return best;
 }
 
@@ -59,16 +62,25 @@ Checker::Info& Checker::survey(Expr& e) {
     Info& info = infos_[&e]; // references into the map stay valid
     info = Info();
     switch (e.kind) {
-    case ExprKind::Number: info.cost[int(Base::Float)] = 0; break;
+    case ExprKind::Number:
+        info.cost[int(Base::Float)] = 0;
+        break;
     case ExprKind::String:
         info.cost[int(Base::String)] = 0;
         info.handle = e.handle ? Handle::Shader : Handle::Text;
         break;
-    case ExprKind::Variable: surveyVariable(e, info); break;
-    case ExprKind::Index: surveyIndex(e, info); break;
+    case ExprKind::Variable:
+        surveyVariable(e, info);
+        break;
+    case ExprKind::Index:
+        surveyIndex(e, info);
+        break;
     case ExprKind::Unary: {
         const Info& a = survey(*e.args[0]);
-        if (a.any) { info.any = true; break; }
+        if (a.any) {
+            info.any = true;
+            break;
+        }
         if (e.op == ExprOp::Not) {
             int c = kNever;
             for (Base b : kAll) c = std::min(c, sum(a.cost[int(b)], conditionCost(b)));
@@ -85,9 +97,15 @@ Checker::Info& Checker::survey(Expr& e) {
         }
         break;
     }
-    case ExprKind::Binary: surveyBinary(e, info); break;
-    case ExprKind::Assign: surveyAssign(e, info); break;
-    case ExprKind::Conditional: surveyConditional(e, info); break;
+    case ExprKind::Binary:
+        surveyBinary(e, info);
+        break;
+    case ExprKind::Assign:
+        surveyAssign(e, info);
+        break;
+    case ExprKind::Conditional:
+        surveyConditional(e, info);
+        break;
     case ExprKind::Tuple:
     case ExprKind::MatrixTuple: {
         int cost = 0;
@@ -103,25 +121,35 @@ Checker::Info& Checker::survey(Expr& e) {
         }
         if (info.any) break;
         if (e.kind == ExprKind::MatrixTuple) info.cost[int(Base::Matrix)] = cost;
-        else for (Base b : kTuples) info.cost[int(b)] = cost;
+        else
+            for (Base b : kTuples) info.cost[int(b)] = cost;
         break;
     }
     case ExprKind::ArrayList:
         info.listLength = int(e.args.size());
         info.handle = Handle::Either;
         for (auto& a : e.args)
-            if (const Info& i = survey(*a); i.cost[int(Base::String)] < kNever && info.handle == Handle::Either) info.handle = i.handle;
+            if (const Info& i = survey(*a); i.cost[int(Base::String)] < kNever && info.handle == Handle::Either)
+                info.handle = i.handle;
         break;
-    case ExprKind::Cast: surveyCast(e, info); break;
-    case ExprKind::ShadeopCall: surveyCall(e, info); break;
-    case ExprKind::FunctionCall: info.any = true; break;
+    case ExprKind::Cast:
+        surveyCast(e, info);
+        break;
+    case ExprKind::ShadeopCall:
+        surveyCall(e, info);
+        break;
+    case ExprKind::FunctionCall:
+        info.any = true;
+        break;
     case ExprKind::Sequence:
         for (auto& a : e.args) survey(*a);
         info = infos_.at(e.args.back().get());
         info.choices.clear();
         break;
     case ExprKind::Member:
-    case ExprKind::Method: surveyMember(e, info); break;
+    case ExprKind::Method:
+        surveyMember(e, info);
+        break;
     }
     return info;
 }
@@ -143,7 +171,10 @@ void Checker::surveyMember(Expr& e, Info& info) {
 }
 
 void Checker::surveyVariable(Expr& e, Info& info) {
-    if (e.text.empty()) { info.any = true; return; }
+    if (e.text.empty()) {
+        info.any = true;
+        return;
+    }
     Symbol* s = e.symbol ? e.symbol : lookup(e.text);
     if (!s && e.text == "PI") {
         e.kind = ExprKind::Number;
@@ -184,7 +215,10 @@ void Checker::surveyVariable(Expr& e, Info& info) {
 void Checker::surveyIndex(Expr& e, Info& info) {
     const Info& base = survey(*e.args[0]);
     const Info& index = survey(*e.args[1]);
-    if (base.any) { info.any = true; return; }
+    if (base.any) {
+        info.any = true;
+        return;
+    }
     const bool ofHandle = e.args[0]->kind == ExprKind::Member; // an element of an array or a component: what is wanted
     if (costTo(index, Base::Float) >= kNever) {
         sources_.error(e.args[1]->place, "an index must be a float, not " + describe(*e.args[1]));
@@ -201,7 +235,8 @@ void Checker::surveyIndex(Expr& e, Info& info) {
         info.handle = base.handle;
         const Expr& i = *e.args[1];
         const Symbol* array = e.args[0]->symbol; // one of open length may be longer than its default
-        if (i.kind == ExprKind::Number && base.array.array > 0 && !(array && array->open && i.number > -1) && (i.number <= -1 || i.number >= base.array.array))
+        if (i.kind == ExprKind::Number && base.array.array > 0 && !(array && array->open && i.number > -1) &&
+            (i.number <= -1 || i.number >= base.array.array))
             sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " +
                                         std::to_string(base.array.array));
         return;
@@ -240,11 +275,11 @@ int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, c
     const bool scales = op == ExprOp::Mul || op == ExprOp::Div;
     const auto canBe = [](const Info& i, Base as) {
         if (i.number) return as == Base::Float;
-        return i.cost[int(as)] < kNever || (isPointLike(as) && (i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever));
+        return i.cost[int(as)] < kNever ||
+               (isPointLike(as) && (i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever));
     };
     const bool left = canBe(l, Base::Float), right = canBe(r, Base::Float);
-    if (!o.promotes)
-        return o.cost + (scales && isPointLike(a) && isPointLike(b) && left != right ? kBroadcast : 0);
+    if (!o.promotes) return o.cost + (scales && isPointLike(a) && isPointLike(b) && left != right ? kBroadcast : 0);
     if (o.result == Base::Bool) return o.cost + kCompared;
     const bool leftIsNumber = !Type{a, 0}.isTuple();
     const bool other = leftIsNumber ? right : left; // may be a number, too
@@ -255,7 +290,10 @@ int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, c
 void Checker::surveyBinary(Expr& e, Info& info) {
     const Info& l = survey(*e.args[0]);
     const Info& r = survey(*e.args[1]);
-    if (l.any || r.any) { info.any = true; return; }
+    if (l.any || r.any) {
+        info.any = true;
+        return;
+    }
     const bool strings = l.cost[int(Base::String)] < kNever && r.cost[int(Base::String)] < kNever;
     // A handle is compared with a handle, and never joined to a text.
     const bool mixed = strings && (!alike(l.handle, r.handle) ||
@@ -273,7 +311,9 @@ void Checker::surveyBinary(Expr& e, Info& info) {
             if (const auto o = operation(e.op, a, b)) {
                 int& c = info.cost[int(o->result)];
                 // A truth is a truth: how it was come by chooses nothing around it.
-                c = o->result == Base::Bool ? 0 : std::min(c, sum(sum(l.cost[int(a)], r.cost[int(b)]), operandCost(e.op, *o, l, a, r, b)));
+                c = o->result == Base::Bool
+                        ? 0
+                        : std::min(c, sum(sum(l.cost[int(a)], r.cost[int(b)]), operandCost(e.op, *o, l, a, r, b)));
             }
         }
     }
@@ -301,7 +341,10 @@ void Checker::surveyAssign(Expr& e, Info& info) {
         info.any = true;
         return;
     }
-    if (l.any || r.any) { info.any = true; return; }
+    if (l.any || r.any) {
+        info.any = true;
+        return;
+    }
     if (l.array.array) {
         preferArray(*e.args[1], l.array);
         const bool fits = r.listLength >= 0 ? l.array.array < 0 || r.listLength <= l.array.array

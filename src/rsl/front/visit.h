@@ -20,8 +20,8 @@ template <class F> void everyExpr(const Expr& e, F&& f) {
     eachPart(e, [&](const Expr& x) { everyExpr(x, f); });
 }
 
-/// Calls statement(const Stmt&) for the statement and all below it, and expression(const Expr&) for every expression in them. Nested
-/// functions are not entered.
+/// Calls statement(const Stmt&) for the statement and all below it, and expression(const Expr&) for every expression in them.
+/// Nested functions are not entered.
 template <class S, class F> void everyStmt(const Stmt& s, S&& statement, F&& expression) {
     statement(s);
     const auto one = [&](const ExprPtr& e) {

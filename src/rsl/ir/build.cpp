@@ -1,7 +1,7 @@
 // Instructions, variables, and the rounds in which a kernel is built.
-#include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
 #include "base/limits.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include "rsl/passes/affine.h"
 #include "rsl/passes/fold.h"
@@ -82,7 +82,8 @@ Inst* Builder::input(const std::string& name, Type type, bool uniform) {
 }
 
 Inst* Builder::space(const std::string& from, const std::string& to) {
-    return input(InputName::space(ownSpace(leaves_.string(from))->text, ownSpace(leaves_.string(to))->text).text(), {Base::Matrix, 0}, true);
+    return input(InputName::space(ownSpace(leaves_.string(from))->text, ownSpace(leaves_.string(to))->text).text(),
+                 {Base::Matrix, 0}, true);
 }
 
 std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*> args, std::vector<Kind> results) {
@@ -234,7 +235,8 @@ static std::unique_ptr<Kernel> buildOnce(const Program& p, const Shader& s, cons
 }
 
 /// Requests that there is no other form of.
-static const std::set<std::string_view> kNoLobes = {"trace", "transmission", "occlusion", "subsurface", "gather", "lightvisibility", "ambient"};
+static const std::set<std::string_view> kNoLobes = {"trace",  "transmission",    "occlusion", "subsurface",
+                                                    "gather", "lightvisibility", "ambient"};
 
 std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d) {
     DirectSet direct;
@@ -279,7 +281,8 @@ std::vector<OutputLight> lightOfOutputs(const Program& p, const Shader& s, const
     return k ? lightOfOutputs(*k, o) : std::vector<OutputLight>();
 }
 
-std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnostics& d, const std::vector<ParameterValue>& given) {
+std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnostics& d,
+                                      const std::vector<ParameterValue>& given) {
     auto k = newKernel(p, s);
     k->name += ":defaults";
     bool good = false;

@@ -24,6 +24,7 @@ std::vector<ir::OutputLight> lightOfOutputs(const Program&, const Shader&, const
 
 /// A kernel whose outputs "param:NAME" (arrays: "param:NAME[i]") are the parameters' defaults, in declaration order.
 /// `given`: values of parameters that stand for their defaults.
-std::unique_ptr<ir::Kernel> buildDefaults(const Program&, const Shader&, Diagnostics&, const std::vector<ParameterValue>& given = {});
+std::unique_ptr<ir::Kernel> buildDefaults(const Program&, const Shader&, Diagnostics&,
+                                          const std::vector<ParameterValue>& given = {});
 
 } // namespace alpenglow::rsl

@@ -1,5 +1,5 @@
-// Arrays that change their length. The storage has a length of its own, the most that the array can reach; how much of it counts, and
-// how much was reserved, are values like those of variables: each point has its own.
+// Arrays that change their length. The storage has a length of its own, the most that the array can reach; how much of it counts,
+// and how much was reserved, are values like those of variables: each point has its own.
 #include "base/limits.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -14,16 +14,22 @@ double usualLength(const Expr& e, const std::vector<ShaderParameter>& parameters
     if (e.kind == ExprKind::Number) return e.number;
     if (e.kind == ExprKind::Variable && e.symbol)
         for (const ShaderParameter& p : parameters)
-            if (p.symbol->name == e.symbol->name && p.defaultValue && p.defaultValue->kind == ExprKind::Number) return p.defaultValue->number;
+            if (p.symbol->name == e.symbol->name && p.defaultValue && p.defaultValue->kind == ExprKind::Number)
+                return p.defaultValue->number;
     if (e.kind == ExprKind::Binary && e.args.size() == 2) {
         const double a = of(0), b = of(1);
         if (a < 0 || b < 0) return -1;
         switch (e.op) {
-        case ExprOp::Add: return a + b;
-        case ExprOp::Sub: return std::max(a - b, 0.0);
-        case ExprOp::Mul: return a * b;
-        case ExprOp::Div: return b > 0 ? a / b : -1;
-        default: return -1;
+        case ExprOp::Add:
+            return a + b;
+        case ExprOp::Sub:
+            return std::max(a - b, 0.0);
+        case ExprOp::Mul:
+            return a * b;
+        case ExprOp::Div:
+            return b > 0 ? a / b : -1;
+        default:
+            return -1;
         }
     }
     return -1;
@@ -49,8 +55,9 @@ int Builder::largestResize() {
         };
         if (e.kind == ExprKind::Assign) grows(*e.args[0]);
         for (size_t n = 0; n < e.args.size(); ++n) {
-            const bool output = e.signature ? n < e.signature->parameters.size() && e.signature->parameters[n].output
-                                            : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
+            const bool output = e.signature
+                                    ? n < e.signature->parameters.size() && e.signature->parameters[n].output
+                                    : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
             const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
             if ((output || other) && e.args[n]) grows(*e.args[n]);
         }
@@ -94,8 +101,8 @@ bool Builder::grows(const Stmt::Declarator& d) {
     return d.symbol->resizable && (grown_.count(d.symbol) || !measured);
 }
 
-/// Builds what is done with each of `count` elements: one after the other, so that short arrays become values; a loop where there are many,
-/// as code for each would take minutes to compile.
+/// Builds what is done with each of `count` elements: one after the other, so that short arrays become values; a loop where there
+/// are many, as code for each would take minutes to compile.
 void Builder::everyElement(int count, const std::function<void(Inst* at)>& each) {
     constexpr int kOneByOne = 256;
     if (count <= kOneByOne) {
@@ -186,14 +193,14 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
     if (from.kind == ExprKind::ArrayList) {
         const int n = from.text == "{}" ? 0 : std::min(static_cast<int>(from.args.size()), to->index);
         setLength(constant(static_cast<float>(n)));
-    } else if (from.kind == ExprKind::Variable || from.kind == ExprKind::Cast || from.kind == ExprKind::Member || returnsArray(from)) {
+    } else if (from.kind == ExprKind::Variable || from.kind == ExprKind::Cast || from.kind == ExprKind::Member ||
+               returnsArray(from)) {
         Inst* a = array(from);
         if (a == to) return;
         Inst* n = lengthOf(a);
         if (!isConst(n)) { // as far as either storage goes
-            everyElement(std::min(to->index, a->index), [&](Inst* at) {
-                emit(Op::ArrayStore, Kind::None, {to, at, emit(Op::ArrayLoad, a->element, {a, at})});
-            });
+            everyElement(std::min(to->index, a->index),
+                         [&](Inst* at) { emit(Op::ArrayStore, Kind::None, {to, at, emit(Op::ArrayLoad, a->element, {a, at})}); });
             return setLength(limitLength(to, n));
         }
         setLength(limitLength(to, n));

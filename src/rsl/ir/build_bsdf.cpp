@@ -1,5 +1,5 @@
-// bsdf(): the distribution is chosen by its name, when the shader is compiled if that is known then. The distributions themselves are
-// runtime code (shadeops/bsdf/).
+// bsdf(): the distribution is chosen by its name, when the shader is compiled if that is known then. The distributions themselves
+// are runtime code (shadeops/bsdf/).
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
@@ -7,7 +7,8 @@ namespace alpenglow::rsl::ir {
 
 namespace {
 
-constexpr const char* kDistributions[] = {"uniform", "cosine", "oren-nayar", "blinn", "ashikhmin-shirley", "cook-torrance", "ward", "glass-ggx", "hair"};
+constexpr const char* kDistributions[] = {"uniform",       "cosine", "oren-nayar", "blinn", "ashikhmin-shirley",
+                                          "cook-torrance", "ward",   "glass-ggx",  "hair"};
 constexpr int kHairLobes = 4, kHairParameters = 4; // seed: "up to 4 lobes", 4 numbers each
 
 } // namespace
@@ -33,17 +34,22 @@ std::vector<Inst*> Builder::distribution(const std::string& name, const Distribu
     Inst* roughness = value("roughness", constant(0));
     Inst* roughnessv = value("roughnessv", roughness);
     Inst* udir = value("udir", zero(Kind::Triple));
-    const auto index = [&](size_t i, float otherwise) { return i < d.eta.size() ? triple(d.eta[i]) : triple(constant(otherwise)); };
+    const auto index = [&](size_t i, float otherwise) {
+        return i < d.eta.size() ? triple(d.eta[i]) : triple(constant(otherwise));
+    };
     if (name == "oren-nayar") return {triple(runtime1("al_bsdf_orennayar", {d.l, d.n, wo, roughness}, Kind::Float))};
     if (name == "blinn") return {runtime1("al_bsdf_blinn", {d.l, d.n, wo, roughness, index(0, 0), index(1, 0)}, Kind::Triple)};
-    if (name == "cook-torrance") return {runtime1("al_bsdf_cooktorrance", {d.l, d.n, wo, roughness, index(0, 0), index(1, 0)}, Kind::Triple)};
+    if (name == "cook-torrance")
+        return {runtime1("al_bsdf_cooktorrance", {d.l, d.n, wo, roughness, index(0, 0), index(1, 0)}, Kind::Triple)};
     if (name == "ashikhmin-shirley")
-        return {runtime1("al_bsdf_ashikhminshirley", {d.l, d.n, wo, udir, roughness, roughnessv, index(0, 0), index(1, 0)}, Kind::Triple)};
+        return {runtime1("al_bsdf_ashikhminshirley", {d.l, d.n, wo, udir, roughness, roughnessv, index(0, 0), index(1, 0)},
+                         Kind::Triple)};
     if (name == "ward") return {triple(runtime1("al_bsdf_ward", {d.l, d.n, wo, udir, roughness, roughnessv}, Kind::Float))};
     const auto first = [&](Inst* v) { return emit(Op::Extract, Kind::Float, {v}, 0); };
     if (name == "glass-ggx") {
-        std::vector<Inst*> parts = runtime("al_bsdf_glassggx", {d.l, d.n, wo, udir, roughness, roughnessv, first(index(0, 1.5f)), constant(0), constant(0)},
-                                           {Kind::Float, Kind::Float});
+        std::vector<Inst*> parts = runtime(
+            "al_bsdf_glassggx", {d.l, d.n, wo, udir, roughness, roughnessv, first(index(0, 1.5f)), constant(0), constant(0)},
+            {Kind::Float, Kind::Float});
         for (size_t i = 0; i < 2; ++i) {
             if (i < d.lobes.size()) parts[i] = emit(Op::Mul, Kind::Float, {parts[i], d.lobes[i]});
             parts[i] = triple(parts[i]);
@@ -53,7 +59,8 @@ std::vector<Inst*> Builder::distribution(const std::string& name, const Distribu
     // Hair. Weights above 1 are scaled down together.
     std::vector<Inst*> lobes = d.lobes;
     if (lobes.empty())
-        for (int lobe = 0; lobe < 3; ++lobe) lobes.insert(lobes.end(), {constant(1), constant(0), constant(0.3f), constant(0.3f)});
+        for (int lobe = 0; lobe < 3; ++lobe)
+            lobes.insert(lobes.end(), {constant(1), constant(0), constant(0.3f), constant(0.3f)});
     const size_t count = std::min<size_t>(kHairLobes, lobes.size() / kHairParameters);
     Inst* largest = constant(1);
     for (size_t i = 0; i < count; ++i) largest = runtime1("al_max_f", {largest, lobes[i * kHairParameters]}, Kind::Float);
@@ -61,8 +68,8 @@ std::vector<Inst*> Builder::distribution(const std::string& name, const Distribu
     for (size_t i = 0; i < count; ++i) {
         const auto number = [&](size_t k) { return lobes[i * kHairParameters + k]; };
         Inst* v = runtime1("al_bsdf_hair",
-                           {d.l, d.n, wo, udir, first(index(0, 1.55f)), value("absorption", zero(Kind::Triple)), constant(static_cast<float>(i)), number(1),
-                            number(2), number(3)},
+                           {d.l, d.n, wo, udir, first(index(0, 1.55f)), value("absorption", zero(Kind::Triple)),
+                            constant(static_cast<float>(i)), number(1), number(2), number(3)},
                            Kind::Triple);
         parts.push_back(emit(Op::Mul, Kind::Triple, {v, triple(emit(Op::Div, Kind::Float, {number(0), largest}))}));
     }
@@ -80,7 +87,8 @@ std::vector<Inst*> Builder::bsdf(const Expr& e) {
         if (!x.type.array) return std::vector<Inst*>{expr(x)};
         std::vector<Inst*> list;
         Inst* a = array(x);
-        for (int i = 0; i < arrayLength(a); ++i) list.push_back(emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(i))}));
+        for (int i = 0; i < arrayLength(a); ++i)
+            list.push_back(emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(i))}));
         return list;
     };
     for (const NamedArg& p : e.pairs) {
@@ -101,12 +109,15 @@ std::vector<Inst*> Builder::bsdf(const Expr& e) {
     std::vector<Inst*> result;
     const std::string known = !name ? "uniform" : name->op == Op::ConstString ? name->text : "";
     if (name && name->op != Op::ConstString) { // one branch a name
-        if (parted) warn(e.place, "bsdf() with parts needs a distribution that is known when the shader is compiled; all is in the first");
+        if (parted)
+            warn(e.place,
+                 "bsdf() with parts needs a distribution that is known when the shader is compiled; all is in the first");
         const std::function<Inst*(size_t)> from = [&](size_t i) -> Inst* {
             if (i == std::size(kDistributions)) return zero(Kind::Triple);
             Inst* is = emit(Op::Equal, Kind::Bool, {name, leaves_.string(kDistributions[i])});
             return branch(
-                is, [&] { return std::vector<Inst*>{sum(distribution(kDistributions[i], d))}; }, [&] { return std::vector<Inst*>{from(i + 1)}; })[0];
+                is, [&] { return std::vector<Inst*>{sum(distribution(kDistributions[i], d))}; },
+                [&] { return std::vector<Inst*>{from(i + 1)}; })[0];
         };
         result = {from(0)};
     } else if (std::find(std::begin(kDistributions), std::end(kDistributions), known) == std::end(kDistributions)) {
@@ -115,14 +126,16 @@ std::vector<Inst*> Builder::bsdf(const Expr& e) {
     } else {
         result = distribution(known, d);
         if (!parted) result = {sum(result)};
-        else if (known != "glass-ggx" && known != "hair") warn(e.place, "bsdf(): \"" + known + "\" has no parts; all is in the first");
+        else if (known != "glass-ggx" && known != "hair")
+            warn(e.place, "bsdf(): \"" + known + "\" has no parts; all is in the first");
     }
     // The plane of "horizon" lets through what lies on the same side of it as of the surface; a fibre has no surface.
     if (const auto h = d.values.find("horizon"); h != d.values.end() && known != "hair") {
         Inst* plane = coerce(h->second, Kind::Triple);
         Inst* side = emit(Op::Mul, Kind::Float, {dot(plane, d.l), dot(d.n, d.l)});
-        Inst* open = emit(Op::Or, Kind::Bool,
-                          {emit(Op::Less, Kind::Bool, {constant(0), side}), emit(Op::Equal, Kind::Bool, {dot(plane, plane), constant(0)})});
+        Inst* open = emit(
+            Op::Or, Kind::Bool,
+            {emit(Op::Less, Kind::Bool, {constant(0), side}), emit(Op::Equal, Kind::Bool, {dot(plane, plane), constant(0)})});
         for (Inst*& v : result) v = emit(Op::Select, Kind::Triple, {open, v, zero(Kind::Triple)});
     }
     return result;

@@ -30,8 +30,8 @@ Inst* Builder::functionCall(const Expr& e) {
 }
 
 /// Output parameters are the variables that they are given. Where that shows, because one variable is given to two of them or the
-/// function uses it by its own name too, they share its slot: the slots by parameter, -1 for those with one of their own. Empty where
-/// it does not show, and a copy that is handed back does as well.
+/// function uses it by its own name too, they share its slot: the slots by parameter, -1 for those with one of their own. Empty
+/// where it does not show, and a copy that is handed back does as well.
 std::vector<int> Builder::sharedOutputs(const Function& f, const std::vector<const Expr*>& args) {
     std::vector<int> slots(args.size(), -1);
     std::set<int> given;
@@ -281,7 +281,8 @@ Inst* Builder::special(const Expr& e) {
 Inst* Builder::isOutput(const Expr& e) {
     const Expr& a = *e.args[0];
     const auto parameter = [](const Expr& x) {
-        return x.kind == ExprKind::Variable && x.symbol && x.symbol->origin == Symbol::Origin::ShaderParameter && x.symbol->output;
+        return x.kind == ExprKind::Variable && x.symbol && x.symbol->origin == Symbol::Origin::ShaderParameter &&
+               x.symbol->output;
     };
     std::string name;
     if (parameter(a)) name = a.symbol->name;
@@ -295,7 +296,9 @@ Inst* Builder::isOutput(const Expr& e) {
         for (const std::string& o : options_.outputs) all.insert({o, o.substr(0, o.find('['))});
         Inst* found = constant(0);
         for (const std::string& o : all)
-            if (isWanted(o)) found = emit(Op::Select, Kind::Float, {emit(Op::Equal, Kind::Bool, {text, leaves_.string(o)}), constant(1), found});
+            if (isWanted(o))
+                found =
+                    emit(Op::Select, Kind::Float, {emit(Op::Equal, Kind::Bool, {text, leaves_.string(o)}), constant(1), found});
         return found;
     }
     return constant(isWanted(text ? text->text : name) ? 1.0f : 0.0f);
@@ -318,7 +321,8 @@ Inst* Builder::gridBound(const Expr& e, float half) {
     Inst* v = expr(*e.args[0], Kind::Float);
     place_ = e.place;
     const auto change = [&](Op d, const char* step) {
-        return runtime1("al_abs", {emit(Op::Mul, Kind::Float, {emit(d, Kind::Float, {v}), global(step, Base::Float)})}, Kind::Float);
+        return runtime1("al_abs", {emit(Op::Mul, Kind::Float, {emit(d, Kind::Float, {v}), global(step, Base::Float)})},
+                        Kind::Float);
     };
     Inst* size = emit(Op::Add, Kind::Float, {change(Op::Du, "du"), change(Op::Dv, "dv")});
     Inst* bound = emit(Op::Add, Kind::Float, {v, emit(Op::Mul, Kind::Float, {constant(half), size})});
@@ -358,8 +362,9 @@ Inst* Builder::filterstep(const Expr& e) {
     Inst* step = runtime1("al_filterstep_" + filter, {a[0], from, to}, Kind::Float);
     for (const char* other : {"box", "triangle", "gaussian"})
         if (asked)
-            step = emit(Op::Select, Kind::Float, {emit(Op::Equal, Kind::Bool, {asked, leaves_.string(other)}),
-                                                  runtime1(std::string("al_filterstep_") + other, {a[0], from, to}, Kind::Float), step});
+            step = emit(Op::Select, Kind::Float,
+                        {emit(Op::Equal, Kind::Bool, {asked, leaves_.string(other)}),
+                         runtime1(std::string("al_filterstep_") + other, {a[0], from, to}, Kind::Float), step});
     return step;
 }
 

@@ -1,7 +1,8 @@
-// outputchannel(), writeaov() and readaov(): outputs that no parameter declares. Each is a variable of the kernel, zero until a call gives it a value.
-// A name that is made when the shader runs means one of those that displays ask for: each point may have its own. Whether a point has it
-// is an output, too ("given:NAME"), as a zero that was given hides what others give and one that was not does not. Lights and volumes tell it
-// of all their names: where a condition keeps them from the call, what others gave to the surface stays.
+// outputchannel(), writeaov() and readaov(): outputs that no parameter declares. Each is a variable of the kernel, zero until a
+// call gives it a value. A name that is made when the shader runs means one of those that displays ask for: each point may have
+// its own. Whether a point has it is an output, too ("given:NAME"), as a zero that was given hides what others give and one that
+// was not does not. Lights and volumes tell it of all their names: where a condition keeps them from the call, what others gave
+// to the surface stays.
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 
@@ -20,7 +21,8 @@ bool alike(Type a, Type b) { return kindOf(a.element()) == kindOf(b.element()) &
 void Builder::beginChannels() {
     const auto make = [&](std::string name, Type type, bool flag) {
         if (type.array < 0) return; // of open length: displays would not know how many
-        if (channels_.count(name)) name += kAnyChannel + toString(type); // the same name for several types: channelValue() decides
+        if (channels_.count(name))
+            name += kAnyChannel + toString(type); // the same name for several types: channelValue() decides
         if (channels_.count(name)) return;
         if (flag) channels_[flagOf(name)] = {newSlot(constant(0)), {Base::Float, 0}};
         if (!type.array) {
@@ -28,14 +30,16 @@ void Builder::beginChannels() {
             return;
         }
         Inst* a = newArray(type.base, type.array);
-        for (int n = 0; n < type.array; ++n) emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(n)), zero(a->element)});
+        for (int n = 0; n < type.array; ++n)
+            emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(n)), zero(a->element)});
         channels_[name] = {newSlot(a), type};
     };
     std::vector<const Program*> programs{&program_};
     for (const CoShader& c : options_.coShaders) programs.push_back(c.program);
     const bool oneOfMany = shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Volume;
     const auto isParameter = [&](const std::string& name) {
-        return std::any_of(shader_.parameters.begin(), shader_.parameters.end(), [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == name; });
+        return std::any_of(shader_.parameters.begin(), shader_.parameters.end(),
+                           [&](const ShaderParameter& p) { return p.symbol->output && p.symbol->name == name; });
     };
     for (const Program* p : programs)
         for (const auto& [name, type] : p->channels)
@@ -45,9 +49,12 @@ void Builder::beginChannels() {
             if (key[0] != kAnyChannel) continue;
             for (const std::string& output : options_.outputs) {
                 const std::string name = output.substr(0, output.find('['));
-                const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(), [&](const ShaderParameter& q) { return q.symbol->name == name; });
+                const bool declared = std::any_of(shader_.parameters.begin(), shader_.parameters.end(),
+                                                  [&](const ShaderParameter& q) { return q.symbol->name == name; });
                 const auto written = [&](const Program* q) { return q->channels.count(name) > 0; };
-                if (!declared && std::none_of(programs.begin(), programs.end(), written) && name.find(':') == std::string::npos && !hasGlobal(name.c_str())) make(name, type, true);
+                if (!declared && std::none_of(programs.begin(), programs.end(), written) && name.find(':') == std::string::npos &&
+                    !hasGlobal(name.c_str()))
+                    make(name, type, true);
             }
         }
 }
@@ -58,7 +65,8 @@ std::vector<std::pair<std::string, int>> Builder::channelsFor(Type type) {
     for (const ShaderParameter& p : shader_.parameters)
         if (p.symbol->output && alike(p.symbol->type, type)) all.emplace_back(p.symbol->name, slot(p.symbol));
     for (const auto& [name, c] : channels_)
-        if (!isFlag(name) && alike(c.second, type) && !hasGlobal(name.c_str())) all.emplace_back(name.substr(0, name.find(kAnyChannel)), c.first);
+        if (!isFlag(name) && alike(c.second, type) && !hasGlobal(name.c_str()))
+            all.emplace_back(name.substr(0, name.find(kAnyChannel)), c.first);
     return all;
 }
 
@@ -66,7 +74,8 @@ std::vector<std::pair<std::string, int>> Builder::channelsFor(Type type) {
 const std::pair<int, Type>* Builder::channelNamed(const std::string& name) {
     const std::pair<int, Type>* found = nullptr;
     for (auto c = channels_.lower_bound(name); c != channels_.end() && c->first.rfind(name, 0) == 0; ++c)
-        if ((c->first == name || c->first[name.size()] == kAnyChannel) && (!found || isConst(get(found->first)))) found = &c->second;
+        if ((c->first == name || c->first[name.size()] == kAnyChannel) && (!found || isConst(get(found->first))))
+            found = &c->second;
     return found;
 }
 
@@ -85,7 +94,9 @@ Inst* Builder::channelValue(const std::string& name, Type& type) {
         (isTriple ? tripleKey : greyKey) = key;
     }
     if (!triple || !grey || type.array) return get(c->first);
-    const auto given = [&](const std::string& key) { return emit(Op::NotEqual, Kind::Bool, {get(channels_.at(flagOf(key)).first), constant(0)}); };
+    const auto given = [&](const std::string& key) {
+        return emit(Op::NotEqual, Kind::Bool, {get(channels_.at(flagOf(key)).first), constant(0)});
+    };
     type = triple->second;
     Inst* floats = emit(Op::Select, Kind::Triple, {given(greyKey), coerce(get(grey->first), Kind::Triple), zero(Kind::Triple)});
     return emit(Op::Select, Kind::Triple, {given(tripleKey), get(triple->first), floats});
@@ -149,7 +160,9 @@ Inst* Builder::outputChannel(const Expr& e) {
     for (const auto& [known, n] : channelsFor(given.type)) {
         Inst* is = emit(Op::Equal, Kind::Bool, {name, leaves_.string(known)});
         for (const std::string_view prefix : kKeptChannels)
-            if (!keeps) is = emit(Op::Or, Kind::Bool, {is, emit(Op::Equal, Kind::Bool, {name, leaves_.string(std::string(prefix) + known)})});
+            if (!keeps)
+                is = emit(Op::Or, Kind::Bool,
+                          {is, emit(Op::Equal, Kind::Bool, {name, leaves_.string(std::string(prefix) + known)})});
         giveChannel(n, given, value, is);
     }
     return constant(0);
@@ -175,8 +188,8 @@ Inst* Builder::readAov(const Expr& e) {
     for (const auto& [known, n] : channelsFor(to.type)) {
         const int at = n;
         found = branch(
-            emit(Op::Equal, Kind::Bool, {name, leaves_.string(known)}), [&] { return std::vector<Inst*>{constant(take(at) ? 1.0f : 0.0f)}; },
-            [&] { return std::vector<Inst*>{found}; })[0];
+            emit(Op::Equal, Kind::Bool, {name, leaves_.string(known)}),
+            [&] { return std::vector<Inst*>{constant(take(at) ? 1.0f : 0.0f)}; }, [&] { return std::vector<Inst*>{found}; })[0];
     }
     return found;
 }

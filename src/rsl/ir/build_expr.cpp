@@ -40,8 +40,8 @@ Inst* Builder::multiply(Inst* a, Inst* b) {
     return emit(Op::MatrixOf, Kind::Matrix, m);
 }
 
-/// && and ||. What the first operand decides alone leaves the second undone, as in C; one that only gives a value is computed all the
-/// same where the points differ, which nobody sees.
+/// && and ||. What the first operand decides alone leaves the second undone, as in C; one that only gives a value is computed all
+/// the same where the points differ, which nobody sees.
 Inst* Builder::both(const Expr& e) {
     const bool all = e.op == ExprOp::And;
     Inst* a = condition(*e.args[0]);
@@ -116,7 +116,8 @@ Inst* Builder::array(const Expr& e) {
         return v;
     }
     if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array && !e.space) return array(*e.args[0]);
-    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array) return inSpace(*e.space, array(*e.args[0]), e.type.base);
+    if (e.kind == ExprKind::Cast && !e.args.empty() && e.args[0]->type.array)
+        return inSpace(*e.space, array(*e.args[0]), e.type.base);
     if (e.kind == ExprKind::Member) return memberArray(e);
     if (returnsArray(e)) {
         std::vector<const Expr*> args;
@@ -165,25 +166,31 @@ void Builder::copyArray(Inst* to, const Expr& from) {
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "bsdf") {
         const std::vector<Inst*> parts = bsdf(from);
-        for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(parts.size()) ? parts[static_cast<size_t>(i)] : zero(to->element));
+        for (int i = 0; i < n; ++i)
+            store(i, i < static_cast<int>(parts.size()) ? parts[static_cast<size_t>(i)] : zero(to->element));
         return;
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "trace") {
         const std::vector<Inst*> parts = traceParts(from);
-        for (int i = 0; i < n; ++i) store(i, i < static_cast<int>(parts.size()) ? parts[static_cast<size_t>(i)] : zero(to->element));
+        for (int i = 0; i < n; ++i)
+            store(i, i < static_cast<int>(parts.size()) ? parts[static_cast<size_t>(i)] : zero(to->element));
         return;
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getlights") {
         const std::vector<Inst*> all = lightHandles(from);
-        for (int i = 0; i < n; ++i) store(i, i + 1 < static_cast<int>(all.size()) ? all[static_cast<size_t>(i) + 1] : zero(to->element));
+        for (int i = 0; i < n; ++i)
+            store(i, i + 1 < static_cast<int>(all.size()) ? all[static_cast<size_t>(i) + 1] : zero(to->element));
         return;
     }
     if (from.kind == ExprKind::ShadeopCall && from.shadeop) unavailable(from); // its results stay zero
-    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast && from.kind != ExprKind::Member && !returnsArray(from)) return;
+    if (from.kind != ExprKind::Variable && from.kind != ExprKind::Cast && from.kind != ExprKind::Member && !returnsArray(from))
+        return;
     Inst* a = array(from);
     if (a == to) return;
     const int m = std::min(n, arrayLength(a));
-    everyElement(m, [&](Inst* at) { emit(Op::ArrayStore, Kind::None, {to, at, coerce(emit(Op::ArrayLoad, a->element, {a, at}), to->element)}); });
+    everyElement(m, [&](Inst* at) {
+        emit(Op::ArrayStore, Kind::None, {to, at, coerce(emit(Op::ArrayLoad, a->element, {a, at}), to->element)});
+    });
 }
 
 void Builder::Held::hold(const Expr& place) {
@@ -221,7 +228,7 @@ void Builder::assign(const Expr& l, Inst* value) {
         Inst* at = expr(*l.args[1], Kind::Float);
         if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
             warn(l.args[1]->place, "index " + indexText(at->numbers[0]) + " is outside the array of length " +
-                              std::to_string(arrayLength(a)) + "; the nearest element is taken");
+                                       std::to_string(arrayLength(a)) + "; the nearest element is taken");
         if (a->op == Op::ArrayNew) emit(Op::ArrayStore, Kind::None, {a, elementOf(a, at), coerce(value, a->element)});
         return;
     }
@@ -364,15 +371,17 @@ Inst* Builder::expr(const Expr& e) {
             Inst* at = expr(*e.args[1], Kind::Float);
             if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
                 warn(e.args[1]->place, "index " + indexText(at->numbers[0]) + " is outside the array of length " +
-                                  std::to_string(arrayLength(a)) + "; the nearest element is taken");
+                                           std::to_string(arrayLength(a)) + "; the nearest element is taken");
             const auto open = given_.find(a); // as long as the scene wants it: behind that there is nothing
             const bool behind = open != given_.end() && isConst(at) && at->numbers[0] >= static_cast<float>(open->second);
             if (behind) return zero(a->element);
-            if (const auto t = texts_.find(a); t != texts_.end() && isConst(at) && at->numbers[0] >= 0 && at->numbers[0] < static_cast<float>(t->second.size()))
+            if (const auto t = texts_.find(a);
+                t != texts_.end() && isConst(at) && at->numbers[0] >= 0 && at->numbers[0] < static_cast<float>(t->second.size()))
                 return leaves_.string(t->second[static_cast<size_t>(at->numbers[0])]);
             Inst* v = emit(Op::ArrayLoad, a->element, {a, elementOf(a, at)});
             if (open == given_.end() || isConst(at)) return v;
-            return emit(Op::Select, a->element, {emit(Op::LessEqual, Kind::Bool, {constant(static_cast<float>(open->second)), at}), zero(a->element), v});
+            return emit(Op::Select, a->element,
+                        {emit(Op::LessEqual, Kind::Bool, {constant(static_cast<float>(open->second)), at}), zero(a->element), v});
         }
         Inst* v = expr(base, Kind::Triple);
         Inst* at = expr(*e.args[1], Kind::Float);

@@ -1,7 +1,7 @@
 // gather: rays by the handful, then a loop over what they found. A turn that has no rays left asks for the next handful (Request
 // "gather"), so that what they bring takes bounded memory; each turn then reads its own ray (Service "gatherturn").
-#include "rsl/gatherrays.h"
 #include "rsl/front/protocol.h"
+#include "rsl/gatherrays.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <string_view>

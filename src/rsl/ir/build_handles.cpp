@@ -1,9 +1,9 @@
-// Co-shaders: calls of their methods are inlined. A handle is the name under which the scene bound the shader; where it is not known
-// here, one branch a bound shader decides. Members of a co-shader are variables that begin where the shader begins.
+// Co-shaders: calls of their methods are inlined. A handle is the name under which the scene bound the shader; where it is not
+// known here, one branch a bound shader decides. Members of a co-shader are variables that begin where the shader begins.
 #include "base/category.h"
 #include "base/limits.h"
-#include "rsl/front/visit.h"
 #include "rsl/front/protocol.h"
+#include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
@@ -15,9 +15,13 @@ namespace {
 bool handsItselfOver(const Shader& s, const Program& p) {
     bool found = false;
     const auto body = [&](const Stmt* b) {
-        if (b) front::everyStmt(*b, [](const Stmt&) {}, [&](const Expr& e) {
-            found |= e.kind == ExprKind::String && e.handle && (e.text == "(this)" || e.text == "(surface)" || e.text == "(caller)");
-        });
+        if (b)
+            front::everyStmt(
+                *b, [](const Stmt&) {},
+                [&](const Expr& e) {
+                    found |= e.kind == ExprKind::String && e.handle &&
+                             (e.text == "(this)" || e.text == "(surface)" || e.text == "(caller)");
+                });
     };
     body(s.body.get());
     for (const auto& n : s.nested) front::everyFunction(*n, [&](const Function& f) { body(f.body.get()); });
@@ -42,10 +46,11 @@ std::string Builder::thisHandle() const {
     return "<" + std::string(toString(shader_.kind)) + ">";
 }
 
-/// `this`, and the handles that have names of their own: `surface`, the shader of the surface that is shaded or lit; `caller`, the
-/// shader that called the method; `light`, the light of the turn of illuminance.
+/// `this`, and the handles that have names of their own: `surface`, the shader of the surface that is shaded or lit; `caller`,
+/// the shader that called the method; `light`, the light of the turn of illuminance.
 Inst* Builder::handleText(const Expr& e) {
-    const std::string self = "<" + std::string(toString(shader_.kind)) + ">", surface = "<" + std::string(toString(ShaderKind::Surface)) + ">";
+    const std::string self = "<" + std::string(toString(shader_.kind)) + ">",
+                      surface = "<" + std::string(toString(ShaderKind::Surface)) + ">";
     const bool lightShader = shader_.kind == ShaderKind::Light;
     if (e.text == "(this)" || (e.text == "(light)" && lightShader)) return leaves_.string(thisHandle());
     if (e.text == "(surface)" && shader_.kind != ShaderKind::Imager) return leaves_.string(surface);
@@ -67,7 +72,8 @@ Inst* Builder::handleText(const Expr& e) {
     return leaves_.string("");
 }
 
-/// Asks the renderer for one value. `to`: the variable that takes it, and what comes back is whether there is one; else the value does.
+/// Asks the renderer for one value. `to`: the variable that takes it, and what comes back is whether there is one; else the value
+/// does.
 Inst* Builder::answered(Site s, std::vector<Inst*> args, Kind kind, const Expr* to) {
     s.resultKinds = {Kind::Float};
     s.resultNames = {""};
@@ -81,8 +87,8 @@ Inst* Builder::answered(Site s, std::vector<Inst*> args, Kind kind, const Expr* 
     return v[0];
 }
 
-/// A parameter of the surface that a light, a displacement or an atmosphere asks for by the handle `surface`; null where the handle is
-/// another. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is given.
+/// A parameter of the surface that a light, a displacement or an atmosphere asks for by the handle `surface`; null where the
+/// handle is another. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is given.
 Inst* Builder::ofSurface(const Expr& handle, const std::string& name, Kind kind, const Expr* to) {
     if (shader_.kind == ShaderKind::Surface || shader_.kind == ShaderKind::Imager) return nullptr;
     Inst* h = expr(handle, Kind::String);
@@ -148,7 +154,9 @@ void Builder::beginCoShaders() {
                     Inst* x = leaves_.constant(v->element, std::vector<float>(first, first + static_cast<std::ptrdiff_t>(each)));
                     emit(Op::ArrayStore, Kind::None, {v, constant(static_cast<float>(k)), x});
                 }
-                if (s.type.array < 0 || s.open) given_[v] = parameterLength(p, std::vector<std::pair<std::string, std::string>>(c.strings.begin(), c.strings.end()));
+                if (s.type.array < 0 || s.open)
+                    given_[v] =
+                        parameterLength(p, std::vector<std::pair<std::string, std::string>>(c.strings.begin(), c.strings.end()));
             } else {
                 std::vector<float> all = numbers;
                 all.resize(static_cast<size_t>(components(kindOf(s.type))));
@@ -158,8 +166,8 @@ void Builder::beginCoShaders() {
         }
         if (c.shader->object && c.shader->body)
             for (const StmtPtr& s : c.shader->body->body) {
-                const bool starts = s->kind == StmtKind::Expression &&
-                                    (s->value->text == "construct" || s->value->text == "begin");
+                const bool starts =
+                    s->kind == StmtKind::Expression && (s->value->text == "construct" || s->value->text == "begin");
                 if ((s->kind == StmtKind::Declare && !s->definition) || starts) statement(*s);
             }
         --handleDepth_;
@@ -176,7 +184,8 @@ void Builder::beginCoShaders() {
 }
 
 /// Runs `code` for the co-shader of the handle and gives its value; zero of null.
-Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst*(size_t)>& code, const std::function<Inst*(Inst*)>& light) {
+Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst*(size_t)>& code,
+                         const std::function<Inst*(Inst*)>& light) {
     Inst* h = expr(handle, Kind::String);
     place_ = handle.place;
     if (failed_) return zero(kind);
@@ -211,8 +220,8 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
     return from(0)[0];
 }
 
-/// What a call gives for each parameter, null where it leaves the default: so many in order, at least those without a default, and
-/// then names and values, as h->light(L, Cl, "samples", 16). Whether the call fits.
+/// What a call gives for each parameter, null where it leaves the default: so many in order, at least those without a default,
+/// and then names and values, as h->light(L, Cl, "samples", 16). Whether the call fits.
 bool Builder::argumentsOf(const Function& f, const Expr& call, std::vector<const Expr*>& given) {
     const size_t count = call.args.size() - 1, most = f.parameters.size();
     const auto optional = [&](size_t n) { return n < f.defaults.size() && f.defaults[n]; };
@@ -244,115 +253,126 @@ const Function* Builder::methodOf(size_t i, const Expr& call) const {
 Inst* Builder::methodCall(const Expr& e) {
     const Type type = e.type.base == Base::Void ? typeOfMember(e) : e.type;
     const Kind kind = kindOf(type) == Kind::None ? Kind::Float : kindOf(type);
-    return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
-        const CoShader& c = *instances_[i].binding;
-        if (c.light && e.text == "light" && (e.args.size() == 3 || (e.args.size() == 4 && e.args[3]->type == Type{Base::Color, 0})))
-            return lightMethod(e, leaves_.string(c.handle)); // with its samples and shadows
-        const Function* f = methodOf(i, e);
-        if (!certain_ && isSelf(i) && (!f || !c.shader->publics.count(e.text))) return zero(kind); // one of the others is meant
-        const auto has = [&](size_t other) { return methodOf(other, e) && instances_[other].binding->shader->publics.count(e.text); };
-        if (!certain_ && !has(i)) { // as long as another can be meant
-            bool another = false;
-            for (size_t n = 0; n < instances_.size(); ++n) another |= n != i && has(n);
-            if (another || c.light) {
-                complain(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
-                                      std::to_string(e.args.size() - 1) + " arguments; the call does nothing");
+    return forHandle(
+        *e.args[0], kind,
+        [&](size_t i) -> Inst* {
+            const CoShader& c = *instances_[i].binding;
+            if (c.light && e.text == "light" &&
+                (e.args.size() == 3 || (e.args.size() == 4 && e.args[3]->type == Type{Base::Color, 0})))
+                return lightMethod(e, leaves_.string(c.handle)); // with its samples and shadows
+            const Function* f = methodOf(i, e);
+            if (!certain_ && isSelf(i) && (!f || !c.shader->publics.count(e.text)))
+                return zero(kind); // one of the others is meant
+            const auto has = [&](size_t other) {
+                return methodOf(other, e) && instances_[other].binding->shader->publics.count(e.text);
+            };
+            if (!certain_ && !has(i)) { // as long as another can be meant
+                bool another = false;
+                for (size_t n = 0; n < instances_.size(); ++n) another |= n != i && has(n);
+                if (another || c.light) {
+                    complain(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name +
+                                          ") has no public method '" + e.text + "' with " + std::to_string(e.args.size() - 1) +
+                                          " arguments; the call does nothing");
+                    return zero(kind);
+                }
+            }
+            if (!f || !c.shader->publics.count(e.text)) {
+                error(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" +
+                                   e.text + "' with " + std::to_string(e.args.size() - 1) + " arguments");
                 return zero(kind);
             }
-        }
-        if (!f || !c.shader->publics.count(e.text)) {
-            error(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" + e.text + "' with " +
-                               std::to_string(e.args.size() - 1) + " arguments");
-            return zero(kind);
-        }
-        if (openMethods_.count({i, f}) && !certain_) { // it may be another each time: whether it is a circle shows when the shader runs
-            complain(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' calls itself; the inner call does nothing: " + wayTo(i, *f));
-            return zero(kind);
-        }
-        if (openMethods_.count({i, f})) {
-            error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' calls itself; recursion is not allowed: " + wayTo(i, *f));
-            return zero(kind);
-        }
-        std::vector<const Expr*> arguments;
-        argumentsOf(*f, e, arguments);
-        std::vector<Inst*> values;
-        std::deque<Held> held;
-        for (size_t n = 0; n < f->parameters.size() && !failed_; ++n) {
-            if (!arguments[n]) {
-                values.push_back(nullptr);
-                continue;
-            }
-            const Expr& given = *arguments[n];
-            const Symbol& p = *f->parameters[n];
-            const bool variable = given.kind == ExprKind::Variable || given.kind == ExprKind::Index;
-            const bool fits = (given.type.array != 0) == (p.type.array != 0) &&
-                              (kindOf(given.type.element()) == kindOf(p.type.element()) ||
-                               (given.type == Type{Base::Float, 0} && !p.output && kindOf(p.type) != Kind::String));
-            if (!fits || (p.output && !variable)) {
-                error(given.place, "argument " + std::to_string(n + 1) + " of method '" + e.text + "' of co-shader '" + shownHandle(c.handle) +
-                                       "' is " + (p.output ? "a variable of type " : "") + toString(p.type) + ", not " +
-                                       toString(given.type));
+            if (openMethods_.count({i, f}) &&
+                !certain_) { // it may be another each time: whether it is a circle shows when the shader runs
+                complain(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) +
+                                      "' calls itself; the inner call does nothing: " + wayTo(i, *f));
                 return zero(kind);
             }
-            if (p.output) held.emplace_back(*this, given);
-            if (!p.type.array) {
-                values.push_back(p.output ? nullptr : coerce(expr(given), p.type));
-                continue;
+            if (openMethods_.count({i, f})) {
+                error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) +
+                                   "' calls itself; recursion is not allowed: " + wayTo(i, *f));
+                return zero(kind);
             }
-            Inst* a = array(given);
-            if (!p.output) { // by value
-                Inst* copy = newArray(p.type.base, arrayLength(a));
-                copyArray(copy, given);
-                a = copy;
+            std::vector<const Expr*> arguments;
+            argumentsOf(*f, e, arguments);
+            std::vector<Inst*> values;
+            std::deque<Held> held;
+            for (size_t n = 0; n < f->parameters.size() && !failed_; ++n) {
+                if (!arguments[n]) {
+                    values.push_back(nullptr);
+                    continue;
+                }
+                const Expr& given = *arguments[n];
+                const Symbol& p = *f->parameters[n];
+                const bool variable = given.kind == ExprKind::Variable || given.kind == ExprKind::Index;
+                const bool fits = (given.type.array != 0) == (p.type.array != 0) &&
+                                  (kindOf(given.type.element()) == kindOf(p.type.element()) ||
+                                   (given.type == Type{Base::Float, 0} && !p.output && kindOf(p.type) != Kind::String));
+                if (!fits || (p.output && !variable)) {
+                    error(given.place, "argument " + std::to_string(n + 1) + " of method '" + e.text + "' of co-shader '" +
+                                           shownHandle(c.handle) + "' is " + (p.output ? "a variable of type " : "") +
+                                           toString(p.type) + ", not " + toString(given.type));
+                    return zero(kind);
+                }
+                if (p.output) held.emplace_back(*this, given);
+                if (!p.type.array) {
+                    values.push_back(p.output ? nullptr : coerce(expr(given), p.type));
+                    continue;
+                }
+                Inst* a = array(given);
+                if (!p.output) { // by value
+                    Inst* copy = newArray(p.type.base, arrayLength(a));
+                    copyArray(copy, given);
+                    a = copy;
+                }
+                values.push_back(a);
             }
-            values.push_back(a);
-        }
-        for (size_t n = 0; n < values.size() && !failed_; ++n) // outputs are what they are when all arguments are known
-            if (arguments[n] && !values[n]) values[n] = coerce(expr(*arguments[n]), f->parameters[n]->type);
-        if (failed_) return zero(kind);
-        openMethods_.insert({i, f});
-        way_.push_back({i, f});
-        enterInstance(i);
-        ++handleDepth_;
-        for (size_t n = 0; n < values.size(); ++n) {
-            const Symbol& p = *f->parameters[n];
-            if (!values[n] && p.type.array) {
-                values[n] = newResizable(p.type.base, 0);
-                copyResizable(values[n], *f->defaults[n]);
-            } else if (!values[n]) {
-                values[n] = coerce(expr(*f->defaults[n], kindOf(p.type)), p.type);
+            for (size_t n = 0; n < values.size() && !failed_; ++n) // outputs are what they are when all arguments are known
+                if (arguments[n] && !values[n]) values[n] = coerce(expr(*arguments[n]), f->parameters[n]->type);
+            if (failed_) return zero(kind);
+            openMethods_.insert({i, f});
+            way_.push_back({i, f});
+            enterInstance(i);
+            ++handleDepth_;
+            for (size_t n = 0; n < values.size(); ++n) {
+                const Symbol& p = *f->parameters[n];
+                if (!values[n] && p.type.array) {
+                    values[n] = newResizable(p.type.base, 0);
+                    copyResizable(values[n], *f->defaults[n]);
+                } else if (!values[n]) {
+                    values[n] = coerce(expr(*f->defaults[n], kindOf(p.type)), p.type);
+                }
+                set(slot(&p), values[n]);
             }
-            set(slot(&p), values[n]);
-        }
-        Frame frame;
-        frame.function = f;
-        frame.type = f->result;
-        frame.returned = newSlot(boolean(false));
-        if (f->result.base != Base::Void) frame.result = newSlot(zero(kindOf(f->result)));
-        frames_.push_back(frame);
-        if (f->body) statement(*f->body);
-        frames_.pop_back();
-        std::vector<Inst*> outputs;
-        for (const Symbol* p : f->parameters) outputs.push_back(get(slot(p)));
-        --handleDepth_;
-        leaveInstance();
-        openMethods_.erase({i, f});
-        way_.pop_back();
-        place_ = e.place;
-        for (size_t n = 0; n < outputs.size(); ++n)
-            if (f->parameters[n]->output && !f->parameters[n]->type.array && arguments[n])
-                assign(*arguments[n], outputs[n]);
-        Inst* result = frame.result >= 0 ? get(frame.result) : zero(kind);
-        if (result->kind != kind && !(result->kind == Kind::Float && kind != Kind::String)) {
-            error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' gives " + toString(f->result) + ", not " +
-                               toString(e.type));
-            return zero(kind);
-        }
-        return result;
-    }, [&](Inst* handle) { return lightMethod(e, handle); });
+            Frame frame;
+            frame.function = f;
+            frame.type = f->result;
+            frame.returned = newSlot(boolean(false));
+            if (f->result.base != Base::Void) frame.result = newSlot(zero(kindOf(f->result)));
+            frames_.push_back(frame);
+            if (f->body) statement(*f->body);
+            frames_.pop_back();
+            std::vector<Inst*> outputs;
+            for (const Symbol* p : f->parameters) outputs.push_back(get(slot(p)));
+            --handleDepth_;
+            leaveInstance();
+            openMethods_.erase({i, f});
+            way_.pop_back();
+            place_ = e.place;
+            for (size_t n = 0; n < outputs.size(); ++n)
+                if (f->parameters[n]->output && !f->parameters[n]->type.array && arguments[n]) assign(*arguments[n], outputs[n]);
+            Inst* result = frame.result >= 0 ? get(frame.result) : zero(kind);
+            if (result->kind != kind && !(result->kind == Kind::Float && kind != Kind::String)) {
+                error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' gives " +
+                                   toString(f->result) + ", not " + toString(e.type));
+                return zero(kind);
+            }
+            return result;
+        },
+        [&](Inst* handle) { return lightMethod(e, handle); });
 }
 
-/// The method of a shader with handles that the function is when it is called by its bare name; none where it is no method, or open already.
+/// The method of a shader with handles that the function is when it is called by its bare name; none where it is no method, or
+/// open already.
 std::optional<std::pair<size_t, const Function*>> Builder::methodByName(const Function& f) const {
     size_t i = instances_.size();
     if (!current_.empty()) i = current_.back();
@@ -371,7 +391,8 @@ std::string Builder::wayTo(size_t i, const Function& f) const {
     const std::pair<size_t, const Function*> again{i, &f};
     std::string text;
     const auto add = [&](const auto& m) {
-        text += (text.empty() ? "" : " > ") + (isSelf(m.first) ? "" : instances_[m.first].binding->handle + "->") + m.second->name + "()";
+        text += (text.empty() ? "" : " > ") + (isSelf(m.first) ? "" : instances_[m.first].binding->handle + "->") +
+                m.second->name + "()";
     };
     for (auto m = std::find(way_.begin(), way_.end(), again); m != way_.end(); ++m) add(*m);
     add(again);

@@ -20,8 +20,9 @@ bool Builder::everWritten(const Symbol& s) {
             if (e.kind == ExprKind::Assign) add(e.args[0].get());
             const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
             for (size_t n = 0; n < e.args.size(); ++n) {
-                const bool output = e.signature ? n < e.signature->parameters.size() && e.signature->parameters[n].output
-                                                : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
+                const bool output = e.signature
+                                        ? n < e.signature->parameters.size() && e.signature->parameters[n].output
+                                        : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
                 if ((output || other) && e.args[n]) add(e.args[n].get());
             }
             for (const NamedArg& p : e.pairs)
@@ -29,10 +30,13 @@ bool Builder::everWritten(const Symbol& s) {
         };
         const auto body = [&](const StmtPtr& b) {
             if (b)
-                front::everyStmt(*b, [&](const Stmt& x) {
-                    for (const NamedArg& p : x.pairs)
-                        if (p.value) add(p.value.get());
-                }, expression);
+                front::everyStmt(
+                    *b,
+                    [&](const Stmt& x) {
+                        for (const NamedArg& p : x.pairs)
+                            if (p.value) add(p.value.get());
+                    },
+                    expression);
         };
         const auto program = [&](const Program& p) {
             for (const auto& x : p.shaders) body(x->body);
@@ -45,7 +49,8 @@ bool Builder::everWritten(const Symbol& s) {
 }
 
 /// Elements of parameters that only read are known, also where the index is not.
-void Builder::noteTexts(const Inst* array, const Symbol& s, int length, std::span<const std::pair<std::string, std::string>> given) {
+void Builder::noteTexts(const Inst* array, const Symbol& s, int length,
+                        std::span<const std::pair<std::string, std::string>> given) {
     if (array->op != Op::ArrayNew || array->element != Kind::String || everWritten(s)) return;
     std::vector<std::string> all(static_cast<size_t>(std::max(0, length)));
     for (int n = 0; n < length; ++n)
@@ -61,10 +66,12 @@ bool Builder::possibleTexts(const Inst* v, std::set<std::string>& out, int depth
         out.insert(v->text);
         return true;
     }
-    if (v->op == Op::Select && v->args.size() == 3) return possibleTexts(v->args[1], out, depth + 1) && possibleTexts(v->args[2], out, depth + 1);
+    if (v->op == Op::Select && v->args.size() == 3)
+        return possibleTexts(v->args[1], out, depth + 1) && possibleTexts(v->args[2], out, depth + 1);
     if (v->op == Op::Result && v->args[0]->op == Op::If)
-        return std::all_of(v->args[0]->regions.begin(), v->args[0]->regions.end(),
-                           [&](const Region& r) { return possibleTexts(r.yields[static_cast<size_t>(v->index)], out, depth + 1); });
+        return std::all_of(v->args[0]->regions.begin(), v->args[0]->regions.end(), [&](const Region& r) {
+            return possibleTexts(r.yields[static_cast<size_t>(v->index)], out, depth + 1);
+        });
     const auto known = v->op == Op::ArrayLoad ? texts_.find(v->args[0]) : texts_.end();
     if (known == texts_.end()) return false;
     out.insert(known->second.begin(), known->second.end());
@@ -86,8 +93,8 @@ Inst* Builder::getShader(const Expr& e) {
     return found;
 }
 
-/// The handles that getshaders() gives, in the order of their names. `when`: where the category is known only when the shader runs,
-/// whether each is among them; else empty.
+/// The handles that getshaders() gives, in the order of their names. `when`: where the category is known only when the shader
+/// runs, whether each is among them; else empty.
 std::vector<Inst*> Builder::handlesOf(const Expr& e, std::vector<Inst*>* when) {
     std::string wanted;
     Inst* asked = nullptr;
@@ -130,7 +137,8 @@ Inst* Builder::storeHandles(Inst* to, const Expr& e) {
     };
     if (when.empty()) {
         if (all.size() > room) full();
-        for (size_t n = 0; n < std::min(all.size(), room); ++n) emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(n)), all[n]});
+        for (size_t n = 0; n < std::min(all.size(), room); ++n)
+            emit(Op::ArrayStore, Kind::None, {to, constant(static_cast<float>(n)), all[n]});
         return constant(static_cast<float>(std::min(all.size(), room)));
     }
     Inst* next = constant(0);

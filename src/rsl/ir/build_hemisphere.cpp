@@ -20,11 +20,10 @@ const OptionalParameter* parameterNamed(const Shadeop& op, const std::string& na
 std::string nameInTrace(const std::string& name) {
     if (name == "coneangle") return "samplecone";
     if (name == "axis") return "horizon";
-    static const std::set<std::string_view> kSame = {"label",   "subset",     "bias",          "hitmode",          "hitsides",
-                                                     "maxdist", "samplebase", "type",          "excludesubset",    "raytype",
-                                                     "samples", "raylabel",   "maxhitdist",    "environmentspace", "distribution",
-                                                     "weight",  "samplecone", "environmentmap",
-                                                     "falloff", "falloffmode", "maxvariation", "maxpixeldist"};
+    static const std::set<std::string_view> kSame = {
+        "label",         "subset",         "bias",    "hitmode",     "hitsides",     "maxdist",          "samplebase",   "type",
+        "excludesubset", "raytype",        "samples", "raylabel",    "maxhitdist",   "environmentspace", "distribution", "weight",
+        "samplecone",    "environmentmap", "falloff", "falloffmode", "maxvariation", "maxpixeldist"};
     return kSame.count(name) ? name : "";
 }
 
@@ -65,8 +64,8 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
         Inst* v = expr(*p.value);
         if ((known->type.base == Base::String) != (v->kind == Kind::String) || v->kind == Kind::Matrix) continue;
         v = coerce(v, known->type.element());
-        static const std::set<std::string_view> kOfPoints = {"pointbased", "filename", "filenames", "maxsolidangle", "clamp",
-                                                             "sortbleeding", "coordsystem"};
+        static const std::set<std::string_view> kOfPoints = {"pointbased", "filename",     "filenames",  "maxsolidangle",
+                                                             "clamp",      "sortbleeding", "coordsystem"};
         if (kOfPoints.count(p.name)) continue; // rays know nothing of them
         if (p.name == "samples" && h.given.count("samples")) continue;
         if (p.name == "axis") { // none: every direction
@@ -81,11 +80,12 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
     if (!h.given.count("raytype")) give("type", leaves_.string("diffuse"), {Base::String, 0});
     give("samplecone", constant(1.57079633f), real);
     give(kPairHemisphere, leaves_.string("1"), {Base::String, 0});
-    for (const auto& [output, parameter] : messageSlots_) give(PairName::surface(output).text(), get(parameter.first), parameter.second);
+    for (const auto& [output, parameter] : messageSlots_)
+        give(PairName::surface(output).text(), get(parameter.first), parameter.second);
 }
 
-/// Whether a call is to be answered from point clouds: an instruction that tells, or null where it names none. PRMan 12 and Aqsis knew no
-/// "pointbased": there a file and no samples mean it.
+/// Whether a call is to be answered from point clouds: an instruction that tells, or null where it names none. PRMan 12 and Aqsis
+/// knew no "pointbased": there a file and no samples mean it.
 Inst* Builder::readsPoints(const Expr& e) {
     const bool below = e.shadeop->name == "subsurface";
     bool named = false;
@@ -108,8 +108,10 @@ Inst* Builder::readsPoints(const Expr& e) {
     const bool bySamples = !wanted && file && e.args.size() > 2 && e.signature->parameters[2].type.base == Base::Float;
     if (bySamples) {
         Inst *name = expr(*file, Kind::String), *samples = expr(*e.args[2], Kind::Float);
-        Inst* none = samples->op == Op::Const ? boolean(samples->numbers[0] == 0) : emit(Op::Equal, Kind::Bool, {samples, constant(0)});
-        Inst* given = name->op == Op::ConstString ? boolean(!name->text.empty()) : emit(Op::NotEqual, Kind::Bool, {name, leaves_.string("")});
+        Inst* none =
+            samples->op == Op::Const ? boolean(samples->numbers[0] == 0) : emit(Op::Equal, Kind::Bool, {samples, constant(0)});
+        Inst* given = name->op == Op::ConstString ? boolean(!name->text.empty())
+                                                  : emit(Op::NotEqual, Kind::Bool, {name, leaves_.string("")});
         if (none->op == Op::Const && given->op == Op::Const) wanted = boolean(none->numbers[0] != 0 && given->numbers[0] != 0);
         else wanted = emit(Op::And, Kind::Bool, {none, given});
     }
@@ -129,7 +131,8 @@ Inst* Builder::hemisphere(const Expr& e) {
     if (points->op == Op::Const) return read();
     const Kind k = kindOf(e.type);
     return branch(
-        points, [&] { return std::vector<Inst*>{coerce(read(), k)}; }, [&] { return std::vector<Inst*>{coerce(traced(), k)}; })[0];
+        points, [&] { return std::vector<Inst*>{coerce(read(), k)}; },
+        [&] { return std::vector<Inst*>{coerce(traced(), k)}; })[0];
 }
 
 Inst* Builder::tracedHemisphere(const Expr& e) {

@@ -1,8 +1,8 @@
-// Members that displacement() of a class leaves to its other methods (rsl/front/leftmembers.h): outputs "param:this->NAME" of the one kernel,
-// inputs "displacement:this->NAME" of the other. "#" behind the name: the length of an array that changes it.
-#include "rsl/ir/builder.h"
+// Members that displacement() of a class leaves to its other methods (rsl/front/leftmembers.h): outputs "param:this->NAME" of the
+// one kernel, inputs "displacement:this->NAME" of the other. "#" behind the name: the length of an array that changes it.
 #include "rsl/front/leftmembers.h"
 #include "rsl/front/protocol.h"
+#include "rsl/ir/builder.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::ir {
@@ -23,8 +23,8 @@ Inst* Builder::leftBehind(const std::string& name, Type& type) {
     return emit(o.what == OutputName::What::Du ? Op::Du : Op::Dv, v->kind, {v});
 }
 
-/// KernelOptions::stringParameters, "displacement:this->NAME": the elements of an array, "length" behind them where their number is an
-/// input too; else 0.
+/// KernelOptions::stringParameters, "displacement:this->NAME": the elements of an array, "length" behind them where their number
+/// is an input too; else 0.
 void Builder::hearMembers() {
     for (const auto& [key, text] : options_.stringParameters) {
         const InputName told = InputName::parse(key);
@@ -53,11 +53,14 @@ void Builder::hearMembers() {
     }
 }
 
-/// The body of a class: members, methods, construct() and begin(), the methods that the renderer runs. What displacement() left counts
-/// from where the last of these begin. `opacityOnly`: what stops shadows is what opacity() gives, before the other methods change it.
+/// The body of a class: members, methods, construct() and begin(), the methods that the renderer runs. What displacement() left
+/// counts from where the last of these begin. `opacityOnly`: what stops shadows is what opacity() gives, before the other methods
+/// change it.
 void Builder::objectBody(bool opacityOnly) {
     const std::vector<StmtPtr>& all = shader_.body->body;
-    const auto calls = [](const Stmt& s, const char* name) { return s.kind == StmtKind::Expression && s.value && s.value->text == name; };
+    const auto calls = [](const Stmt& s, const char* name) {
+        return s.kind == StmtKind::Expression && s.value && s.value->text == name;
+    };
     size_t first = 0;
     for (size_t n = 0; n < all.size(); ++n)
         if (all[n]->definition || calls(*all[n], "construct") || calls(*all[n], "begin")) first = n + 1;

@@ -50,21 +50,22 @@ void Builder::illuminance(const Stmt& s) {
                 }
                 Inst* a = array(*p.value);
                 for (int n = 0; n < arrayLength(a); ++n)
-                    give(PairName::send(pair.name, n).text(), emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}), p.value->type.element());
+                    give(PairName::send(pair.name, n).text(),
+                         emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}), p.value->type.element());
                 continue;
             }
             Inst* v = expr(*p.value);
             if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
             if (v->kind == Kind::String && v->op != Op::ConstString)
                 warn(p.place, "\"" + p.name + "\" sends a string that is not known when the shader is compiled; it is not sent");
-            else
-                give(p.name, v, p.value->type);
+            else give(p.name, v, p.value->type);
             continue;
         }
         Inst* v = expr(*p.value);
         const bool cache = p.name == "lightcache";
         if (!cache || v->op != Op::ConstString || (v->text != "reuse" && v->text != "refresh")) {
-            warn(p.place, cache ? "\"lightcache\" is \"reuse\" or \"refresh\"" : "the pair \"" + p.name + "\" means nothing to illuminance");
+            warn(p.place, cache ? "\"lightcache\" is \"reuse\" or \"refresh\""
+                                : "the pair \"" + p.name + "\" means nothing to illuminance");
             continue;
         }
         site.names.push_back(p.name);
@@ -184,7 +185,9 @@ void Builder::illuminance(const Stmt& s) {
                 for (int n = 0; whole && whole->op == Op::ArrayNew && n < count; ++n) {
                     Inst* at = constant(static_cast<float>(n));
                     Inst* element = v[static_cast<size_t>(n) + 1];
-                    emit(Op::ArrayStore, Kind::None, {whole, at, emit(Op::Select, element->kind, {found, element, emit(Op::ArrayLoad, whole->element, {whole, at})})});
+                    emit(Op::ArrayStore, Kind::None,
+                         {whole, at,
+                          emit(Op::Select, element->kind, {found, element, emit(Op::ArrayLoad, whole->element, {whole, at})})});
                 }
                 if (whole) continue;
                 const Held held(*this, *p->value);
@@ -223,11 +226,12 @@ int Builder::addBlock(const Stmt& s) {
     return static_cast<int>(lightBlocks_.size()) - 1;
 }
 
-/// Blocks of a body and of the functions that it calls, once for each call, in order of the text, up to one more than there may be.
-/// `without`: functions that have none, which are not looked into again.
+/// Blocks of a body and of the functions that it calls, once for each call, in order of the text, up to one more than there may
+/// be. `without`: functions that have none, which are not looked into again.
 static void blocksOf(const Stmt& s, std::vector<const Stmt*>& found, std::set<const Function*>& without) {
     const auto statement = [&](const Stmt& x) {
-        if ((x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar) && found.size() <= limits::kLightBlocks) found.push_back(&x);
+        if ((x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar) && found.size() <= limits::kLightBlocks)
+            found.push_back(&x);
     };
     front::everyStmt(s, statement, [&](const Expr& e) {
         if (!e.function || !e.function->body || found.size() > limits::kLightBlocks || without.count(e.function)) return;
@@ -251,8 +255,8 @@ Inst* Builder::within(Inst* angle) {
     return emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {most, angle}), most, angle});
 }
 
-/// A direction of the cone about `axis`, as long as it. The renderer's numbers (transport: coneNumbers) are three: how far from the axis,
-/// evenly over the solid angle, and a unit vector that says which way; zero far is the axis itself.
+/// A direction of the cone about `axis`, as long as it. The renderer's numbers (transport: coneNumbers) are three: how far from
+/// the axis, evenly over the solid angle, and a unit vector that says which way; zero far is the axis itself.
 Inst* Builder::inCone(Inst* axis, Inst* angle) {
     Inst* numbers = input("Ci", {Base::Color, 0}, false);
     const auto part = [&](Inst* v, int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
@@ -262,7 +266,8 @@ Inst* Builder::inCone(Inst* axis, Inst* angle) {
     Inst* n = runtime1("al_normalize_t", {axis}, Kind::Triple);
     Inst* steep = emit(Op::Less, Kind::Bool, {product(part(n, 0), part(n, 0)), constant(0.5f)});
     Inst* beside = emit(Op::Select, Kind::Triple,
-                        {steep, leaves_.constant(Kind::Triple, std::vector<float>{1, 0, 0}), leaves_.constant(Kind::Triple, std::vector<float>{0, 1, 0})});
+                        {steep, leaves_.constant(Kind::Triple, std::vector<float>{1, 0, 0}),
+                         leaves_.constant(Kind::Triple, std::vector<float>{0, 1, 0})});
     Inst* t = runtime1("al_normalize_t", {cross(n, beside)}, Kind::Triple);
     Inst* u = cross(n, t);
     Inst* half = runtime1("al_sin", {product(within(angle), constant(0.5f))}, Kind::Float);

@@ -1,5 +1,5 @@
-// Lights by their handles: getlight(), getlights(), handle->light(), handle->parameter, islightcategory(). Which lights there are is
-// known to the renderer only, so each is a question to it.
+// Lights by their handles: getlight(), getlights(), handle->light(), handle->parameter, islightcategory(). Which lights there are
+// is known to the renderer only, so each is a question to it.
 #include "base/limits.h"
 #include "rsl/ir/builder.h"
 
@@ -22,10 +22,14 @@ Site question(const char* op, const Place& place) {
 Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
     if (e.text != "light" || e.args.size() < 3) { // null is null; another handle is that of a shader without methods
         Inst* some = emit(Op::NotEqual, Kind::Bool, {handle, leaves_.string("")});
-        branch(some, [&] {
-            complain(e.place, "the shader of this handle has no method '" + e.text + "' with these arguments, and the call gives 0");
-            return std::vector<Inst*>{zero(Kind::Float)};
-        }, [&] { return std::vector<Inst*>{zero(Kind::Float)}; });
+        branch(
+            some,
+            [&] {
+                complain(e.place,
+                         "the shader of this handle has no method '" + e.text + "' with these arguments, and the call gives 0");
+                return std::vector<Inst*>{zero(Kind::Float)};
+            },
+            [&] { return std::vector<Inst*>{zero(Kind::Float)}; });
         return zero(Kind::Float);
     }
     if (shader_.kind == ShaderKind::Light) {
@@ -62,7 +66,8 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
         const Expr& to = *e.args[n];
         const bool variable = to.kind == ExprKind::Variable || to.kind == ExprKind::Index;
         if (!variable || to.type.array || kindOf(to.type) != Kind::Triple) {
-            error(to.place, "argument " + std::to_string(n) + " of light() is a variable of type " + (n == 1 ? "vector" : "color"));
+            error(to.place,
+                  "argument " + std::to_string(n) + " of light() is a variable of type " + (n == 1 ? "vector" : "color"));
             return zero(Kind::Float);
         }
         const Held held(*this, to);
@@ -71,7 +76,8 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
     return zero(Kind::Float);
 }
 
-/// A parameter of a light. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is given.
+/// A parameter of a light. `to`: the variable that getvar() fills, which then gives whether there is one; else the value is
+/// given.
 Inst* Builder::lightMember(Inst* handle, Inst* name, Kind kind, const Expr* to, Inst* at) {
     Site s = question("lightparameter", place_);
     std::vector<Inst*> args;

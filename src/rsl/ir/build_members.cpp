@@ -36,8 +36,8 @@ Inst* Builder::memberValue(size_t i, const Symbol& s) {
     return v;
 }
 
-/// The type of what `handle->name` or `handle->name()` gives, for who takes any: that of the shader that the handle names, or of the first
-/// that has one; a number where that is not to be seen.
+/// The type of what `handle->name` or `handle->name()` gives, for who takes any: that of the shader that the handle names, or of
+/// the first that has one; a number where that is not to be seen.
 Type Builder::typeOfMember(const Expr& e) {
     const bool element = e.kind == ExprKind::Index; // of an array, or a component
     const Expr& member = element ? *e.args[0] : e;
@@ -56,8 +56,8 @@ Type Builder::typeOfMember(const Expr& e) {
     return {Base::Float, 0};
 }
 
-/// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, that is said when the
-/// shader runs and comes here with this one; else it is an error. `lack`: what comes behind the shader's name.
+/// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, that is said when
+/// the shader runs and comes here with this one; else it is an error. `lack`: what comes behind the shader's name.
 void Builder::lacks(const Place& place, size_t i, const std::string& lack, const std::function<bool(size_t)>& has) {
     if (!certain_ && isSelf(i)) return; // one of the others is meant
     const CoShader& c = *instances_[i].binding;
@@ -76,18 +76,23 @@ Inst* Builder::memberAccess(const Expr& e) {
         const Symbol* s = memberOf(i, e.text);
         return s && !s->type.array && (kindOf(s->type) == kind || (kindOf(s->type) == Kind::Float && kind != Kind::String));
     };
-    return forHandle(*e.args[0], kind, [&](size_t i) -> Inst* {
-        const CoShader& c = *instances_[i].binding;
-        const Symbol* s = memberOf(i, e.text);
-        if (c.light && !(isSelf(i) && !certain_) && (!fits(i) || s->output))
-            return lightMember(leaves_.string(c.handle), leaves_.string(e.text), kind, nullptr);
-        if (!fits(i)) {
-            lacks(e.place, i, s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(type)
-                                : "has no public member '" + e.text + "'", fits);
-            return zero(kind);
-        }
-        return memberValue(i, *s);
-    }, [&](Inst* handle) { return lightMember(handle, leaves_.string(e.text), kind, nullptr); });
+    return forHandle(
+        *e.args[0], kind,
+        [&](size_t i) -> Inst* {
+            const CoShader& c = *instances_[i].binding;
+            const Symbol* s = memberOf(i, e.text);
+            if (c.light && !(isSelf(i) && !certain_) && (!fits(i) || s->output))
+                return lightMember(leaves_.string(c.handle), leaves_.string(e.text), kind, nullptr);
+            if (!fits(i)) {
+                lacks(e.place, i,
+                      s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(type)
+                        : "has no public member '" + e.text + "'",
+                      fits);
+                return zero(kind);
+            }
+            return memberValue(i, *s);
+        },
+        [&](Inst* handle) { return lightMember(handle, leaves_.string(e.text), kind, nullptr); });
 }
 
 namespace {
@@ -98,7 +103,8 @@ bool among(const std::string& name, std::initializer_list<const char*> names) {
 
 /// getvar(null, name [, variable]): of the primitive. `to` may be null.
 Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
-    if (shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Imager || (to && (to->type.array || to->type.base == Base::String)))
+    if (shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Imager ||
+        (to && (to->type.array || to->type.base == Base::String)))
         return askPrimitive(leaves_.string(name), to);
     const auto& there = options_.varyingParameters;
     if (std::find(there.begin(), there.end(), name) == there.end()) {
@@ -152,12 +158,13 @@ Inst* Builder::hasMethod(const Expr& e) {
             if (i.binding->handle == handle->text) return constant(has(*i.binding->shader) ? 1.0f : 0.0f);
         return constant(0);
     }
-    return forHandle(*e.args[0], Kind::Float, [&](size_t i) { return constant(has(*instances_[i].binding->shader) ? 1.0f : 0.0f); },
-                     [&](Inst* other) -> Inst* { // no co-shader: a light, or null
-                         if (name->text != "light") return constant(0);
-                         Inst* null = emit(Op::Equal, Kind::Bool, {other, leaves_.string("")});
-                         return emit(Op::Select, Kind::Float, {null, constant(0), constant(1)});
-                     });
+    return forHandle(
+        *e.args[0], Kind::Float, [&](size_t i) { return constant(has(*instances_[i].binding->shader) ? 1.0f : 0.0f); },
+        [&](Inst* other) -> Inst* { // no co-shader: a light, or null
+            if (name->text != "light") return constant(0);
+            Inst* null = emit(Op::Equal, Kind::Bool, {other, leaves_.string("")});
+            return emit(Op::Select, Kind::Float, {null, constant(0), constant(1)});
+        });
 }
 
 /// Copies an array of another shader. False, and nothing is done, where it is of another type or does not fill the variable.
@@ -185,7 +192,8 @@ Inst* Builder::memberArray(const Expr& e) {
     int room = 1;
     for (size_t i = 0; i < instances_.size(); ++i)
         if (const Symbol* s = memberOf(i, e.text); s && s->type.array)
-            if (Inst* v = memberValue(i, *s); v->kind == Kind::Array) room = std::max(room, lengths(v) ? v->index : arrayLength(v));
+            if (Inst* v = memberValue(i, *s); v->kind == Kind::Array)
+                room = std::max(room, lengths(v) ? v->index : arrayLength(v));
     Inst* a = newResizable(e.type.base, room);
     const Lengths l = *lengths(a);
     set(l.length, constant(0));
@@ -195,42 +203,48 @@ Inst* Builder::memberArray(const Expr& e) {
         Inst* from = s && s->type.array ? memberValue(i, *s) : nullptr;
         return from && from->kind == Kind::Array && from->element == a->element ? from : nullptr;
     };
-    forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
-        Inst* from = given(i);
-        if (!from) {
-            const Symbol* s = memberOf(i, e.text);
-            lacks(e.place, i, s ? "has '" + e.text + "' as " + toString(s->type) + ", not an array of " + toString(e.type.element())
-                                : "has no public member '" + e.text + "'", given);
-            return constant(0);
-        }
-        set(l.length, lengthOf(from));
-        set(l.reserved, lengthOf(from));
-        for (int n = 0; n < std::min(a->index, lengths(from) ? from->index : arrayLength(from)); ++n) {
-            Inst* at = constant(static_cast<float>(n));
-            emit(Op::ArrayStore, Kind::None, {a, at, emit(Op::ArrayLoad, a->element, {from, at})});
-        }
-        return constant(1);
-    }, [&](Inst* handle) -> Inst* { // a light
-        Site s;
-        s.op = "lightparameter";
-        s.place = place_;
-        s.strings = {e.text};
-        s.resultKinds = {Kind::Float, Kind::Float};
-        s.resultNames = {"", lengthResult("value")};
-        s.resultType = {Base::Float, 0};
-        for (int n = 0; n < a->index; ++n) {
-            s.resultKinds.push_back(a->element);
-            s.resultNames.push_back("value[" + std::to_string(n) + "]");
-        }
-        std::vector<Inst*> args;
-        addArgument(s, args, handle, {Base::String, 0});
-        const std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
-        Inst* n = limitLength(a, v[1]);
-        set(l.length, n);
-        set(l.reserved, n);
-        for (int k = 0; k < a->index; ++k) emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(k)), v[static_cast<size_t>(k) + 2]});
-        return v[0];
-    });
+    forHandle(
+        *e.args[0], Kind::Float,
+        [&](size_t i) -> Inst* {
+            Inst* from = given(i);
+            if (!from) {
+                const Symbol* s = memberOf(i, e.text);
+                lacks(e.place, i,
+                      s ? "has '" + e.text + "' as " + toString(s->type) + ", not an array of " + toString(e.type.element())
+                        : "has no public member '" + e.text + "'",
+                      given);
+                return constant(0);
+            }
+            set(l.length, lengthOf(from));
+            set(l.reserved, lengthOf(from));
+            for (int n = 0; n < std::min(a->index, lengths(from) ? from->index : arrayLength(from)); ++n) {
+                Inst* at = constant(static_cast<float>(n));
+                emit(Op::ArrayStore, Kind::None, {a, at, emit(Op::ArrayLoad, a->element, {from, at})});
+            }
+            return constant(1);
+        },
+        [&](Inst* handle) -> Inst* { // a light
+            Site s;
+            s.op = "lightparameter";
+            s.place = place_;
+            s.strings = {e.text};
+            s.resultKinds = {Kind::Float, Kind::Float};
+            s.resultNames = {"", lengthResult("value")};
+            s.resultType = {Base::Float, 0};
+            for (int n = 0; n < a->index; ++n) {
+                s.resultKinds.push_back(a->element);
+                s.resultNames.push_back("value[" + std::to_string(n) + "]");
+            }
+            std::vector<Inst*> args;
+            addArgument(s, args, handle, {Base::String, 0});
+            const std::vector<Inst*> v = call(Op::Service, std::move(s), std::move(args));
+            Inst* n = limitLength(a, v[1]);
+            set(l.length, n);
+            set(l.reserved, n);
+            for (int k = 0; k < a->index; ++k)
+                emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(k)), v[static_cast<size_t>(k) + 2]});
+            return v[0];
+        });
     return a;
 }
 
@@ -241,22 +255,25 @@ Inst* Builder::memberLength(const Expr& e) {
         Inst* v = s && s->type.array ? memberValue(i, *s) : nullptr;
         return v && v->kind == Kind::Array ? v : nullptr;
     };
-    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
-        if (Inst* v = found(i)) return lengthOf(v);
-        lacks(e.place, i, "has no public member '" + e.text + "' that is an array", found);
-        return constant(0);
-    }, [&](Inst* handle) -> Inst* { // a light
-        Site s;
-        s.op = "lightparameter";
-        s.place = place_;
-        s.strings = {e.text};
-        s.resultKinds = {Kind::Float, Kind::Float};
-        s.resultNames = {"", lengthResult("value")};
-        s.resultType = {Base::Float, 0};
-        std::vector<Inst*> args;
-        addArgument(s, args, handle, {Base::String, 0});
-        return call(Op::Service, std::move(s), std::move(args))[1];
-    });
+    return forHandle(
+        *e.args[0], Kind::Float,
+        [&](size_t i) -> Inst* {
+            if (Inst* v = found(i)) return lengthOf(v);
+            lacks(e.place, i, "has no public member '" + e.text + "' that is an array", found);
+            return constant(0);
+        },
+        [&](Inst* handle) -> Inst* { // a light
+            Site s;
+            s.op = "lightparameter";
+            s.place = place_;
+            s.strings = {e.text};
+            s.resultKinds = {Kind::Float, Kind::Float};
+            s.resultNames = {"", lengthResult("value")};
+            s.resultType = {Base::Float, 0};
+            std::vector<Inst*> args;
+            addArgument(s, args, handle, {Base::String, 0});
+            return call(Op::Service, std::move(s), std::move(args))[1];
+        });
 }
 
 /// handle->tab[i]: an element of an array, or a component of a tuple.
@@ -275,19 +292,24 @@ Inst* Builder::memberElement(const Expr& e) {
         const Inst* v = s ? memberValue(i, *s) : nullptr;
         return v && (inArray(v) || inTuple(v));
     };
-    return forHandle(*member.args[0], kind, [&](size_t i) -> Inst* {
-        const Symbol* s = memberOf(i, member.text);
-        Inst* v = s ? memberValue(i, *s) : nullptr;
-        if (v && inArray(v)) return emit(Op::ArrayLoad, v->element, {v, elementOf(v, at)});
-        if (v && inTuple(v)) {
-            const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
-            Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), part(1), part(0)});
-            return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), part(2), low});
-        }
-        lacks(e.place, i, s ? "has '" + member.text + "' as " + toString(s->type) + ", not an array of " + toString(type)
-                            : "has no public member '" + member.text + "'", has);
-        return zero(kind);
-    }, [&](Inst* handle) { return lightMember(handle, leaves_.string(member.text), kind, nullptr, at); });
+    return forHandle(
+        *member.args[0], kind,
+        [&](size_t i) -> Inst* {
+            const Symbol* s = memberOf(i, member.text);
+            Inst* v = s ? memberValue(i, *s) : nullptr;
+            if (v && inArray(v)) return emit(Op::ArrayLoad, v->element, {v, elementOf(v, at)});
+            if (v && inTuple(v)) {
+                const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
+                Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), part(1), part(0)});
+                return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), part(2), low});
+            }
+            lacks(e.place, i,
+                  s ? "has '" + member.text + "' as " + toString(s->type) + ", not an array of " + toString(type)
+                    : "has no public member '" + member.text + "'",
+                  has);
+            return zero(kind);
+        },
+        [&](Inst* handle) { return lightMember(handle, leaves_.string(member.text), kind, nullptr, at); });
 }
 
 /// getvar(handle, name [, variable]): 1 when there is such a member.
@@ -303,9 +325,11 @@ Inst* Builder::getVariable(const Expr& e) {
     const auto take = [&](size_t i, const Symbol* s) -> Inst* {
         if (!s) return constant(0);
         if (!to) return constant(1);
-        if ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element())) return constant(0);
+        if ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element()))
+            return constant(0);
         const bool varying = s->origin == Symbol::Origin::ShaderParameter && s->storage == Storage::Varying;
-        if (varying && to->symbol && to->symbol->storage == Storage::Uniform) { // a varying parameter does not become a uniform variable, as in messages
+        if (varying && to->symbol &&
+            to->symbol->storage == Storage::Uniform) { // a varying parameter does not become a uniform variable, as in messages
             warn(e.place, "getvar(): parameter '" + name->text + "' of '" + instances_[i].binding->shader->name +
                               "' is varying and the variable is uniform: nothing is assigned, and the result is 0");
             return constant(0);
@@ -314,17 +338,22 @@ Inst* Builder::getVariable(const Expr& e) {
         assign(*to, memberValue(i, *s));
         return constant(1);
     };
-    return forHandle(*e.args[0], Kind::Float, [&](size_t i) -> Inst* {
-        if (name->op == Op::ConstString) return take(i, memberOf(i, name->text));
-        Inst* found = constant(0); // a name that is made when the shader runs is compared with all
-        for (const Symbol* s : membersOf(i)) {
-            if (to && ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element()))) continue;
-            found = branch(
-                emit(Op::Equal, Kind::Bool, {name, leaves_.string(s->name)}), [&] { return std::vector<Inst*>{take(i, s)}; },
-                [&] { return std::vector<Inst*>{found}; })[0];
-        }
-        return found;
-    }, [&](Inst* light) -> Inst* { return lightMember(light, name, to ? kindOf(to->type.element()) : Kind::Float, to); });
+    return forHandle(
+        *e.args[0], Kind::Float,
+        [&](size_t i) -> Inst* {
+            if (name->op == Op::ConstString) return take(i, memberOf(i, name->text));
+            Inst* found = constant(0); // a name that is made when the shader runs is compared with all
+            for (const Symbol* s : membersOf(i)) {
+                if (to &&
+                    ((s->type.array != 0) != (to->type.array != 0) || kindOf(s->type.element()) != kindOf(to->type.element())))
+                    continue;
+                found = branch(
+                    emit(Op::Equal, Kind::Bool, {name, leaves_.string(s->name)}), [&] { return std::vector<Inst*>{take(i, s)}; },
+                    [&] { return std::vector<Inst*>{found}; })[0];
+            }
+            return found;
+        },
+        [&](Inst* light) -> Inst* { return lightMember(light, name, to ? kindOf(to->type.element()) : Kind::Float, to); });
 }
 
 } // namespace alpenglow::rsl::ir

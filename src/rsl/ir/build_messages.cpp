@@ -1,4 +1,5 @@
-// Answers of the renderer on their way into variables; outputs of the displacement shader; variables of the primitive by any name.
+// Answers of the renderer on their way into variables; outputs of the displacement shader; variables of the primitive by any
+// name.
 #include "base/limits.h"
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
@@ -6,7 +7,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Adds what the variable takes to the results of a call: of an array all its elements, and before them the length where that changes.
+/// Adds what the variable takes to the results of a call: of an array all its elements, and before them the length where that
+/// changes.
 Builder::Receiver Builder::receiver(Site& s, const Expr& to, const std::string& name) {
     Receiver r{&to, 0};
     const auto add = [&](Kind k, const std::string& n) {
@@ -27,7 +29,9 @@ Builder::Receiver Builder::receiver(Site& s, const Expr& to, const std::string& 
 
 /// `found`: a Bool; null: the answer always comes. A variable that gets none stays as it was.
 void Builder::receive(const Receiver& r, std::span<Inst* const> values, Inst* found) {
-    const auto either = [&](Inst* v, Inst* old) { return found ? emit(Op::Select, v->kind, {found, v, coerce(old, v->kind)}) : v; };
+    const auto either = [&](Inst* v, Inst* old) {
+        return found ? emit(Op::Select, v->kind, {found, v, coerce(old, v->kind)}) : v;
+    };
     if (!r.to->type.array) {
         const Held held(*this, *r.to);
         assign(*r.to, found ? either(values[0], expr(*r.to)) : values[0]);
@@ -61,7 +65,8 @@ bool Builder::heardDisplacement(const Expr& call, const std::string& name, Inst*
         const Expr& to = *call.args[1];
         const Expr* root = &to;
         while (root->kind == ExprKind::Index && !root->args.empty()) root = root->args[0].get();
-        const bool uniform = root->symbol && root->symbol->storage == Storage::Uniform && to.type.base != Base::String; // strings have no classes
+        const bool uniform =
+            root->symbol && root->symbol->storage == Storage::Uniform && to.type.base != Base::String; // strings have no classes
         Inst* a = to.type.array ? array(to) : nullptr;
         const bool open = a && lengths(a);
         found = constant(0);

@@ -1,7 +1,7 @@
-// User functions that are called instead of inlined. A function is built once, with its parameters and the variables that it reads
-// from outside as region parameters; passes/outline.h then decides whether its calls stay calls. Constant strings (names of spaces,
-// bases of splines) are bound, not passed: what they mean is decided here. A function that needs services, rays or lights is inlined:
-// those belong to places in the shader.
+// User functions that are called instead of inlined. A function is built once, with its parameters and the variables that it
+// reads from outside as region parameters; passes/outline.h then decides whether its calls stay calls. Constant strings (names of
+// spaces, bases of splines) are bound, not passed: what they mean is decided here. A function that needs services, rays or lights
+// is inlined: those belong to places in the shader.
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <unordered_set>
@@ -20,11 +20,14 @@ void Builder::scan(const Expr& e, Scan& to) {
     to.survey.size += 1;
     if (e.symbol) to.used.insert(e.symbol);
     if (e.function) include(*e.function, to);
-    if (e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov" || e.shadeop->name == "readaov" || e.shadeop->name == "evalparam")) to.survey.possible = false;
+    if (e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov" || e.shadeop->name == "readaov" ||
+                      e.shadeop->name == "evalparam"))
+        to.survey.possible = false;
     if (e.kind == ExprKind::Method || e.kind == ExprKind::Member) to.survey.possible = false;
     if (e.shadeop && !e.function) {
         const Lowering l = e.shadeop->lowering;
-        to.survey.possible = to.survey.possible && (l == Lowering::Runtime || l == Lowering::Special) && e.shadeop->name != "random";
+        to.survey.possible =
+            to.survey.possible && (l == Lowering::Runtime || l == Lowering::Special) && e.shadeop->name != "random";
     }
     for (const ExprPtr& a : e.args)
         if (a) scan(*a, to);
@@ -36,7 +39,8 @@ void Builder::scan(const Expr& e, Scan& to) {
 
 void Builder::scan(const Stmt& s, Scan& to) {
     to.survey.size += 1;
-    if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Illuminate || s.kind == StmtKind::Solar || s.kind == StmtKind::Gather)
+    if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Illuminate || s.kind == StmtKind::Solar ||
+        s.kind == StmtKind::Gather)
         to.survey.possible = false;
     for (const StmtPtr& b : s.body)
         if (b) scan(*b, to);
@@ -204,7 +208,8 @@ bool Builder::outlined(const Function& f, const std::vector<Inst*>& values, Inst
     for (const Inst* y : o.function->regions[0].yields) call->results.push_back(y->kind);
     region_->body.push_back(call);
     std::vector<Inst*> r;
-    for (size_t n = 0; n < call->results.size(); ++n) r.push_back(emit(Op::Result, call->results[n], {call}, static_cast<int>(n)));
+    for (size_t n = 0; n < call->results.size(); ++n)
+        r.push_back(emit(Op::Result, call->results[n], {call}, static_cast<int>(n)));
     size_t next = 0;
     result = f.result.base != Base::Void ? r[next++] : constant(0);
     for (const Symbol* p : f.parameters)

@@ -3,8 +3,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// evalparam(name, variable): 1 where the shader, or the co-shader whose method runs, has a parameter of that name that the variable can
-/// take. A name that is made when the shader runs is compared with those of all that fit.
+/// evalparam(name, variable): 1 where the shader, or the co-shader whose method runs, has a parameter of that name that the
+/// variable can take. A name that is made when the shader runs is compared with those of all that fit.
 Inst* Builder::evalParameter(const Expr& e) {
     const Expr& to = *e.args[1];
     Inst* name = expr(*e.args[0], Kind::String);
@@ -34,8 +34,8 @@ Inst* Builder::evalParameter(const Expr& e) {
             continue;
         }
         found = branch(
-            emit(Op::Equal, Kind::Bool, {name, leaves_.string(s.name)}), [&] { return std::vector<Inst*>{constant(give(s) ? 1.0f : 0.0f)}; },
-            [&] { return std::vector<Inst*>{found}; })[0];
+            emit(Op::Equal, Kind::Bool, {name, leaves_.string(s.name)}),
+            [&] { return std::vector<Inst*>{constant(give(s) ? 1.0f : 0.0f)}; }, [&] { return std::vector<Inst*>{found}; })[0];
     }
     return found;
 }

@@ -1,5 +1,5 @@
-// The map "raytrace" of environment() and shadow(): rays are sent instead of a lookup (rsl.md 12.3), by the requests of trace() and
-// transmission(), with their optional parameters.
+// The map "raytrace" of environment() and shadow(): rays are sent instead of a lookup (rsl.md 12.3), by the requests of trace()
+// and transmission(), with their optional parameters.
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -38,7 +38,8 @@ Inst* Builder::rays(const Expr& e, const char* name, const std::vector<std::pair
             if (o.name == p.name && o.output == p.output) known = &o;
         if (!p.value || !known) continue; // filters of maps
         if (p.value->type.array) {
-            if (p.output || !known->type.array || (known->type.base == Base::String) != (p.value->type.base == Base::String)) continue;
+            if (p.output || !known->type.array || (known->type.base == Base::String) != (p.value->type.base == Base::String))
+                continue;
             Inst* from = array(*p.value);
             for (int n = 0; n < arrayLength(from); ++n)
                 give(p.name + "[" + std::to_string(n) + "]",
@@ -85,7 +86,8 @@ bool Builder::ofRaysOnly(const Expr& e, const std::string& parameter) {
 Inst* Builder::tracedMap(const Expr& e) {
     const bool shadow = e.shadeop->name == "shadow";
     if (e.args.empty() || (!shadow && e.shadeop->name != "environment")) return nullptr;
-    if (shader_.kind != ShaderKind::Surface && shader_.kind != ShaderKind::Volume && shader_.kind != ShaderKind::Light) return nullptr;
+    if (shader_.kind != ShaderKind::Surface && shader_.kind != ShaderKind::Volume && shader_.kind != ShaderKind::Light)
+        return nullptr;
     Inst* name = expr(*e.args[0], Kind::String);
     if (name->op != Op::ConstString || name->text != kRays) return nullptr;
     std::vector<Inst*> at;
@@ -104,8 +106,9 @@ Inst* Builder::tracedMap(const Expr& e) {
         Inst* toLight = nullptr;
         const auto l = globals_.find("L");
         if (light) {
-            Inst* from = blockDepth_ > 0 && l != globals_.end() ? get(l->second)
-                                                                : emit(Op::Sub, Kind::Triple, {global("Ps", Base::Point), global("P", Base::Point)});
+            Inst* from = blockDepth_ > 0 && l != globals_.end()
+                             ? get(l->second)
+                             : emit(Op::Sub, Kind::Triple, {global("Ps", Base::Point), global("P", Base::Point)});
             toLight = inSolar_ ? times(unit(from), -kFar) : emit(Op::Neg, Kind::Triple, {from});
         } else if (lightDepth_ > 0 && l != globals_.end()) {
             toLight = get(l->second);
@@ -121,7 +124,8 @@ Inst* Builder::tracedMap(const Expr& e) {
         Inst* axis = unit(middle);
         if (at.size() == 4) // as wide as the corners say
             for (Inst* corner : at)
-                larger(runtime1("al_acos", {runtime1("al_min_f", {constant(1), dot(axis, unit(corner))}, Kind::Float)}, Kind::Float));
+                larger(runtime1("al_acos", {runtime1("al_min_f", {constant(1), dot(axis, unit(corner))}, Kind::Float)},
+                                Kind::Float));
         for (const NamedArg& p : e.pairs) // a part of the map: all of it is every direction
             if (p.value && p.name == "blur" && p.value->type == Type{Base::Float, 0}) {
                 Inst* b = emit(Op::Mul, Kind::Float, {expr(*p.value, Kind::Float), constant(3.14159274f)});
@@ -131,7 +135,9 @@ Inst* Builder::tracedMap(const Expr& e) {
     }
     if (kindOf(e.type) != Kind::Float) return seen;
     const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {seen}, n); };
-    if (shadow) return emit(Op::Mul, Kind::Float, {emit(Op::Add, Kind::Float, {emit(Op::Add, Kind::Float, {part(0), part(1)}), part(2)}), constant(1 / 3.0f)});
+    if (shadow)
+        return emit(Op::Mul, Kind::Float,
+                    {emit(Op::Add, Kind::Float, {emit(Op::Add, Kind::Float, {part(0), part(1)}), part(2)}), constant(1 / 3.0f)});
     Inst* channel = e.channel ? expr(*e.channel, Kind::Float) : constant(0);
     const auto from = [&](float n) { return emit(Op::Less, Kind::Bool, {channel, constant(n)}); };
     return emit(Op::Select, Kind::Float, {from(1), part(0), emit(Op::Select, Kind::Float, {from(2), part(1), part(2)})});

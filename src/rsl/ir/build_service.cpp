@@ -1,7 +1,7 @@
 // Calls that the renderer answers: what goes along with them, and what comes back.
+#include "base/limits.h"
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
-#include "base/limits.h"
 #include <algorithm>
 #include <cstdio>
 #include <set>
@@ -66,8 +66,10 @@ std::vector<Inst*> Builder::traceParts(const Expr& e) {
     }
     const size_t count = name == "glass-ggx" ? 2 : name == "hair" ? std::clamp<size_t>(lobes, 1, 4) : 1;
     if (count == 1 && name != "hair") {
-        warn(e.place, name.empty() ? "trace() with parts needs a distribution that is known when the shader is compiled; all is in the first"
-                                   : "trace(): \"" + name + "\" has no parts; all is in the first");
+        warn(e.place,
+             name.empty()
+                 ? "trace() with parts needs a distribution that is known when the shader is compiled; all is in the first"
+                 : "trace(): \"" + name + "\" has no parts; all is in the first");
         return {service(e, Op::Request)};
     }
     std::vector<Inst*> parts;
@@ -149,11 +151,15 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         all.push_back(v);
         if (v->kind == Kind::String) s.strings.push_back(v->op == Op::ConstString ? v->text : "");
         // Where any strings come in rows, "" in the site stands for the next row: an empty one among them needs its own.
-        const bool untyped = (a.kind == ExprKind::Member || a.kind == ExprKind::Method || a.kind == ExprKind::Index) && a.type.base == Base::Void;
-        if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings")) addArgument(s, args, v, untyped ? typeOfMember(a) : a.type);
+        const bool untyped =
+            (a.kind == ExprKind::Member || a.kind == ExprKind::Method || a.kind == ExprKind::Index) && a.type.base == Base::Void;
+        if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings"))
+            addArgument(s, args, v, untyped ? typeOfMember(a) : a.type);
     }
     if (Inst* c = foldString(op.name, all)) return c;
-    if (Inst* heard = nullptr; op.name == "displacement" && !all.empty() && all[0]->op == Op::ConstString && heardDisplacement(e, all[0]->text, heard)) return heard;
+    if (Inst* heard = nullptr;
+        op.name == "displacement" && !all.empty() && all[0]->op == Op::ConstString && heardDisplacement(e, all[0]->text, heard))
+        return heard;
     place_ = e.place;
     const Type real{Base::Float, 0}, vector{Base::Vector, 0};
     // Footprints: how far the coordinates go from one sample to the next, along u (x) and along v (y).
@@ -241,7 +247,8 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         while (l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
         return l->symbol && l->symbol->storage == Storage::Uniform;
     };
-    static const std::set<std::string> kShaders = {"surface", "displacement", "atmosphere", "incident", "opposite", "lightsource"};
+    static const std::set<std::string> kShaders = {"surface",  "displacement", "atmosphere",
+                                                   "incident", "opposite",     "lightsource"};
     if (kShaders.count(op.name) && !received.empty() && isUniform(received[0].first.to)) {
         s.names.push_back(kPairUniform);
         s.pairStrings.push_back("1");
@@ -259,8 +266,11 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
     Inst* found = message && !received.empty() ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
     // What a file has nothing for stays as it was.
     Inst* read = op.name == "texture3d" && kind == Op::Service ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
-    const auto either = [&](Inst* v, const auto& old) { return read ? emit(Op::Select, v->kind, {read, v, coerce(old(), v->kind)}) : v; };
-    for (const auto& [receiver, first] : received) receive(receiver, std::span(r).subspan(static_cast<size_t>(first), static_cast<size_t>(receiver.rows)), found);
+    const auto either = [&](Inst* v, const auto& old) {
+        return read ? emit(Op::Select, v->kind, {read, v, coerce(old(), v->kind)}) : v;
+    };
+    for (const auto& [receiver, first] : received)
+        receive(receiver, std::span(r).subspan(static_cast<size_t>(first), static_cast<size_t>(receiver.rows)), found);
     for (const Out& o : outs) {
         if (o.lvalue->type.array) {
             Inst* a = array(*o.lvalue);

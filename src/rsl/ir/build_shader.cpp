@@ -1,9 +1,9 @@
 // The frame of a kernel: parameters in, outputs out.
 #include "base/limits.h"
+#include "rsl/front/leftmembers.h"
 #include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
 #include "rsl/ir/builder.h"
-#include "rsl/front/leftmembers.h"
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
@@ -43,13 +43,15 @@ Inst* Builder::constantTexts(const std::string& name, int length, std::span<cons
     return a;
 }
 
-/// The length of a parameter's array: declared, given by the instance (KernelOptions::stringParameters, "name[]"), or that of its default.
+/// The length of a parameter's array: declared, given by the instance (KernelOptions::stringParameters, "name[]"), or that of its
+/// default.
 int Builder::parameterLength(const ShaderParameter& p, std::span<const std::pair<std::string, std::string>> given) const {
     if (p.symbol->type.array >= 0 && !p.symbol->open) return p.symbol->type.array;
     for (const auto& [name, value] : given)
         if (name == lengthParameter(p.symbol->name)) return std::clamp(std::atoi(value.c_str()), 0, limits::kShaderArray);
     if (!p.defaultValue) return 0;
-    if (p.defaultValue->kind == ExprKind::ArrayList) return p.defaultValue->text == "{}" ? 0 : static_cast<int>(p.defaultValue->args.size());
+    if (p.defaultValue->kind == ExprKind::ArrayList)
+        return p.defaultValue->text == "{}" ? 0 : static_cast<int>(p.defaultValue->args.size());
     return std::max(1, p.defaultValue->type.array);
 }
 
@@ -58,7 +60,8 @@ Inst* Builder::parameterValue(const ShaderParameter& p) {
     Type type = s.type;
     const int length = parameterLength(p, options_.stringParameters);
     if (type.array) type.array = std::max(1, length); // storage
-    if (const auto& over = options_.varyingParameters; type == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
+    if (const auto& over = options_.varyingParameters;
+        type == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
         // The primitive has a variable of this name, which counts more.
         Site site;
         site.op = "getvar";
@@ -123,10 +126,13 @@ bool Builder::buildDefaults(const std::vector<ParameterValue>& given) {
     frames_.push_back({});
     for (const ShaderParameter& p : shader_.parameters) {
         place_ = p.symbol->place;
-        const auto known = std::find_if(given.begin(), given.end(), [&](const ParameterValue& v) { return v.name == p.symbol->name; });
+        const auto known =
+            std::find_if(given.begin(), given.end(), [&](const ParameterValue& v) { return v.name == p.symbol->name; });
         int n = p.symbol->type.array;
         if (n < 0)
-            n = p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size())) : 1;
+            n = p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
+                    ? std::max<int>(1, static_cast<int>(p.defaultValue->args.size()))
+                    : 1;
         set(slot(p.symbol), known != given.end() ? givenValue(*p.symbol, *known) : defaultValue(p, n));
         values.emplace_back(p.symbol, get(slot(p.symbol)));
     }
@@ -134,7 +140,8 @@ bool Builder::buildDefaults(const std::vector<ParameterValue>& given) {
         const int n = v->kind == Kind::Array ? arrayLength(v) : 1;
         for (int e = 0; e < n; ++e) {
             Inst* value = v->kind == Kind::Array ? emit(Op::ArrayLoad, v->element, {v, constant(static_cast<float>(e))}) : v;
-            k_.outputs.push_back({OutputName::parameterOf(s->name, v->kind == Kind::Array ? e : -1).text(), value->kind, s->type.element()});
+            k_.outputs.push_back(
+                {OutputName::parameterOf(s->name, v->kind == Kind::Array ? e : -1).text(), value->kind, s->type.element()});
             emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
         }
     }
@@ -182,12 +189,14 @@ bool Builder::buildShader() {
         if (isConst(v)) return std::all_of(v->numbers.begin(), v->numbers.end(), [](float f) { return f == 0; });
         if (v->op != Op::Result || v->args[0]->op != Op::If) return false;
         const Inst* branch = v->args[0];
-        return std::all_of(branch->regions.begin(), branch->regions.end(), [&](const Region& r) { return isZero(r.yields[static_cast<size_t>(v->index)]); });
+        return std::all_of(branch->regions.begin(), branch->regions.end(),
+                           [&](const Region& r) { return isZero(r.yields[static_cast<size_t>(v->index)]); });
     };
     lightBlocks_.clear();
     blockRan_ = newSlot(boolean(false));
     if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
-    const bool opacityOnly = std::any_of(options_.stringParameters.begin(), options_.stringParameters.end(), [](const auto& p) { return p.first == kOpacityAlone; });
+    const bool opacityOnly = std::any_of(options_.stringParameters.begin(), options_.stringParameters.end(),
+                                         [](const auto& p) { return p.first == kOpacityAlone; });
     if (shader_.body && shader_.object) objectBody(opacityOnly);
     else if (shader_.body) statement(*shader_.body);
     place_ = shader_.place;
@@ -211,12 +220,16 @@ bool Builder::buildShader() {
     if (light) {
         k_.facts.ambientLight = lightBlocks_.empty();
         for (const LightBlock& b : lightBlocks_)
-            k_.facts.blocks.push_back(!b.solar ? "illuminate" : b.stmt->exprs.empty() ? kBlockSky : b.cone ? kBlockCone : kBlockSolar);
+            k_.facts.blocks.push_back(!b.solar                ? "illuminate"
+                                      : b.stmt->exprs.empty() ? kBlockSky
+                                      : b.cone                ? kBlockCone
+                                                              : kBlockSolar);
         // Where no block has run, Cl is ambient light.
         const auto cl = globals_.find("Cl");
         const Inst* ran = get(blockRan_);
         const bool always = isConst(ran) && ran->numbers[0] != 0;
-        if (!lightBlocks_.empty() && !always && cl != globals_.end() && !isZero(get(cl->second))) k_.facts.blocks.push_back(kBlockOutside);
+        if (!lightBlocks_.empty() && !always && cl != globals_.end() && !isZero(get(cl->second)))
+            k_.facts.blocks.push_back(kBlockOutside);
     }
     if (wanted.empty()) {
         switch (shader_.kind) {
@@ -253,7 +266,8 @@ bool Builder::buildShader() {
                 if (asked.name == "Ol") output(name, get(l.only ? globals_.at("Ol") : l.Ol), color), found = true;
                 if (asked.name == "lit") output(name, get(l.lit), real), found = true;
             }
-            if (asked == OutputName::ofBlock("Cl", static_cast<int>(lightBlocks_.size())) && k_.facts.blocks.back() == kBlockOutside) {
+            if (asked == OutputName::ofBlock("Cl", static_cast<int>(lightBlocks_.size())) &&
+                k_.facts.blocks.back() == kBlockOutside) {
                 output(name, emit(Op::Select, Kind::Triple, {get(blockRan_), zero(Kind::Triple), get(globals_.at("Cl"))}), color);
                 continue;
             }
@@ -268,16 +282,20 @@ bool Builder::buildShader() {
             const std::string& plain = asked.name;
             Inst* list = nullptr;
             for (const ShaderParameter& p : shader_.parameters)
-                if (p.symbol->name == plain && p.symbol->type.array && (p.symbol->output || asked.parameter)) list = get(slot(p.symbol));
+                if (p.symbol->name == plain && p.symbol->type.array && (p.symbol->output || asked.parameter))
+                    list = get(slot(p.symbol));
             if (const auto* c = channelNamed(plain); !list && c && c->second.array) list = get(c->first);
             const int at = asked.element, length = !list ? 0 : lengths(list) ? list->index : arrayLength(list);
-            if (at >= 0 && at < length) output(name, emit(Op::ArrayLoad, list->element, {list, constant(static_cast<float>(at))}), {Base::Float, 0});
+            if (at >= 0 && at < length)
+                output(name, emit(Op::ArrayLoad, list->element, {list, constant(static_cast<float>(at))}), {Base::Float, 0});
             continue;
         }
         for (const ShaderParameter& p : shader_.parameters)
             for (const Op d : {Op::Du, Op::Dv})
-                if (asked == OutputName::parameterOf(p.symbol->name, -1, d == Op::Du ? OutputName::What::Du : OutputName::What::Dv))
-                    if (Inst* v = get(slot(p.symbol)); v->kind == Kind::Float || v->kind == Kind::Triple) output(name, emit(d, v->kind, {v}), p.symbol->type), found = true;
+                if (asked ==
+                    OutputName::parameterOf(p.symbol->name, -1, d == Op::Du ? OutputName::What::Du : OutputName::What::Dv))
+                    if (Inst* v = get(slot(p.symbol)); v->kind == Kind::Float || v->kind == Kind::Triple)
+                        output(name, emit(d, v->kind, {v}), p.symbol->type), found = true;
         for (const ShaderParameter& p : shader_.parameters)
             if (asked == OutputName::parameterOf(p.symbol->name) || (p.symbol->output && name == p.symbol->name)) {
                 output(name, get(slot(p.symbol)), p.symbol->type);

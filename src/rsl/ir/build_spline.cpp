@@ -60,7 +60,9 @@ Inst* Builder::spline(const Expr& e) {
         for (const char* basis : {"", "catmull-rom", "catmullrom", "bezier", "bspline", "b-spline", "hermite", "linear"}) {
             const std::string text = std::string(solve) + basis;
             Inst* is = emit(Op::Equal, Kind::Bool, {name, leaves_.string(text)});
-            r = branch(is, [&] { return std::vector<Inst*>{splineOf(c, spelled(basis), *solve != 0)}; }, [&] { return std::vector<Inst*>{r}; })[0];
+            r = branch(
+                is, [&] { return std::vector<Inst*>{splineOf(c, spelled(basis), *solve != 0)}; },
+                [&] { return std::vector<Inst*>{r}; })[0];
         }
     }
     return r;
@@ -71,8 +73,11 @@ Inst* Builder::splineOf(SplineCall c, const std::string& basis, bool solve) {
     const bool fixed = isConst(c.length);
     Inst* segments = constant(static_cast<float>(most)); // (n - 4) / step + 1
     if (!fixed) {
-        Inst* steps = emit(Op::Div, Kind::Float, {emit(Op::Sub, Kind::Float, {c.length, constant(4)}), constant(static_cast<float>(step))});
-        segments = runtime1("al_max_f", {emit(Op::Add, Kind::Float, {runtime1("al_floor", {steps}, Kind::Float), constant(1)}), constant(1)}, Kind::Float);
+        Inst* steps =
+            emit(Op::Div, Kind::Float, {emit(Op::Sub, Kind::Float, {c.length, constant(4)}), constant(static_cast<float>(step))});
+        segments = runtime1("al_max_f",
+                            {emit(Op::Add, Kind::Float, {runtime1("al_floor", {steps}, Kind::Float), constant(1)}), constant(1)},
+                            Kind::Float);
     }
     const bool lookUp = !fixed || most > kSelected;
     if (lookUp && !c.storage) {
@@ -87,30 +92,40 @@ Inst* Builder::splineOf(SplineCall c, const std::string& basis, bool solve) {
     const auto pointAt = [&](Inst* s, int j) {
         if (lookUp) {
             Inst* index = emit(Op::Mul, Kind::Float, {s, constant(static_cast<float>(step))});
-            return emit(Op::ArrayLoad, c.storage->element, {c.storage, emit(Op::Add, Kind::Float, {index, constant(static_cast<float>(j))})});
+            return emit(Op::ArrayLoad, c.storage->element,
+                        {c.storage, emit(Op::Add, Kind::Float, {index, constant(static_cast<float>(j))})});
         }
         Inst* p = point(most - 1, j);
         for (int k = most - 2; k >= 0; --k)
-            p = emit(Op::Select, c.kind, {emit(Op::Less, Kind::Bool, {s, constant(static_cast<float>(k) + 0.5f)}), point(k, j), p});
+            p = emit(Op::Select, c.kind,
+                     {emit(Op::Less, Kind::Bool, {s, constant(static_cast<float>(k) + 0.5f)}), point(k, j), p});
         return p;
     };
-    const auto pointsAt = [&](Inst* first, Inst* s) { return std::vector<Inst*>{first, pointAt(s, 0), pointAt(s, 1), pointAt(s, 2), pointAt(s, 3)}; };
+    const auto pointsAt = [&](Inst* first, Inst* s) {
+        return std::vector<Inst*>{first, pointAt(s, 0), pointAt(s, 1), pointAt(s, 2), pointAt(s, 3)};
+    };
     Inst* r = nullptr;
     if (solve) {
         Inst *v = c.value, *last = emit(Op::Sub, Kind::Float, {segments, constant(1)});
         const auto less = [&](Inst* a, Inst* b) { return emit(Op::LessEqual, Kind::Bool, {a, b}); };
-        const auto value = [&](Inst* s, float t) { return runtime1("al_spline_" + basis + "_f", pointsAt(constant(t), s), Kind::Float); };
+        const auto value = [&](Inst* s, float t) {
+            return runtime1("al_spline_" + basis + "_f", pointsAt(constant(t), s), Kind::Float);
+        };
         const auto away = [&](Inst* end) { return runtime1("al_abs", {emit(Op::Sub, Kind::Float, {v, end})}, Kind::Float); };
-        Inst* end = emit(Op::Select, Kind::Float, {less(away(value(constant(0), 0)), away(value(last, 1))), constant(0), constant(1)});
+        Inst* end =
+            emit(Op::Select, Kind::Float, {less(away(value(constant(0), 0)), away(value(last, 1))), constant(0), constant(1)});
         Inst* found = constant(-1); // the first segment that takes the value
         for (int s = most - 1; s >= 0; --s) {
             Inst* segment = constant(static_cast<float>(s));
             Inst *a = value(segment, 0), *b = value(segment, 1);
-            Inst* within = emit(Op::Or, Kind::Bool, {emit(Op::And, Kind::Bool, {less(a, v), less(v, b)}), emit(Op::And, Kind::Bool, {less(b, v), less(v, a)})});
+            Inst* within =
+                emit(Op::Or, Kind::Bool,
+                     {emit(Op::And, Kind::Bool, {less(a, v), less(v, b)}), emit(Op::And, Kind::Bool, {less(b, v), less(v, a)})});
             if (!fixed) within = emit(Op::And, Kind::Bool, {within, less(segment, last)});
             found = emit(Op::Select, Kind::Float, {within, segment, found});
         }
-        Inst* t = runtime1("al_splinesolve_" + basis, pointsAt(v, runtime1("al_max_f", {found, constant(0)}, Kind::Float)), Kind::Float);
+        Inst* t = runtime1("al_splinesolve_" + basis, pointsAt(v, runtime1("al_max_f", {found, constant(0)}, Kind::Float)),
+                           Kind::Float);
         Inst* x = emit(Op::Div, Kind::Float, {emit(Op::Add, Kind::Float, {found, t}), segments});
         r = emit(Op::Select, Kind::Float, {emit(Op::Less, Kind::Bool, {found, constant(0)}), end, x});
     } else {

@@ -222,7 +222,8 @@ void Builder::loop(const Expr* cond, const Expr* step, const Stmt* body, const P
         scanAssigned(*cond, assigned, seen);
     }
     Turns t;
-    // Without a value of its own it lives in the branch around this loop only: what is first set here is no change to merge there.
+    // Without a value of its own it lives in the branch around this loop only: what is first set here is no change to merge
+    // there.
     const int go = simple ? -1 : newSlot(nullptr);
     t.begin = [&] {
         if (go >= 0) set(go, condition(*cond)), assigned.insert(go);

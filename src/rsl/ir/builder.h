@@ -15,7 +15,9 @@
 namespace alpenglow::rsl::ir {
 
 /// A call of a shader's own function whose result is an array.
-inline bool returnsArray(const Expr& e) { return e.kind == ExprKind::FunctionCall && e.function && e.function->result.array != 0; }
+inline bool returnsArray(const Expr& e) {
+    return e.kind == ExprKind::FunctionCall && e.function && e.function->result.array != 0;
+}
 
 /// A lobe call to be inlined even under path: its place.
 using DirectSet = std::set<std::tuple<int, int, int>>;
@@ -112,8 +114,8 @@ private:
     Inst* condition(const Expr&);
     Inst* array(const Expr&);
     void assign(const Expr& lvalue, Inst* value);
-    /// While it lives the indices of a place have the values that they had when it was made: what they do they do once, and what is
-    /// read and then written is the same element, whatever happens in between. The place need not have any.
+    /// While it lives the indices of a place have the values that they had when it was made: what they do they do once, and what
+    /// is read and then written is the same element, whatever happens in between. The place need not have any.
     class Held {
     public:
         Held(Builder& b, const Expr& place) : builder_(b) { hold(place); }
@@ -160,7 +162,8 @@ private:
     }
     Inst* newResizable(Base, int length);
     int parameterLength(const ShaderParameter&, std::span<const std::pair<std::string, std::string>> given) const;
-    std::map<const Inst*, int> given_; ///< arrays of parameters of open length (`float w[] = {}`), which have the length that the instance gives
+    std::map<const Inst*, int>
+        given_; ///< arrays of parameters of open length (`float w[] = {}`), which have the length that the instance gives
     const Lengths* lengths(const Inst* array) const;
     Inst* lengthOf(const Inst* array);
     Inst* elementOf(const Inst* array, Inst* index);
@@ -207,7 +210,7 @@ private:
         std::unordered_map<const Symbol*, int> slots; ///< two instances of one shader have variables of their own
     };
     Type typeOfMember(const Expr&);
-    bool certain_ = true;         ///< forHandle(): the handle is known
+    bool certain_ = true;                                   ///< forHandle(): the handle is known
     std::map<const Inst*, std::vector<std::string>> texts_; ///< arrays of texts that nothing writes to: their elements
     std::optional<std::set<const Symbol*>> written_;
     bool everWritten(const Symbol&);
@@ -352,7 +355,7 @@ private:
         const Stmt* stmt;
         bool solar;
         int L, Cl, Ol, lit;
-        bool cone = false; ///< solar with an angle that may be above 0
+        bool cone = false;  ///< solar with an angle that may be above 0
         bool built = false; ///< a block of a function is one for each call, in order of the text
         /// The only block, and one that always runs: what the shader does to Cl and Ol behind it counts too.
         bool only = false;
@@ -369,10 +372,10 @@ private:
     std::set<const Symbol*> grown_;
     std::vector<Instance> instances_;
     const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
-    int handleDepth_ = 0; ///< methods of co-shaders that are open
-    int constructing_ = 0; ///< open construct()
-    int quiet_ = 0;        ///< what runs now prints nothing
-    int sharing_ = 0;     ///< open functions whose output parameters are variables of the caller
+    int handleDepth_ = 0;                                     ///< methods of co-shaders that are open
+    int constructing_ = 0;                                    ///< open construct()
+    int quiet_ = 0;                                           ///< what runs now prints nothing
+    int sharing_ = 0; ///< open functions whose output parameters are variables of the caller
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
     std::vector<std::pair<size_t, const Function*>> way_; ///< openMethods_ in the order of their calls
     std::optional<std::pair<size_t, const Function*>> methodByName(const Function&) const;

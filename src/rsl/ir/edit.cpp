@@ -10,7 +10,8 @@ std::vector<Kind> resultKinds(const Inst& i) {
 }
 
 static bool multi(Op op) {
-    return op == Op::If || op == Op::Loop || op == Op::LightLoop || op == Op::Runtime || op == Op::Call || op == Op::Service || op == Op::Request;
+    return op == Op::If || op == Op::Loop || op == Op::LightLoop || op == Op::Runtime || op == Op::Call || op == Op::Service ||
+           op == Op::Request;
 }
 
 static void longForm(Kernel& k, Region& r, Replacements& rep) {

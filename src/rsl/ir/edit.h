@@ -10,7 +10,8 @@ namespace alpenglow::rsl::ir {
 /// Kinds of the results of an instruction, one or several; empty for none.
 std::vector<Kind> resultKinds(const Inst&);
 
-/// While passes work, If, Loop, LightLoop, Runtime, Call, Service and Request always give their results through Result instructions
+/// While passes work, If, Loop, LightLoop, Runtime, Call, Service and Request always give their results through Result
+/// instructions
 /// ("long form"): a pass then treats one result like several. Outside the passes a single result is the instruction itself.
 void toLongForm(Kernel&);
 void toShortForm(Kernel&);

@@ -26,9 +26,7 @@ struct Printer {
         return s;
     }
 
-    static std::string flags(const Inst* i) {
-        return i->order == 0 ? "" : i->order == 1 ? "'" : "''";
-    }
+    static std::string flags(const Inst* i) { return i->order == 0 ? "" : i->order == 1 ? "'" : "''"; }
 
     void line(int depth, const std::string& s) { out += std::string(static_cast<size_t>(depth) * 4, ' ') + s + "\n"; }
 
@@ -91,7 +89,11 @@ struct Printer {
         line(depth, s);
         static const char* const labels[][2] = {{"then", "else"}, {"while", "do"}, {"do", ""}, {"body", ""}};
         for (size_t r = 0; r < i->regions.size(); ++r)
-            region(i->regions[r], depth + 1, labels[i->op == Op::If ? 0 : i->op == Op::Loop ? 1 : i->op == Op::Function ? 3 : 2][r]);
+            region(i->regions[r], depth + 1,
+                   labels[i->op == Op::If         ? 0
+                          : i->op == Op::Loop     ? 1
+                          : i->op == Op::Function ? 3
+                                                  : 2][r]);
     }
 };
 

@@ -19,7 +19,7 @@ struct KernelFile {
     std::vector<std::string> strings; ///< texts; ids are given when loaded
     int strip = 0;
     bool suspending = false;
-    uint64_t localBytes = 0; ///< of KernelCall::memory
+    uint64_t localBytes = 0;          ///< of KernelCall::memory
     std::vector<Diagnostic> messages; ///< warnings of the build, said again when the kernel comes from the cache
     std::string object;
 };

@@ -39,7 +39,7 @@ struct ModuleResult {
     std::string text;
     int strip = 0; ///< points per strip: lanes * vectors
     bool suspending = false;
-    uint64_t localBytes = 0; ///< of KernelCall::memory
+    uint64_t localBytes = 0;          ///< of KernelCall::memory
     std::vector<std::string> strings; ///< string constants in the order of KernelCall::strings
 };
 

@@ -100,7 +100,8 @@ struct Analysis {
         case Op::Request: {
             const SiteSet bit = SiteSet::of(d.ordinal(o));
             raise(i, bit, i->kind == Kind::Float ? kGrey : 0);
-            const bool distance = i->kind == Kind::Float && k.sites[static_cast<size_t>(o->site)].op == "trace"; // the form that gives no light
+            const bool distance =
+                i->kind == Kind::Float && k.sites[static_cast<size_t>(o->site)].op == "trace"; // the form that gives no light
             if (n > 0 || distance || (i->kind != Kind::Float && i->kind != Kind::Triple))
                 bad(bit, o, "another result than the light itself is used");
             break;

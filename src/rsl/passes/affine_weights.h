@@ -1,6 +1,6 @@
-// Second half of the affine proof: weights, by walking backwards from Ci. Independent instructions stay where they are; the weights
-// of a region are computed behind them, where everything they need is known. Loops keep their place: their weights are computed
-// before them where possible, else pairs are emitted relative to the loop's result and rescaled afterwards.
+// Second half of the affine proof: weights, by walking backwards from Ci. Independent instructions stay where they are; the
+// weights of a region are computed behind them, where everything they need is known. Loops keep their place: their weights are
+// computed before them where possible, else pairs are emitted relative to the loop's result and rescaled afterwards.
 #pragma once
 #include "rsl/ir/edit.h"
 #include "rsl/passes/affine_analysis.h"
@@ -77,7 +77,8 @@ private:
     Inst* carry(Inst* loop, Inst* init);
     Inst* loopResult(Inst* loop, Region& r);
     /// Sums the weights that the turns give to values from outside, and puts the code at the end of the body.
-    void finishLoop(Inst* i, Region& r, Region& body, std::vector<Inst*>& code, const WeightedValues& outer, Inst* scale, Inst* factor);
+    void finishLoop(Inst* i, Region& r, Region& body, std::vector<Inst*>& code, const WeightedValues& outer, Inst* scale,
+                    Inst* factor);
 
     Kernel& k;
     const Dependence& d;

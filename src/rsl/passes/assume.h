@@ -4,7 +4,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Inside the sides of an If its condition is a constant; inside the body of a Loop so are the carried flags that the test looks at
+/// Inside the sides of an If its condition is a constant; inside the body of a Loop so are the carried flags that the test looks
+/// at
 /// (`while (!left && ...)`, as `break` and `return` leave it). Returns the number of uses replaced.
 int assumeConditions(Kernel&);
 

@@ -197,8 +197,9 @@ struct Orders {
             case Op::Input:
             case Op::ArrayInput: {
                 Input& in = k.inputs[static_cast<size_t>(i->index)];
-                if (!in.constant && in.kind != Kind::Matrix) in.order = std::max(in.order, n); // callers give matrices without slopes
-                else i->order = 0; // and is never asked again for less
+                if (!in.constant && in.kind != Kind::Matrix)
+                    in.order = std::max(in.order, n); // callers give matrices without slopes
+                else i->order = 0;                    // and is never asked again for less
                 break;
             }
             case Op::ArrayLoad:

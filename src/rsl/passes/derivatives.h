@@ -9,8 +9,8 @@ namespace alpenglow::rsl::ir {
 /// derivative of third order. Either form.
 void orderDerivatives(Kernel&, Diagnostics&);
 
-/// For each Call of a kernel (function null) or of one function: the orders wanted of its results. Of a function, `results` says what
-/// is wanted of its own.
+/// For each Call of a kernel (function null) or of one function: the orders wanted of its results. Of a function, `results` says
+/// what is wanted of its own.
 using CallOrders = std::vector<std::pair<Inst*, std::vector<uint8_t>>>;
 CallOrders callOrders(Kernel&, Inst* function, const std::vector<uint8_t>& results);
 

@@ -48,8 +48,7 @@ private:
     }
     Inst* newDifference(Inst* x, bool v, Neighbour n, int depth) {
         if (x->op == Op::Input) return slopeAt(x, v, n);
-        if (depth < kSumDepth)
-            switch (x->op) {
+        if (depth < kSumDepth) switch (x->op) {
             case Op::Add:
             case Op::Sub: {
                 Inst *a = difference(x->args[0], v, n, depth + 1), *b = difference(x->args[1], v, n, depth + 1);
@@ -302,7 +301,6 @@ private:
     }
 
     // The kernel itself
-
 
     void mainFunction(Inst* f) {
         Region& r = f->regions[0];

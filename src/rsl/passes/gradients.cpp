@@ -1,5 +1,5 @@
-#include "rsl/front/protocol.h"
 #include "rsl/passes/gradients.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/edit.h"
 #include <algorithm>
 #include <map>
@@ -103,7 +103,8 @@ struct Gradients {
             if (i->op != Op::Result || i->order == 0 || i->args[0]->op != Op::Service) return;
             const Inst* o = i->args[0];
             const Site& s = k.sites[static_cast<size_t>(o->site)];
-            if (s.shadeop && s.shadeop->derivative == DerivativeRule::Gradient && o->results.size() == 1) wanted[o] = std::max<int>(wanted[o], i->order);
+            if (s.shadeop && s.shadeop->derivative == DerivativeRule::Gradient && o->results.size() == 1)
+                wanted[o] = std::max<int>(wanted[o], i->order);
         });
         if (wanted.empty()) return;
         region(k.body);

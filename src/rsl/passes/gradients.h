@@ -9,9 +9,10 @@ namespace alpenglow::rsl::ir {
 /// others say how wide the filter is, and what else.
 std::vector<size_t> lookupCoordinates(const Kernel&, const Inst* service);
 
-/// Where derivatives of a lookup (DerivativeRule::Gradient) are wanted, by Inst::order: asks the service for the slopes of the value by
-/// its coordinates, too (s and t, or x, y and z of the direction; of four corners: their mean), where second derivatives are wanted for
-/// those of the value (ss st tt, or xx xy xz yy yz zz), and puts the value together with the derivatives of the coordinates, al_chain*. Other lookups stay as they are. Long form, after orderDerivatives().
+/// Where derivatives of a lookup (DerivativeRule::Gradient) are wanted, by Inst::order: asks the service for the slopes of the
+/// value by its coordinates, too (s and t, or x, y and z of the direction; of four corners: their mean), where second derivatives
+/// are wanted for those of the value (ss st tt, or xx xy xz yy yz zz), and puts the value together with the derivatives of the
+/// coordinates, al_chain*. Other lookups stay as they are. Long form, after orderDerivatives().
 void addGradients(Kernel&);
 
 } // namespace alpenglow::rsl::ir

@@ -54,7 +54,8 @@ struct Converter {
                 for (size_t n = 0; n < f->args.size(); ++n)
                     if (f->args[n] != g->args[n]) ++differ, where = n;
                 if (differ == 1 && f->args[where]->kind == g->args[where]->kind) {
-                    Inst* chosen = add(body, k.make(Op::Select, f->args[where]->kind, {c, f->args[where], g->args[where]}), place);
+                    Inst* chosen =
+                        add(body, k.make(Op::Select, f->args[where]->kind, {c, f->args[where], g->args[where]}), place);
                     CopyMap none;
                     Inst* call = add(body, copyInst(k, f, none), f->place);
                     call->args[where] = chosen;
@@ -76,7 +77,8 @@ struct Converter {
             if (i->op == Op::Result && converted.count(i->args[0])) {
                 Inst* o = i->args[0];
                 const size_t n = static_cast<size_t>(i->index);
-                Inst* s = choose(rep(o->args[0]), rep(o->regions[0].yields[n]), rep(o->regions[1].yields[n]), i->kind, o->place, body);
+                Inst* s =
+                    choose(rep(o->args[0]), rep(o->regions[0].yields[n]), rep(o->regions[1].yields[n]), i->kind, o->place, body);
                 rep.set(i, s);
                 continue;
             }

@@ -16,8 +16,9 @@ bool stepFrom(Neighbour n, bool v, Neighbour& next) {
 
 // Motion
 
-Motion::Motion(Kernel& k) : k_(k), owner_(k.pool.size()), stores_(k.pool.size()), moves_(k.pool.size()), position_(k.pool.size()),
-                           plain_(k.pool.size()) {
+Motion::Motion(Kernel& k)
+    : k_(k), owner_(k.pool.size()), stores_(k.pool.size()), moves_(k.pool.size()), position_(k.pool.size()),
+      plain_(k.pool.size()) {
     index(k.body, nullptr);
     markPlain(k.body);
     while (grow()) {}

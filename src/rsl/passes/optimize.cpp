@@ -1,5 +1,5 @@
-#include "rsl/front/protocol.h"
 #include "rsl/passes/optimize.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/edit.h"
 #include "rsl/ir/verify.h"
 #include "rsl/passes/affine.h"
@@ -97,7 +97,8 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         addGradients(k);
         check(k, "gradients");
     }
-    if (k.kind == ShaderKind::Volume && std::find(options.outputs.begin(), options.outputs.end(), OutputName::slope("Ci").text()) != options.outputs.end()) {
+    if (k.kind == ShaderKind::Volume &&
+        std::find(options.outputs.begin(), options.outputs.end(), OutputName::slope("Ci").text()) != options.outputs.end()) {
         addSlope(k);
         check(k, "slope");
         if (options.optimize > 0) clean(k);
@@ -116,7 +117,9 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
             if (i->op != Op::Output || k.outputs[static_cast<size_t>(i->index)].name != "Oi") return;
             const Inst* v = i->args[0];
             const bool one = isConst(v) && std::all_of(v->numbers.begin(), v->numbers.end(), [](float f) { return f == 1; });
-            k.facts.opacity = one ? "1" : v->op == Op::Input && k.inputs[static_cast<size_t>(v->index)].name == "Os" ? "Os" : "shader";
+            k.facts.opacity = one                                                                          ? "1"
+                              : v->op == Op::Input && k.inputs[static_cast<size_t>(v->index)].name == "Os" ? "Os"
+                                                                                                           : "shader";
         });
     if (options.optimize > 0) {
         removeUnusedResults(k);

@@ -7,7 +7,10 @@
 namespace alpenglow::rsl::ir {
 
 /// An output of a kernel, and whether the light that its Requests ask for reaches it.
-struct OutputLight { OutputSlot output; bool light; };
+struct OutputLight {
+    OutputSlot output;
+    bool light;
+};
 /// Of a kernel as it was built; changes it. In order of its outputs.
 std::vector<OutputLight> lightOfOutputs(Kernel&, const KernelOptions&);
 

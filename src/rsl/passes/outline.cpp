@@ -90,7 +90,8 @@ int inlineCalls(Kernel& k, int budget) {
     std::unordered_map<const Inst*, size_t> size;
     for (Inst* f : functionsOf(k)) {
         size_t& n = size[f];
-        forEach(f->regions[0], [&](Inst* i) { n += i->op == Op::Call && small.functions.count(i->args[0]) ? size[i->args[0]] : 1; });
+        forEach(f->regions[0],
+                [&](Inst* i) { n += i->op == Op::Call && small.functions.count(i->args[0]) ? size[i->args[0]] : 1; });
         if (budget > 0 && (n <= static_cast<size_t>(budget) || calls[f] == 1)) small.functions.insert(f);
     }
     if (!small.functions.empty()) changes += run(k, std::move(small));

@@ -1,5 +1,5 @@
-#include "rsl/front/protocol.h"
 #include "rsl/passes/slope.h"
+#include "rsl/front/protocol.h"
 #include "rsl/ir/edit.h"
 #include "rsl/passes/affine_analysis.h"
 #include "rsl/passes/affine_weights.h"

@@ -4,8 +4,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// For volume shaders: when the output Ci is affine in the incoming Ci, component by component, adds the output OutputName::slope("Ci"), its
-/// coefficient. Else leaves the kernel as it is. Long form; kernels with Requests are left alone.
+/// For volume shaders: when the output Ci is affine in the incoming Ci, component by component, adds the output
+/// OutputName::slope("Ci"), its coefficient. Else leaves the kernel as it is. Long form; kernels with Requests are left alone.
 void addSlope(Kernel&);
 
 } // namespace alpenglow::rsl::ir

@@ -52,7 +52,8 @@ struct Splitter {
             for (Region& sub : i->regions) region(sub);
             body.push_back(i);
             if (i->op == Op::Result && moved.count({i->args[0], i->index})) i->args[0] = moved[{i->args[0], i->index}];
-            if ((i->op != Op::Loop && i->op != Op::LightLoop) || !quiet(i->regions.back()) || !quiet(i->regions.front())) continue;
+            if ((i->op != Op::Loop && i->op != Op::LightLoop) || !quiet(i->regions.back()) || !quiet(i->regions.front()))
+                continue;
             const std::vector<size_t> vars = parts(i);
             if (vars.size() < 2) continue;
             for (size_t v = 1; v < vars.size(); ++v) {

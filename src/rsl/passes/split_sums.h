@@ -5,8 +5,9 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Splits loops that carry several values which depend on rays, where no ray goes into two of them, none of them goes into another,
-/// and the turns do nothing else that can be seen. The parts do again what they share. Long form. Gives the number of loops split.
+/// Splits loops that carry several values which depend on rays, where no ray goes into two of them, none of them goes into
+/// another, and the turns do nothing else that can be seen. The parts do again what they share. Long form. Gives the number of
+/// loops split.
 int splitSums(Kernel&);
 
 } // namespace alpenglow::rsl::ir

@@ -4,8 +4,8 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Takes the results that no instruction reads from the requests for traced light that are left, and from their sites. What a site keeps
-/// is what some request of it reads.
+/// Takes the results that no instruction reads from the requests for traced light that are left, and from their sites. What a
+/// site keeps is what some request of it reads.
 void removeUnusedResults(Kernel&);
 
 } // namespace alpenglow::rsl::ir

@@ -13,7 +13,8 @@
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
 std::vector<Shadeop> bsdfShadeops() {
-    return {bsdfUniform(), bsdfCosine(), bsdfOrenNayar(), bsdfBlinn(), bsdfAshikhminShirley(), bsdfCookTorrance(), bsdfWard(), bsdfGlass(), bsdfHair()};
+    return {bsdfUniform(),      bsdfCosine(), bsdfOrenNayar(), bsdfBlinn(), bsdfAshikhminShirley(),
+            bsdfCookTorrance(), bsdfWard(),   bsdfGlass(),     bsdfHair()};
 }
 } // namespace alpenglow::rsl
 #endif

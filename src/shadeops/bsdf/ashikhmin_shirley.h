@@ -16,8 +16,8 @@ AL_INLINE Triple<T> ashikhminShirley(const Facet<T>& f, const T& both, const T& 
     return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
 }
 template <class T>
-AL_INLINE Triple<T> opBsdfAshikhminShirley(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir, const T& roughness,
-                                           const T& roughnessv, const Triple<T>& eta, const Triple<T>& k) {
+AL_INLINE Triple<T> opBsdfAshikhminShirley(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir,
+                                           const T& roughness, const T& roughnessv, const Triple<T>& eta, const Triple<T>& k) {
     const Facet<T> f = facetOf(l, n, o);
     const Pair<Triple<T>> t = tangents(f.n, udir);
     const T eu = exponentOf(roughness), ev = exponentOf(roughnessv);
@@ -30,13 +30,16 @@ AL_RUNTIME(al_bsdf_ashikhminshirley, opBsdfAshikhminShirley)
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
 inline Shadeop bsdfAshikhminShirley() {
-    return bsdfOp("color __bsdf_ashikhminshirley(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv; color eta, color k)",
-                  "al_bsdf_ashikhminshirley",
-                  "\"ashikhmin-shirley\": n . l sqrt((eu + 1)(ev + 1)) / (8 PI) (n . h)^(eu cos^2 ph + ev sin^2 ph) F / (h . l max(n . l, n . wo)), exponents as "
-                  "for blinn, ph the angle between h and udir on the surface.",
-                  "seed (exponents); formula (k)",
-                  {"__bsdf_ashikhminshirley(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 1, 1, color(1,1,1), color(0,0,0))",
-                   "0 0 0"});
+    return bsdfOp(
+        "color __bsdf_ashikhminshirley(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv; color eta, "
+        "color k)",
+        "al_bsdf_ashikhminshirley",
+        "\"ashikhmin-shirley\": n . l sqrt((eu + 1)(ev + 1)) / (8 PI) (n . h)^(eu cos^2 ph + ev sin^2 ph) F / (h . l max(n . l, "
+        "n . wo)), exponents as "
+        "for blinn, ph the angle between h and udir on the surface.",
+        "seed (exponents); formula (k)",
+        {"__bsdf_ashikhminshirley(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 1, 1, color(1,1,1), color(0,0,0))",
+         "0 0 0"});
 }
 } // namespace alpenglow::rsl
 #endif

@@ -14,8 +14,8 @@ template <class T> AL_INLINE Triple<T> cookTorrance(const Facet<T>& f, const T& 
     return select3(f.seen, times(fresnelOrFull3(f.oh, eta, k), r), none3<T>());
 }
 template <class T>
-AL_INLINE Triple<T> opBsdfCookTorrance(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness, const Triple<T>& eta,
-                                       const Triple<T>& k) {
+AL_INLINE Triple<T> opBsdfCookTorrance(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness,
+                                       const Triple<T>& eta, const Triple<T>& k) {
     const Facet<T> f = facetOf(l, n, o);
     const T m = sane(roughness);
     return cookTorrance(f, beckmann(f, m * m), eta, k);
@@ -27,10 +27,13 @@ AL_RUNTIME(al_bsdf_cooktorrance, opBsdfCookTorrance)
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
 inline Shadeop bsdfCookTorrance() {
-    return bsdfOp("color __bsdf_cooktorrance(vector l, vector n, vector wo; float roughness; color eta, color k)", "al_bsdf_cooktorrance",
-                  "\"cook-torrance\": D G F / (4 n . wo), D = exp(-tan^2 th / m^2) / (PI m^2 cos^4 th) with m = roughness, G and F as for blinn.",
+    return bsdfOp("color __bsdf_cooktorrance(vector l, vector n, vector wo; float roughness; color eta, color k)",
+                  "al_bsdf_cooktorrance",
+                  "\"cook-torrance\": D G F / (4 n . wo), D = exp(-tan^2 th / m^2) / (PI m^2 cos^4 th) with m = roughness, G and "
+                  "F as for blinn.",
                   "seed; formula (k)",
-                  {"__bsdf_cooktorrance(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))", "0.07957747 0.07957747 0.07957747"});
+                  {"__bsdf_cooktorrance(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))",
+                   "0.07957747 0.07957747 0.07957747"});
 }
 } // namespace alpenglow::rsl
 #endif

@@ -1,4 +1,5 @@
-// bsdf(): "glass-ggx": reflection and refraction at facets with Trowbridge and Reitz' distribution of slopes (Walter et al. 2007).
+// bsdf(): "glass-ggx": reflection and refraction at facets with Trowbridge and Reitz' distribution of slopes (Walter et al.
+// 2007).
 #pragma once
 #include "shadeops/bsdf/common.h"
 #include "shadeops/lighting_fresnel.h"
@@ -6,18 +7,21 @@
 namespace alpenglow::rsl::AL_NAMESPACE {
 
 /// Smith's shadowing for one direction: a2 = (roughness w_u)^2 + (roughnessv w_v)^2, c its cosine with the normal.
-template <class T> AL_INLINE T smithGgx(const T& a2, const T& c) { return divide(T(vf(2)), root(vf(1) + divide(a2, c * c)) + vf(1)); }
+template <class T> AL_INLINE T smithGgx(const T& a2, const T& c) {
+    return divide(T(vf(2)), root(vf(1) + divide(a2, c * c)) + vf(1));
+}
 
 /// A surface of glass as the viewer sees it.
 template <class T> struct GlassSide {
-    Triple<T> o, n;        ///< unit; n on the viewer's side
-    Pair<Triple<T>> t;     ///< tangents
-    T here, there;         ///< indices on the viewer's and the other side
-    T a, b;                ///< roughness along and across
+    Triple<T> o, n;    ///< unit; n on the viewer's side
+    Pair<Triple<T>> t; ///< tangents
+    T here, there;     ///< indices on the viewer's and the other side
+    T a, b;            ///< roughness along and across
 };
 /// `front` and o are unit; `eta` is the index behind `front` over that before it.
 template <class T>
-AL_INLINE GlassSide<T> glassSide(const Triple<T>& front, const Triple<T>& o, const Triple<T>& udir, const T& roughness, const T& roughnessv, const T& eta) {
+AL_INLINE GlassSide<T> glassSide(const Triple<T>& front, const Triple<T>& o, const Triple<T>& udir, const T& roughness,
+                                 const T& roughnessv, const T& eta) {
     const vm inside = value(dot(front, o)) < 0;
     const Triple<T> n = select3(inside, -front, front);
     // Facets between equal indices have no normal: a way straight on has all. An index next to it bends by as good as nothing.
@@ -58,11 +62,12 @@ template <class T> AL_INLINE GlassValue<T> glassValue(const GlassSide<T>& side, 
     const T refracted = divide((vf(1) - f) * d * g * oh * -lh * there * there, no * s * s);
     const T zero = T(vf(0));
     const T density = select(reflects, divide(d * nh, oh * vf(4)), divide(d * nh * -lh * there * there, s * s));
-    return {select(facing & reflects, reflected, zero), select(facing & ~reflects & (value(nl) < 0), refracted, zero), select(met, density, zero), reflects};
+    return {select(facing & reflects, reflected, zero), select(facing & ~reflects & (value(nl) < 0), refracted, zero),
+            select(met, density, zero), reflects};
 }
 template <class T>
-AL_INLINE void opBsdfGlassParts(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir, const T& roughness, const T& roughnessv,
-                                const T& eta, T& reflected, T& refracted) {
+AL_INLINE void opBsdfGlassParts(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir,
+                                const T& roughness, const T& roughnessv, const T& eta, T& reflected, T& refracted) {
     const GlassValue<T> r = glassValue(glassSide(normalize(n), normalize(o), udir, roughness, roughnessv, eta), normalize(l));
     reflected = r.reflected, refracted = r.refracted;
 }
@@ -73,13 +78,17 @@ AL_RUNTIME(al_bsdf_glassggx, opBsdfGlassParts)
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
 inline Shadeop bsdfGlass() {
-    Shadeop op = bsdfOp("void __bsdf_glassggx(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv, float eta; output float reflected, "
-                        "output float refracted)",
-                        "al_bsdf_glassggx",
-                        "\"glass-ggx\": reflected: D G F / (4 n . wo) for light on the viewer's side; refracted: |l . h| (wo . h) nl^2 (1 - F) G D / (n . wo (no wo . h + nl "
-                        "l . h)^2) for light on the other, no and nl the indices on the two sides. D of Trowbridge and Reitz with roughness as its width, G of Smith. "
-                        "Refracted light is counted as energy, as Kt of fresnel() is: it has no factor for the change of solid angle.",
-                        "seed; formula (k)", {"", ""});
+    Shadeop op =
+        bsdfOp("void __bsdf_glassggx(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv, float eta; "
+               "output float reflected, "
+               "output float refracted)",
+               "al_bsdf_glassggx",
+               "\"glass-ggx\": reflected: D G F / (4 n . wo) for light on the viewer's side; refracted: |l . h| (wo . h) nl^2 (1 "
+               "- F) G D / (n . wo (no wo . h + nl "
+               "l . h)^2) for light on the other, no and nl the indices on the two sides. D of Trowbridge and Reitz with "
+               "roughness as its width, G of Smith. "
+               "Refracted light is counted as energy, as Kt of fresnel() is: it has no factor for the change of solid angle.",
+               "seed; formula (k)", {"", ""});
     op.examples.clear();
     return op;
 }

@@ -1,8 +1,8 @@
 // bsdf(): "hair": one lobe of the light that a fibre scatters, seen from far away: R, TT, TRT, TRRT (Marschner et al. 2003).
 //
-// Along the fibre: d'Eon et al. 2011, whose integral is exactly one. Around the fibre: the paths through its width, in pieces; within a
-// piece the angle at which light leaves grows evenly, spread by a logistic bell, so that the integral over all angles is exactly what the
-// pieces let through and no piece shows, however sharp the bell is.
+// Along the fibre: d'Eon et al. 2011, whose integral is exactly one. Around the fibre: the paths through its width, in pieces;
+// within a piece the angle at which light leaves grows evenly, spread by a logistic bell, so that the integral over all angles is
+// exactly what the pieces let through and no piece shows, however sharp the bell is.
 #pragma once
 #include "shadeops/bsdf/common.h"
 #include "shadeops/lighting_fresnel.h"
@@ -23,7 +23,8 @@ struct HairTable {
                 (n % 2 ? s : c) += sign * term;
                 term *= x / (n + 1);
             }
-            angle[i] = static_cast<float>(x), sine[i] = static_cast<float>(s), cosine[i] = static_cast<float>(i == 2 * kHairPieces ? 0 : c);
+            angle[i] = static_cast<float>(x), sine[i] = static_cast<float>(s),
+            cosine[i] = static_cast<float>(i == 2 * kHairPieces ? 0 : c);
         }
     }
 };
@@ -81,8 +82,8 @@ template <class T> struct HairLight {
 };
 /// l, tip and o are unit; axes: tangents(tip, udir).
 template <class T>
-AL_INLINE HairLight<T> hairLight(const Triple<T>& l, const Triple<T>& tip, const Triple<T>& o, const Pair<Triple<T>>& axes, const Triple<T>& udir,
-                                 const T& eta) {
+AL_INLINE HairLight<T> hairLight(const Triple<T>& l, const Triple<T>& tip, const Triple<T>& o, const Pair<Triple<T>>& axes,
+                                 const Triple<T>& udir, const T& eta) {
     HairLight<T> g;
     const T one = T(vf(1)), sl = larger(smaller(dot(l, tip), one), -one), so = larger(smaller(dot(o, tip), one), -one);
     const T cl = root(vf(1) - sl * sl), co = root(vf(1) - so * so);
@@ -118,7 +119,8 @@ template <class T> AL_INLINE HairPiece<T> hairPiece(const HairLight<T>& g, const
     x.to = arcSine(g.perIndex * vf(kHair.sine[2 * i + 2])), x.middle = arcSine(s);
     x.fresnel = dielectricReflectance(smaller(g.cd * vf(kHair.cosine[2 * i + 1]), one), divide(one, g.index));
     const T path = g.way * root(vf(1) - s * s);
-    x.through = {exponential(path * positive(absorption.x)), exponential(path * positive(absorption.y)), exponential(path * positive(absorption.z))};
+    x.through = {exponential(path * positive(absorption.x)), exponential(path * positive(absorption.y)),
+                 exponential(path * positive(absorption.z))};
     return x;
 }
 
@@ -127,7 +129,7 @@ template <class T> struct HairLobe {
     vf p;
     T along; ///< the part of the light that leaves at the inclination of l
     HairBell<T> bell;
-    T from;  ///< angle between in and out where the piece begins
+    T from;        ///< angle between in and out where the piece begins
     T plus, minus; ///< the logistic of phi - from and phi + from
     vf plusTurns, minusTurns;
     Triple<T> around;
@@ -135,7 +137,8 @@ template <class T> struct HairLobe {
 template <class T> AL_INLINE vf hairNumber(const T& lobe) { return minLanes(maxLanes(floorLanes(value(lobe)), vf(0)), vf(3)); }
 /// Scale of the bell around the fibre for a spread of 0..1.
 template <class T> AL_INLINE T hairBellWidth(const T& azimuthal) {
-    const T a = larger(smaller(azimuthal, T(vf(1))), T(vf(0.02f))), a2 = a * a, a4 = a2 * a2, a8 = a4 * a4, a22 = a8 * a8 * a4 * a2;
+    const T a = larger(smaller(azimuthal, T(vf(1))), T(vf(0.02f))), a2 = a * a, a4 = a2 * a2, a8 = a4 * a4,
+            a22 = a8 * a8 * a4 * a2;
     return (a22 * vf(5.372f) + a2 * vf(1.194f) + a * vf(0.265f)) * vf(0.626657069f); // sqrt(PI / 8)
 }
 /// Variance along the fibre for a spread of 0..1 (Chiang et al. 2016).
@@ -167,7 +170,8 @@ template <class T> AL_INLINE void addPiece(HairLobe<T>& lobe, const HairLight<T>
     const vm still = absLanes(value(wide)) * value(bell.perWidth) < 0.05f;
     const vm falling = value(wide) < 0;
     const T span = absolute(wide);
-    const T over = (lobe.plus - plusTo) * bell.scale + T(lobe.plusTurns - plusTurns), under = (minusTo - lobe.minus) * bell.scale + T(minusTurns - lobe.minusTurns);
+    const T over = (lobe.plus - plusTo) * bell.scale + T(lobe.plusTurns - plusTurns),
+            under = (minusTo - lobe.minus) * bell.scale + T(minusTurns - lobe.minusTurns);
     const T plus = select(still, bell.at(g.phi - middle), divide(select(falling, -over, over), span));
     const T minus = select(still, bell.at(g.phi + middle), divide(select(falling, -under, under), span));
     const T share = (plus + minus) * vf(0.5f * (kHair.sine[2 * i + 2] - kHair.sine[2 * i]));
@@ -183,7 +187,8 @@ template <class T> AL_INLINE void addPiece(HairLobe<T>& lobe, const HairLight<T>
 
 template <class T>
 AL_INLINE Triple<T> opBsdfHair(const Triple<T>& l, const Triple<T>& tip0, const Triple<T>& o, const Triple<T>& udir, const T& eta,
-                               const Triple<T>& absorption, const T& lobe, const T& tilt, const T& longitudinal, const T& azimuthal) {
+                               const Triple<T>& absorption, const T& lobe, const T& tilt, const T& longitudinal,
+                               const T& azimuthal) {
     const Triple<T> tip = normalize(tip0);
     const HairLight<T> g = hairLight(normalize(l), tip, normalize(o), tangents(tip, udir), udir, eta);
     const vf p = hairNumber(lobe);
@@ -199,12 +204,16 @@ AL_RUNTIME(al_bsdf_hair, opBsdfHair)
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
 inline Shadeop bsdfHair() {
-    Shadeop op = bsdfOp("color __bsdf_hair(vector l, vector tip, vector wo, vector udir; float eta; color absorption; float lobe, float tilt, float longitudinal, "
+    Shadeop op = bsdfOp("color __bsdf_hair(vector l, vector tip, vector wo, vector udir; float eta; color absorption; float "
+                        "lobe, float tilt, float longitudinal, "
                         "float azimuthal)",
                         "al_bsdf_hair",
-                        "\"hair\": lobe 0 (R) to 3 (TRRT) of a fibre that points along tip, for its whole width. tilt turns lobe p by (2 - 3 p) tilt toward the tip; "
-                        "longitudinal and azimuthal, 0..1, set its spread along and around the fibre; absorption acts along paths inside, 2 being the diameter. udir is "
-                        "the long axis of an elliptic section, its length the eccentricity (below 1, 0 is round). Without tilt the lobes are reciprocal; together "
+                        "\"hair\": lobe 0 (R) to 3 (TRRT) of a fibre that points along tip, for its whole width. tilt turns lobe "
+                        "p by (2 - 3 p) tilt toward the tip; "
+                        "longitudinal and azimuthal, 0..1, set its spread along and around the fibre; absorption acts along "
+                        "paths inside, 2 being the diameter. udir is "
+                        "the long axis of an elliptic section, its length the eccentricity (below 1, 0 is round). Without tilt "
+                        "the lobes are reciprocal; together "
                         "they keep at most all light.",
                         "seed; Marschner et al. 2003, d'Eon et al. 2011, roughness as Chiang et al. 2016", {"", ""});
     op.examples.clear();

@@ -14,7 +14,8 @@ template <class T> AL_INLINE T ward(const Facet<T>& f, const T& lobe, const T& a
     return select(f.seen, r, T(vf(0)));
 }
 template <class T>
-AL_INLINE T opBsdfWard(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir, const T& roughness, const T& roughnessv) {
+AL_INLINE T opBsdfWard(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir, const T& roughness,
+                       const T& roughnessv) {
     const Facet<T> f = facetOf(l, n, o);
     const Pair<Triple<T>> t = tangents(f.n, udir);
     const T a = sane(roughness), b = sane(roughnessv);
@@ -27,9 +28,11 @@ AL_RUNTIME(al_bsdf_ward, opBsdfWard)
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
 inline Shadeop bsdfWard() {
-    return bsdfOp("float __bsdf_ward(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv)", "al_bsdf_ward",
-                  "\"ward\": sqrt(n . l / n . wo) exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)) / (4 PI a b), a = roughness along udir, b = roughnessv.",
-                  "seed; formula (k)", {"__bsdf_ward(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 0.5, 0.5)", "0.3183099"});
+    return bsdfOp(
+        "float __bsdf_ward(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv)", "al_bsdf_ward",
+        "\"ward\": sqrt(n . l / n . wo) exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)) / (4 PI a b), a = roughness along udir, "
+        "b = roughnessv.",
+        "seed; formula (k)", {"__bsdf_ward(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 0.5, 0.5)", "0.3183099"});
 }
 } // namespace alpenglow::rsl
 #endif

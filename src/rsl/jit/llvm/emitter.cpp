@@ -175,8 +175,8 @@ Val Emitter::dropDead(Val next, const Val& old, Value* leaving) {
     };
     auto isNot = [&](Value* a, Value* b) {
         auto* x = llvm::dyn_cast<llvm::BinaryOperator>(a);
-        return x && x->getOpcode() == llvm::Instruction::Xor && ((x->getOperand(0) == b && isTrue(x->getOperand(1))) ||
-                                                                 (x->getOperand(1) == b && isTrue(x->getOperand(0))));
+        return x && x->getOpcode() == llvm::Instruction::Xor &&
+               ((x->getOperand(0) == b && isTrue(x->getOperand(1))) || (x->getOperand(1) == b && isTrue(x->getOperand(0))));
     };
     auto one = [&](Value* n, Value* o) -> Value* {
         Value* flag = leaving;

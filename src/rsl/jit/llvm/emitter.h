@@ -157,7 +157,7 @@ private:
     llvm::Value *call_ = nullptr, *first_ = nullptr, *first64_ = nullptr, *mask_ = nullptr, *stop_ = nullptr, *stride_ = nullptr;
     llvm::Value *in_ = nullptr, *out_ = nullptr, *stringIds_ = nullptr, *n_ = nullptr;
     llvm::Value* memory_ = nullptr; ///< of arrays that the stack has no room for; functions get it from their caller
-    bool rootMask_ = true; ///< the mask is that of the strip: lanes beyond n may be overwritten
+    bool rootMask_ = true;          ///< the mask is that of the strip: lanes beyond n may be overwritten
     // Scratch rows: arguments and results of runtime calls (promoted to registers), of services (escape).
     struct Scratch {
         llvm::Instruction* place = nullptr;

@@ -213,9 +213,7 @@ void Emitter::emitLoop(const Inst* i) {
     b_.SetInsertPoint(inside);
     region(body);
     std::vector<Val> next(count);
-    for (size_t k = 0; k < count; k++) {
-        next[k] = conform(value(body.yields[k]), kind[k], shape[k]);
-    }
+    for (size_t k = 0; k < count; k++) { next[k] = conform(value(body.yields[k]), kind[k], shape[k]); }
     std::vector<size_t> flags; // set in lanes that leave: `while (!flag && ...)`
     if (varying) leavingFlags(test, test.yields[0], flags);
     for (size_t k = 0; k < count; k++) {

@@ -1,5 +1,6 @@
-// Calls of RSL functions that were not inlined. Each becomes a function of the machine code for each way its arguments come: one number
-// or lanes, with which derivative parts. What is exactly zero in the caller is so in the body, too: the bits are those of inlining.
+// Calls of RSL functions that were not inlined. Each becomes a function of the machine code for each way its arguments come: one
+// number or lanes, with which derivative parts. What is exactly zero in the caller is so in the body, too: the bits are those of
+// inlining.
 #include "rsl/jit/llvm/emitter.h"
 #include <unordered_set>
 
@@ -128,7 +129,8 @@ Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slo
     auto* resultType = llvm::StructType::get(context_, resultTypes);
     Value* all = llvm::PoisonValue::get(resultType);
     for (size_t n = 0; n < results.size(); n++) all = e.b_.CreateInsertValue(all, results[n], unsigned(n));
-    made.function = Function::Create(FunctionType::get(resultType, types, false), Function::InternalLinkage, "rsl_" + f->text, module_);
+    made.function =
+        Function::Create(FunctionType::get(resultType, types, false), Function::InternalLinkage, "rsl_" + f->text, module_);
     made.function->setCallingConv(llvm::CallingConv::Fast);
     made.function->addFnAttr(llvm::Attribute::NoUnwind);
     made.function->addFnAttr(llvm::Attribute::NoInline);

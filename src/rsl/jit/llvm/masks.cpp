@@ -79,7 +79,7 @@ private:
             w = b.CreateSExt(v, lanesOf(*v), "lanes");
         } else if (!combines(*i)) {
             llvm::IRBuilder<> b(i->getParent(), llvm::isa<llvm::PHINode>(i) ? i->getParent()->getFirstInsertionPt()
-                                                                           : std::next(i->getIterator()));
+                                                                            : std::next(i->getIterator()));
             w = b.CreateSExt(i, lanesOf(*i), "lanes");
         } else if (auto* s = llvm::dyn_cast<llvm::SelectInst>(i)) {
             Value *c = wide(s->getCondition()), *t = wide(s->getTrueValue()), *f = wide(s->getFalseValue());

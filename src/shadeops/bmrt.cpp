@@ -23,8 +23,10 @@ std::vector<Shadeop> bmrtShadeops() {
     };
     add("visibility", "color visibility(point a, point b; pairs)", "Visibility between two points: transmission(a, b).", "BMRT",
         R"(
-color visibility(point a; point b; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias; float maxdist) {
-    return transmission(a, b, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode, "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
+color visibility(point a; point b; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias;
+                 float maxdist) {
+    return transmission(a, b, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode,
+                        "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
 }
 )");
     list.back().examples = {{"visibility(P, P + N)", "1 1 1", "", kNothing}};
@@ -33,11 +35,13 @@ color visibility(point a; point b; string label; string subset; string excludesu
         "1e30 for none. Ph becomes "
         "the point that was hit, Nh the normal there; both stay as they are when nothing was hit.",
         "BMRT", R"(
-float rayhittest(point from; vector dir; output point Ph; output vector Nh; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias; float maxdist) {
+float rayhittest(point from; vector dir; output point Ph; output vector Nh; string label; string subset; string excludesubset;
+                 string hitmode; string hitsides; float bias; float maxdist) {
     float dist = 1e38;
     vector n = 0;
     vector d = normalize(dir);
-    color c = trace(from, d, dist, "type", "transmission", "hitnormal", n, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode, "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
+    color c = trace(from, d, dist, "type", "transmission", "hitnormal", n, "label", label, "subset", subset,
+                    "excludesubset", excludesubset, "hitmode", hitmode, "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
     if (dist < 1e30) {
         Ph = from + dist * d;
         Nh = n;
@@ -54,12 +58,15 @@ float rayhittest(point from; vector dir; output point Ph; output vector Nh; stri
         "0, with Pmiss = pos and Rmiss = dir, "
         "the ray that saw nothing, hitcolor the light from there and hitdist above 1e30. What does not apply stays as it is.",
         "BMRT", R"(
-float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector Nhit; output point Pmiss; output vector Rmiss; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias; float maxdist) {
+float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector Nhit;
+                output point Pmiss; output vector Rmiss; string label; string subset; string excludesubset; string hitmode;
+                string hitsides; float bias; float maxdist) {
     float dist = 1e38;
     vector n = 0;
     vector d = normalize(dir);
     float found = 0;
-    hitcolor = trace(pos, d, dist, "hitnormal", n, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode, "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
+    hitcolor = trace(pos, d, dist, "hitnormal", n, "label", label, "subset", subset, "excludesubset", excludesubset,
+                     "hitmode", hitmode, "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
     hitdist = dist; // published shaders tell a miss by it
     if (dist < 1e30) {
         Phit = pos + dist * d;
@@ -90,7 +97,11 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
                         "RISpec 3.0 (bump maps); formula (k)", R"(
 point bump(string name; normal norm; vector dPds; vector dPdt; float ss; float tt; float blur; float width) {
     float d = 1 / 1024;
-    float h(float x; float y) { extern string name; extern float blur, width; return float texture(name, x, y, "blur", blur, "width", width); }
+    float h(float x; float y) {
+        extern string name;
+        extern float blur, width;
+        return float texture(name, x, y, "blur", blur, "width", width);
+    }
     float hs = (h(ss + d, tt) - h(ss - d, tt)) / (2 * d);
     float ht = (h(ss, tt + d) - h(ss, tt - d)) / (2 * d);
     vector n = normalize(vector norm);

@@ -70,7 +70,8 @@ float __skypdf(float way; float up) {
 
 std::string skyText() {
     return kWays + written(R"(
-void generateSamplesEnv(uniform string map; point p; normal n; uniform float count; SAMPLES; uniform string environmentspace; uniform string distribution; float radius; color scale; uniform string integrationdomain) {
+void generateSamplesEnv(uniform string map; point p; normal n; uniform float count; SAMPLES; uniform string environmentspace;
+                        uniform string distribution; float radius; color scale; uniform string integrationdomain) {
     GROW
     float way = __skyway(map, distribution, integrationdomain);
     vector z = normalize(vector(n)), t = 0;
@@ -104,7 +105,8 @@ void generateSamplesEnv(uniform string map; point p; normal n; uniform float cou
     }
 }
 )") + written(R"(
-void evaluateSamplesEnv(uniform string map; point p; normal n; SAMPLES; uniform string environmentspace; uniform string distribution; float radius; color scale; uniform string integrationdomain) {
+void evaluateSamplesEnv(uniform string map; point p; normal n; SAMPLES; uniform string environmentspace;
+                        uniform string distribution; float radius; color scale; uniform string integrationdomain) {
     float way = __skyway(map, distribution, integrationdomain);
     uniform float i, most = arraylength(direction);
     vector z = normalize(vector(n));
@@ -141,7 +143,8 @@ void __aslobe(vector x; vector y; vector z; vector v; vector l; float eu; float 
 
 std::string lobeText() {
     return kLobe + written(R"(
-void generateSamplesAS(color response; uniform float count; float exponentU; float exponentV; vector lobe; vector tangent; vector view; SAMPLES) {
+void generateSamplesAS(color response; uniform float count; float exponentU; float exponentV; vector lobe; vector tangent;
+                       vector view; SAMPLES) {
     GROW
     vector z = normalize(lobe), v = normalize(view), t = tangent;
     AXES
@@ -178,11 +181,13 @@ void evaluateSamplesAS(color response; float exponentU; float exponentV; vector 
 /// Under path the renderer sends a shadow ray to each sample of a light that counts, so the light itself sends none.
 std::string shadowText() {
     return written(R"(
-color areashadow(point lit; float samples; float raytrace; float bias; float blur; float width; uniform string label; uniform string subset; uniform string hitmode) {
+color areashadow(point lit; float samples; float raytrace; float bias; float blur; float width; uniform string label;
+                 uniform string subset; uniform string hitmode) {
     extern vector L;
     return transmission(lit, lit - L, "samples", samples);
 }
-void areashadow(uniform string map; vector region; SAMPLES; float raytrace; float bias; float blur; float width; uniform string label; uniform string subset; uniform string hitmode) {
+void areashadow(uniform string map; vector region; SAMPLES; float raytrace; float bias; float blur; float width;
+                uniform string label; uniform string subset; uniform string hitmode) {
     uniform float i, most = arraylength(direction), rays = (map == "" || map == "raytrace") ? 1 : 0;
     uniform string hider = "";
     option("Hider", hider);
@@ -191,7 +196,8 @@ void areashadow(uniform string map; vector region; SAMPLES; float raytrace; floa
         if (lightPdf[i] > 0) {
             if (rays != 0 || raytrace != 0) {
                 if (hider != "path")
-                    radiance[i] *= transmission(at, at + min(distance[i], 1e15) * normalize(direction[i]), "bias", bias, "label", label, "subset", subset, "hitmode", hitmode);
+                    radiance[i] *= transmission(at, at + min(distance[i], 1e15) * normalize(direction[i]), "bias", bias,
+                                                "label", label, "subset", subset, "hitmode", hitmode);
             } else if (bias >= 0) {
                 radiance[i] *= 1 - color shadow(map, at, "bias", bias, "blur", blur, "width", width);
             } else {
@@ -219,7 +225,8 @@ color __asked(shader handle; uniform string which; vector w; float far; color li
     lightPdf[0] = 1;
     summedResponse[0] = 0;
     summedPdf[0] = 0;
-    handle->evaluateSamples(which, direction, distance, radiance, materialResponse, materialPdf, lightPdf, summedResponse, summedPdf);
+    handle->evaluateSamples(which, direction, distance, radiance, materialResponse, materialPdf, lightPdf, summedResponse,
+                            summedPdf);
     return materialResponse[0];
 }
 )";
@@ -231,7 +238,8 @@ color __asked(shader handle; uniform string which; vector w; float far; color li
     for (const auto& c : kCalls)
         for (const char* lights : {"", " shader lights[];"}) {
             std::string text = R"(
-color NAME(shader handle;LIGHTS output color diffuseresult; output color specularresult; output color unshadoweddiffuseresult; output color unshadowedspecularresult; float mis; uniform string integrationdomain) {
+color NAME(shader handle;LIGHTS output color diffuseresult; output color specularresult; output color unshadoweddiffuseresult;
+           output color unshadowedspecularresult; float mis; uniform string integrationdomain) {
     extern point P;
     extern normal N;
     diffuseresult = 0;
@@ -257,17 +265,20 @@ color NAME(shader handle;LIGHTS output color diffuseresult; output color specula
 }
 
 constexpr const char* kSpecularText = R"(
-color indirectspecular(shader handle; float bias; float maxdist; uniform string label; uniform string subset; uniform string hitmode; uniform string hitsides) {
+color indirectspecular(shader handle; float bias; float maxdist; uniform string label; uniform string subset;
+                       uniform string hitmode; uniform string hitsides) {
     extern point P;
     vector direction[];
     float distance[], materialPdf[], lightPdf[], summedPdf[];
     color radiance[], materialResponse[], summedResponse[];
-    handle->generateSamples("specular", direction, distance, radiance, materialResponse, materialPdf, lightPdf, summedResponse, summedPdf);
+    handle->generateSamples("specular", direction, distance, radiance, materialResponse, materialPdf, lightPdf, summedResponse,
+                            summedPdf);
     uniform float i, n = arraylength(direction);
     color sum = 0;
     for (i = 0; i < n; i += 1)
         if (materialPdf[i] > 0)
-            sum += trace(P, direction[i], "bias", bias, "maxdist", maxdist, "label", label, "subset", subset, "hitmode", hitmode, "hitsides", hitsides) * materialResponse[i] / (n * materialPdf[i]);
+            sum += trace(P, direction[i], "bias", bias, "maxdist", maxdist, "label", label, "subset", subset, "hitmode", hitmode,
+                         "hitsides", hitsides) * materialResponse[i] / (n * materialPdf[i]);
     return sum;
 }
 )";

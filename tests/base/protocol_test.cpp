@@ -13,10 +13,10 @@ namespace {
 /// Text literals of a source that are, or begin as, names of the protocol. Comments are left out.
 std::vector<std::string> namesIn(const std::string& source) {
     static const std::regex comment(R"(//[^\n]*)"), literal(R"re("((?:[^"\\\n]|\\.)*)")re"),
-        name(
-            R"(^(param:|Du:|Dv:|given:|slope:|space:|displacement:|send:light:|surface:|light#|length |begin\(\)|opacity\(\)).*)"
-            R"(|^.*this->.*|^__(setup|outside|part|once|uniform|gather|hemisphere|nondiffuse|nonspecular|category|group|sentL|sentCl|sentShadows)$)"
-            R"(|^__displacementbound_(sphere|coordinatesystem)$)");
+        name(R"(^(param:|Du:|Dv:|given:|slope:|space:|displacement:|send:light:|surface:|light#|length |begin\(\)|opacity\(\)).*)"
+             R"(|^.*this->.*|^__(setup|outside|part|once|uniform|gather|hemisphere|nondiffuse|nonspecular)$)"
+             R"(|^__(category|group|sentL|sentCl|sentShadows)$)"
+             R"(|^__displacementbound_(sphere|coordinatesystem)$)");
     std::vector<std::string> found;
     const std::string code = std::regex_replace(source, comment, "");
     for (std::sregex_iterator i(code.begin(), code.end(), literal), end; i != end; ++i)

@@ -157,7 +157,11 @@ std::string chain(int n, float& value) {
     ShaderCompiler compiler(settings);
     Diagnostics d;
     const auto link = compiler.loadText(R"(class link(string next = "";) {
-        public float down(float x) { float y = x + 1; if (next != "") { shader h = getshader(next); y = h->down(y); } return y; } })",
+        public float down(float x) {
+            float y = x + 1;
+            if (next != "") { shader h = getshader(next); y = h->down(y); }
+            return y;
+        } })",
                                         "link.sl", d);
     const auto top = compiler.loadText(
         "surface top(output varying float r = 0;) { shader h = getshader(\"0\"); r = h->down(0); }", "top.sl", d);

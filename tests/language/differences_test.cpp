@@ -145,7 +145,11 @@ const Flow kFlows[] = {
 };
 const char* const kFunctions = R"(
 float shape(float x, y) { if (x > 0.52) return sin(9 * x) * y; return noise(5 * x, y); }
-float turns(float x, y) { float i, s = 0; for (i = 0; i < 10 * x; i += 1) { s += sin(i * y); if (s > 3) return s; } return s + x; }
+float turns(float x, y) {
+    float i, s = 0;
+    for (i = 0; i < 10 * x; i += 1) { s += sin(i * y); if (s > 3) return s; }
+    return s + x;
+}
 float twice(float x, y) { float a = shape(x, y); float b = shape(a, x * y); return a * b + turns(b, a) + Du(x * x); }
 )";
 

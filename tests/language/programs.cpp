@@ -402,7 +402,12 @@ struct Pack
 struct Deep : Pack
 {
     varying float g[3] = {1, 2, 3};
-    float add(float x) { g[x] += 1; float i; for (i = 0; i < 3; i += 1) { if (g[i] > x) break; f -= 0.25; } return Pack::add(x) + g[1]; }
+    float add(float x) {
+        g[x] += 1;
+        float i;
+        for (i = 0; i < 3; i += 1) { if (g[i] > x) break; f -= 0.25; }
+        return Pack::add(x) + g[1];
+    }
     float plain(float x) { if (x > 1) return f; return this->add(x); }
 };
 float weighed(Pack p; float k) { return p->f * k + comp(p->c, 1); }

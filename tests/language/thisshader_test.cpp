@@ -78,11 +78,11 @@ TEST(ThisShader, IsAHandleLikeOthers) {
 
 TEST(ThisShader, GetvarAndHasmethod) {
     Diagnostics d;
-    EXPECT_EQ(
-        shade(
-            R"(float v = 0; float found = getvar(this, "count", v); a = found * 10 + v; b = hasmethod(this, "twice") * 10 + hasmethod(this, "gainOf");)",
-            "output varying float a = 0, b = 0;", {"a", "b"}, d),
-        (Values{13, 10}));
+    EXPECT_EQ(shade(
+                  R"(float v = 0; float found = getvar(this, "count", v); a = found * 10 + v;
+               b = hasmethod(this, "twice") * 10 + hasmethod(this, "gainOf");)",
+                  "output varying float a = 0, b = 0;", {"a", "b"}, d),
+              (Values{13, 10}));
     EXPECT_EQ(d.errors(), 0);
 }
 

@@ -168,7 +168,10 @@ TEST(Attributes, OfTheLightInALoop) {
     writeShader("askslight", R"(surface askslight() {
     float n = 7; string name = "?";
     Oi = 1;
-    illuminance(P) { float a = attribute("light:user:n", n), b = attribute("light:identifier:name", name); Ci += color(a + b, n, name == "key" ? 1 : 0); }
+    illuminance(P) {
+        float a = attribute("light:user:n", n), b = attribute("light:identifier:name", name);
+        Ci += color(a + b, n, name == "key" ? 1 : 0);
+    }
 }
 )");
     auto light = [](const char* name, const char* n) {
@@ -186,7 +189,8 @@ TEST(Attributes, OfTheLightInALoop) {
 TEST(Attributes, InLights) {
     writeShader("asksitself", R"(light asksitself(point from = 0;) {
     float n = 7, rate = 7, nobody = 7; string name = "?";
-    float a = attribute("user:n", n), b = attribute("identifier:name", name), c = attribute("Ri:ShadingRate", rate), d = attribute("user:ofsurface", nobody);
+    float a = attribute("user:n", n), b = attribute("identifier:name", name), c = attribute("Ri:ShadingRate", rate),
+        d = attribute("user:ofsurface", nobody);
     illuminate(from) Cl = color(a + b + c + d, n + 10 * rate + 100 * nobody, name == "key" ? 1 : 0) / (L . L);
 }
 )");

@@ -147,7 +147,8 @@ TEST(TraceDistributions, Parts) {
         writeShader(name, std::string("surface ") + name + R"(() {
     normal Nf = faceforward(normalize(N), I);
     color part[2], sum[2];
-    part = trace(P, vector(Nf), "distribution", "glass-ggx", "roughness", .4, "wo", -normalize(I), "samplearealights", 1, "type", "specular", "arealightcontribution", sum);
+    part = trace(P, vector(Nf), "distribution", "glass-ggx", "roughness", .4, "wo", -normalize(I), "samplearealights", 1,
+                 "type", "specular", "arealightcontribution", sum);
     Oi = 1;
     Ci = )" + result + ";\n}\n");
     };
@@ -170,19 +171,18 @@ TEST(TraceDistributions, Parts) {
 TEST(TraceDistributions, EnvironmentMap) {
     const std::string map = writeMap("even.exr", 8, 4, Color(.5f, 1, 2));
     auto shader = [&](const char* name, const char* result) {
-        writeShader(
-            name,
-            std::string("surface ") + name + R"(() {
+        writeShader(name,
+                    std::string("surface ") + name + R"(() {
     normal Nf = faceforward(normalize(N), I);
     color reached = 0, open = 0, through = 0;
     float d = 0;
-    color c = trace(P, vector(Nf), d, "distribution", "cosine", "samplecone", PI / 2, "type", "diffuse", "samples", 64, "environmentmap", )" +
-                map +
-                R"(, "environmenttint", color(2, 1, .5), "environmentspace", "world", "environmentcontribution", reached, "unshadowedenvironment", open,
-                    "transmission", through);
+    color c = trace(P, vector(Nf), d, "distribution", "cosine", "samplecone", PI / 2, "type", "diffuse", "samples", 64,
+                    "environmentmap", )" +
+                        map +
+                        R"(, "environmenttint", color(2, 1, .5), "environmentspace", "world", "environmentcontribution", reached,
+                    "unshadowedenvironment", open, "transmission", through);
     Oi = 1;
-    Ci = )" + result +
-                ";\n}\n");
+    Ci = )" + result + ";\n}\n");
     };
     shader("lit", "c");
     shader("reached", "reached");
@@ -218,7 +218,8 @@ TEST(TraceDistributions, Unshadowed) {
         writeShader(name, std::string("surface ") + name + R"(() {
     normal Nf = faceforward(normalize(N), I);
     color gives = 0, would = 0;
-    color c = trace(P, vector(Nf), "distribution", "cosine", "samplecone", PI / 2, "type", "diffuse", "samplearealights", 1, "arealightcontribution", gives, "unshadowedarealight", would);
+    color c = trace(P, vector(Nf), "distribution", "cosine", "samplecone", PI / 2, "type", "diffuse", "samplearealights", 1,
+                    "arealightcontribution", gives, "unshadowedarealight", would);
     Oi = 1;
     Ci = )" + result + ";\n}\n");
     };

@@ -451,9 +451,9 @@ TEST(Gather, EveryParameter) {
     writeShader("gatherparams", R"(surface gatherparams() {
     vector up = vector "world" (0, 1, 0);
     float hits = 0, misses = 0, far = 0;
-    gather("illuminance", P, up, 0.5, 4, "label", "a", "subset", "", "bias", 0.1, "hitmode", "default", "hitsides", "both", "maxdist", 9, "type", "diffuse",
-           "samplebase", 0, "excludesubset", "none", "raytype", "diffuse", "raylabel", "b", "maxhitdist", 9, "distribution", "cosine",
-           "othreshold", color(0.5), "ray:length", far) hits += 1; else misses += 1;
+    gather("illuminance", P, up, 0.5, 4, "label", "a", "subset", "", "bias", 0.1, "hitmode", "default", "hitsides", "both",
+           "maxdist", 9, "type", "diffuse", "samplebase", 0, "excludesubset", "none", "raytype", "diffuse", "raylabel", "b",
+           "maxhitdist", 9, "distribution", "cosine", "othreshold", color(0.5), "ray:length", far) hits += 1; else misses += 1;
     Ci = color(hits, misses, far); Oi = 1;
 })");
     for (const Hider h : kAll) {

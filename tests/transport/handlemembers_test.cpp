@@ -103,8 +103,10 @@ TEST(HandleMembers, ANullHandleBehindItsTestIsNotSpokenOf) {
 TEST(HandleMembers, ArraysOfTextsOfAttributesAndOptions) {
     const Asked a = ask("texts", R"(
         uniform string three[3], two[2], open[], single = "unset", wide[4];
-        Ci = color(attribute("user:names", three) + attribute("user:names", open) * 10 + attribute("user:one", single) * 100, 0, 0);
-        if (three[0] == "p" && three[2] == "r" && arraylength(open) == 3 && open[1] == "q" && single == "alone") Ci += color(0, 1, 0);
+        Ci = color(attribute("user:names", three) + attribute("user:names", open) * 10 + attribute("user:one", single) * 100,
+                   0, 0);
+        if (three[0] == "p" && three[2] == "r" && arraylength(open) == 3 && open[1] == "q" && single == "alone")
+            Ci += color(0, 1, 0);
         uniform string given[];
         if (option("user:groups", given) == 1 && arraylength(given) == 2 && given[1] == "fill") Ci += color(0, 0, 1);
         if (attribute("user:names", single) == 0 && single == "alone") Ci += color(0, 2, 0);

@@ -89,7 +89,8 @@ TEST(Information, LabelsOfRays) {
     writeShader("labelled", "surface labelled() { string l = \"?\"; rayinfo(\"label\", l); Oi = 1; Ci = l == \"probe\" ? 1 : l "
                             "== \"other\" ? .5 : l == \"\" ? .25 : 0; }\n");
     writeShader("labels", R"(surface labels() {
-    color a = trace(P, vector(0, 1, 0), "label", "probe"), b = trace(P, vector(0, 1, 0), "raylabel", "other"), c = trace(P, vector(0, 1, 0));
+    color a = trace(P, vector(0, 1, 0), "label", "probe"), b = trace(P, vector(0, 1, 0), "raylabel", "other"),
+        c = trace(P, vector(0, 1, 0));
     Oi = 1;
     Ci = color(comp(a, 0), comp(b, 0), comp(c, 0));
 }
@@ -111,7 +112,8 @@ TEST(Information, RaysOfBmrt) {
     vector Nhit = 0, Rmiss = 0;
     float hit = fulltrace(P, vector(0, up, 0), hitcolor, hitdist, Phit, Nhit, Pmiss, Rmiss);
     Oi = 1;
-    Ci = hit > 0 ? hitcolor + color(hitdist, ycomp(Phit), abs(ycomp(normalize(Nhit)))) : color(ycomp(Rmiss), distance(Pmiss, P), -1);
+    Ci = hit > 0 ? hitcolor + color(hitdist, ycomp(Phit), abs(ycomp(normalize(Nhit))))
+                 : color(ycomp(Rmiss), distance(Pmiss, P), -1);
 }
 )");
     writeShader("bmrthit", R"(surface bmrthit() {

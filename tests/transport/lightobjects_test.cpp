@@ -36,7 +36,8 @@ void writeSampled() {
     public constant color tint = color(1, 2, 3);
     public void construct() { shares = intensity / samples; }
     public float twice(float x) { return 2 * x * intensity; }
-    public void light(output vector L; output color Cl; point p = (0, 0, 0); output color sent[] = {}; output vector directions[] = {};) {
+    public void light(output vector L; output color Cl; point p = (0, 0, 0); output color sent[] = {};
+                      output vector directions[] = {};) {
         uniform float s;
         resize(sent, samples);
         resize(directions, samples);
@@ -124,7 +125,10 @@ TEST(LightObjects, AMethodThatALightHasNotIsSaidWhereItIsCalled) {
 TEST(CoShaders, TheirShaderSpaceIsWhereTheyWereNamed) {
     writeShader("place", R"(class place() {
     point origin = point "shader" (0, 0, 0);
-    public color where() { return color(transform("shader", "world", point(0, 1, 0)) - point(0, 0, 0)) + color(0, 0, ycomp(transform("world", origin))); }
+    public color where() {
+        color across = color(transform("shader", "world", point(0, 1, 0)) - point(0, 0, 0));
+        return across + color(0, 0, ycomp(transform("world", origin)));
+    }
 }
 )");
     writeShader("asksplace", "class asksplace() { public void surface(output color Ci, Oi) { shader h = getshader(\"h\"); Ci = "

@@ -68,7 +68,8 @@ void expectIsBeauty(const Shown& a, size_t at, const std::string& what) {
 }
 
 const char* const kParts =
-    R"(surface parts(output varying color d = 0; output varying color gloss = 0; output varying color none = 0; output varying float red = 0;) {
+    R"(surface parts(output varying color d = 0; output varying color gloss = 0; output varying color none = 0;
+                     output varying float red = 0;) {
     normal Nf = faceforward(normalize(N), I);
     d = Cs * diffuse(Nf);
     gloss = 0.3 * Cs * specular(Nf, -normalize(I), 0.3);

@@ -24,7 +24,8 @@ void expectNear(const Color& c, const Color& want, float tolerance, const std::s
 void writeHump() {
     writeShader("humps",
                 R"(displacement humps(float given = 7; output varying float hump = 1; output varying color tints[2] = {0, 0};
-                                               output varying point where = 0; output varying string word = "none"; output uniform float plain = 4;) {
+                                               output varying point where = 0; output varying string word = "none";
+                                               output uniform float plain = 4;) {
     point Q = transform("world", P);
     hump = 3 * xcomp(Q) + 5 * ycomp(Q);
     tints[0] = color(xcomp(Q), 0, 0);
@@ -102,7 +103,8 @@ TEST_P(Hiders, WhatDoesNotFitIsNotTold) {
     writeHump();
     writeShader("misfits", R"(surface misfits() {
     color c = 5; uniform float u = 6; float f = 7, long[3] = {8, 8, 8}; string s = "kept"; uniform float p = 0;
-    float found = displacement("hump", c) + displacement("hump", u) + displacement("tints", f) + displacement("tints", long) + displacement("hump", s) + displacement("nosuch", f);
+    float found = displacement("hump", c) + displacement("hump", u) + displacement("tints", f) + displacement("tints", long)
+        + displacement("hump", s) + displacement("nosuch", f);
     float fits = displacement("plain", p);
     Oi = 1; Ci = color(found + fits * 10, comp(c, 0) + u + f + long[2], s == "kept" ? p : 0);
 }

@@ -161,7 +161,11 @@ TEST(NestedIlluminance, EachPointHasItsLights) {
 )");
     surfaceOf("nesteach", R"(
     float x = xcomp(transform("world", P));
-    illuminance(P, x > 1 ? up : -up, PI / 2) { color o = Cl; illuminance(P, abs(x) < 2 ? up : -up, PI / 2) Ci += o * Cl; Ci += 1000 * Cl; }
+    illuminance(P, x > 1 ? up : -up, PI / 2) {
+        color o = Cl;
+        illuminance(P, abs(x) < 2 ? up : -up, PI / 2) Ci += o * Cl;
+        Ci += 1000 * Cl;
+    }
     illuminance(P) { if (x > 0) illuminance(P) Ci += .5; Ci += 1e-2 * Cl; })");
     const std::string lights = "LightSource \"nhalf\" 1 \"c\" 3\nLightSource \"nhalf\" 2 \"c\" 5 \"side\" -1\n";
     for (Hider h : {Hider::Hidden, Hider::Path})
@@ -258,7 +262,12 @@ TEST(NestedIlluminance, SamplesOfAreaLights) {
     surfaceOf("nestturns",
               "    illuminance(P) { vector l = L; color c = Cl; illuminance(P) Ci += 1; if (l == L && c == Cl) Ci += 100; }");
     surfaceOf("nesthandle", R"(    shader all[] = getlights();
-    illuminance(P, n, PI / 2) { color o = Cl * (normalize(L) . n), c = 0; vector l = 0; all[0]->light(l, c); Ci += o * c * (normalize(-l) . n); })");
+    illuminance(P, n, PI / 2) {
+        color o = Cl * (normalize(L) . n), c = 0;
+        vector l = 0;
+        all[0]->light(l, c);
+        Ci += o * c * (normalize(-l) . n);
+    })");
     const auto disk = [](const std::string& shader, int samples) {
         return "AttributeBegin\nAttribute \"light\" \"integer samples\" [" + std::to_string(samples) +
                "]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"" + shader +
@@ -331,9 +340,10 @@ TEST(NestedIlluminance, InVolumes) {
 
 // Lights see the outputs of the surface as they are where their loop begins.
 TEST(NestedIlluminance, OutputsOfTheSurfaceAreReadByLights) {
-    writeShader(
-        "nreads",
-        R"(light nreads() { illuminate(point "world" (0, 2, 0)) { float strength = 1; surface("strength", strength); Cl = strength; } }
+    writeShader("nreads",
+                R"(light nreads() {
+    illuminate(point "world" (0, 2, 0)) { float strength = 1; surface("strength", strength); Cl = strength; }
+}
 )");
     surfaceOf("nestread",
               "    strength = 3; illuminance(P) { color o = Cl; strength = 5; illuminance(P) Ci += Cl; Ci += 100 * Cl; }",

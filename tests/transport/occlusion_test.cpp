@@ -291,18 +291,24 @@ TEST(Occlusion, EveryParameter) {
     vector up = vector "world" (0, 1, 0), d1 = 0, d2 = 0;
     color e1 = 0, e2 = 0;
     float o1 = -1, o2 = -1;
-    float a = occlusion("raytrace", P, up, 4, "label", "l", "subset", "", "bias", -1, "hitmode", "shader", "hitsides", "both", "maxdist", 9, "samplecone", 1,
-        "samples", 3, "type", "transmission", "weight", color(1), "minsamples", 1, "samplebase", 0.5, "excludesubset", "none", "raytype", "transmission",
-        "raylabel", "m", "maxhitdist", 9, "axis", up, "adaptive", 1, "distribution", "uniform", "falloffmode", 0, "falloff", 0,
-        "maxvariation", 0, "maxerror", 0.5, "maxpixeldist", 20, "brightnesswarp", 1, "environmentmap", "", "environmentspace", "world",
-        "environmentcolor", e1, "environmentdir", d1, "occlusion", o1, "filename", "", "filenames", {"", ""}, "maxsolidangle", 0.1, "clamp", 1,
-        "sortbleeding", 0, "coordsystem", "world", "pointbased", 0) + occlusion(P, up, "coneangle", 0.5) + occlusion(P, up, 2);
-    color b = indirectdiffuse("raytrace", P, up, 4, "label", "l", "subset", "", "bias", -1, "hitmode", "shader", "hitsides", "both", "maxdist", 9, "samplecone", 1,
-        "samples", 3, "type", "diffuse", "weight", color(1), "minsamples", 1, "samplebase", 0.5, "excludesubset", "none", "raytype", "diffuse",
-        "raylabel", "m", "maxhitdist", 9, "axis", up, "adaptive", 1, "distribution", "uniform", "falloffmode", 0, "falloff", 0,
-        "maxvariation", 0, "maxerror", 0.5, "maxpixeldist", 20, "brightnesswarp", 1, "environmentmap", "", "environmentspace", "world",
-        "environmentcolor", e2, "environmentdir", d2, "occlusion", o2, "filename", "", "filenames", {"", ""}, "maxsolidangle", 0.1, "clamp", 1,
-        "sortbleeding", 0, "coordsystem", "world", "pointbased", 0) + indirectdiffuse(P, up, "coneangle", 0.5) + indirectdiffuse(P, up, 2) + indirectdiffuse("", up);
+    float a = occlusion("raytrace", P, up, 4, "label", "l", "subset", "", "bias", -1, "hitmode", "shader", "hitsides", "both",
+                        "maxdist", 9, "samplecone", 1, "samples", 3, "type", "transmission", "weight", color(1), "minsamples", 1,
+                        "samplebase", 0.5, "excludesubset", "none", "raytype", "transmission", "raylabel", "m", "maxhitdist", 9,
+                        "axis", up, "adaptive", 1, "distribution", "uniform", "falloffmode", 0, "falloff", 0, "maxvariation", 0,
+                        "maxerror", 0.5, "maxpixeldist", 20, "brightnesswarp", 1, "environmentmap", "",
+                        "environmentspace", "world", "environmentcolor", e1, "environmentdir", d1, "occlusion", o1,
+                        "filename", "", "filenames", {"", ""}, "maxsolidangle", 0.1, "clamp", 1, "sortbleeding", 0,
+                        "coordsystem", "world", "pointbased", 0) + occlusion(P, up, "coneangle", 0.5) + occlusion(P, up, 2);
+    color b = indirectdiffuse("raytrace", P, up, 4, "label", "l", "subset", "", "bias", -1, "hitmode", "shader",
+                              "hitsides", "both", "maxdist", 9, "samplecone", 1, "samples", 3, "type", "diffuse",
+                              "weight", color(1), "minsamples", 1, "samplebase", 0.5, "excludesubset", "none",
+                              "raytype", "diffuse", "raylabel", "m", "maxhitdist", 9, "axis", up, "adaptive", 1,
+                              "distribution", "uniform", "falloffmode", 0, "falloff", 0, "maxvariation", 0, "maxerror", 0.5,
+                              "maxpixeldist", 20, "brightnesswarp", 1, "environmentmap", "", "environmentspace", "world",
+                              "environmentcolor", e2, "environmentdir", d2, "occlusion", o2, "filename", "",
+                              "filenames", {"", ""}, "maxsolidangle", 0.1, "clamp", 1, "sortbleeding", 0, "coordsystem", "world",
+                              "pointbased", 0) + indirectdiffuse(P, up, "coneangle", 0.5) + indirectdiffuse(P, up, 2)
+        + indirectdiffuse("", up);
     color c = occlusion(P, up, 0.5, d1);
     Ci = color(a + o1 + comp(c, 0), comp(b, 0), o2 + length(d1) + length(d2) + comp(e1, 0) + comp(e2, 0)); Oi = 1;
 })");

@@ -22,9 +22,9 @@ using Floats = std::vector<float>;
 // As many numbers as the shader has: a float one, an array all of its elements, an element one; what nobody gives, as the display
 // says.
 TEST(Outputs, AsManyNumbersAsTheShaderHas) {
-    writeShader(
-        "gives",
-        R"(surface gives(output varying float q = 0; output varying float list[3] = {0, 0, 0}; output varying color tones[2] = {0, 0};) {
+    writeShader("gives",
+                R"(surface gives(output varying float q = 0; output varying float list[3] = {0, 0, 0};
+                         output varying color tones[2] = {0, 0};) {
     q = 7; list[0] = 1; list[1] = 2; list[2] = 3; tones[1] = color(4, 5, 6);
     float made[2] = {8, 9};
     outputchannel("made", made);
@@ -146,7 +146,8 @@ TEST(Outputs, WhatTheRendererSaysOfItself) {
     writeShader("whoami", R"(surface whoami() {
     string name = "", text = ""; float v[4] = {9, 9, 9, 9}, one = 5, three[3] = {8, 8, 8};
     float found = rendererinfo("renderer", name) + 2 * rendererinfo("version", v) + 4 * rendererinfo("versionstring", text);
-    float wrong = rendererinfo("nothing", name) + rendererinfo("renderer", one) + rendererinfo("version", text) + rendererinfo("versionstring", v);
+    float wrong = rendererinfo("nothing", name) + rendererinfo("renderer", one) + rendererinfo("version", text)
+        + rendererinfo("versionstring", v);
     string joined = format("%d.%d", v[0], v[1]);
     Oi = 1;
     Ci = color(found, wrong + one, name == "Alpenglow" && text == joined ? v[2] + v[3] + 1 : -1);
@@ -262,10 +263,12 @@ TEST(Outputs, VariablesOfThePrimitive) {
     string s = "", names[2] = {"weight", "nosuch"};
     uniform string u = "";
     float pair[2] = {0, 0}, open[] = {}, st[2] = {0, 0}, w = 0, n = 5, i;
-    float found = getvar(null, "label", s) + getvar(null, "label", u) + getvar(null, "pair", pair) + getvar(null, "pair", open) + getvar(null, "st", st) + getvar(null, "label");
+    float found = getvar(null, "label", s) + getvar(null, "label", u) + getvar(null, "pair", pair) + getvar(null, "pair", open)
+        + getvar(null, "st", st) + getvar(null, "label");
     for (i = 0; i < 2; i += 1) found += 10 * getvar(null, names[i], w);
     point q = 0;
-    found += 100 * getvar(null, "P", q) + 1000 * (getvar(null, "label", n) + getvar(null, "pair", n) + getvar(null, "nosuch", pair));
+    found += 100 * getvar(null, "P", q)
+        + 1000 * (getvar(null, "label", n) + getvar(null, "pair", n) + getvar(null, "nosuch", pair));
     Oi = 1;
     if (what == 0) Ci = color(found, s == "here" && u == "here" ? 1 : 0, w);
     else if (what == 1) Ci = color(pair[0] + 10 * pair[1], arraylength(open) + 10 * open[1], distance(q, P));
@@ -292,7 +295,8 @@ TEST(Outputs, ImagersHaveCoShaders) {
     shader g = getshader("look"), none = getshader("later");
     uniform float format[3] = {0, 0, 0}, frame = -1, x = 3;
     string name = "";
-    float found = option("Format", format) + option("Frame", frame) + rendererinfo("renderer", name) + 10 * attribute("user:nobody", x) + 10 * getvar(null, "P", x);
+    float found = option("Format", format) + option("Frame", frame) + rendererinfo("renderer", name)
+        + 10 * attribute("user:nobody", x) + 10 * getvar(null, "P", x);
     color c = Ci;
     g->tone(c);
     Ci = found == 3 && none == null && name == "Alpenglow" && shadername() == "graded" ? c : 0;
@@ -315,7 +319,8 @@ TEST(Outputs, ImagersHaveDerivatives) {
     writeShader("stepped", R"(imager stepped() {
     vector across = Du(P), down = Dv(P);
     float sizes = xcomp(across) + 100 * ycomp(down) + 10000 * (xcomp(down) + ycomp(across));
-    Ci = color(filterstep(10, xcomp(P), "filter", "box"), filterstep(.5, t, "filter", "box", "width", 2), area(P) + Deriv(u * u, u) - 2 * u - Dv(u) + Deriv(s, v));
+    Ci = color(filterstep(10, xcomp(P), "filter", "box"), filterstep(.5, t, "filter", "box", "width", 2),
+               area(P) + Deriv(u * u, u) - 2 * u - Dv(u) + Deriv(s, v));
     alpha = sizes;
 }
 )");
@@ -377,7 +382,8 @@ TEST(Outputs, WhatAnImagerMakesOpaqueHasAlpha) {
 TEST(Outputs, AttributesOfAnotherTypeAreNotTold) {
     writeShader("askswrong", R"(surface askswrong() {
     float f = 5, two[2] = {6, 6}; string s = "kept"; color c = 7; matrix m = 1;
-    float found = attribute("Ri:Color", f) + attribute("Ri:ShadingRate", s) + attribute("Ri:Sides", c) + attribute("identifier:name", f) + option("Ri:Format", f) + attribute("Ri:Color", m);
+    float found = attribute("Ri:Color", f) + attribute("Ri:ShadingRate", s) + attribute("Ri:Sides", c)
+        + attribute("identifier:name", f) + option("Ri:Format", f) + attribute("Ri:Color", m);
     float right = attribute("Ri:DetailRange", two) + attribute("Ri:Color", c);
     Oi = 1; Ci = color(found * 10 + right, f, s == "kept" ? comp(c, 1) : -1);
 }

@@ -25,9 +25,10 @@ TEST(Parameters, OfTexture) {
     else if (form == 1) { f = texture(map[1], s, t); c = color texture(map, s, t); }
     else if (form == 2) { f = texture(map[1], 0, 0, 1, 0, 1, 1, 0, 1); c = color texture(map, 0, 0, 1, 0, 1, 1, 0, 1); }
     else {
-        f = texture(map[1], s, t, "filter", "box", "width", 2, "swidth", 1.5, "twidth", 0.5, "blur", 0.01, "sblur", 0.02, "tblur", 0.03, "fill", 0.9,
-                    "lerp", 1, "samples", 8, "bias", 0.1, "ignoreabove", 1e30, "minwidth", 0, "expand", 0, "maxdist", 1e6, "samplecone", 0,
-                    "minsamples", 2, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default", "hitsides", "both");
+        f = texture(map[1], s, t, "filter", "box", "width", 2, "swidth", 1.5, "twidth", 0.5, "blur", 0.01, "sblur", 0.02,
+                    "tblur", 0.03, "fill", 0.9, "lerp", 1, "samples", 8, "bias", 0.1, "ignoreabove", 1e30, "minwidth", 0,
+                    "expand", 0, "maxdist", 1e6, "samplecone", 0, "minsamples", 2, "label", "a", "subset", "",
+                    "excludesubset", "", "hitmode", "default", "hitsides", "both");
         c = color texture(map, "filter", "triangle", "blur", 0.2, "lerp", 1);
     }
     Oi = 1;
@@ -62,9 +63,10 @@ TEST(Parameters, OfEnvironment) {
     if (form == 0) { f = environment(map[1], a); c = color environment(map, a); }
     else if (form == 1) { f = environment(map[1], a, b, d, e); c = color environment(map, a, b, d, e); }
     else {
-        f = environment(map[1], a, "filter", "box", "width", 2, "swidth", 1.5, "twidth", 0.5, "blur", 0.01, "sblur", 0.02, "tblur", 0.03, "fill", 0.9,
-                        "lerp", 1, "samples", 8, "bias", 0.1, "ignoreabove", 1e30, "minwidth", 0, "expand", 0, "maxdist", 1e6, "samplecone", 0,
-                        "minsamples", 2, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default", "hitsides", "both");
+        f = environment(map[1], a, "filter", "box", "width", 2, "swidth", 1.5, "twidth", 0.5, "blur", 0.01, "sblur", 0.02,
+                        "tblur", 0.03, "fill", 0.9, "lerp", 1, "samples", 8, "bias", 0.1, "ignoreabove", 1e30, "minwidth", 0,
+                        "expand", 0, "maxdist", 1e6, "samplecone", 0, "minsamples", 2, "label", "a", "subset", "",
+                        "excludesubset", "", "hitmode", "default", "hitsides", "both");
         c = color environment(map, a, b, d, e, "blur", 0.2);
     }
     Oi = 1;
@@ -81,7 +83,8 @@ TEST(Parameters, OfEnvironment) {
 // A map without slopes does not tilt the normal.
 TEST(Parameters, OfBump) {
     writeShader("allbump", R"(surface allbump(string map = "";) {
-    point a = bump(map, N, dPdu, dPdv, "blur", 0.1, "width", 2), b = bump(map, N, dPdu, dPdv, s, t, "blur", 0.1), c = bump(map, N, dPdu, dPdv);
+    point a = bump(map, N, dPdu, dPdv, "blur", 0.1, "width", 2), b = bump(map, N, dPdu, dPdv, s, t, "blur", 0.1),
+        c = bump(map, N, dPdu, dPdv);
     Oi = 1;
     Ci = color(length(vector(a)), length(vector(b)), length(vector(c)));
 }
@@ -124,13 +127,15 @@ TEST(Parameters, OfTrace) {
     vector up = vector "world" (0, 1, 0), hn = 0;
     color tr = 0.5, ec = 0.5, ue = 0.5, al = 0.5, ua = 0.5;
     float far = 0;
-    color one = trace(P, up, far, "label", "a", "subset", "", "bias", 0.001, "hitmode", "default", "hitsides", "both", "maxdist", 1e6, "samplecone", 0,
-                      "samples", 1, "type", "specular", "weight", color(1), "minsamples", 1, "samplebase", 0, "excludesubset", "", "raytype", "specular",
-                      "raylabel", "a", "maxhitdist", 1e6, "environmentmap", "", "environmentspace", "current", "environmenttint", color(1),
-                      "exponent", 1000, "samplearealights", 0, "transmission", tr, "hitnormal", hn, "environmentcontribution", ec,
+    color one = trace(P, up, far, "label", "a", "subset", "", "bias", 0.001, "hitmode", "default", "hitsides", "both",
+                      "maxdist", 1e6, "samplecone", 0, "samples", 1, "type", "specular", "weight", color(1), "minsamples", 1,
+                      "samplebase", 0, "excludesubset", "", "raytype", "specular", "raylabel", "a", "maxhitdist", 1e6,
+                      "environmentmap", "", "environmentspace", "current", "environmenttint", color(1), "exponent", 1000,
+                      "samplearealights", 0, "transmission", tr, "hitnormal", hn, "environmentcontribution", ec,
                       "unshadowedenvironment", ue, "arealightcontribution", al, "unshadowedarealight", ua);
-    color cosine = trace(P, up, "bsdf", "cosine", "wo", up, "horizon", vector(0), "roughness", 0.5, "roughnessv", 0.5, "udir", vector(1, 0, 0),
-                         "eta", {color(1.5)}, "absorption", color(0), "lobeparameters", {1, 1}, "samplecone", 1, "samples", 4);
+    color cosine = trace(P, up, "bsdf", "cosine", "wo", up, "horizon", vector(0), "roughness", 0.5, "roughnessv", 0.5,
+                         "udir", vector(1, 0, 0), "eta", {color(1.5)}, "absorption", color(0), "lobeparameters", {1, 1},
+                         "samplecone", 1, "samples", 4);
     Oi = 1;
     Ci = color(comp(one, 0), comp(cosine, 1), far / 50 + comp(ec, 0) + comp(al, 0));
 }
@@ -159,9 +164,10 @@ TEST(Parameters, PartsOfTrace) {
 TEST(Parameters, OfTransmission) {
     writeShader("alltransmission", R"(surface alltransmission() {
     point above = P + vector "world" (0, 3, 0), behind = P + vector "world" (0, 90, 0);
-    color free = transmission(P, above, "label", "a", "subset", "", "bias", 0.001, "hitmode", "default", "hitsides", "both", "maxdist", 1e6,
-                              "samplecone", 0, "samples", 2, "type", "transmission", "weight", color(1), "minsamples", 1, "samplebase", 0,
-                              "excludesubset", "", "raytype", "transmission", "raylabel", "a", "maxhitdist", 1e6);
+    color free = transmission(P, above, "label", "a", "subset", "", "bias", 0.001, "hitmode", "default", "hitsides", "both",
+                              "maxdist", 1e6, "samplecone", 0, "samples", 2, "type", "transmission", "weight", color(1),
+                              "minsamples", 1, "samplebase", 0, "excludesubset", "", "raytype", "transmission", "raylabel", "a",
+                              "maxhitdist", 1e6);
     Oi = 1;
     Ci = free + color(0, 1, 0) * transmission(P, behind, "samples", 2);
 }
@@ -176,10 +182,12 @@ TEST(Parameters, OfBmrtsRays) {
     point h = P, m = P;
     color c = 0;
     float d = 0;
-    color free = visibility(P, P + 3 * up, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default", "hitsides", "both", "bias", 0.001, "maxdist", 1e6);
-    float far = rayhittest(P, up, h, n, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default", "hitsides", "both", "bias", 0.001, "maxdist", 1e6);
-    float found = fulltrace(P, up, c, d, h, n, m, r, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default", "hitsides", "both", "bias", 0.001,
-                            "maxdist", 1e6);
+    color free = visibility(P, P + 3 * up, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default",
+                            "hitsides", "both", "bias", 0.001, "maxdist", 1e6);
+    float far = rayhittest(P, up, h, n, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default", "hitsides", "both",
+                           "bias", 0.001, "maxdist", 1e6);
+    float found = fulltrace(P, up, c, d, h, n, m, r, "label", "a", "subset", "", "excludesubset", "", "hitmode", "default",
+                            "hitsides", "both", "bias", 0.001, "maxdist", 1e6);
     Oi = 1;
     Ci = color(comp(free, 0), far / 50, (found + comp(c, 2) + d / 50) / 3);
 }

@@ -93,7 +93,8 @@ TEST(Plausible, OtherObjectsAndChosenLights) {
     writeShader("listing", material(R"(public void lighting(output color Ci, Oi) {
         shader one[1];
         one[0] = getlight("1");
-        Ci = color(comp(directlighting(this, one), 0), comp(diffuselighting(this, one), 0), comp(specularlighting(this, m_lights), 0));
+        Ci = color(comp(directlighting(this, one), 0), comp(diffuselighting(this, one), 0),
+                   comp(specularlighting(this, m_lights), 0));
         Oi = 1;
     }
 )"));
@@ -102,15 +103,17 @@ TEST(Plausible, OtherObjectsAndChosenLights) {
         one[0] = getlight("2");
         shader m = getshader("material");
         color d = 0, s = 0, ud = 0, us = 0;
-        color both = directlighting(m, "diffuseresult", d, "specularresult", s, "unshadoweddiffuseresult", ud, "unshadowedspecularresult", us, "mis", 1,
-                                    "integrationdomain", "sphere");
+        color both = directlighting(m, "diffuseresult", d, "specularresult", s, "unshadoweddiffuseresult", ud,
+                                    "unshadowedspecularresult", us, "mis", 1, "integrationdomain", "sphere");
         Ci = color(comp(directlighting(m, one), 0), comp(diffuselighting(m, one), 0), comp(specularlighting(m, one), 0));
         color sd = 0, ss = 0, su = 0, sv = 0;
-        if (specularlighting(m, "diffuseresult", sd, "specularresult", ss, "unshadoweddiffuseresult", su, "unshadowedspecularresult", sv, "mis", 0,
-                             "integrationdomain", "sphere") != ss || sd != d || su != d || sv != ss) Ci += 100;
-        if (diffuselighting(m, "diffuseresult", sd, "specularresult", ss, "unshadoweddiffuseresult", su, "unshadowedspecularresult", sv, "mis", 0,
-                            "integrationdomain", "sphere") != d || ss != s) Ci += 100;
-        Ci += 10 * color(comp(both, 0), comp(diffuselighting(m), 0) + comp(d, 0) + comp(ud, 0), comp(specularlighting(m) + s + us, 0));
+        if (specularlighting(m, "diffuseresult", sd, "specularresult", ss, "unshadoweddiffuseresult", su,
+                             "unshadowedspecularresult", sv, "mis", 0, "integrationdomain", "sphere") != ss || sd != d || su != d
+            || sv != ss) Ci += 100;
+        if (diffuselighting(m, "diffuseresult", sd, "specularresult", ss, "unshadoweddiffuseresult", su,
+                            "unshadowedspecularresult", sv, "mis", 0, "integrationdomain", "sphere") != d || ss != s) Ci += 100;
+        Ci += 10 * color(comp(both, 0), comp(diffuselighting(m), 0) + comp(d, 0) + comp(ud, 0),
+                         comp(specularlighting(m) + s + us, 0));
         Oi = 1;
     } }
 )");
@@ -141,12 +144,16 @@ TEST(Plausible, RaysWhereAnotherMaterialWantsThem) {
 )";
     writeShader("wants", "class wants() {\n" + generates + "}\n");
     writeShader("short", "class short() {\n" + generates + R"(public void surface(output color Ci, Oi) {
-        Ci = color(comp(indirectspecular(this, "maxdist", .5), 0), comp(indirectspecular(this, "maxdist", 2, "label", "far", "hitmode", "shader"), 0), 0); Oi = 1; } }
+        Ci = color(comp(indirectspecular(this, "maxdist", .5), 0),
+                   comp(indirectspecular(this, "maxdist", 2, "label", "far", "hitmode", "shader"), 0), 0);
+        Oi = 1; } }
 )");
     writeShader("sends", R"(class sends() { public void surface(output color Ci, Oi) {
         shader m = getshader("material");
         Ci = indirectspecular(m);
-        if (comp(indirectspecular(m, "bias", .01, "maxdist", .5, "label", "near", "subset", "", "hitmode", "default", "hitsides", "both"), 0) != 0) Ci = -1;
+        color close = indirectspecular(m, "bias", .01, "maxdist", .5, "label", "near", "subset", "", "hitmode", "default",
+                                       "hitsides", "both");
+        if (comp(close, 0) != 0) Ci = -1;
         Oi = 1; } }
 )");
     const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 "

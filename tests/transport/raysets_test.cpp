@@ -169,12 +169,13 @@ TEST(RaySets, EnvironmentTakesAllThatTraceTakes) {
 TEST(RaySets, EnvironmentWithEveryParameter) {
     writeShader("envevery",
                 R"(surface envevery() { color a = 0, b = 0, c = 0, d = 0, e = 0; vector n = 0, up = vector "world" (0, 1, 0);
-        Ci = environment("raytrace", up, "type", "specular", "weight", color(.5), "samplebase", .5, "raytype", "specular", "raylabel", "l", "maxhitdist", 9,
-                         "distribution", "ward", "wo", up, "horizon", up, "roughness", .2, "roughnessv", .3, "udir", vector(1, 0, 0), "eta", color(0),
-                         "absorption", color(.1), "lobeparameters", {1, 1}, "environmentmap", "", "environmentspace", "world", "environmenttint", color(2),
-                         "exponent", 20, "samplearealights", 1, "transmission", a, "hitnormal", n, "environmentcontribution", b, "unshadowedenvironment", c,
-                         "arealightcontribution", d, "unshadowedarealight", e, "samples", 4)
-             + environment("raytrace", up, "bsdf", "cosine", "samplecone", .2);
+        Ci = environment("raytrace", up, "type", "specular", "weight", color(.5), "samplebase", .5, "raytype", "specular",
+                         "raylabel", "l", "maxhitdist", 9, "distribution", "ward", "wo", up, "horizon", up, "roughness", .2,
+                         "roughnessv", .3, "udir", vector(1, 0, 0), "eta", color(0), "absorption", color(.1),
+                         "lobeparameters", {1, 1}, "environmentmap", "", "environmentspace", "world", "environmenttint", color(2),
+                         "exponent", 20, "samplearealights", 1, "transmission", a, "hitnormal", n, "environmentcontribution", b,
+                         "unshadowedenvironment", c, "arealightcontribution", d, "unshadowedarealight", e, "samples", 4)
+            + environment("raytrace", up, "bsdf", "cosine", "samplecone", .2);
         Ci += 0 * (a + b + c + d + e + color(n)); Oi = 1; })");
     for (const Hider h : {Hider::Hidden, Hider::Path}) {
         Scene s(world("Surface \"envevery\" " + std::string(kFloor) + pane(1, "Color .25 .5 .75")), withShaders(h));

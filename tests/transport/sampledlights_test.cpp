@@ -178,7 +178,10 @@ TEST_P(SampledLights, LightsThatAreNoSuch) {
     writeWhite();
     writeShader("two", R"(class two() {
         public void light(output vector L; output color Cl) { illuminate(point "shader" (0, 0, 0)) Cl = 4 / (L . L); }
-        public void generateSamples(string integrationdomain; output __radiancesample samples[]) { resize(samples, 1); samples[0]->setLightRadiance(9, 1); }
+        public void generateSamples(string integrationdomain; output __radiancesample samples[]) {
+            resize(samples, 1);
+            samples[0]->setLightRadiance(9, 1);
+        }
     }
 )");
     EXPECT_NEAR(Scene(world(above("LightSource \"two\" 1\n") + kWhite + kFloor), under(GetParam())).one(kView)[0], 1, 1e-5);

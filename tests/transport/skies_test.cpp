@@ -34,7 +34,8 @@ void writeLooks() {
     writeShader("suntrace", R"(surface suntrace(float maxdist = 1e30;) {
     normal Nf = faceforward(normalize(N), I);
     Oi = 1;
-    Ci = trace(P, vector(Nf), "distribution", "cosine", "samplecone", PI / 2, "samplearealights", 1, "type", "diffuse", "maxdist", maxdist);
+    Ci = trace(P, vector(Nf), "distribution", "cosine", "samplecone", PI / 2, "samplearealights", 1, "type", "diffuse",
+               "maxdist", maxdist);
 }
 )");
 }

@@ -91,7 +91,8 @@ TEST(TraceForAreaLights, NoRaysWithoutLights) {
         writeShader(name, std::string("surface ") + name + R"(() {
     normal Nf = faceforward(normalize(N), I);
     color gives = 0;
-    color c = trace(P, vector(Nf), "type", "transmission", "samplearealights", 1, "samples", 16, "bsdf", "cosine", "arealightcontribution", gives);
+    color c = trace(P, vector(Nf), "type", "transmission", "samplearealights", 1, "samples", 16, "bsdf", "cosine",
+                    "arealightcontribution", gives);
     Oi = 1;
     Ci = )" + result + R"(;
     if (comp(gives, 0) > 1000) Ci = 0;

@@ -52,7 +52,8 @@ constexpr const char* kListed = R"(
 )";
 
 constexpr const char* kIndirect = R"(
-    color __indirect(float bias; float maxdist; uniform string label; uniform string subset; uniform string hitmode; uniform string hitsides) {
+    color __indirect(float bias; float maxdist; uniform string label; uniform string subset; uniform string hitmode;
+                     uniform string hitsides) {
         extern point P;
         __radiancesample samples[];
         generateSamples("specular", samples);
@@ -60,7 +61,8 @@ constexpr const char* kIndirect = R"(
         color sum = 0;
         for (i = 0; i < n; i += 1)
             if (samples[i]->materialPdf > 0)
-                sum += trace(P, samples[i]->direction, "bias", bias, "maxdist", maxdist, "label", label, "subset", subset, "hitmode", hitmode, "hitsides", hitsides)
+                sum += trace(P, samples[i]->direction, "bias", bias, "maxdist", maxdist, "label", label, "subset", subset,
+                             "hitmode", hitmode, "hitsides", hitsides)
                     * samples[i]->materialResponse / (n * samples[i]->materialPdf);
         return sum;
     }

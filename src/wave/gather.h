@@ -156,8 +156,8 @@ private:
     std::vector<Sent> sent_;
     struct Near {
         Vec3 from;
-        Color light;
-    };                       ///< radiance times steradians
+        Color light; ///< radiance times steradians
+    };
     std::vector<Near> near_; ///< photons about a point
 };
 

@@ -84,9 +84,9 @@ struct PhotonTrace {
     uint32_t first = 0;       ///< number of the photon of PathSample::path 0
     std::vector<Color> power; ///< by path: of a ray of weight 1, in units of job->scale
     struct From {
-        int light = -1;
-        float kept = 1;
-    };                      ///< number in WorldImpl::lights_; EmissionStart::kept
+        int light = -1; ///< number in WorldImpl::lights_
+        float kept = 1; ///< EmissionStart::kept
+    };
     std::vector<From> from; ///< by path
     std::vector<StoredPhoton>* out = nullptr;
     RayKind diffuse, specular;

@@ -114,8 +114,8 @@ void Checker::surveyCall(Expr& e, Info& info) {
     for (auto& a : e.args) broken |= survey(*a).any;
     if (e.text.empty()) {
         info.any = true;
-        return;
-    }                                              // what is called was reported
+        return; // what is called was reported
+    }
     const bool shipped = e.text.starts_with("::"); // by a pass before this one: not what the shader calls so
     if (shipped) e.text.erase(0, 2);
     std::vector<std::string> candidates, notes;

@@ -1,13 +1,12 @@
 // Building: surface area heuristic over sixteen bins of centroids, the largest child first until there are eight.
 #include "accel/tree.h"
+#include "base/parallel.h"
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
 #include <mutex>
 #include <stdexcept>
-#include <tbb/parallel_for.h>
-#include <tbb/task_group.h>
 
 namespace alpenglow::accel {
 
@@ -196,7 +195,7 @@ struct Tree::Builder {
             b = measured(middle, r.end);
             return;
         }
-        tbb::task_group both;
+        TaskGroup both;
         both.run([&] { a = measured(r.begin, middle); });
         b = measured(middle, r.end);
         both.wait();
@@ -218,7 +217,7 @@ struct Tree::Builder {
         const size_t at = newNode();
         Node& node = this->node(at);
         setBoxes(node, all.box, {child, size_t(n)});
-        tbb::task_group below;
+        TaskGroup below;
         for (int k = 0; k < n; ++k) {
             if (child[k].leaf) {
                 node.child[k] = uint32_t(child[k].begin);
@@ -291,7 +290,7 @@ struct Tree::Builder {
         place(place, 0);
         pieces.clear();
         tree.leaves_.resize(leaves.size());
-        tbb::parallel_for(size_t(0), leaves.size(), [&](size_t i) {
+        parallelFor(size_t(0), leaves.size(), [&](size_t i) {
             Range r;
             r.begin = leaves[i].begin;
             r.end = r.begin + leaves[i].size;
@@ -354,9 +353,9 @@ struct Tree::Builder {
         refs.reset(new Ref[all]);
         std::atomic<size_t> beyond{0};
         std::atomic<uint32_t> beyondOf{uint32_t(shapes.size())};
-        tbb::parallel_for(size_t(0), tree.meshes_.size(), [&](size_t k) {
+        parallelFor(size_t(0), tree.meshes_.size(), [&](size_t k) {
             const geometry::TriMesh& m = shapes[tree.meshes_[k].shape]->mesh();
-            tbb::parallel_for(uint32_t(0), m.triangles(), [&](uint32_t t) {
+            parallelFor(uint32_t(0), m.triangles(), [&](uint32_t t) {
                 Ref r;
                 Box b;
                 for (uint32_t c = 0; c < 3; ++c) {
@@ -376,7 +375,7 @@ struct Tree::Builder {
             });
         });
         tree.exact_.reserve(exact.size());
-        tbb::parallel_for(size_t(0), exact.size(), [&](size_t i) {
+        parallelFor(size_t(0), exact.size(), [&](size_t i) {
             refs[triangles + i] = exactRef(uint32_t(i), shapes[exact[i].shape]->exactBounds(exact[i].prim));
         });
         pieces.resize(all / kPiece + 2); // a node has two children at least
@@ -433,7 +432,7 @@ struct Tree::Builder {
             Box first, last;
         };
         std::vector<Ends> leaf(n), node(tree.nodes_.size());
-        tbb::parallel_for(size_t(0), n, [&](size_t i) { followLeaf(i, times, leaf[i].first, leaf[i].last); });
+        parallelFor(size_t(0), n, [&](size_t i) { followLeaf(i, times, leaf[i].first, leaf[i].last); });
         tree.last_.resize(tree.nodes_.size());
         for (size_t i = tree.nodes_.size(); i-- > 0;) { // children come after their parents
             Range first[kWide], last[kWide];

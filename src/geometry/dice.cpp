@@ -1,6 +1,7 @@
 #include "geometry/dice.h"
 #include "base/exact.h"
 #include "base/limits.h"
+#include "base/parallel.h"
 #include "geometry/edge_corners.h"
 #include "geometry/parametric.h"
 #include "geometry/placed.h"
@@ -9,7 +10,6 @@
 #include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>
-#include <tbb/parallel_for.h>
 #include <unordered_set>
 
 namespace alpenglow::geometry {
@@ -242,7 +242,7 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
     corners.finish();
     // Messages are kept by shape and passed on in order, so that they do not depend on threads.
     std::vector<std::vector<Diagnostic>> said(shapes.size());
-    tbb::parallel_for(size_t(0), shapes.size(), [&](size_t i) {
+    parallelFor(size_t(0), shapes.size(), [&](size_t i) {
         if (opt.stop && *opt.stop) return;
         Diagnostics own;
         DiceOptions mine = opt;

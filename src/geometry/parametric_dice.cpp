@@ -3,6 +3,7 @@
 // made once for the blocks on both sides of it. On the border of the surface, where its edges are data of their own
 // (edge_curve.h), they are those that every surface with the same edge has.
 #include "base/limits.h"
+#include "base/parallel.h"
 #include "geometry/edge_corners.h"
 #include "geometry/edge_curve.h"
 #include "geometry/parametric.h"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tbb/parallel_for.h>
 
 namespace alpenglow::geometry {
 
@@ -344,8 +344,8 @@ void Parametric::Dicing::placeEdge(int side, const Line& line, std::vector<Vec3>
 }
 
 void Parametric::Dicing::place(std::vector<Vec3>& P) const {
-    tbb::parallel_for(size_t(0), param.size(),
-                      [&](size_t i) { P[i] = Vec3(s.cameraPosition(float(param[i][0]), float(param[i][1]))); });
+    parallelFor(size_t(0), param.size(),
+                [&](size_t i) { P[i] = Vec3(s.cameraPosition(float(param[i][0]), float(param[i][1]))); });
     // At corners the borders of constant v have the word: they are whole circles, the others may be none.
     if (!closed[0]) placeEdge(3, lines[1].begin()->second, P), placeEdge(1, lines[1].rbegin()->second, P);
     if (!closed[1]) placeEdge(0, lines[0].begin()->second, P), placeEdge(2, lines[0].rbegin()->second, P);

@@ -1,6 +1,7 @@
 // Facets of subdivision surfaces. Every edge of the cage has one rate and its points are made once, so neighbours meet to the
 // bit, whether displaced or not. So do separate meshes, whose borders are cut as their own data says (cage_border.h).
 #include "base/limits.h"
+#include "base/parallel.h"
 #include "geometry/cage_border.h"
 #include "geometry/dice.h"
 #include "geometry/piece_grid.h"
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <tbb/parallel_for.h>
 
 namespace alpenglow::geometry {
 
@@ -276,7 +276,7 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
     Dicing d{*this, *limit_, opt, displaced_, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     d.need.resize(limit_->pieces());
-    tbb::parallel_for(uint32_t(0), limit_->pieces(), [&](uint32_t k) {
+    parallelFor(uint32_t(0), limit_->pieces(), [&](uint32_t k) {
         d.need[k] = {1, 1};
         d.measure(*this, k);
         for (const ShapeRef& key : opt.keys) // finely enough for every time of a moving one
@@ -313,7 +313,7 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     }
     TriMesh shared;
     shared.P.resize(d.points.size());
-    tbb::parallel_for(size_t(0), d.points.size(), [&](size_t i) {
+    parallelFor(size_t(0), d.points.size(), [&](size_t i) {
         const Dicing::Point& p = d.points[i];
         shared.P[i] = Vec3(cameraPosition(p.piece, p.u, p.v));
     });

@@ -1,9 +1,9 @@
 #include "render/samplebuffer.h"
+#include "base/parallel.h"
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <tbb/parallel_for.h>
 
 namespace alpenglow::render {
 namespace {
@@ -175,7 +175,7 @@ Image SampleBuffer::reconstruct(const PixelFilter& filter, DepthFilter depth, Wi
     f.yw = std::min(f.yw, 2.0 * (window_.y0 - sampled_.y0) + 1);
     size_t n = image.channels.size();
     image.data.resize(out.pixels() * n);
-    tbb::parallel_for(out.y0, out.y1, [&](int y) {
+    parallelFor(out.y0, out.y1, [&](int y) {
         for (int x = out.x0; x < out.x1; ++x)
             pixel(f, depth, x, y, &image.data[(size_t(y - out.y0) * size_t(out.width()) + size_t(x - out.x0)) * n]);
     });

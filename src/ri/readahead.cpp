@@ -1,12 +1,12 @@
 #include "ri/readahead.h"
 #include "base/limits.h"
+#include "base/parallel.h"
 #include "ri/parser.h"
 #include "ri/reporter.h"
 #include "ri/source.h"
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace alpenglow::ri {
@@ -88,7 +88,7 @@ void ReadAhead::parseFrom(size_t first, const std::string& folder) {
         parsed_[i].path = path;
     }
     if (which.size() < 2) return parsed_.clear(); // nothing is won
-    tbb::parallel_for(size_t(0), which.size(), [&](size_t k) {
+    parallelFor(size_t(0), which.size(), [&](size_t k) {
         Ahead& a = parsed_.find(which[k])->second;
         a.archive = parse(a.path);
     });

@@ -1,4 +1,5 @@
 #include "base/limits.h"
+#include "base/parallel.h"
 #include "render/film.h"
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -6,7 +7,6 @@
 #include <numeric>
 #include <random>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 using namespace alpenglow;
 using namespace alpenglow::render;
@@ -287,7 +287,7 @@ TEST(Film, ThreadsAndTilesChangeNothing) {
             std::vector<int> order(size_t(tx * ty));
             std::iota(order.begin(), order.end(), 0);
             std::shuffle(order.begin(), order.end(), std::mt19937(unsigned(threads * 100 + tile)));
-            tbb::parallel_for(0, tx * ty, [&](int t) {
+            parallelFor(0, tx * ty, [&](int t) {
                 int ox = order[size_t(t)] % tx * tile, oy = order[size_t(t)] / tx * tile;
                 for (int y = oy; y < std::min(h, oy + tile); ++y)
                     for (int x = ox; x < std::min(w, ox + tile); ++x)

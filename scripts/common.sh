@@ -22,9 +22,19 @@ install_packages() {
     rm -f "/tmp/alpenglow-apt.$$"
 }
 
+# Sources that have been edited are compiled alone from then on, the others in groups (cmake/quick.cmake).
+note_edited() {
+    local list=build/$1/edited.txt now
+    now=$( { [ ! -f "$list" ] || cat "$list"; git ls-files -m -o --exclude-standard -- 'src/*.cpp' 'tests/*.cpp' 2>/dev/null || true; } | sort -u)
+    if [ -f "$list" ] && [ "$now" = "$(cat "$list")" ]; then return 0; fi
+    mkdir -p "build/$1"
+    printf '%s\n' "$now" >"$list"
+}
+
 # build PRESET TARGET...: configures once; ninja decides what is stale.
 build() {
     local preset=$1; shift
+    note_edited "$preset"
     if [ ! -f "build/$preset/build.ninja" ]; then
         say "configuring build/$preset"
         cmake --preset "$preset" >"/tmp/alpenglow-cmake.$$" 2>&1 || { cat "/tmp/alpenglow-cmake.$$" >&2; exit 3; }

@@ -20,6 +20,7 @@ target_include_directories(alpenglow_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
 target_compile_options(alpenglow_jit PRIVATE -fvisibility=hidden)
 # names of kinds and instructions: the only code shared with the program
 target_sources(alpenglow_jit PRIVATE ${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.cpp)
+set_source_files_properties(${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.cpp PROPERTIES ALPENGLOW_ALONE ON) # in two libraries
 target_link_libraries(alpenglow_jit PRIVATE LLVM)
 set_target_properties(alpenglow_jit PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 

@@ -1,14 +1,20 @@
 # The program: build/<preset>/bin/alpenglow. Its tests run it as a user does.
+# All but main() is a library, which the fuzzer has, too.
 file(GLOB cli_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/cli/*.cpp)
+list(FILTER cli_sources EXCLUDE REGEX "/main[.]cpp$")
 find_package(CLI11 REQUIRED)
-add_executable(alpenglow ${cli_sources})
-target_link_libraries(alpenglow PRIVATE view render ri transport shading texture display rsl_jit shadeops base CLI11::CLI11 nlohmann_json::nlohmann_json)
-target_compile_definitions(alpenglow PRIVATE ALPENGLOW_VERSION="0.1")
+add_library(cli STATIC ${cli_sources})
+target_link_libraries(cli PUBLIC view render ri transport shading texture display clouds photons ptex rsl_jit shadeops base
+                      CLI11::CLI11 nlohmann_json::nlohmann_json)
+target_compile_definitions(cli PRIVATE ALPENGLOW_VERSION="0.1")
+add_executable(alpenglow ${CMAKE_SOURCE_DIR}/src/cli/main.cpp)
+target_link_libraries(alpenglow PRIVATE cli)
 add_custom_target(commit_header
   COMMAND ${CMAKE_COMMAND} -DSOURCE=${CMAKE_SOURCE_DIR} -DOUT=${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h -P ${CMAKE_SOURCE_DIR}/cmake/commit.cmake
   BYPRODUCTS ${CMAKE_BINARY_DIR}/generated/alpenglow_commit.h COMMENT "The commit, for --version" VERBATIM)
-add_dependencies(alpenglow commit_header)
-target_include_directories(alpenglow PRIVATE ${CMAKE_BINARY_DIR}/generated)
+add_dependencies(cli commit_header)
+set_source_files_properties(${CMAKE_SOURCE_DIR}/src/cli/version.cpp PROPERTIES ALPENGLOW_ALONE ON) # a new commit compiles it again
+target_include_directories(cli PRIVATE ${CMAKE_BINARY_DIR}/generated)
 room_tests(cli DEPS render display transport)
 if(TARGET test_cli)
   target_compile_definitions(test_cli PRIVATE ALPENGLOW_PROGRAM="$<TARGET_FILE:alpenglow>")

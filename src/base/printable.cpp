@@ -44,4 +44,8 @@ std::string printable(std::string_view text) {
     return out;
 }
 
+std::string counted(size_t n, std::string_view thing) {
+    return std::to_string(n) + " " + std::string(thing) + (n == 1 ? "" : "s");
+}
+
 } // namespace alpenglow

@@ -13,4 +13,7 @@ size_t appendPrintable(std::string_view text, size_t at, std::string& out);
 /// The whole text so.
 std::string printable(std::string_view text);
 
+/// "1 value", "2 values": the number and the thing, which takes an s unless n is 1.
+std::string counted(size_t n, std::string_view thing);
+
 } // namespace alpenglow

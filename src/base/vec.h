@@ -78,6 +78,14 @@ struct Vec2 {
     float x = 0, y = 0;
 };
 
+template <class T> Vec3T<T> absolute(const Vec3T<T>& c) { return {std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}; }
+/// Unit vector along a; the fallback where a has no direction (zero, infinite or NaN length).
+template <class T> Vec3T<T> normalizeOr(const Vec3T<T>& a, const Vec3T<T>& fallback) {
+    const T l = length(a);
+    return l > 0 && std::isfinite(l) ? a / l : fallback;
+}
+
 inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr float kFloatPi = float(kPi);
 
 } // namespace alpenglow

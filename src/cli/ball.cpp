@@ -1,5 +1,6 @@
 #include "cli/ball.h"
 #include "cli/command.h"
+#include "cli/ribtext.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
 #include <algorithm>
@@ -8,20 +9,14 @@
 namespace alpenglow::cli {
 namespace {
 
-std::string quoted(const std::string& text) {
-    std::string q = "\"";
-    for (const char c : text) q += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
-    return q + "\"";
-}
-
 /// "name" and the parameters, as a shader request has them.
 std::string call(const std::string& request, const BallSettings& b, const std::string& handle = "") {
-    std::string t = request + " " + quoted(b.shader) + handle;
+    std::string t = request + " " + ribString(b.shader) + handle;
     for (const rsl::ParameterValue& v : b.given) {
         const size_t count = std::max(v.strings.size(), v.numbers.size() / size_t(rsl::componentCount(v.type.base)));
         t += fmt::format(" \"uniform {}{} {}\" [", rsl::toString(v.type.element()),
                          v.type.array ? "[" + std::to_string(count) + "]" : "", v.name);
-        for (const std::string& s : v.strings) t += quoted(s) + " ";
+        for (const std::string& s : v.strings) t += ribString(s) + " ";
         for (const float f : v.numbers) t += fmt::format("{} ", f);
         t += "]";
     }

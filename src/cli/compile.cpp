@@ -17,22 +17,22 @@
 namespace alpenglow::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json placeJson(const SourcePlace& p, int length) {
+OrderedJson placeJson(const SourcePlace& p, int length) {
     return {{"file", p.file}, {"line", p.line}, {"column", p.column}, {"length", length}};
 }
 
 /// For editors: everything a diagnostic says, places counted from 1, columns and lengths in bytes.
-Json diagnosticJson(const Diagnostic& d) {
-    Json j = placeJson(d.place, d.length);
+OrderedJson diagnosticJson(const Diagnostic& d) {
+    OrderedJson j = placeJson(d.place, d.length);
     j["severity"] = d.severity == Severity::Info ? "note" : d.severity == Severity::Warning ? "warning" : "error";
     j["id"] = d.id;
     j["message"] = d.message;
     if (!d.hint.empty()) j["hint"] = d.hint;
     if (!d.notes.empty()) j["notes"] = d.notes;
     for (const FixIt& f : d.fixes) {
-        Json fix = placeJson(f.place, f.length);
+        OrderedJson fix = placeJson(f.place, f.length);
         fix["text"] = f.text;
         j["fixes"].push_back(std::move(fix));
     }
@@ -103,7 +103,7 @@ void addCompile(CLI::App& app, int* status) {
     c->footer("All shaders of a file are compiled. Errors are shown with file:line:column, the line and a caret. Exit status 0 "
               "when all shaders compile, else 1.");
     c->callback([a, status] {
-        Json report = Json::array();
+        OrderedJson report = OrderedJson::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
         std::string current, input; // the shader that is looked at, and what came by standard input
         std::set<std::tuple<std::string, int, int, std::string>> told; // what the shaders of a file share is said once
@@ -136,7 +136,7 @@ void addCompile(CLI::App& app, int* status) {
         options.mixed = a->mixed;
         options.suspend = a->suspend;
         int failed = 0;
-        Json shaders = Json::array();
+        OrderedJson shaders = OrderedJson::array();
         for (const std::string& f : a->files) {
             current = f;
             const int before = diags.errors();
@@ -164,8 +164,8 @@ void addCompile(CLI::App& app, int* status) {
             }
         }
         if (a->json) {
-            const Json all = {{"shaders", std::move(shaders)}, {"diagnostics", std::move(report)}};
-            std::printf("%s\n", all.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+            const OrderedJson all = {{"shaders", std::move(shaders)}, {"diagnostics", std::move(report)}};
+            std::printf("%s\n", all.dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
         }
         *status = failed ? kDoneWithErrors : kDone;
     });

@@ -14,12 +14,12 @@
 namespace alpenglow::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 int shadeops(const std::string& name, bool json) {
     if (name.empty()) {
         if (json) {
-            Json all = Json::array();
+            OrderedJson all = OrderedJson::array();
             for (const auto& s : rsl::shadeops()) all.push_back(manualJson(s));
             std::printf("%s\n", all.dump(2).c_str());
             return kDone;
@@ -43,17 +43,17 @@ int shadeops(const std::string& name, bool json) {
     return kDone;
 }
 
-struct Arguments {
+struct InfoArguments {
     std::string file, shadeop, dialect;
     std::string names[5]; ///< of the topics, by their number
     std::vector<std::string> searchPaths;
     bool shaders = false, json = false, markdown = false, allowExec = false;
 };
 
-std::string dumped(const Json& j) { return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string dumped(const OrderedJson& j) { return j.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n"; }
 
 /// Options, attributes, hiders, displays, requests.
-int topic(Topic t, const Arguments& a) {
+int topic(Topic t, const InfoArguments& a) {
     const std::string& name = a.names[size_t(t)];
     if (a.markdown && name.empty()) {
         std::fputs(topicPage(t).c_str(), stdout);
@@ -70,7 +70,7 @@ int topic(Topic t, const Arguments& a) {
     return kDone;
 }
 
-std::vector<std::string> searched(const Arguments& a) {
+std::vector<std::string> searched(const InfoArguments& a) {
     std::vector<std::string> paths{"."};
     for (std::string& f : folders(a.searchPaths)) paths.push_back(std::move(f));
     for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
@@ -78,7 +78,7 @@ std::vector<std::string> searched(const Arguments& a) {
     return paths;
 }
 
-int shader(const Arguments& a) {
+int shader(const InfoArguments& a) {
     Diagnostics diags(printer());
     rsl::ShaderCompiler::Settings settings;
     settings.dialect = a.dialect;
@@ -93,7 +93,7 @@ int shader(const Arguments& a) {
     if (a.file.ends_with(".sl"))
         for (auto& other : rsl::ShaderCompiler::allOfFile(shader))
             if (other != shader) wanted.push_back(std::move(other));
-    Json first;
+    OrderedJson first;
     for (const auto& s : wanted) {
         const ShaderDescription d = describe(compiler, s, diags);
         if (!a.json) std::fputs(printable((s == shader ? "" : "\n") + descriptionText(d)).c_str(), stdout);
@@ -107,7 +107,7 @@ int shader(const Arguments& a) {
 } // namespace
 
 void addInfo(CLI::App& app, int* status) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<InfoArguments>();
     CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how shadeops, requests, options and displays work");
     c->add_option("shader", a->file, "RSL file (all of its shaders), or the name of a shader on the search path");
     CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")

@@ -18,8 +18,6 @@ bool isMainFile(const rsl::Program& p, const rsl::Place& at) {
     return at.file >= 0 && size_t(at.file) < p.files.size() && p.files[size_t(at.file)] == p.files[0];
 }
 
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
 /// Calls f(position, where) for every byte of the text, where saying what it belongs to, until f returns false.
 template <class F> void scan(const std::string& text, size_t end, F&& f) {
     using Where = Document::Where;

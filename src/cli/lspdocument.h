@@ -3,6 +3,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/front/ast.h"
+#include <cctype>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,6 +12,9 @@
 #include <vector>
 
 namespace alpenglow::cli {
+
+/// Whether an RSL name may contain this character.
+inline bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 /// Where something is declared. An empty file means nowhere that has a file.
 struct Origin {

@@ -1,5 +1,6 @@
 // Indentation. Lines keep what they say and where they break.
 #include "cli/languageserver.h"
+#include "cli/lspdocument.h"
 #include <algorithm>
 #include <cctype>
 
@@ -34,8 +35,6 @@ struct Depth {
         return n;
     }
 };
-
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 /// Is this line the head of a statement that follows: "if (...)" with nothing behind it?
 bool isHead(std::string_view code) {

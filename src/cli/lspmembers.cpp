@@ -9,7 +9,6 @@ namespace alpenglow::cli {
 
 namespace {
 
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 /// The variable of this name that was declared last before a place; of those behind it the first.

@@ -39,7 +39,7 @@ struct Around {
     bool comment = false;
 };
 
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == ':'; }
+bool isRibWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == ':'; }
 
 Around aroundOf(const std::string& text, size_t at) {
     Around a;
@@ -61,9 +61,9 @@ Around aroundOf(const std::string& text, size_t at) {
             }
             a.strings.push_back(text.substr(i + 1, end - i - 1));
             i = end + 1;
-        } else if (isWord(text[i]) && !std::isdigit(static_cast<unsigned char>(text[i]))) {
+        } else if (isRibWord(text[i]) && !std::isdigit(static_cast<unsigned char>(text[i]))) {
             size_t end = i;
-            while (end < text.size() && isWord(text[end])) ++end;
+            while (end < text.size() && isRibWord(text[end])) ++end;
             if (at >= i && at <= end) {
                 a.begin = i;
                 a.end = end;
@@ -75,7 +75,7 @@ Around aroundOf(const std::string& text, size_t at) {
             }
             i = end;
         } else if (std::isdigit(static_cast<unsigned char>(text[i]))) { // 1e5 is no request
-            while (i < text.size() && (isWord(text[i]) || text[i] == '.')) ++i;
+            while (i < text.size() && (isRibWord(text[i]) || text[i] == '.')) ++i;
         } else ++i;
     }
     return a;
@@ -98,7 +98,7 @@ std::string lastWord(const std::string& s) {
     return space == std::string::npos ? s : s.substr(space + 1);
 }
 
-Json fenced(const std::string& text, const std::string& language = "") {
+Json fencedRib(const std::string& text, const std::string& language = "") {
     return {{"kind", "markdown"}, {"value", "```" + language + "\n" + text + (text.ends_with("\n") ? "" : "\n") + "```\n"}};
 }
 
@@ -197,7 +197,7 @@ Json LanguageServer::ribHover(const Document& d, size_t at) {
     const auto answer = [&](Json text) -> Json { return {{"contents", std::move(text)}, {"range", range(d, a.begin, a.end)}}; };
     if (!a.inString) {
         const ri::Request* r = ri::findRequest(word);
-        return r ? answer(fenced(ri::requestText(*r))) : Json(nullptr);
+        return r ? answer(fencedRib(ri::requestText(*r))) : Json(nullptr);
     }
     const std::string kind = kindOf(a.request);
     if (kind != "-") {
@@ -205,12 +205,12 @@ Json LanguageServer::ribHover(const Document& d, size_t at) {
         std::string text;
         for (const auto& [name, declaration] : parametersOf(shader, shaderFolders(d), options_))
             if (a.strings.empty() || name == lastWord(word)) text += declaration + "\n";
-        return text.empty() ? Json(nullptr) : answer(fenced((a.strings.empty() ? shader + "\n" : "") + text, "rsl"));
+        return text.empty() ? Json(nullptr) : answer(fencedRib((a.strings.empty() ? shader + "\n" : "") + text, "rsl"));
     }
     if (a.request == "Option" || a.request == "Attribute") {
         const Topic topic = a.request == "Option" ? Topic::Options : Topic::Attributes;
         const std::string text = topicText(topic, a.strings.empty() ? word : a.strings[0] + ":" + lastWord(word));
-        return text.empty() ? Json(nullptr) : answer(fenced(text));
+        return text.empty() ? Json(nullptr) : answer(fencedRib(text));
     }
     return nullptr;
 }
@@ -240,7 +240,7 @@ Json LanguageServer::ribSymbols(const Document& d) const {
         const size_t begin = line.find_first_not_of(" \t");
         if (begin == std::string_view::npos || !std::isalpha(static_cast<unsigned char>(line[begin]))) continue;
         size_t end = begin;
-        while (end < line.size() && isWord(line[end])) ++end;
+        while (end < line.size() && isRibWord(line[end])) ++end;
         const std::string name(line.substr(begin, end - begin));
         if (!shown.count(name)) continue;
         const size_t at = d.startOf(n) + begin;

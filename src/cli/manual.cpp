@@ -5,7 +5,7 @@
 
 namespace alpenglow::cli {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -79,13 +79,13 @@ std::string contextText(uint32_t contexts) {
     return t;
 }
 
-Json manualJson(const rsl::Shadeop& s) {
-    Json j;
+OrderedJson manualJson(const rsl::Shadeop& s) {
+    OrderedJson j;
     j["name"] = s.name;
     j["section"] = s.section;
     for (const auto& g : s.signatures) j["signatures"].push_back(g.text);
     j["doc"] = s.doc;
-    j["contexts"] = Json::array();
+    j["contexts"] = OrderedJson::array();
     for (int k = 0; k < 6; ++k)
         if (s.contexts & rsl::contextOf(rsl::ShaderKind(k))) j["contexts"].push_back(toString(rsl::ShaderKind(k)));
     j["evaluation"] = loweringText(s.lowering);
@@ -94,14 +94,14 @@ Json manualJson(const rsl::Shadeop& s) {
     j["pure"] = s.pure;
     j["bias"] = biasName(s.bias);
     if (!s.biasReason.empty()) j["biasReason"] = s.biasReason;
-    j["optional"] = Json::array();
+    j["optional"] = OrderedJson::array();
     for (const auto& o : s.optional)
         j["optional"].push_back({{"name", o.name},
                                  {"type", rsl::toString(o.type)},
                                  {"output", o.output},
                                  {"default", o.defaultText},
                                  {"doc", o.doc}});
-    j["examples"] = Json::array();
+    j["examples"] = OrderedJson::array();
     for (const auto& e : s.examples) {
         j["examples"].push_back({{"expression", e.expression}, {"value", e.value}});
         if (!e.setup.empty()) j["examples"].back()["setup"] = e.setup;

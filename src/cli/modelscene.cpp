@@ -1,4 +1,5 @@
 #include "cli/modelscene.h"
+#include "cli/ribtext.h"
 #include "ri/models/model.h"
 #include <algorithm>
 #include <cmath>
@@ -7,18 +8,7 @@
 
 namespace alpenglow::cli {
 
-namespace {
-
-std::string quoted(const std::string& s) {
-    std::string out = "\"";
-    for (const char c : s) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c;
-    }
-    return out + "\"";
-}
-
-} // namespace
+namespace {} // namespace
 
 std::string modelScene(const std::string& file) {
     Vec3d lo(INFINITY), hi(-INFINITY);
@@ -53,11 +43,11 @@ std::string modelScene(const std::string& file) {
                        "Surface \"paintedplastic\" \"Kd\" .8 \"Ks\" .12 \"roughness\" .15\nColor [.75 .73 .7]\n"
                        "Geometry {} \"string filename\" {}\n"
                        "WorldEnd\n",
-                       quoted(path.stem().string() + ".png"), kFov, away, -middle.x, -middle.y, -middle.z, middle.x - floor, lo.y,
-                       middle.z - floor, middle.x - floor, lo.y, middle.z + floor, middle.x + floor, lo.y, middle.z + floor,
+                       ribString(path.stem().string() + ".png"), kFov, away, -middle.x, -middle.y, -middle.z, middle.x - floor,
+                       lo.y, middle.z - floor, middle.x - floor, lo.y, middle.z + floor, middle.x + floor, lo.y, middle.z + floor,
                        middle.x + floor, lo.y, middle.z - floor,
                        path.extension() == ".obj" || path.extension() == ".OBJ" ? "\"obj\"" : "\"ply\"",
-                       quoted(path.filename().string()));
+                       ribString(path.filename().string()));
 }
 
 } // namespace alpenglow::cli

@@ -8,7 +8,7 @@
 namespace alpenglow::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using scene::Effect;
 using scene::OptionDescription;
 
@@ -68,8 +68,8 @@ std::string oneText(Topic t, const OptionDescription& d) {
                        example(t, d));
 }
 
-Json oneJson(Topic t, const OptionDescription& d) {
-    Json j{{"name", d.name}, {"type", d.type}, {"effect", effectName(d.effect)}, {"default", d.standard}, {"doc", d.doc}};
+OrderedJson oneJson(Topic t, const OptionDescription& d) {
+    OrderedJson j{{"name", d.name}, {"type", d.type}, {"effect", effectName(d.effect)}, {"default", d.standard}, {"doc", d.doc}};
     if (d.effect != Effect::Ignored) j["example"] = example(t, d);
     return j;
 }
@@ -84,7 +84,7 @@ bool answersTo(const display::DriverDescriptor& d, const std::string& name) {
     return name.empty() || std::find(d.names.begin(), d.names.end(), name) != d.names.end();
 }
 
-Json requestJson(const ri::Request& r) {
+OrderedJson requestJson(const ri::Request& r) {
     return {{"name", r.name}, {"kind", ri::toString(r.kind)}, {"arguments", r.signature}, {"motion", r.motion},
             {"doc", r.doc},   {"example", r.sample}};
 }
@@ -187,8 +187,8 @@ std::string topicText(Topic t, const std::string& name) {
     return out;
 }
 
-Json topicJson(Topic t, const std::string& name) {
-    Json all = Json::array();
+OrderedJson topicJson(Topic t, const std::string& name) {
+    OrderedJson all = OrderedJson::array();
     if (t == Topic::Hiders)
         for (const auto& h : scene::knownHiders())
             if (name.empty() || h.name == name) all.push_back({{"hider", h.name}, {"doc", h.doc}});

@@ -50,7 +50,7 @@ double extentFrom(const scene::Frame& f, const Vec3d& centre) {
     return r > 0 ? r : 1;
 }
 
-struct Arguments {
+struct ProbeArguments {
     std::string scene, point, normal, dialect;
     uint32_t spp = 4096;
     uint64_t seed = 0;
@@ -60,7 +60,7 @@ struct Arguments {
     std::vector<std::string> searchPaths;
 };
 
-int probe(const Arguments& a) {
+int probe(const ProbeArguments& a) {
     auto p = parseNumbers(a.point, 3), n = parseNumbers(a.normal, 3);
     if (!p) throw CLI::ValidationError("point", "takes X,Y,Z in world space");
     if (!n) throw CLI::ValidationError("normal", "takes NX,NY,NZ in world space");
@@ -211,7 +211,7 @@ int probe(const Arguments& a) {
 } // namespace
 
 void addProbe(CLI::App& app, int* status) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<ProbeArguments>();
     CLI::App* c =
         app.add_subcommand("probe", "Print the radiance leaving a white diffuse point of a scene, and its standard error");
     c->add_option("scene", a->scene, "RIB file; - is standard input")->required();

@@ -16,7 +16,7 @@ namespace alpenglow::cli {
 
 namespace {
 
-struct Arguments {
+struct PtcArguments {
     std::string action, channel, view = "z";
     std::vector<std::string> files, channels;
     std::string box;
@@ -67,7 +67,7 @@ bool printInfo(const std::string& name, Diagnostics& d) {
 }
 
 /// The channels that are named, and the points in the box; one point a cell; means within a radius.
-clouds::PointCloud filtered(clouds::PointCloud from, const Arguments& a) {
+clouds::PointCloud filtered(clouds::PointCloud from, const PtcArguments& a) {
     clouds::PointCloud to;
     std::vector<int> offsets;
     for (const clouds::Channel& c : from.channels) {
@@ -99,7 +99,7 @@ clouds::PointCloud filtered(clouds::PointCloud from, const Arguments& a) {
 }
 
 /// Disks seen from far away along an axis, the nearest first; a channel, or how normals lie.
-display::Image pictureOf(const clouds::PointCloud& cloud, const Arguments& a) {
+display::Image pictureOf(const clouds::PointCloud& cloud, const PtcArguments& a) {
     const bool back = a.view[0] == '-';
     const int axis = a.view.back() - 'x', right = axis == 0 ? 2 : 0, up = axis == 1 ? 2 : 1;
     Vec3 lo, hi;
@@ -132,7 +132,7 @@ display::Image pictureOf(const clouds::PointCloud& cloud, const Arguments& a) {
     return image;
 }
 
-bool writePicture(const std::string& name, const clouds::PointCloud& cloud, const Arguments& a, Diagnostics& d) {
+bool writePicture(const std::string& name, const clouds::PointCloud& cloud, const PtcArguments& a, Diagnostics& d) {
     display::WriteOptions o;
     o.policy = kAnywhere;
     const auto format = display::formatOfExtension(name);
@@ -142,7 +142,7 @@ bool writePicture(const std::string& name, const clouds::PointCloud& cloud, cons
 }
 
 /// Light after some bounces. "": done; else what is missing.
-std::string bounced(clouds::PointCloud& cloud, const Arguments& a) {
+std::string bounced(clouds::PointCloud& cloud, const PtcArguments& a) {
     clouds::BounceOptions o;
     o.bounces = a.bounces;
     o.maxSolidAngle = a.solidAngle;
@@ -155,7 +155,7 @@ std::string bounced(clouds::PointCloud& cloud, const Arguments& a) {
 }
 
 /// 0: done; else why not.
-int runPtc(const Arguments& a, Diagnostics& d) {
+int runPtc(const PtcArguments& a, Diagnostics& d) {
     if (a.action == "info") {
         bool all = true;
         for (const std::string& f : a.files) all &= printInfo(f, d);
@@ -200,7 +200,7 @@ int runPtc(const Arguments& a, Diagnostics& d) {
 } // namespace
 
 void addPtc(CLI::App& app, int* status) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<PtcArguments>();
     CLI::App* c = app.add_subcommand("ptc", "Tell, merge, filter, convert and draw point clouds; make brick maps");
     c->add_option("action", a->action,
                   "info: what is in files; merge: several as one; filter: parts of one; toply, fromply: to and from PLY; brick: "

@@ -26,7 +26,7 @@
 namespace alpenglow::cli {
 namespace {
 
-struct Arguments {
+struct RenderArguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
@@ -36,7 +36,7 @@ struct Arguments {
     std::vector<int> frameList;
 };
 
-void checkLate(Arguments& a, const CLI::App& app) {
+void checkLate(RenderArguments& a, const CLI::App& app) {
     render::RenderSettings& s = a.settings;
     auto wrong = [](const std::string& option, const std::string& what) { throw CLI::ValidationError(option, what); };
     if (!a.folder.empty() && chdir(a.folder.c_str()) != 0) wrong("--cwd", "there is no folder \"" + a.folder + "\"");
@@ -161,7 +161,7 @@ bool tellMissingFrames(const std::vector<int>& wanted, const std::vector<int>& s
 }
 
 /// Who looks on: the terminal, viewers. `terminal` is the former, or null.
-view::Watchers watchersOf(const Arguments& a, Diagnostics& diags, view::TerminalPreview** terminal) {
+view::Watchers watchersOf(const RenderArguments& a, Diagnostics& diags, view::TerminalPreview** terminal) {
     view::Watchers all;
     *terminal = nullptr;
     if (!a.preview.empty()) {
@@ -184,7 +184,7 @@ view::Watchers watchersOf(const Arguments& a, Diagnostics& diags, view::Terminal
     return all;
 }
 
-int renderOnce(const Arguments& a, const StopFlag* stop) {
+int renderOnce(const RenderArguments& a, const StopFlag* stop) {
     const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     Diagnostics diags(print);
     render::RenderSettings settings = a.settings;
@@ -254,12 +254,12 @@ int renderOnce(const Arguments& a, const StopFlag* stop) {
     return diags.errors() ? kDoneWithErrors : kDone;
 }
 
-int renderAll(const Arguments& a) {
+int renderAll(const RenderArguments& a) {
     if (a.settings.output == "-") stdout = stderr; // what shaders print must not come between the bytes of the picture
     const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
     if (!a.watch) return renderOnce(a, stop);
-    Arguments again = a;
+    RenderArguments again = a;
     while (true) {
         again.settings.reads = std::make_shared<ReadLog>();
         int status = renderOnce(again, stop);
@@ -277,7 +277,7 @@ int renderAll(const Arguments& a) {
 } // namespace
 
 void addRender(CLI::App& app, int* status, const std::string& command) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<RenderArguments>();
     render::RenderSettings& s = a->settings;
     s.software = softwareName();
     s.command = command;

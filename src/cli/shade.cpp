@@ -20,7 +20,7 @@
 namespace alpenglow::cli {
 namespace {
 
-struct Arguments {
+struct ShadeArguments {
     std::string shader, output = "out.exr", format = "256x256", kind, dialect;
     std::vector<std::string> params, searchPaths, outputs;
     int spp = 0, iterations = 0, lanes = 16, vectors = 0;
@@ -96,7 +96,7 @@ display::Format pictureFormat(const std::string& name) {
     return name == "-" ? display::Format::Png : display::formatOfExtension(name).value_or(display::Format::Exr);
 }
 
-int shade(const Arguments& a) {
+int shade(const ShadeArguments& a) {
     int width = 0, height = 0;
     readFormat(a.format, &width, &height);
     if (const std::string fault = faultOfPictureName(a.output, true); !fault.empty()) throw CLI::ValidationError("-o", fault);
@@ -342,7 +342,7 @@ int shade(const Arguments& a) {
 } // namespace
 
 void addShade(CLI::App& app, int* status) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<ShadeArguments>();
     CLI::App* c = app.add_subcommand("shade", "Show a shader on a lit ball, or over a unit patch");
     c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->required();
     c->add_option("-o", a->output,

@@ -14,7 +14,7 @@ namespace alpenglow::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 std::string lower(std::string s) {
     std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -281,15 +281,15 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
 }
 
 nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
-    Json j;
+    OrderedJson j;
     j["name"] = d.name;
     j["type"] = d.kinds.empty() ? "" : d.kinds[0].kind;
-    j["types"] = Json::array();
+    j["types"] = OrderedJson::array();
     for (const auto& k : d.kinds) j["types"].push_back(k.kind);
     j["file"] = d.file;
-    j["parameters"] = Json::array();
+    j["parameters"] = OrderedJson::array();
     for (const ParameterDescription& p : d.parameters) {
-        Json q = {{"name", p.name}, {"type", p.type}, {"storage", p.storage}, {"output", p.output}};
+        OrderedJson q = {{"name", p.name}, {"type", p.type}, {"storage", p.storage}, {"output", p.output}};
         if (p.array != 0) q["arraySize"] = p.array;
         if (p.open) q["open"] = true;
         const DefaultDescription& v = p.byDefault;
@@ -304,22 +304,22 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
         if (!v.written.empty()) q["written"] = v.written;
         j["parameters"].push_back(std::move(q));
     }
-    j["methods"] = Json::array();
-    j["publicMethods"] = Json::array();
+    j["methods"] = OrderedJson::array();
+    j["publicMethods"] = OrderedJson::array();
     for (const auto& m : d.methods) {
         j["methods"].push_back(m.signature);
         if (m.isPublic) j["publicMethods"].push_back(m.name);
     }
     j["class"] = d.object;
-    j["members"] = Json::array();
+    j["members"] = OrderedJson::array();
     for (const auto& m : d.members)
         j["members"].push_back(
             {{"name", m.name}, {"type", m.type}, {"storage", m.storage}, {"public", m.isPublic}, {"constant", m.constant}});
     if (!d.categories.empty()) j["categories"] = d.categories;
     for (const auto& s : d.structs) {
-        Json members = Json::array();
+        OrderedJson members = OrderedJson::array();
         for (const auto& m : s.members) members.push_back({{"name", m.name}, {"type", m.type}});
-        Json methods = Json::array();
+        OrderedJson methods = OrderedJson::array();
         for (const auto& m : s.methods) methods.push_back(m.name);
         j["structs"].push_back({{"name", s.name}, {"members", std::move(members)}, {"methods", std::move(methods)}});
     }
@@ -329,13 +329,13 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
                 j["plugins"][plugin->name].push_back({{"signature", s.text}, {"doc", f.doc}});
     std::map<std::string, size_t> times;
     for (const auto& [key, value] : d.annotations) {
-        Json& a = j["annotations"][key];
+        OrderedJson& a = j["annotations"][key];
         const size_t n = ++times[key];
         if (n == 1) a = value;
-        else if (n == 2) a = Json::array({a, value});
+        else if (n == 2) a = OrderedJson::array({a, value});
         else a.push_back(value);
     }
-    const auto facts = [](Json& to, const KindDescription& k) {
+    const auto facts = [](OrderedJson& to, const KindDescription& k) {
         if (!k.compiled) return;
         to["writes"] = k.writes;
         to["affine"] = k.affine;
@@ -348,7 +348,7 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
     if (!d.kinds.empty()) facts(j, d.kinds[0]);
     if (d.kinds.size() > 1)
         for (const auto& k : d.kinds) {
-            Json one = {{"type", k.kind}};
+            OrderedJson one = {{"type", k.kind}};
             facts(one, k);
             j["kinds"].push_back(std::move(one));
         }

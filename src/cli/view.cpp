@@ -17,7 +17,7 @@
 namespace alpenglow::cli {
 namespace {
 
-struct Arguments {
+struct ViewArguments {
     render::RenderSettings settings;
     std::string scene, format, memory, folder, gamma;
     std::vector<std::string> searchPaths, rib;
@@ -25,7 +25,7 @@ struct Arguments {
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false, framed = false;
 };
 
-void checkLate(Arguments& a) {
+void checkLate(ViewArguments& a) {
     render::RenderSettings& s = a.settings;
     auto wrong = [](const std::string& option, const std::string& what) { throw CLI::ValidationError(option, what); };
     if (!a.folder.empty() && chdir(a.folder.c_str()) != 0) wrong("--cwd", "there is no folder \"" + a.folder + "\"");
@@ -59,7 +59,7 @@ nlohmann::json aboutShader(const std::string& name, const std::vector<std::strin
     return shader ? nlohmann::json(descriptionJson(describe(compiler, shader, quiet))) : nlohmann::json();
 }
 
-int runView(const Arguments& a) {
+int runView(const ViewArguments& a) {
     const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
     view::ViewOptions o;
@@ -101,7 +101,7 @@ int runView(const Arguments& a) {
 } // namespace
 
 void addView(CLI::App& app, int* status) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<ViewArguments>();
     render::RenderSettings& s = a->settings;
     s.software = softwareName();
     CLI::App* c = app.add_subcommand("view", "Show a scene in the browser while it renders (docs/view.md)");

@@ -12,7 +12,7 @@ namespace alpenglow::clouds {
 namespace {
 
 constexpr std::string_view kText = "# bake 1", kBinary = "ALPGBAKE", kAmpersand = "&binary";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kBakeVersion = 1;
 constexpr size_t kHeader = 24;
 
 std::string_view headOf(std::span<const uint8_t> b) {
@@ -26,7 +26,7 @@ void appendNumber(std::string& to, float v) {
 
 std::string readBinary(std::span<const uint8_t> b, Baked& to) {
     if (b.size() < kHeader + 4) return "it is cut short";
-    if (takeNumber<uint32_t>(&b[8]) != kVersion) return "it has another version than this program reads";
+    if (takeNumber<uint32_t>(&b[8]) != kBakeVersion) return "it has another version than this program reads";
     const uint32_t type = takeNumber<uint32_t>(&b[12]);
     const uint64_t count = takeNumber<uint64_t>(&b[16]);
     if (type > uint32_t(ChannelType::Normal)) return "its header is damaged";
@@ -146,7 +146,7 @@ bool saveBaked(const std::string& name, const Baked& baked, const OutputPolicy& 
     const size_t width = 2 + size_t(sizeOf(baked.type));
     if (binary) {
         std::vector<uint8_t> all(kBinary.begin(), kBinary.end());
-        putNumber(all, kVersion);
+        putNumber(all, kBakeVersion);
         putNumber(all, uint32_t(baked.type));
         putNumber(all, uint64_t(baked.size()));
         for (const float v : baked.rows) putFloat(all, v);

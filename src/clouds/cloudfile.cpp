@@ -11,7 +11,7 @@ namespace alpenglow::clouds {
 namespace {
 
 constexpr char kMagic[] = "ALPGCLOU";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kCloudVersion = 1;
 constexpr size_t kFixed = 32, kOfPoint = 28, kEnd = 4;
 
 bool endsWith(const std::string& s, const char* end) {
@@ -25,8 +25,8 @@ bool endsWith(const std::string& s, const char* end) {
 /// "" where the bytes are a cloud, which is then in `to`.
 std::string readCloud(std::span<const uint8_t> b, PointCloud& to) {
     if (b.size() < kFixed + 2 * kEnd) return "it is cut short";
-    if (const uint32_t v = takeNumber<uint32_t>(&b[8]); v != kVersion)
-        return "it has version " + std::to_string(v) + ", this program reads version " + std::to_string(kVersion);
+    if (const uint32_t v = takeNumber<uint32_t>(&b[8]); v != kCloudVersion)
+        return "it has version " + std::to_string(v) + ", this program reads version " + std::to_string(kCloudVersion);
     const uint64_t count = takeNumber<uint64_t>(&b[16]), header = takeNumber<uint32_t>(&b[24]);
     const uint64_t record = takeNumber<uint32_t>(&b[28]);
     if (header < kFixed + kEnd || header > b.size() - kEnd) return "it is cut short";
@@ -107,7 +107,7 @@ bool saveCloud(const std::string& name, const PointCloud& cloud, const OutputPol
     if (!file) return false;
     const std::vector<uint8_t> channels = packChannels(cloud.channels);
     std::vector<uint8_t> some(kMagic, kMagic + 8);
-    putNumber(some, kVersion);
+    putNumber(some, kCloudVersion);
     putNumber(some, uint32_t(cloud.channels.size()));
     putNumber(some, uint64_t(cloud.size()));
     putNumber(some, uint32_t(kFixed + channels.size() + kEnd));

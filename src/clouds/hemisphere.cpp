@@ -8,7 +8,6 @@ namespace alpenglow::clouds {
 
 namespace {
 constexpr int kLeastSide = 16, kMostSide = 64;
-constexpr float kPi = 3.14159265f;
 /// Pixels are as much smaller than the largest cluster that its shape is not all that is seen.
 constexpr float kPixelsOfCluster = 7.6f;
 /// A disk that P lies on is not met.
@@ -47,7 +46,7 @@ void Hemisphere::begin(const HemisphereQuery& q) {
     pixels_.assign(directions_.size(), Pixel{0, 1e38f, 0, 0, 0, Color(0), Color(0)});
     used_.clear();
     fragments_.clear();
-    const float cone = float(exact::cos(double(std::clamp(q_.cone, 0.f, kPi))));
+    const float cone = float(exact::cos(double(std::clamp(q_.cone, 0.f, kFloatPi))));
     const bool half = dot(q_.axis, q_.axis) > 0;
     double sum = 0;
     for (size_t i = 0; i < pixels_.size(); ++i) {

@@ -11,7 +11,6 @@ namespace {
 constexpr uint32_t kLeaf = 8;
 constexpr double kMostArea = 1e29; ///< of a point: the sum of all is a float
 constexpr int kBits = 21;          ///< of each coordinate in a code
-constexpr float kPi = 3.14159265f;
 
 /// Real spherical harmonics of a unit vector, bands 0 to 2.
 PointOctree::Harmonics harmonics(const Vec3& d) {
@@ -27,7 +26,8 @@ PointOctree::Harmonics harmonics(const Vec3& d) {
 }
 
 /// The bands of max(0, cos) (Ramamoorthi and Hanrahan 2001).
-constexpr float kBand[9] = {kPi, 2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4, kPi / 4, kPi / 4, kPi / 4, kPi / 4};
+constexpr float kBand[9] = {kFloatPi,     2 * kFloatPi / 3, 2 * kFloatPi / 3, 2 * kFloatPi / 3, kFloatPi / 4,
+                            kFloatPi / 4, kFloatPi / 4,     kFloatPi / 4,     kFloatPi / 4};
 
 /// Length of the mean of unit normals: from here on a node begins to be, and is, a piece of a plane.
 constexpr float kCurved = .85f, kFlat = .97f;
@@ -43,7 +43,7 @@ uint64_t spread(uint64_t x) {
 
 } // namespace
 
-float PointOctree::Point::radius() const { return dot(N, N) > 0 ? std::sqrt(area / 2) : std::sqrt(area / kPi); }
+float PointOctree::Point::radius() const { return dot(N, N) > 0 ? std::sqrt(area / 2) : std::sqrt(area / kFloatPi); }
 
 PointOctree::PointOctree(const PointCloud& cloud, const std::string& lightChannel) {
     const int area = areaChannel(cloud);

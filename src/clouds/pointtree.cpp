@@ -7,7 +7,7 @@
 namespace alpenglow::clouds {
 
 namespace {
-constexpr uint32_t kLeaf = 8;
+constexpr uint32_t kLeafPoints = 8;
 }
 
 PointTree::PointTree(PointCloud from) {
@@ -35,7 +35,7 @@ void PointTree::build(std::vector<uint32_t>& order, const PointCloud& from, uint
         }
     }
     nodes_.push_back(n);
-    if (end - begin <= kLeaf) return;
+    if (end - begin <= kLeafPoints) return;
     const Vec3 side = n.hi - n.lo;
     const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
     const uint32_t middle = begin + (end - begin) / 2;

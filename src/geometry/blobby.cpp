@@ -10,7 +10,7 @@ namespace alpenglow::geometry {
 
 namespace {
 
-constexpr int kMost = 4; ///< hits that one box gives a ray
+constexpr int kMostRoots = 4; ///< hits that one box gives a ray
 
 int largest(const Vec3d& v) {
     const double x = std::fabs(v.x), y = std::fabs(v.y), z = std::fabs(v.z);
@@ -280,8 +280,8 @@ int Blobby::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     }
     if (!(t0 < t1)) return 0;
     const Now now(*this, tapeOf(box), time);
-    double roots[kMost];
-    const int n = now.field().crossings(now.tape(), o, d, t0, t1, wanted == Wanted::All ? kMost : 1, roots);
+    double roots[kMostRoots];
+    const int n = now.field().crossings(now.tape(), o, d, t0, t1, wanted == Wanted::All ? kMostRoots : 1, roots);
     int m = 0;
     for (int i = 0; i < n; ++i) {
         const double t = roots[i] + shift;

@@ -6,9 +6,9 @@
 namespace alpenglow::geometry {
 
 namespace {
-constexpr double kNear = 4e-7;     ///< of the largest coordinate: what single precision makes of a point on the edge
-constexpr double kApart = 0x1p-18; ///< of the edge
-constexpr size_t kMost = 4096;     ///< on one edge
+constexpr double kNear = 4e-7;       ///< of the largest coordinate: what single precision makes of a point on the edge
+constexpr double kApart = 0x1p-18;   ///< of the edge
+constexpr size_t kMostOnEdge = 4096; ///< on one edge
 } // namespace
 
 void EdgeCorners::add(const std::vector<double>& with, std::span<const Vec3> corners) {
@@ -66,7 +66,7 @@ std::vector<EdgeCorners::On> EdgeCorners::within(const std::vector<double>& with
         return x.t != y.t ? x.t < y.t : std::tie(x.P.x, x.P.y, x.P.z) < std::tie(y.P.x, y.P.y, y.P.z);
     });
     on.erase(std::unique(on.begin(), on.end(), [](const On& x, const On& y) { return y.t - x.t <= kApart; }), on.end());
-    if (on.size() > kMost) on.clear();
+    if (on.size() > kMostOnEdge) on.clear();
     return on;
 }
 

@@ -9,7 +9,7 @@ namespace alpenglow::geometry {
 
 namespace {
 constexpr int kMostSegments = 32; ///< of a part that is cut evenly
-constexpr int kDeepest = 20;      ///< halvings
+constexpr int kDeepestEdge = 20;  ///< halvings
 
 Vec3d single(const Vec3d& v) { return Vec3d(Vec3(v)); }
 bool before(const Vec3d& a, const Vec3d& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
@@ -130,7 +130,7 @@ double EdgeCuts::need(double t0, double t1) const {
 
 int EdgeCuts::segments(double t0, double t1) const {
     const double n = need(std::min(t0, t1), std::max(t0, t1));
-    if (n > kMostSegments) return std::fabs(t1 - t0) > std::ldexp(1.0, -kDeepest) ? 0 : kMostSegments;
+    if (n > kMostSegments) return std::fabs(t1 - t0) > std::ldexp(1.0, -kDeepestEdge) ? 0 : kMostSegments;
     int k = 1;
     while (k < n) k *= 2;
     return k;

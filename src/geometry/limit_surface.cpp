@@ -49,12 +49,12 @@ protected:
 };
 
 // OpenSubdiv's patch parameters hold ten bits of u and v: deeper than ten levels is not sound.
-constexpr int kDeepest = 10;
+constexpr int kDeepestLevel = 10;
 // Control points of a face beyond which its pattern, whose size grows with their square, is not made.
 constexpr int kMostPoints = 1000;
 
 int levelFor(int points, size_t used) {
-    int level = points <= 160 ? kDeepest : points <= 400 ? 4 : 2;
+    int level = points <= 160 ? kDeepestLevel : points <= 400 ? 4 : 2;
     if (used > limits::kLimitPatternBytes / 2) level = std::min(level, 4);
     if (used > limits::kLimitPatternBytes) level = std::min(level, 2);
     return level;
@@ -172,7 +172,7 @@ void LimitSurface::fill(Data& data, int channel, const SubdivisionCage& c) {
     const auto& base = topology_->base();
     Patterns& all = *patterns_;
     std::unique_ptr<Factory> byLevel[3];
-    const int levels[3] = {kDeepest, 4, 2};
+    const int levels[3] = {kDeepestLevel, 4, 2};
     for (size_t k = 0; k < 3; ++k) {
         Factory::Options o;
         o.SetApproxLevelSmooth(levels[k]).SetApproxLevelSharp(levels[k]).SetExternalCache(&all.caches[k]);
@@ -199,7 +199,7 @@ void LimitSurface::fill(Data& data, int channel, const SubdivisionCage& c) {
             if (ok && channel >= 0) ok = false;
         } else {
             const int level = levelFor(int(points), all.bytes);
-            const size_t k = level == kDeepest ? 0 : level == 4 ? 1 : 2;
+            const size_t k = level == kDeepestLevel ? 0 : level == 4 ? 1 : 2;
             coarser_ |= k > 0 && points <= 160;
             all.caches[k].last = nullptr;
             ok = channel < 0 ? byLevel[k]->InitVertexSurface(f, &s) : byLevel[k]->InitFaceVaryingSurface(f, &s, channel);

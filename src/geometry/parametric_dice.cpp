@@ -17,7 +17,7 @@ namespace alpenglow::geometry {
 namespace {
 constexpr double kDeviation = 0.05;      ///< pixels that facets may stray from the surface
 constexpr double kBlock = 48;            ///< facets along a block, beyond which it is cut in two
-constexpr int kDeepest = 12;             ///< halvings of a patch
+constexpr int kDeepestHalving = 12;      ///< halvings of a patch
 constexpr size_t kMostBlocks = 1u << 16; ///< that patches are cut into, beyond one a patch
 } // namespace
 
@@ -129,9 +129,9 @@ void Parametric::Dicing::refine(Block k, int depth) {
     least.nu = least.nv = std::numeric_limits<double>::infinity();
     for (const Parametric* key : keys) probe(*key, k, least);
     // What asks for so much everywhere that no halving that is left brings it down is not halved: a patch at 1e39, say.
-    const double hopeless = std::ldexp(kBlock, kDeepest - depth);
+    const double hopeless = std::ldexp(kBlock, kDeepestHalving - depth);
     const bool u = k.nu > kBlock && least.nu <= hopeless, v = k.nv > kBlock && least.nv <= hopeless;
-    if ((!u && !v) || depth >= kDeepest || cuts >= kMostBlocks) {
+    if ((!u && !v) || depth >= kDeepestHalving || cuts >= kMostBlocks) {
         k.nu = std::min(k.nu, double(limits::kDiceEdge)); // a weight that vanishes makes it look as large as can be
         k.nv = std::min(k.nv, double(limits::kDiceEdge));
         blocks.push_back(k);

@@ -44,11 +44,11 @@ Vec3d unpackDirection(double x, double y) {
     return normalize(Vec3d(a, b, z));
 }
 
-enum class Kind { Disc, Ball, Square };
+enum class PointKind { Disc, Ball, Square };
 
 class Points final : public KeyedShape {
 public:
-    Points(ShapeSource s, Kind kind) : KeyedShape(std::move(s)), kind_(kind) {}
+    Points(ShapeSource s, PointKind kind) : KeyedShape(std::move(s)), kind_(kind) {}
     bool take(Diagnostics&);
 
     uint32_t exactPrims() const override { return kept_.empty() ? count_ : uint32_t(kept_.size()); }
@@ -59,7 +59,7 @@ public:
         return pointFrom(uint32_t(std::clamp(face, 0, int(exactPrims()) - 1)), u, v, Vec3d(0.0), 0);
     }
     double area() const override {
-        return areas().back() * spread_ * (kind_ == Kind::Disc ? kPi : kind_ == Kind::Ball ? 4 * kPi : 4 * aspect_);
+        return areas().back() * spread_ * (kind_ == PointKind::Disc ? kPi : kind_ == PointKind::Ball ? 4 * kPi : 4 * aspect_);
     }
     SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const override;
     double sampleDensity(const SurfacePoint&) const override;
@@ -103,9 +103,9 @@ private:
     void sides(const Vec3d& n, Vec3d& a, Vec3d& b) const;
     SurfacePoint pointFrom(uint32_t prim, double u, double v, const Vec3d& from, float time) const;
     const std::vector<double>& areas() const;
-    bool fromRay() const { return kind_ != Kind::Ball && !normal_ && source_.facing == Facing::Ray; }
+    bool fromRay() const { return kind_ != PointKind::Ball && !normal_ && source_.facing == Facing::Ray; }
 
-    Kind kind_;
+    PointKind kind_;
     uint32_t count_ = 0;
     std::vector<uint32_t> kept_; ///< of the request's; empty: all
     const float *P_ = nullptr, *width_ = nullptr, *normal_ = nullptr;
@@ -159,7 +159,7 @@ bool Points::take(Diagnostics& diag) {
     };
     values("constantwidth", 1, width_, widthStep_);
     values("width", 1, width_, widthStep_);
-    if (kind_ == Kind::Disc) values("N", 3, normal_, normalStep_);
+    if (kind_ == PointKind::Disc) values("N", 3, normal_, normalStep_);
     const float *aspect = nullptr, *angle = nullptr;
     size_t none = 0;
     values("patchaspectratio", 1, aspect, none); // of squares alike: the first value
@@ -195,7 +195,7 @@ bool Points::take(Diagnostics& diag) {
 
 Bounds Points::keyBounds(uint32_t prim) const {
     const Vec3d c = transformPoint(toCamera(), centre(prim));
-    const double r = radius(prim) * (kind_ == Kind::Square ? std::sqrt(1 + aspect_ * aspect_) : 1) * 1.000001;
+    const double r = radius(prim) * (kind_ == PointKind::Square ? std::sqrt(1 + aspect_ * aspect_) : 1) * 1.000001;
     const double slack = 1e-6 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z)) + 1e-30;
     const Vec3d to(reach_[0] * r + slack, reach_[1] * r + slack, reach_[2] * r + slack);
     Bounds b;
@@ -226,7 +226,7 @@ Vec3d Points::facing(const Now& now, const Vec3d& against) const {
 /// Unit vectors along u and v: a ^ b looks along n (side_ tells in which hand).
 void Points::sides(const Vec3d& n, Vec3d& a, Vec3d& b) const {
     acrossFrame(n, a, b);
-    if (kind_ == Kind::Square) { // v upward in the picture
+    if (kind_ == PointKind::Square) { // v upward in the picture
         const Vec3d right = cross(up_, n);
         if (dot(right, right) > 1e-20 * dot(up_, up_) * dot(n, n)) a = normalize(right), b = normalize(cross(n, a));
         const Vec3d x = a * turnCos_ + b * turnSin_;
@@ -244,7 +244,7 @@ int Points::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     if (!(r > 0)) return 0;
     const double dd = dot(d, d), shift = dot(c - o, d) / dd;
     const Vec3d near = o + d * shift - c; // from the point nearest the centre
-    if (kind_ == Kind::Ball) {
+    if (kind_ == PointKind::Ball) {
         double t[2];
         const int roots = solveQuadratic(dd, dot(near, d), dot(near, near) - r * r, t);
         int n = 0;
@@ -264,7 +264,7 @@ int Points::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     const double step = -dot(near, n) / along, t = shift + step;
     if (!(t > lo && t <= hi)) return 0;
     const Vec3d w = near + d * step;
-    if (kind_ == Kind::Disc && !(dot(w, w) <= r * r)) return 0;
+    if (kind_ == PointKind::Disc && !(dot(w, w) <= r * r)) return 0;
     double x = 0, y = 0;
     if (fromRay()) {
         packDirection(n, x, y);
@@ -273,7 +273,7 @@ int Points::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     Vec3d a, b;
     sides(n, a, b);
     const double u = dot(w, a) / r, v = dot(w, b) / r;
-    if (kind_ == Kind::Square && !(std::fabs(u) <= 1 && std::fabs(v) <= aspect_)) return 0;
+    if (kind_ == PointKind::Square && !(std::fabs(u) <= 1 && std::fabs(v) <= aspect_)) return 0;
     out[0] = {t, 2 * x + std::clamp(0.5 + 0.5 * u, 0.0, 1.0), 2 * y + std::clamp(0.5 + 0.5 * v / aspect_, 0.0, 1.0)};
     return 1;
 }
@@ -282,7 +282,7 @@ int Points::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
 LocalPoint Points::place(const Now& now, const Vec3d& n, double u, double v) const {
     const double r = now.radius;
     LocalPoint o;
-    if (kind_ == Kind::Ball) {
+    if (kind_ == PointKind::Ball) {
         const auto [su, cu] = exact::sinCos(2 * kPi * u);
         const auto [sv, cv] = exact::sinCos(kPi * (v - 0.5));
         const Vec3d out(cu * cv, su * cv, sv);
@@ -332,7 +332,7 @@ SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) co
     p.n = Vec3(q.n);
     p.dNdu = Vec3(q.nu), p.dNdv = Vec3(q.nv);
     p.Ng = l > 0 ? Vec3(across) : p.n;
-    if (kind_ == Kind::Square) p.u = float(u), p.v = float(v); // of others they are 0 (ri.md 8.5)
+    if (kind_ == PointKind::Square) p.u = float(u), p.v = float(v); // of others they are 0 (ri.md 8.5)
     p.orientation = orientation_;
     p.prim = prim;
     p.b1 = u;
@@ -341,8 +341,8 @@ SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) co
     // What leaves a disc that faces the ray must not meet the same disc, now turned elsewhere.
     p.pError = 2 * roundingError(p.P) + (fromRay() ? 0.26f * std::max(length(p.dPdu), length(p.dPdv)) : 0);
     finishPoint(p, true);
-    if (kind_ != Kind::Square) p.dsdu = p.dsdv = p.dtdu = p.dtdv = 0;
-    if (kind_ == Kind::Ball) p.N = p.n;
+    if (kind_ != PointKind::Square) p.dsdu = p.dsdv = p.dtdu = p.dtdv = 0;
+    if (kind_ == PointKind::Ball) p.N = p.n;
     return p;
 }
 
@@ -388,8 +388,8 @@ SurfacePoint Points::sampleFromAt(const Vec3& whence, double xi1, double xi2, fl
     const double target = xi1 * sums.back();
     const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
     const double lo = i ? sums[i - 1] : 0, x = std::clamp((target - lo) / (sums[i] - lo), 0.0, 1.0);
-    if (kind_ == Kind::Square) return pointFrom(uint32_t(i), x, xi2, from, time);
-    if (kind_ == Kind::Ball)
+    if (kind_ == PointKind::Square) return pointFrom(uint32_t(i), x, xi2, from, time);
+    if (kind_ == PointKind::Ball)
         return pointFrom(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from, time);
     const auto [s, c] = exact::sinCos(2 * kPi * xi2);
     const double r = 0.5 * std::sqrt(x);
@@ -399,11 +399,11 @@ SurfacePoint Points::sampleFromAt(const Vec3& whence, double xi1, double xi2, fl
 double Points::sampleDensity(const SurfacePoint& p) const {
     const double r = nowAt(p.prim, p.time).radius, share = meanSquare(p.prim) / areas().back(),
                  l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
-    if (kind_ == Kind::Ball) { // even over the ball of object space, which the transformation stretches
+    if (kind_ == PointKind::Ball) { // even over the ball of object space, which the transformation stretches
         const double cosine = exact::cos(kPi * (p.b2 - 0.5));
         return l > 0 ? share * 2 * kPi * kPi * cosine / (4 * kPi * l) : share / (4 * kPi * r * r * spread_);
     }
-    return l > 0 ? share / (kind_ == Kind::Disc ? 0.25 * kPi * l : l) : 0;
+    return l > 0 ? share / (kind_ == PointKind::Disc ? 0.25 * kPi * l : l) : 0;
 }
 
 void Points::dice(const DiceOptions& o, Diagnostics& diag) { reportNotDisplaced(*this, o, diag); }
@@ -412,13 +412,13 @@ void Points::dice(const DiceOptions& o, Diagnostics& diag) { reportNotDisplaced(
 
 ShapeRef makePoints(ShapeSource s, Diagnostics& diag) {
     const scene::Primitive& p = *s.primitive;
-    Kind kind = Kind::Disc;
+    PointKind kind = PointKind::Disc;
     if (const scene::Param* type = lastParam(p.params, "type"); type && !type->strings.empty()) {
         const std::string& t = type->strings[0];
-        if (t == "sphere") kind = Kind::Ball;
-        else if (t == "patch") kind = Kind::Square;
+        if (t == "sphere") kind = PointKind::Ball;
+        else if (t == "patch") kind = PointKind::Square;
         else if (t != "particle" && t != "disk" && t != "disc") {
-            if (t == "blobby") kind = Kind::Ball;
+            if (t == "blobby") kind = PointKind::Ball;
             Diagnostic d;
             d.severity = Severity::Warning;
             d.code = t == "blobby" ? Rie::Incapable : Rie::BadToken;

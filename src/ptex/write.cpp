@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kTileBytes = 65536; ///< faces that are larger are cut
 constexpr int kLeastReduced = 2;     ///< logarithm of the smaller side, below which faces have no coarser level
 constexpr size_t kLargeMeta = 1024;  ///< bytes, from which on an item has a block of its own
-constexpr uint32_t kExtended = 40;
+constexpr uint32_t kExtendedBytes = 40;
 
 class Writer {
 public:
@@ -197,7 +197,7 @@ std::vector<uint8_t> Writer::all() {
     put(b, uint32_t(head_.alpha));
     put(b, uint16_t(head_.channels));
     put(b, levels_);
-    for (const size_t n : {head_.faces.size(), size_t(kExtended), info.size(), means.size(), levelInfo_.size(), size_t(3)})
+    for (const size_t n : {head_.faces.size(), size_t(kExtendedBytes), info.size(), means.size(), levelInfo_.size(), size_t(3)})
         put(b, uint32_t(n));
     put(b, uint64_t(levelData_.size()));
     put(b, uint32_t(metaZip.size()));

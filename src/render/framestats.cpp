@@ -5,14 +5,14 @@
 namespace alpenglow::render {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json frameJson(const FrameStats& f) {
-    Json j{{"frame", f.frame}, {"scene", f.scene}, {"sceneHash", f.sceneHash}, {"hider", f.hider}, {"seed", f.seed}};
-    j["pictures"] = Json::array();
+OrderedJson frameJson(const FrameStats& f) {
+    OrderedJson j{{"frame", f.frame}, {"scene", f.scene}, {"sceneHash", f.sceneHash}, {"hider", f.hider}, {"seed", f.seed}};
+    j["pictures"] = OrderedJson::array();
     for (const FrameStats::Picture& p : f.pictures)
         j["pictures"].push_back({{"file", p.file}, {"type", p.type}, {"channels", p.channels}});
-    j.update(Json::parse(toJson(f.figures)));
+    j.update(OrderedJson::parse(toJson(f.figures)));
     return j;
 }
 
@@ -38,13 +38,13 @@ void accumulate(RenderStats& all, const RenderStats& f) {
 }
 
 std::string statsJson(const RenderStats& all, const std::vector<FrameStats>& frames, const RenderSettings& s) {
-    Json j = Json::parse(toJson(all));
+    OrderedJson j = OrderedJson::parse(toJson(all));
     j["software"] = s.software;
     j["command"] = s.command;
     j["options"] = pixelOptions(s);
     j["host"] = hostName();
     j["date"] = dateText();
-    j["frames"] = Json::array();
+    j["frames"] = OrderedJson::array();
     for (const FrameStats& f : frames) j["frames"].push_back(frameJson(f));
     return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

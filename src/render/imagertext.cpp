@@ -103,12 +103,12 @@ void fromJson(const Json& j, ShaderRef& s) {
 }
 
 /// Writes each field under its name, or reads it from there: so that both know the same fields.
-struct Writer {
+struct ImagerWriter {
     Json j = Json::object();
     template <class T> void operator()(const char* name, const T& v) { j[name] = toJson(v); }
     template <size_t N> void operator()(const char* name, const float (&v)[N]) { j[name] = std::vector<float>(v, v + N); }
 };
-struct Reader {
+struct ImagerReader {
     const Json& j;
     template <class T> void operator()(const char* name, T& v) { fromJson(j.at(name), v); }
     template <size_t N> void operator()(const char* name, float (&v)[N]) {
@@ -188,7 +188,7 @@ std::string imagerToText(const scene::Frame& frame, const transport::Settings& s
     if (!frame.options.imager) return "";
     transport::Settings from = settings;
     for (auto* folders : {&from.shaderPaths, &from.texturePaths, &from.pluginPaths}) makeAbsolute(*folders);
-    Writer options, attributes, how;
+    ImagerWriter options, attributes, how;
     optionFields(options, frame.options);
     settingFields(how, from);
     how("hiderNumber", int(from.hider));
@@ -208,7 +208,7 @@ std::optional<ImagerScene> imagerFromText(const std::string& text, const std::st
         const Json j = Json::parse(text);
         ImagerScene scene;
         auto frame = std::make_shared<scene::Frame>();
-        Reader options{j.at("options")}, how{j.at("settings")};
+        ImagerReader options{j.at("options")}, how{j.at("settings")};
         optionFields(options, frame->options);
         settingFields(how, scene.settings);
         int hider = 0;
@@ -217,7 +217,7 @@ std::optional<ImagerScene> imagerFromText(const std::string& text, const std::st
         if (scene.settings.lanes != 4 && scene.settings.lanes != 8) scene.settings.lanes = 16;
         fromJson(j.at("systems"), frame->coordinateSystems);
         if (j.contains("attributes")) {
-            Reader attributes{j.at("attributes")};
+            ImagerReader attributes{j.at("attributes")};
             auto a = std::make_shared<Attributes>();
             attributeFields(attributes, *a);
             frame->options.attributes = std::move(a);

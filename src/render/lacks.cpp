@@ -1,4 +1,5 @@
 #include "render/lacks.h"
+#include "base/printable.h"
 #include <algorithm>
 
 namespace alpenglow::render {
@@ -9,8 +10,6 @@ using Source = OutputVariable::Source;
 void warn(Diagnostics& diags, const SourcePlace& place, std::string message, std::string hint) {
     diags.report(Severity::Warning, Rie::MissingData, place, std::move(message), std::move(hint));
 }
-
-std::string counted(size_t n, const char* thing) { return std::to_string(n) + " " + thing + (n == 1 ? "" : "s"); }
 
 /// Where to look when the camera sees none of these shapes.
 std::string unseenHint(size_t shapes, size_t before) {

@@ -15,7 +15,7 @@ constexpr size_t kPrefix = 20;         // magic, version, header size, header CR
 constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas + 16 + 4 * kReplicas;
 constexpr size_t kDeflateRatio = 1040; // deflate cannot pack better than 1032 : 1
 
-struct Writer {
+struct PartWriter {
     std::vector<uint8_t> bytes;
     template <class T> void number(T v) {
         for (size_t i = 0; i < sizeof(T); ++i) bytes.push_back(uint8_t(v >> (8 * i)));
@@ -26,7 +26,7 @@ struct Writer {
     }
 };
 
-struct Reader {
+struct PartReader {
     std::span<const uint8_t> bytes;
     size_t at = 0;
     bool ok = true;
@@ -150,7 +150,7 @@ private:
 struct FilmIo {
     static std::vector<uint8_t> header(const Film& f) {
         const FilmDescription& d = f.description_;
-        Writer w;
+        PartWriter w;
         for (int v : {d.width, d.height, d.window.x0, d.window.y0, d.window.x1, d.window.y1}) w.number(uint32_t(v));
         w.number(d.seed);
         w.text(d.scene);
@@ -174,7 +174,7 @@ struct FilmIo {
         return std::move(w.bytes);
     }
 
-    static void row(const Film& f, int y, Writer& w) {
+    static void row(const Film& f, int y, PartWriter& w) {
         size_t n = f.description_.channels.size(), first = f.index(f.window().x0, y);
         for (size_t i = first; i < first + size_t(f.window().width()); ++i) {
             const Film::Pixel& p = f.pixels_[i];
@@ -195,7 +195,7 @@ struct FilmIo {
     }
 
     /// False when the sums cannot come from the counted samples: then later arithmetic could overflow.
-    static bool readRow(Film& f, int y, Reader& r) {
+    static bool readRow(Film& f, int y, PartReader& r) {
         size_t n = f.description_.channels.size(), first = f.index(f.window().x0, y);
         for (size_t i = first; i < first + size_t(f.window().width()); ++i) {
             Film::Pixel& p = f.pixels_[i];
@@ -226,7 +226,7 @@ struct FilmIo {
     }
 
     /// The film without its sums; null when the header is not sound. packed = bytes of packed sums in the file.
-    static std::unique_ptr<Film> parseHeader(Reader& r, uint32_t version, size_t packed, const std::string& name,
+    static std::unique_ptr<Film> parseHeader(PartReader& r, uint32_t version, size_t packed, const std::string& name,
                                              Diagnostics& diag) {
         FilmDescription d;
         for (int* v : {&d.width, &d.height, &d.window.x0, &d.window.y0, &d.window.x1, &d.window.y1})
@@ -299,7 +299,7 @@ bool savePart(const Film& film, const std::string& path, const OutputPolicy& pol
                     "the header of a part file would be " + std::to_string(header.size()) + " bytes");
         return false;
     }
-    Writer prefix;
+    PartWriter prefix;
     for (char c : kMagic) prefix.number(uint8_t(c));
     prefix.number(film.spread() ? kSpreadVersion : kVersion);
     prefix.number(uint32_t(header.size()));
@@ -310,7 +310,7 @@ bool savePart(const Film& film, const std::string& path, const OutputPolicy& pol
     const Window& w = film.window();
     bool ok = true;
     for (int y = w.y0; ok && y < w.y1; ++y) {
-        Writer row;
+        PartWriter row;
         row.bytes.reserve(size_t(w.width()) * FilmIo::pixelBytes(film));
         FilmIo::row(film, y, row);
         ok = packer.put(row.bytes, y + 1 == w.y1);
@@ -319,7 +319,7 @@ bool savePart(const Film& film, const std::string& path, const OutputPolicy& pol
         diag.report(Severity::Error, Rie::NoMem, place, "no memory to pack the part file");
         return false;
     }
-    Writer trailer;
+    PartWriter trailer;
     trailer.number(packer.checksum());
     file->write(trailer.bytes.data(), trailer.bytes.size());
     return file->commit(diag);
@@ -332,7 +332,7 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
     };
     if (bytes.size() < sizeof kMagic || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
         return bad(Rie::BadFile, "not a part file");
-    Reader prefix{bytes.subspan(0, std::min(bytes.size(), kPrefix)), sizeof kMagic};
+    PartReader prefix{bytes.subspan(0, std::min(bytes.size(), kPrefix)), sizeof kMagic};
     uint32_t version = prefix.number<uint32_t>(), size = prefix.number<uint32_t>(), sum = prefix.number<uint32_t>();
     if (!prefix.ok) return bad(Rie::BadFile, "the part file is truncated");
     if (version != kVersion && version != kSpreadVersion)
@@ -345,9 +345,9 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
     std::span<const uint8_t> header = bytes.subspan(kPrefix, size), rest = bytes.subspan(kPrefix + size);
     std::span<const uint8_t> packed = rest.first(rest.size() - 4);
     if (crc(header) != sum) return bad(Rie::BadFile, "the header of the part file is damaged");
-    Reader trailer{rest.last(4)};
+    PartReader trailer{rest.last(4)};
     if (trailer.number<uint32_t>() != crc(packed)) return bad(Rie::BadFile, "the part file is damaged or truncated");
-    Reader h{header};
+    PartReader h{header};
     auto film = FilmIo::parseHeader(h, version, packed.size(), name, diag);
     if (!film) return nullptr;
     Unpacker unpacker(packed);
@@ -355,7 +355,7 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
     std::vector<uint8_t> row(size_t(w.width()) * FilmIo::pixelBytes(*film));
     for (int y = w.y0; y < w.y1; ++y) {
         if (!unpacker.get(row)) return bad(Rie::BadFile, "the sums of the part file are damaged");
-        Reader r{row};
+        PartReader r{row};
         if (!FilmIo::readRow(*film, y, r)) return bad(Rie::BadFile, "the sums of the part file contradict their counts");
     }
     if (!unpacker.atEnd()) return bad(Rie::BadFile, "the part file holds more than its picture");

@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view kWord = "ReadArchive";
-constexpr size_t kName = 4096;                    // bytes of a name and what stands before it
-constexpr uintmax_t kBytes = uintmax_t(64) << 20; // of files that are held as requests at a time
-constexpr size_t kCalls = 20'000;                 // requests of one of them; a longer one is read as it is executed
+constexpr size_t kName = 4096;                        // bytes of a name and what stands before it
+constexpr uintmax_t kHeldBytes = uintmax_t(64) << 20; // of files that are held as requests at a time
+constexpr size_t kCalls = 20'000;                     // requests of one of them; a longer one is read as it is executed
 
 /// The string behind ReadArchive or "DelayedReadArchive" [ at `at`; "" when there is something else.
 std::string nameAt(std::string_view text, size_t at) {
@@ -83,7 +83,7 @@ void ReadAhead::parseFrom(size_t first, const std::string& folder) {
         std::error_code ec;
         if (!fs::is_regular_file(path, ec)) continue;
         bytes += fs::file_size(path, ec);
-        if (ec || bytes > kBytes) break;
+        if (ec || bytes > kHeldBytes) break;
         which.push_back(i);
         parsed_[i].path = path;
     }

@@ -1,15 +1,11 @@
 // The names of Attribute "category" "name".
 #include "scene/knownoptions.h"
+#include "scene/knownwords.h"
 
 namespace alpenglow::scene {
 namespace {
 
-constexpr auto Used = Effect::Used;
-constexpr auto Asked = Effect::Asked;
-constexpr auto Ignored = Effect::Ignored;
-
-constexpr std::string_view kPrman = "PRMan", kAqsis = "Aqsis", kBmrt = "BMRT", kSeveral = "several renderers",
-                           kRadiosity = "BMRT's radiosity; the hider path is the way here",
+constexpr std::string_view kRadiosity = "BMRT's radiosity; the hider path is the way here",
                            kCache = "irradiance caches of several renderers; nothing is cached here";
 
 constexpr OptionDescription kAttributes[] = {

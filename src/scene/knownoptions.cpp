@@ -1,17 +1,13 @@
 // Options, and the parameters of Hider and Display. Attributes have a file of their own.
 #include "scene/knownoptions.h"
+#include "scene/knownwords.h"
 #include <algorithm>
 #include <array>
 
 namespace alpenglow::scene {
 namespace {
 
-constexpr auto Used = Effect::Used;
-constexpr auto Ignored = Effect::Ignored;
-
-constexpr std::string_view kPrman = "PRMan", kDelight = "3Delight", kAqsis = "Aqsis", kBmrt = "BMRT",
-                           kSeveral = "several renderers",
-                           kMemory = "several renderers; --memory-limit is for the whole program here";
+constexpr std::string_view kMemory = "several renderers; --memory-limit is for the whole program here";
 
 constexpr OptionDescription kOptions[] = {
     {"Hider:depthfilter", "", "", "", Ignored, kAqsis},

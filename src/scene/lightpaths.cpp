@@ -246,7 +246,8 @@ bool LightPaths::makeParts(std::span<const uint64_t> accepts, std::string& why) 
     const size_t sets = labelSets(labels_.size());
     for (size_t s = kDead; s < accepts.size(); ++s)
         for (size_t kind = 0; kind < kKindCount; ++kind)
-            for (size_t l = 0; l < sets && (kKinds[kind].event >= Light); ++l) ends[next(State(s), int(kind * sets + l))] = 1;
+            for (size_t l = 0; l < sets && (kKinds[kind].event >= PathEvent::Light); ++l)
+                ends[next(State(s), int(kind * sets + l))] = 1;
     partOf_.assign(accepts.size(), 0);
     std::map<uint64_t, int> known{{0, 0}};
     for (size_t s = kDead; s < accepts.size(); ++s) {

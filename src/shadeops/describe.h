@@ -7,6 +7,10 @@
 
 namespace alpenglow::rsl {
 
+/// Types of parameters; a length of -1 is an array of any length.
+inline constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kC{Base::Color, 0}, kP{Base::Point, 0}, kV{Base::Vector, 0},
+    kFs{Base::Float, -1}, kCs{Base::Color, -1};
+
 struct SignatureText {
     const char* text;
     const char* symbol = "";

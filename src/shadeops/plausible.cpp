@@ -5,8 +5,6 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kC{Base::Color, 0};
-
 /// `text` with every `word` replaced.
 std::string with(std::string text, const std::string& word, const std::string& by) {
     for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += by.size()) text.replace(at, word.size(), by);

@@ -4,8 +4,6 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr Type kF{Base::Float, 0};
-
 /// `text` once for each type: '$' is its name.
 std::string forTypes(const std::string& types, const std::string& text) {
     std::string all;

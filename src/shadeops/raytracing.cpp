@@ -5,9 +5,6 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kC{Base::Color, 0}, kV{Base::Vector, 0}, kFs{Base::Float, -1},
-    kCs{Base::Color, -1};
-
 /// Table 6.10.
 std::vector<OptionalParameter> rayParameters() {
     return {

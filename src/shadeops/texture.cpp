@@ -5,8 +5,6 @@
 namespace alpenglow::rsl {
 namespace {
 
-constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kP{Base::Point, 0};
-
 std::vector<OptionalParameter> filterParameters() {
     return {{kS, "filter", false, "\"gaussian\"", "box, triangle, gaussian, catmull-rom"},
             {kF, "width", false, "1", "multiplies the filter size in s and t"},

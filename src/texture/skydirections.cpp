@@ -7,19 +7,19 @@ namespace alpenglow::texture {
 
 namespace {
 
-constexpr int kAround = 128, kDown = 64; ///< cells, all of the same size: even in height and around
+constexpr int kCellsAround = 128, kCellsDown = 64; ///< cells, all of the same size: even in height and around
 
 Vec3 directionAt(double x, double y) {
-    const double z = 1 - 2 * y / kDown, r = std::sqrt(std::max(0.0, 1 - z * z)), turn = 2 * kPi * x / kAround;
+    const double z = 1 - 2 * y / kCellsDown, r = std::sqrt(std::max(0.0, 1 - z * z)), turn = 2 * kPi * x / kCellsAround;
     return {float(r * exact::cos(turn)), float(r * exact::sin(turn)), float(z)};
 }
 
 size_t cellOf(const Vec3& w) {
     double turn = exact::atan2(double(w.y), double(w.x)) / (2 * kPi);
     if (turn < 0) turn += 1;
-    const int column = std::clamp(int(turn * kAround), 0, kAround - 1);
-    const int row = std::clamp(int((1 - double(w.z)) / 2 * kDown), 0, kDown - 1);
-    return size_t(row * kAround + column);
+    const int column = std::clamp(int(turn * kCellsAround), 0, kCellsAround - 1);
+    const int row = std::clamp(int((1 - double(w.z)) / 2 * kCellsDown), 0, kCellsDown - 1);
+    return size_t(row * kCellsAround + column);
 }
 
 Color lightAt(Handle map, const LatLong& axes, const Vec3& w, float side) {
@@ -36,10 +36,10 @@ Color lightAt(Handle map, const LatLong& axes, const Vec3& w, float side) {
 SkyDirections::SkyDirections(Handle map, const LatLong& axes) : map_(map), axes_(axes) {
     std::vector<float> light;
     double all = 0;
-    for (int y = 0; y < kDown; ++y)
-        for (int x = 0; x < kAround; ++x) {
-            const float v = std::max(
-                0.f, luminance(lightAt(map, axes, directionAt(x + .5, y + .5), float(std::sqrt(4 * kPi / (kAround * kDown))))));
+    for (int y = 0; y < kCellsDown; ++y)
+        for (int x = 0; x < kCellsAround; ++x) {
+            const float v = std::max(0.f, luminance(lightAt(map, axes, directionAt(x + .5, y + .5),
+                                                            float(std::sqrt(4 * kPi / (kCellsAround * kCellsDown))))));
             light.push_back(std::isfinite(v) ? v : 0);
             all += light.back();
         }
@@ -55,8 +55,8 @@ SkyDirections::Direction SkyDirections::at(Vec2 e) const {
     const float before = cell ? sums_[cell - 1] : 0, chance = sums_[cell] - before;
     const float inside = std::clamp((e.x - before) / chance, 0.f, 1.f); // what is left of the first number
     Direction d;
-    d.w = directionAt(double(cell % kAround) + inside, double(cell / kAround) + e.y);
-    d.density = chance * float(kAround * kDown / (4 * kPi));
+    d.w = directionAt(double(cell % kCellsAround) + inside, double(cell / kCellsAround) + e.y);
+    d.density = chance * float(kCellsAround * kCellsDown / (4 * kPi));
     d.light = map_ ? lightAt(map_, axes_, d.w, 1e-3f) : Color(0);
     return d;
 }
@@ -64,7 +64,7 @@ SkyDirections::Direction SkyDirections::at(Vec2 e) const {
 SkyDirections::Direction SkyDirections::of(const Vec3& w) const {
     const size_t cell = cellOf(w);
     const float chance = sums_[cell] - (cell ? sums_[cell - 1] : 0);
-    return {w, chance * float(kAround * kDown / (4 * kPi)), map_ ? lightAt(map_, axes_, w, 1e-3f) : Color(0)};
+    return {w, chance * float(kCellsAround * kCellsDown / (4 * kPi)), map_ ? lightAt(map_, axes_, w, 1e-3f) : Color(0)};
 }
 
 const SkyDirections& SkyDirectionTables::of(Handle map, const LatLong& axes) const {

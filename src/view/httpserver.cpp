@@ -21,7 +21,7 @@
 namespace alpenglow::view {
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double secondsNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 const char* phrase(int status) {
     switch (status) {
@@ -165,13 +165,13 @@ void HttpServer::Loop::run() {
         fds.assign({{listener, POLLIN, 0}, {waker, POLLIN, 0}});
         for (const Connection& c : connections)
             fds.push_back({c.fd, short(c.state == State::Writing ? POLLOUT : c.state == State::Waiting ? POLLRDHUP : POLLIN), 0});
-        if (::poll(fds.data(), fds.size(), patience(now())) < 0 && errno != EINTR) return;
+        if (::poll(fds.data(), fds.size(), patience(secondsNow())) < 0 && errno != EINTR) return;
         bool woken = false;
         if (fds[1].revents) {
             uint64_t n;
             woken = ::read(waker, &n, sizeof n) > 0;
         }
-        const double t = now();
+        const double t = secondsNow();
         size_t i = 2;
         for (auto c = connections.begin(); c != connections.end(); ++i) {
             bool stays = !fds[i].revents || serve(*c, fds[i].revents);
@@ -209,7 +209,7 @@ void HttpServer::Loop::accept() {
         setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
         Connection& c = connections.emplace_back();
         c.fd = fd;
-        c.since = now();
+        c.since = secondsNow();
     }
 }
 
@@ -226,7 +226,7 @@ bool HttpServer::Loop::read(Connection& c) {
     if (n < 0) return errno == EAGAIN || errno == EINTR;
     if (n == 0) return false;
     if (c.state == State::Draining) return (c.written += size_t(n)) < kDrainBytes;
-    if (!c.begun) c.since = now();
+    if (!c.begun) c.since = secondsNow();
     c.begun = true;
     c.in.append(piece.data(), size_t(n));
     return advance(c);
@@ -237,7 +237,7 @@ void HttpServer::Loop::answer(Connection& c, HttpResponse r, bool close) {
     c.out = headOf(r, c.close) + std::move(r.body);
     c.written = 0;
     c.state = State::Writing;
-    c.since = now();
+    c.since = secondsNow();
 }
 
 /// Takes a request out of what has come in, once it is whole.
@@ -256,7 +256,7 @@ bool HttpServer::Loop::advance(Connection& c) {
     c.request.body = c.in.substr(0, c.body);
     c.in.erase(0, c.body);
     c.headers = c.begun = false;
-    c.since = now();
+    c.since = secondsNow();
     return ask(c, false);
 }
 
@@ -331,11 +331,11 @@ bool HttpServer::Loop::write(Connection& c) {
         std::string().swap(c.in);
         c.state = State::Draining;
         c.written = 0;
-        c.since = now();
+        c.since = secondsNow();
         return true;
     }
     c.state = State::Reading;
-    c.since = now();
+    c.since = secondsNow();
     c.begun = !c.in.empty();
     return c.in.empty() || advance(c);
 }

@@ -3,9 +3,7 @@
 
 namespace alpenglow::transport {
 
-namespace {
-Color absolute(const Color& c) { return {std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}; }
-} // namespace
+namespace {} // namespace
 
 void Gather::choose() {
     indirectScale_.assign(c_->points.size(), 1.f);

@@ -7,13 +7,6 @@
 
 namespace alpenglow::transport {
 
-namespace {
-Vec3 unit(Vec3 v, Vec3 fallback) {
-    const float l = length(v);
-    return l > 0 && std::isfinite(l) ? v / l : fallback;
-}
-} // namespace
-
 void Gather::connect() {
     reached_.clear();
     lastQuery_ = -1;
@@ -49,7 +42,7 @@ void Gather::reach(int query) {
     const size_t k = size_t(query);
     const BoundLight& light = *q.light[k];
     const bool area = light.kind == LightKind::Area;
-    const Vec3 w = area || light.sky ? q.drawn[k].direction : unit(-q.value[k].L, Vec3(0, 0, 1));
+    const Vec3 w = area || light.sky ? q.drawn[k].direction : normalizeOr(-q.value[k].L, Vec3(0, 0, 1));
     for (int i : lobesOf(size_t(q.point[k]))) {
         const LobeVertex& l = e_.lobes[size_t(i)];
         if (!samples(l, light)) continue;
@@ -132,7 +125,7 @@ void Gather::send(const Reached& r) {
     const ShadePoint& p = c_->points[size_t(l.point)];
     if (area) {
         e_.shadows.push_back(
-            {from, unit(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
+            {from, normalizeOr(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
         // A ray of trace() sees the sky behind what lies beyond its distance, too.
         const float far = light.sky ? l.maxDistance : light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);

@@ -7,10 +7,6 @@
 namespace alpenglow::transport {
 
 namespace {
-Vec3 unit(Vec3 v, Vec3 fallback) {
-    float l = length(v);
-    return l > 0 && std::isfinite(l) ? v / l : fallback;
-}
 /// Parameters of the distributions of bsdf(), as given or as they are when not (rsl.md 12.4).
 template <class Row> DistributionParams distributionOf(const SiteInfo& s, const Row& f) {
     const TraceSite& t = *s.trace;
@@ -127,26 +123,26 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.place = lobeRows_.add(*l.kind, {p.surface.n, params.wo, {}, 0});
         return;
     }
-    if (s.kind != SiteKind::Diffuse) params.wo = unit(-p.I, p.surface.n);
+    if (s.kind != SiteKind::Diffuse) params.wo = normalizeOr(-p.I, p.surface.n);
     switch (s.kind) {
     case SiteKind::Diffuse:
-        params.axis = unit(v(0), p.surface.n);
+        params.axis = normalizeOr(v(0), p.surface.n);
         l.rays = &kDiffuseKind;
         break;
     case SiteKind::Specular:
     case SiteKind::Phong:
-        params.axis = unit(v(0), p.surface.n);
-        params.wo = unit(v(1), params.wo);
+        params.axis = normalizeOr(v(0), p.surface.n);
+        params.wo = normalizeOr(v(1), params.wo);
         params.a = f(s.rows[2]);
         if (s.kind == SiteKind::Specular) params.a = s.exponent / std::max(params.a, 1e-6f);
         l.rays = &kSpecularKind;
         break;
     case SiteKind::Trace:
-        params.axis = unit(v(1), p.surface.n);
-        params.wo = unit(vector(s.rowWo, params.wo), params.wo);
+        params.axis = normalizeOr(v(1), p.surface.n);
+        params.wo = normalizeOr(vector(s.rowWo, params.wo), params.wo);
         params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
         l.trace = s.trace.get();
-        if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = unit(vector(s.rowHorizon, p.surface.n), p.surface.n);
+        if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = normalizeOr(vector(s.rowHorizon, p.surface.n), p.surface.n);
         l.rays = raysOfTrace(s, f, p);
         l.lights = number(s.rowLights, 0) != 0;
         l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);

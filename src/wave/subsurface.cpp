@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kSamplesElsewhere = 16; ///< of a call under hidden and raytrace
 
-Color absolute(const Color& c) { return {std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}; }
-
 /// By Henyey and Greenstein, about a direction.
 Vec3 scattered(const Vec3& dir, float g, const Vec2& u) {
     const double a = std::fabs(double(g)), q = 1 - a + 2 * a * u.x, r = (1 - a) / q;

@@ -15,7 +15,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double compileClock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // "did you mean ..." among the shader sources on the search path; or empty.
 std::string nearShader(const std::string& name, const std::vector<std::string>& directories) {
@@ -128,7 +128,7 @@ void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterV
 }
 
 InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
-    double begin = seconds();
+    double begin = compileClock();
     Diagnostics said; // the compiler knows no scene: messages without a place get the call's
     auto program = compiler_->load(call.name, settings_.shaderPaths, said);
     for (Diagnostic m : said.all()) {
@@ -138,7 +138,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
         }
         d.report(std::move(m));
     }
-    facts_.compileSec += seconds() - begin;
+    facts_.compileSec += compileClock() - begin;
     if (!program) return nullptr;
     if (auto same = rsl::ShaderCompiler::variant(program, kind)) program = same; // a class can be several kinds of shader
     else if (auto other =
@@ -326,9 +326,9 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     mixed |= i.moving != nullptr; // points at different times have different matrices and parameters
     rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
     o.light = light;
-    double begin = seconds();
+    double begin = compileClock();
     auto k = compiler_->kernel(i.program, o, d);
-    facts_.compileSec += seconds() - begin;
+    facts_.compileSec += compileClock() - begin;
     if (!k) return {};
     std::vector<rsl::InputName> spaces;
     for (const auto& in : k->inputs())

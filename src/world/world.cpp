@@ -16,7 +16,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double buildClock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // The shaders that ship: beside the program's build tree, else where it was built from.
 std::string shippedShaders() {
@@ -165,7 +165,7 @@ static texture::TextureSettings mapSettings(const scene::Options& o, const Setti
 
 std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings,
                                           MakeEvaluator evaluators, Diagnostics& d) {
-    double begin = seconds();
+    double begin = buildClock();
     auto w = std::make_shared<WorldImpl>();
     w->frame_ = frame;
     w->settings_ = settings;
@@ -236,7 +236,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->facts_.shapes = w->shapes_.size();
     for (const auto& shape : w->shapes_) w->facts_.before += !(shape->bounds().hi.z <= 0);
     w->built_ = true;
-    w->facts_.buildSec = seconds() - begin - w->facts_.compileSec;
+    w->facts_.buildSec = buildClock() - begin - w->facts_.compileSec;
     return w;
 }
 

@@ -10,7 +10,7 @@
 namespace alpenglow::display {
 namespace {
 
-struct Reader {
+struct JpegReader {
     jpeg_error_mgr errors{};
     jpeg_progress_mgr progress{};
     std::jmp_buf jump;
@@ -22,16 +22,16 @@ struct Reader {
     bool refused = false;
 };
 
-Reader& self(j_common_ptr c) { return *static_cast<Reader*>(c->client_data); }
+JpegReader& self(j_common_ptr c) { return *static_cast<JpegReader*>(c->client_data); }
 
 void onError(j_common_ptr c) {
-    Reader& r = self(c);
+    JpegReader& r = self(c);
     c->err->format_message(c, r.error);
     std::longjmp(r.jump, 1);
 }
 void onMessage(j_common_ptr c, int level) {
     if (level >= 0) return;
-    Reader& r = self(c);
+    JpegReader& r = self(c);
     if (!r.warning[0]) c->err->format_message(c, r.warning);
     ++c->err->num_warnings;
 }
@@ -39,13 +39,13 @@ void onOutput(j_common_ptr) {}
 /// A progressive file can ask for any number of passes over all pixels.
 void onProgress(j_common_ptr c) {
     if (c->is_decompressor && reinterpret_cast<j_decompress_ptr>(c)->input_scan_number > limits::kImageScans) {
-        Reader& r = self(c);
+        JpegReader& r = self(c);
         std::snprintf(r.error, sizeof r.error, "it has more than %d scans", limits::kImageScans);
         std::longjmp(r.jump, 1);
     }
 }
 
-bool prepare(Reader& r) {
+bool prepare(JpegReader& r) {
     int n = r.info.output_components;
     if (!r.ctx->sizeAllowed(r.info.output_width, r.info.output_height, uint64_t(n))) {
         r.refused = true;
@@ -58,7 +58,7 @@ bool prepare(Reader& r) {
     return true;
 }
 
-bool decode(Reader& r, Bytes b) {
+bool decode(JpegReader& r, Bytes b) {
     if (setjmp(r.jump)) return false;
     jpeg_create_decompress(&r.info);
     r.info.client_data = &r;
@@ -156,7 +156,7 @@ bool encodeJpeg(OutputFile& out, const Image& m, const WriteOptions& o, Diagnost
 }
 
 std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
-    Reader r;
+    JpegReader r;
     r.ctx = &ctx;
     r.info.err = jpeg_std_error(&r.errors);
     r.errors.error_exit = onError;

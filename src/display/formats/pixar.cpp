@@ -14,10 +14,10 @@ namespace {
 constexpr size_t headerBytes = 0x48, matrixBytes = 128, tileBytes = 4096;
 constexpr int mostChannels = 8, mostLog = 15;
 
-enum class Type { Texture = 1, Shadow = 2, LatLong = 3 };
+enum class SampleType { Texture = 1, Shadow = 2, LatLong = 3 };
 
 /// The file as numbers of its byte order. Callers check the place first.
-struct Reader {
+struct PixarReader {
     Bytes b;
     bool big;
     uint32_t u16(size_t at) const { return big ? uint32_t(b[at]) << 8 | b[at + 1] : uint32_t(b[at + 1]) << 8 | b[at]; }
@@ -25,7 +25,7 @@ struct Reader {
     bool holds(uint64_t at, uint64_t n) const { return at <= b.size() && n <= b.size() - at; }
 };
 
-struct Header {
+struct PixarHeader {
     int version, type, lo, hi, logWidth, logHeight, channels;
     int wrap[2];
     bool compressed;
@@ -36,15 +36,15 @@ struct Header {
 };
 
 /// The header, or why it is not one that can be read ("" of `why`: it can).
-Header headerOf(const Reader& r, std::string& why) {
+PixarHeader headerOf(const PixarReader& r, std::string& why) {
     const Bytes& b = r.b;
-    Header h{int(r.u16(2)), b[8], b[10], b[11], b[13], b[15], b[18], {b[16], b[17]}, b[19] != 0, {}, r.u32(0x40)};
+    PixarHeader h{int(r.u16(2)), b[8], b[10], b[11], b[13], b[15], b[18], {b[16], b[17]}, b[19] != 0, {}, r.u32(0x40)};
     std::copy_n(&b[0x14], mostChannels, h.sampleBytes);
     const bool sizes = h.lo <= h.hi && h.hi <= mostLog && b[12] <= h.logWidth && b[14] <= h.logHeight && h.logWidth <= h.hi &&
                        h.logHeight <= h.hi && h.logWidth >= h.lo && h.logHeight >= h.lo;
     if (h.version != 2 && h.version != 3)
         why = "it is in version " + std::to_string(h.version) + " of Pixar's native format; 2 and 3 are known";
-    else if (h.type > int(Type::LatLong))
+    else if (h.type > int(SampleType::LatLong))
         why = "it is a map of type " + std::to_string(h.type) +
               " in Pixar's native format; textures, latitude-longitude environments and shadow maps can be read, cube faces not: "
               "make the "
@@ -57,14 +57,15 @@ Header headerOf(const Reader& r, std::string& why) {
                   "picture";
         else if (h.sampleBytes[c] != 1 && h.sampleBytes[c] != 4) why = "its header is damaged";
     }
-    if (why.empty() && h.type == int(Type::Shadow) && (h.channels != 1 || h.sampleBytes[0] != 4)) why = "its header is damaged";
+    if (why.empty() && h.type == int(SampleType::Shadow) && (h.channels != 1 || h.sampleBytes[0] != 4))
+        why = "its header is damaged";
     return h;
 }
 
 /// One file being read.
 class Decoder {
 public:
-    Decoder(const Reader& r, const Header& h, const DecodeContext& ctx) : r_(r), h_(h), ctx_(ctx) {}
+    Decoder(const PixarReader& r, const PixarHeader& h, const DecodeContext& ctx) : r_(r), h_(h), ctx_(ctx) {}
 
     /// The picture with the levels that were asked for.
     std::optional<Image> picture() {
@@ -75,7 +76,7 @@ public:
         if (!m) return {};
         describe(*m);
         if (h_.matrices != 0 && !matrices(*m)) return ctx_.refuse("its matrices lie outside of the file");
-        if (!ctx_.options.levels || h_.type == int(Type::Shadow)) return m;
+        if (!ctx_.options.levels || h_.type == int(SampleType::Shadow)) return m;
         for (int y = h_.logHeight, x = h_.logWidth; y > 0 || x > 0;) {
             y = std::max(0, y - 1);
             x = std::max(0, x - 1);
@@ -114,7 +115,7 @@ private:
 
     std::optional<Image> level(int y, int x) {
         Image m = makeImage(1 << x, 1 << y,
-                            h_.type == int(Type::Shadow) ? std::vector<std::string>{"z"} : defaultChannels(h_.channels));
+                            h_.type == int(SampleType::Shadow) ? std::vector<std::string>{"z"} : defaultChannels(h_.channels));
         for (int c = 0; c < h_.channels; ++c)
             if (!plane(m, c, entry(c, y, x))) return {};
         return m;
@@ -172,7 +173,7 @@ private:
 
     void put(Image& m, int c, std::span<const uint8_t> tile, int x0, int y0, int tw) const {
         const size_t sample = h_.sampleBytes[c], rows = tile.size() / (size_t(tw) * sample), n = m.channels.size();
-        const Reader in{tile, r_.big};
+        const PixarReader in{tile, r_.big};
         for (size_t y = 0, i = 0; y < rows; ++y) {
             float* to = m.pixel(x0, y0 + int(y)) + c;
             for (int x = 0; x < tw; ++x, i += sample, to += n)
@@ -184,9 +185,9 @@ private:
         const bool codes = std::all_of(h_.sampleBytes, h_.sampleBytes + h_.channels, [](uint8_t n) { return n == 1; });
         m.bits = codes ? 8 : 32;
         m.floating = !codes;
-        m.metadata["textureformat"] = h_.type == int(Type::Shadow)    ? "Shadow"
-                                      : h_.type == int(Type::LatLong) ? "LatLong Environment"
-                                                                      : "Plain Texture";
+        m.metadata["textureformat"] = h_.type == int(SampleType::Shadow)    ? "Shadow"
+                                      : h_.type == int(SampleType::LatLong) ? "LatLong Environment"
+                                                                            : "Plain Texture";
         static constexpr const char* names[] = {"black", "clamp", "periodic"};
         std::string modes;
         for (int w : h_.wrap) {
@@ -215,8 +216,8 @@ private:
         return false;
     }
 
-    const Reader& r_;
-    const Header& h_;
+    const PixarReader& r_;
+    const PixarHeader& h_;
     const DecodeContext& ctx_;
     bool raw_ = false; ///< levels are samples, without directories
 };
@@ -225,9 +226,9 @@ private:
 
 std::optional<Image> decodePixar(Bytes b, const DecodeContext& ctx) {
     if (b.size() < headerBytes) return ctx.refuse("it is truncated");
-    const Reader r{b, b[0] == 0xfa};
+    const PixarReader r{b, b[0] == 0xfa};
     std::string why;
-    const Header h = headerOf(r, why);
+    const PixarHeader h = headerOf(r, why);
     if (!why.empty()) return ctx.refuse(why, why.find("native") != std::string::npos ? Rie::Unimplement : Rie::BadFile);
     return Decoder(r, h, ctx).picture();
 }

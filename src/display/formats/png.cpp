@@ -10,7 +10,7 @@
 namespace alpenglow::display {
 namespace {
 
-struct Reader {
+struct PngReader {
     Bytes bytes;
     size_t at = 0;
     const DecodeContext* ctx = nullptr;
@@ -21,19 +21,19 @@ struct Reader {
     bool refused = false; ///< already reported
 };
 
-struct Writer {
+struct PngWriter {
     OutputFile* file = nullptr;
     std::string error;
 };
 
 void readBytes(png_structp png, png_bytep to, size_t n) {
-    auto& r = *static_cast<Reader*>(png_get_io_ptr(png));
+    auto& r = *static_cast<PngReader*>(png_get_io_ptr(png));
     if (r.bytes.size() - r.at < n) png_error(png, "it is truncated");
     std::memcpy(to, r.bytes.data() + r.at, n);
     r.at += n;
 }
 void writeBytes(png_structp png, png_bytep from, size_t n) {
-    if (!static_cast<Writer*>(png_get_io_ptr(png))->file->write(from, n)) png_error(png, "write failed");
+    if (!static_cast<PngWriter*>(png_get_io_ptr(png))->file->write(from, n)) png_error(png, "write failed");
 }
 void flushBytes(png_structp) {}
 template <class T> void onError(png_structp png, png_const_charp text) {
@@ -44,7 +44,7 @@ template <class T> void onError(png_structp png, png_const_charp text) {
 void onWarning(png_structp, png_const_charp) {} // damaged side chunks: no pixel is lost
 
 /// Sizes the picture; out of the jump frame because it makes objects. False: stop.
-bool prepare(Reader& r, png_structp png, png_infop info) {
+bool prepare(PngReader& r, png_structp png, png_infop info) {
     uint32_t w = png_get_image_width(png, info), h = png_get_image_height(png, info);
     int n = png_get_channels(png, info);
     if (!r.ctx->sizeAllowed(w, h, uint64_t(n))) {
@@ -65,7 +65,7 @@ bool prepare(Reader& r, png_structp png, png_infop info) {
     return true;
 }
 
-void finish(Reader& r, png_structp png, png_infop info) {
+void finish(PngReader& r, png_structp png, png_infop info) {
     Image& m = r.image;
     size_t count = m.sampleCount();
     if (m.bits == 16)
@@ -83,7 +83,7 @@ void finish(Reader& r, png_structp png, png_infop info) {
         if (text[i].key && text[i].text) m.metadata[text[i].key] = text[i].text;
 }
 
-bool decode(Reader& r, png_structp png, png_infop info) {
+bool decode(PngReader& r, png_structp png, png_infop info) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_user_limits(png, limits::kImageSide, limits::kImageSide);
     png_set_chunk_malloc_max(png, 16u << 20);
@@ -107,7 +107,7 @@ struct Encoding {
     std::vector<png_text> texts;
 };
 
-bool encode(Encoding& e, Writer& w, png_structp png, png_infop info) {
+bool encode(Encoding& e, PngWriter& w, png_structp png, png_infop info) {
     if (setjmp(png_jmpbuf(png))) return false;
     const Image& m = *e.image;
     static constexpr int types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
@@ -138,10 +138,10 @@ bool encode(Encoding& e, Writer& w, png_structp png, png_infop info) {
 } // namespace
 
 std::optional<Image> decodePng(Bytes b, const DecodeContext& ctx) {
-    Reader r;
+    PngReader r;
     r.bytes = b;
     r.ctx = &ctx;
-    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r, onError<Reader>, onWarning);
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r, onError<PngReader>, onWarning);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
     bool ok = false;
     try {
@@ -178,9 +178,9 @@ bool encodePng(OutputFile& out, const Image& m, const WriteOptions& o, Diagnosti
         t.text_length = value.size();
         e.texts.push_back(t);
     }
-    Writer w;
+    PngWriter w;
     w.file = &out;
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &w, onError<Writer>, onWarning);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &w, onError<PngWriter>, onWarning);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
     bool ok = info && encode(e, w, png, info);
     png_destroy_write_struct(&png, &info);

@@ -7,9 +7,9 @@
 namespace alpenglow::display {
 namespace {
 
-struct Header {
+struct TargaHeader {
     unsigned idLength, mapType, type, mapFirst, mapLength, mapBits, width, height, bits, descriptor;
-    explicit Header(Bytes b) {
+    explicit TargaHeader(Bytes b) {
         const auto word = [&](size_t i) { return unsigned(b[i]) | unsigned(b[i + 1]) << 8; };
         idLength = b[0], mapType = b[1], type = b[2];
         mapFirst = word(3), mapLength = word(5), mapBits = b[7];
@@ -45,7 +45,7 @@ void colourOf(const uint8_t* p, unsigned bits, float* to) {
 }
 
 /// The pixels as they are stored, run lengths undone; false: the file ends before.
-bool unpack(Bytes b, size_t at, const Header& h, std::vector<uint8_t>& pixels) {
+bool unpack(Bytes b, size_t at, const TargaHeader& h, std::vector<uint8_t>& pixels) {
     const size_t size = (h.bits + 7) / 8, all = size_t(h.width) * h.height * size;
     if (!h.runs()) {
         if (b.size() - at < all) return false;
@@ -71,10 +71,10 @@ bool unpack(Bytes b, size_t at, const Header& h, std::vector<uint8_t>& pixels) {
 
 } // namespace
 
-bool looksLikeTarga(Bytes b) { return b.size() > kHeader && Header(b).good(); }
+bool looksLikeTarga(Bytes b) { return b.size() > kHeader && TargaHeader(b).good(); }
 
 std::optional<Image> decodeTarga(Bytes b, const DecodeContext& ctx) {
-    const Header h(b);
+    const TargaHeader h(b);
     // The fourth byte of a pixel, and the sixteenth bit, are opacity where the header says so.
     const bool alpha = !h.grey() && (h.colourBits() == 32 ? h.alphaBits() != 0 : h.colourBits() == 16 && h.alphaBits() == 1);
     const int channels = h.grey() ? h.bits == 16 ? 2 : 1 : alpha ? 4 : 3;

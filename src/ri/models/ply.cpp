@@ -15,7 +15,7 @@ using scene::Class;
 using scene::Type;
 
 enum class Number { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
-constexpr int kBytes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+constexpr int kTypeBytes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
 /// What a stored colour of this type is divided by; 1: it is light as it is.
 constexpr double kWhite[] = {127, 255, 32767, 65535, 2147483647.0, 4294967295.0, 1, 1, 1, 1};
 
@@ -111,7 +111,7 @@ std::string_view PlyReader::line() {
     return text;
 }
 
-std::vector<std::string_view> wordsOf(std::string_view text) {
+std::vector<std::string_view> fieldsOf(std::string_view text) {
     std::vector<std::string_view> words;
     for (size_t i = 0; i < text.size();) {
         while (i < text.size() && (text[i] == ' ' || text[i] == '\t')) ++i;
@@ -170,7 +170,7 @@ bool PlyReader::header() {
     }
     while (at_ < bytes_.size()) {
         const int begun = line_;
-        const auto words = wordsOf(line());
+        const auto words = fieldsOf(line());
         if (words.empty()) continue;
         if (words[0] == "end_header") {
             inHeader_ = false;
@@ -198,7 +198,7 @@ bool PlyReader::number(Number type, double& v) {
         if (fault == std::errc::result_out_of_range) return v = 0, true;
         return fail(Rie::Syntax, fmt::format("\"{}\" is no number", word.substr(0, 40)));
     }
-    const size_t n = size_t(kBytes[int(type)]);
+    const size_t n = size_t(kTypeBytes[int(type)]);
     if (bytes_.size() - at_ < n) return fail(Rie::BadFile, "the file ends early");
     uint64_t bits = 0;
     for (size_t i = 0; i < n; ++i)
@@ -240,7 +240,7 @@ bool PlyReader::row(const Element& e, Row& r) {
         }
         double n = 0;
         if (!number(*p.count, n)) return false;
-        const double least = format_ == Format::Ascii ? 1 : kBytes[int(p.type)];
+        const double least = format_ == Format::Ascii ? 1 : kTypeBytes[int(p.type)];
         if (!(n >= 0) || n != std::floor(n) || n * least > double(bytes_.size() - at_))
             return fail(Rie::Range, fmt::format("a list of {} values is longer than the file", n));
         r.values[i] = n;

@@ -1,5 +1,6 @@
 // Attributes that are not shaders or transformations (ri.md 4).
 #include "ri/interpreter.h"
+#include "ri/requests/request.h"
 #include <algorithm>
 #include <fmt/format.h>
 #include <set>
@@ -8,11 +9,6 @@ namespace alpenglow::ri {
 namespace {
 
 constexpr unsigned kAttributes = kAnywhere;
-
-bool within(Interpreter& in, const Call& c, bool good, const char* what) {
-    if (!good) in.reporter.error(Rie::Range, c.place, fmt::format("{}: {}", c.request->name, what));
-    return good;
-}
 
 /// Three numbers, or as many as ColorSamples says. One number of three is a grey, with a warning.
 bool colorOf(Interpreter& in, const Call& c, Color& out) {

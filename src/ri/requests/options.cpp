@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/motion.h"
+#include "ri/requests/request.h"
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,15 +10,15 @@
 #include <fmt/format.h>
 
 namespace alpenglow::ri {
-namespace {
 
-constexpr unsigned kOptions = kBase | kFrame;
-
-/// Reports and returns false when a value is outside.
 bool within(Interpreter& in, const Call& c, bool good, const char* what) {
     if (!good) in.reporter.error(Rie::Range, c.place, fmt::format("{}: {}", c.request->name, what));
     return good;
 }
+
+namespace {
+
+constexpr unsigned kOptions = kBase | kFrame;
 
 void format(Interpreter& in, const Call& c) {
     const scene::Options standard;

@@ -57,6 +57,9 @@ const Request* findRequest(std::string_view name);
 /// For hints.
 const std::vector<std::string>& requestNames();
 
+/// Reports a range error of the call, which says `what` is required, unless `good`; returns `good`.
+bool within(Interpreter&, const Call&, bool good, const char* what);
+
 std::vector<Request> structureRequests();
 std::vector<Request> optionRequests();
 std::vector<Request> attributeRequests();

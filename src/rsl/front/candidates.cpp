@@ -1,4 +1,5 @@
 // Why a function or shadeop does not fit a call: the words behind each candidate of a failed overload.
+#include "base/printable.h"
 #include "rsl/front/checker.h"
 #include <algorithm>
 #include <utility>
@@ -14,8 +15,6 @@ std::string toString(const Whole& w, const Program& program) {
 namespace front {
 
 namespace {
-
-std::string counted(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
 std::string typeText(Type t, bool handle) { return handle ? "shader" + toString(t).substr(6) : toString(t); }
 

@@ -13,9 +13,9 @@ const std::vector<std::string>& spaces() {
     return all;
 }
 
-class Names {
+class ColourNameCheck {
 public:
-    explicit Names(SourceSet& sources) : sources_(sources) {}
+    explicit ColourNameCheck(SourceSet& sources) : sources_(sources) {}
 
     void call(const Expr& e) {
         if (e.space && e.type.base == Base::Color) name(*e.space);
@@ -44,7 +44,7 @@ private:
 } // namespace
 
 void checkColourNames(const Program& program, SourceSet& sources) {
-    Names names(sources);
+    ColourNameCheck names(sources);
     const auto expression = [&](const Expr& e) { names.call(e); };
     const auto body = [&](const Stmt* s) {
         if (s) everyStmt(*s, [](const Stmt&) {}, expression);

@@ -13,7 +13,7 @@ namespace {
 
 // A light at a point or far away sends Cl as for diffuse(): a white surface that it stands straight over gives Cl. Materials
 // answer per steradian, so a factor of pi stands between the two. LIST: the parameter of the form that has a list of lights.
-constexpr const char* kOutputs = "    varying color __direct_d = 0, __direct_s = 0, __direct_ud = 0, __direct_us = 0;\n";
+constexpr const char* kDirectOutputs = "    varying color __direct_d = 0, __direct_s = 0, __direct_ud = 0, __direct_us = 0;\n";
 constexpr const char* kDirect = R"(
     color NAME(uniform float part; uniform float angle;LIST output color d; output color s; output color ud; output color us) {
         extern point P;
@@ -82,7 +82,7 @@ std::string methods(bool direct, bool indirect, bool evaluates, bool generates) 
     std::string all = std::string(direct && !evaluates ? kNoAnswer : "") + (indirect && !generates ? kNoSamples : "");
     if (direct) {
         const std::string listed = replaced(kListed, "MOST", std::to_string(limits::kLightHandles));
-        all += kOutputs;
+        all += kDirectOutputs;
         all += replaced(replaced(replaced(kDirect, "NAME", "__direct"), "LISTED", ""), "LIST", "");
         all += replaced(replaced(replaced(kDirect, "NAME", "__directof"), "LISTED", listed), "LIST", " shader lights[];");
     }

@@ -6,7 +6,7 @@ namespace alpenglow::rsl::front {
 namespace {
 // By hand: <cctype> depends on the locale.
 bool isDigit(int c) { return c >= '0' && c <= '9'; }
-bool isWord(int c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || isDigit(c); }
+bool isWordByte(int c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || isDigit(c); }
 bool isBlank(int c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v' || c == 0 || c == 0x1a; }
 constexpr std::array<std::string_view, 15> kLong = {
     "...", "##", "->", "+=", "-=", "*=", "/=", "==", "!=", "<=", ">=", "&&", "||", "<<", ">>"};
@@ -98,9 +98,9 @@ Token Lexer::scan() {
         t.lineStart = true;
         return t;
     }
-    if (isWord(c) && !isDigit(c)) {
+    if (isWordByte(c) && !isDigit(c)) {
         t.kind = Tok::Identifier;
-        step(isWord);
+        step(isWordByte);
     } else if (isDigit(c) || (c == '.' && isDigit(at(pos_ + 1)))) {
         t.kind = Tok::Number;
         step(isDigit);
@@ -116,7 +116,7 @@ Token Lexer::scan() {
                 step(isDigit);
             }
         }
-        step(isWord); // letters that do not belong here; the parser says so
+        step(isWordByte); // letters that do not belong here; the parser says so
     } else if (c == '"') {
         t.kind = Tok::String;
         for (++pos_;;) {

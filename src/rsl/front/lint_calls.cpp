@@ -1,4 +1,5 @@
 #include "rsl/front/lint_calls.h"
+#include "base/printable.h"
 #include <algorithm>
 #include <initializer_list>
 #include <string_view>
@@ -132,8 +133,6 @@ std::string oneOf(const std::string& near, const Names& names) {
     for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
     return "there are: " + all;
 }
-
-std::string counted(size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
 /// A name of a list that is complete, or that is at least well known.
 void name(const std::string& given, Place place, const NamedArgument& a, SourceSet& sources) {

@@ -260,8 +260,6 @@ bool matches(std::string_view pattern, std::string_view text) {
     return p == pattern.size();
 }
 
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
 /// Bytes of the token that begins at this byte of the line; at least 1.
 int tokenLength(const std::string& line, size_t at) {
     if (at >= line.size()) return 1;

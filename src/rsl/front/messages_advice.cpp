@@ -19,7 +19,6 @@ constexpr Borrowed kTypes[] = {{"double", "float"}, {"half", "float"},    {"real
                                {"char", "string"},  {"rgb", "color"}};
 constexpr Borrowed kOperators[] = {{"and", "&&"}, {"or", "||"}};
 
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 bool isName(const std::string& s) { return !s.empty() && isWord(s[0]) && !std::isdigit(static_cast<unsigned char>(s[0])); }
 
 bool isTriple(const std::string& type) { return type == "color" || type == "point" || type == "vector" || type == "normal"; }

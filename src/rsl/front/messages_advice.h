@@ -4,6 +4,9 @@
 
 namespace alpenglow::rsl {
 
+/// Whether a name may contain this character: a letter, a digit or an underscore (ASCII).
+inline bool isWord(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+
 /// What stands between the quotes of "did you mean 'x'?", either kind of quotes; or nothing.
 std::string suggestion(const std::string& hint);
 

@@ -7,9 +7,9 @@ namespace alpenglow::rsl {
 
 namespace {
 
-constexpr std::string_view kParameter = "param:", kDisplacement = "displacement:", kSpace = "space:", kMember = "this->",
+constexpr std::string_view kParameter = "param:", kDisplacementPrefix = "displacement:", kSpace = "space:", kMember = "this->",
                            kDu = "Du:", kDv = "Dv:", kGiven = "given:", kSlope = "slope:", kSend = "send:light:",
-                           kSurface = "surface:", kLength = "length ", kLightHandle = "light#";
+                           kSurfacePrefix = "surface:", kLength = "length ", kLightHandle = "light#";
 
 /// Takes a prefix off; false: it is not there.
 bool take(std::string_view& s, std::string_view prefix) {
@@ -41,7 +41,7 @@ InputName InputName::parse(std::string_view s) {
         return space(s.substr(0, arrow), arrow == std::string_view::npos ? std::string_view() : s.substr(arrow + 1));
     }
     if (take(s, kParameter)) return parameter(s);
-    if (!take(s, kDisplacement)) return {Kind::Variable, std::string(s), false, false, {}, {}};
+    if (!take(s, kDisplacementPrefix)) return {Kind::Variable, std::string(s), false, false, {}, {}};
     if (!take(s, kMember)) return displacement(s);
     const bool length = takeLast(s, '#');
     return left(s, length);
@@ -56,7 +56,7 @@ std::string InputName::text() const {
         t = kParameter;
         break;
     case Kind::Displacement:
-        t = kDisplacement;
+        t = kDisplacementPrefix;
         break;
     case Kind::Space:
         return std::string(kSpace) + from + ">" + to;
@@ -119,13 +119,13 @@ std::string lengthParameter(std::string_view array) { return std::string(array) 
 bool isLengthParameter(std::string_view name) { return name.ends_with("[]"); }
 
 PairName PairName::parse(std::string_view s) {
-    if (take(s, kSurface)) return surface(s);
+    if (take(s, kSurfacePrefix)) return surface(s);
     if (!take(s, kSend)) return {Kind::Plain, std::string(s), -1};
     const int element = takeNumber(s, '[');
     return send(s, element);
 }
 std::string PairName::text() const {
-    std::string t(kind == Kind::Send ? kSend : kind == Kind::Surface ? kSurface : std::string_view());
+    std::string t(kind == Kind::Send ? kSend : kind == Kind::Surface ? kSurfacePrefix : std::string_view());
     return elementOf(t + name, element);
 }
 

@@ -13,7 +13,7 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-constexpr const char* kOutputs = "output varying vector __sentL[MOST] = {0}; output varying color __sentCl[MOST] = {0};";
+constexpr const char* kSentOutputs = "output varying vector __sentL[MOST] = {0}; output varying color __sentCl[MOST] = {0};";
 /// Where the class wants shadows and does not say how: shadowSamples() of PRMan without areashadow().
 constexpr const char* kShadows = "uniform float __sentShadows = 1;";
 
@@ -207,7 +207,7 @@ void addSampledLights(SourceSet& sources, Preprocessed& p) {
         }
         if (!f.generates || (f.light ? !setsZero(t, f.light + 1) : f.surface || !f.domain)) continue;
         if (f.light) t[f.light].text = kReplacedLight;
-        insert(i + 3, tokensOf(sources, std::string(kOutputs) + (f.shadows && !f.casts ? kShadows : "")));
+        insert(i + 3, tokensOf(sources, std::string(kSentOutputs) + (f.shadows && !f.casts ? kShadows : "")));
         insert(end - 1, tokensOf(sources, replaced(kLight, "SHADOWED", f.casts ? "shadowSamples(sent);" : "")));
         i = end - 1;
     }

@@ -16,7 +16,9 @@ using llvm::Value;
 
 namespace {
 
-int componentsOf(Kind k) { return k == Kind::Triple ? 3 : k == Kind::Matrix ? 16 : k == Kind::None || k == Kind::Array ? 0 : 1; }
+int argumentComponents(Kind k) {
+    return k == Kind::Triple ? 3 : k == Kind::Matrix ? 16 : k == Kind::None || k == Kind::Array ? 0 : 1;
+}
 constexpr int kPartCount[3] = {0, 2, 5};
 
 } // namespace
@@ -108,7 +110,7 @@ void Emitter::runtime(const Inst* i) {
     std::vector<Kind> kinds = i->results;
     if (kinds.empty()) kinds.push_back(i->kind);
     int out = 0;
-    for (Kind k : kinds) out += componentsOf(k) * (1 + parts);
+    for (Kind k : kinds) out += argumentComponents(k) * (1 + parts);
     std::vector<Value*> results;
     if (wrapCalls_ && request_.outOfLine && request_.outOfLine->count(i->text)) {
         auto* c = b_.CreateCall(wrapper(i->text, order, int(in.size()), out), in);
@@ -122,7 +124,7 @@ void Emitter::runtime(const Inst* i) {
         Val v;
         // Only the orders that are wanted go on.
         const uint8_t wanted = partsOfOrder(shapes_.order(i, int(k)));
-        for (int c = 0; c < componentsOf(kinds[k]); c++) {
+        for (int c = 0; c < argumentComponents(kinds[k]); c++) {
             auto take = [&]() -> Value* {
                 Value* x = results[at++];
                 return varying ? x : b_.CreateExtractElement(x, uint64_t(0));
@@ -160,7 +162,7 @@ void Emitter::storeRows(Value* block, const std::vector<Value*>& rows) {
 
 Val Emitter::fromRows(Kind kind, Value* block, int& at) {
     Val v;
-    for (int c = 0; c < componentsOf(kind); c++, at++) {
+    for (int c = 0; c < argumentComponents(kind); c++, at++) {
         llvm::Type* t = kind == Kind::String ? vi_ : vf_;
         Value* x = b_.CreateAlignedLoad(t, row(block, at), llvm::Align(uint64_t(std::min(64, width_ * 4))));
         if (kind == Kind::Bool) x = b_.CreateFCmpUNE(x, llvm::Constant::getNullValue(vf_));
@@ -187,7 +189,7 @@ void Emitter::service(const Inst* i) {
     if (kinds.empty() && i->kind != Kind::None) kinds.push_back(i->kind);
     if (i->op == Op::Emit) kinds.clear();
     int count = 0;
-    for (Kind k : kinds) count += componentsOf(k);
+    for (Kind k : kinds) count += argumentComponents(k);
     Value* out = count ? scratch(3, count) : nullptr;
     // Whatever a service leaves unanswered is zero.
     for (int k = 0; k < count; k++)

@@ -12,7 +12,7 @@ using llvm::Value;
 
 namespace {
 
-int componentsOf(Kind k) { return k == Kind::Triple ? 3 : k == Kind::Matrix ? 16 : 1; }
+int elementComponents(Kind k) { return k == Kind::Triple ? 3 : k == Kind::Matrix ? 16 : 1; }
 
 // Arrays up to this length with an index that differs between lanes are read by comparisons, longer ones by a gather.
 constexpr int kSelectChain = 16;
@@ -44,7 +44,7 @@ Value* Emitter::constantString(const std::string& s) {
 
 void Emitter::input(const Inst* i) {
     const ir::Input& in = kernel_.inputs[size_t(i->index)];
-    const int count = componentsOf(in.kind);
+    const int count = elementComponents(in.kind);
     const bool string = in.kind == Kind::String;
     Value* base = inputBase(i->index);
     if (in.uniform && !request_.mixed) {
@@ -115,7 +115,7 @@ void Emitter::arrayNew(const Inst* i) {
     if (!a.base) {
         a.length = std::max(1, i->index);
         a.element = i->element;
-        a.components = componentsOf(i->element);
+        a.components = elementComponents(i->element);
         a.shape = shapes_.of(i);
         llvm::Type* t =
             a.element == Kind::String ? (a.shape.varying ? (llvm::Type*)vi_ : i32_) : (a.shape.varying ? (llvm::Type*)vf_ : f32_);
@@ -138,7 +138,7 @@ void Emitter::arrayInput(const Inst* i) {
     a.readOnly = true;
     a.length = std::max(1, in.array);
     a.element = in.kind;
-    a.components = componentsOf(in.kind);
+    a.components = elementComponents(in.kind);
     a.shape = {!in.uniform || request_.mixed, 0};
     a.base = inputBase(i->index);
     if (a.shape.varying) a.stride = stride_;

@@ -6,6 +6,8 @@
 #include <random>
 #include <thread>
 
+namespace accel_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -305,3 +307,5 @@ TEST(Hostile, OddRaysMissAndEmptyScenesWork) {
     EXPECT_FALSE(none.accel->intersect(r, h));
     EXPECT_EQ(none.diag.errors(), 0);
 }
+
+} // namespace accel_test

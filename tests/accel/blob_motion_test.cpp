@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace blob_motion_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -261,3 +263,5 @@ TEST(BlobMotion, KeysOfOtherCodeAreSaid) {
         EXPECT_EQ(w.accel->intersect(r, a), still.accel->intersect(r, b));
     }
 }
+
+} // namespace blob_motion_test

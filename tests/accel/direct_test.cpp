@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace direct_test {
+
 using namespace alpenglow;
 using namespace alpenglow::accel;
 using namespace alpenglow::geometry::test;
@@ -111,3 +113,5 @@ TEST(DirectTriangles, TheAnswerIsTheTrees) {
 }
 
 } // namespace
+
+} // namespace direct_test

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace exact_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -119,3 +121,5 @@ TEST(ExactPrims, AreMetLikeSoManyShapes) {
         EXPECT_GT(met, 2500u);
     }
 }
+
+} // namespace exact_test

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace fuzz_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -72,3 +74,5 @@ TEST(Fuzz, RandomPrimitivesAreDrawnOrReported) {
     EXPECT_GT(drawn, 500);
     EXPECT_GT(reported, 500);
 }
+
+} // namespace fuzz_test

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace keyed_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -267,3 +269,5 @@ TEST(Keyed, KeysThatDoNotFitAreSaid) {
         }
     }
 }
+
+} // namespace keyed_test

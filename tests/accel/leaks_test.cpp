@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace leaks_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -396,3 +398,5 @@ TEST(Placed, WhatDeformsIsAtEachTimeWhatStandsThere) {
         }
     }
 }
+
+} // namespace leaks_test

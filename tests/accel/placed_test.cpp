@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace placed_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using accel::Accel;
@@ -399,3 +401,5 @@ TEST(Placed, CompanyChangesNoBit) {
     EXPECT_GT(hits, 500u);
     EXPECT_GT(placed, 100u);
 }
+
+} // namespace placed_test

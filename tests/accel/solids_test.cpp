@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace solids_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -340,3 +342,5 @@ TEST(Solids, NothingLeaks) {
     EXPECT_EQ(leaks, 0) << "of " << asked;
     EXPECT_GT(asked, 10'000);
 }
+
+} // namespace solids_test

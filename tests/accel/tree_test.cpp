@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace tree_test {
+
 using namespace alpenglow;
 using namespace alpenglow::accel;
 using namespace alpenglow::geometry::test;
@@ -256,3 +258,5 @@ TEST(Tree, AlikeShapesInOnePlaceEndInLeaves) {
     ASSERT_TRUE(accel.intersect(r, h));
     EXPECT_EQ(h.shape, 1u);
 }
+
+} // namespace tree_test

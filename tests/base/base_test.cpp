@@ -4,6 +4,8 @@
 #include "base/printable.h"
 #include <gtest/gtest.h>
 
+namespace base_test {
+
 using namespace alpenglow;
 
 namespace {
@@ -129,3 +131,5 @@ TEST(Diagnostics, NearestName) {
 }
 
 } // namespace
+
+} // namespace base_test

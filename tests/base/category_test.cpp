@@ -3,6 +3,8 @@
 #include "base/limits.h"
 #include <gtest/gtest.h>
 
+namespace category_test {
+
 using namespace alpenglow;
 
 TEST(Category, Expressions) {
@@ -69,3 +71,5 @@ TEST(Category, NestingHasALimit) {
     EXPECT_FALSE(inCategory(nested(limits::kCategoryDepth / 2), "b"));
     EXPECT_NE(categoryError(nested(limits::kCategoryDepth + 1)).find("nested too deeply"), std::string::npos);
 }
+
+} // namespace category_test

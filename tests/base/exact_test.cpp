@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+namespace exact_test {
+
 namespace {
 using namespace alpenglow;
 using Long = long double;
@@ -99,3 +101,5 @@ TEST(Exact, ExponentialsAndLogarithms) {
     EXPECT_EQ(exact::pow(3, 1), exact::exp(exact::log(3)));
 }
 } // namespace
+
+} // namespace exact_test

@@ -1,0 +1,2 @@
+
+namespace file_test {} // namespace file_test

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+namespace lengths_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -92,3 +94,5 @@ TEST(Lengths, RoomsOfTransport) {
 }
 
 } // namespace
+
+} // namespace lengths_test

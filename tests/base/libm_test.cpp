@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+namespace libm_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -89,3 +91,5 @@ TEST(Libm, NothingThatDecidesBitsCallsIt) {
 }
 
 } // namespace
+
+} // namespace libm_test

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace numberlanes_test {
+
 using namespace alpenglow::render;
 
 namespace {
@@ -76,3 +78,5 @@ TEST(NumberLanes, EveryWidth) {
 }
 
 } // namespace
+
+} // namespace numberlanes_test

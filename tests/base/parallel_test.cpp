@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+namespace parallel_test {
+
 using namespace alpenglow;
 
 namespace {
@@ -39,3 +41,5 @@ TEST(Parallel, ExceptionsReachTheCaller) {
 }
 
 } // namespace
+
+} // namespace parallel_test

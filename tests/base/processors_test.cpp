@@ -7,6 +7,8 @@
 #include <sched.h>
 #include <thread>
 
+namespace processors_test {
+
 using namespace alpenglow;
 namespace fs = std::filesystem;
 
@@ -62,3 +64,5 @@ TEST_F(Processors, AffinityOfTheProcess) {
 }
 
 } // namespace
+
+} // namespace processors_test

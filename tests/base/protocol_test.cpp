@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+namespace protocol_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -53,3 +55,5 @@ TEST(Protocol, NamesAreWrittenInOnePlace) {
 }
 
 } // namespace
+
+} // namespace protocol_test

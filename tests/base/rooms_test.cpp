@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+namespace rooms_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -86,3 +88,5 @@ TEST(Rooms, IncludeTable) {
 }
 
 } // namespace
+
+} // namespace rooms_test

@@ -1,6 +1,8 @@
 #include "base/srgb.h"
 #include <gtest/gtest.h>
 
+namespace srgb_test {
+
 using namespace alpenglow;
 
 // IEC 61966-2-1: the codes of some greys, as published in tables of the standard's curve.
@@ -23,3 +25,5 @@ TEST(Srgb, EveryCodeComesBack) {
         last = light;
     }
 }
+
+} // namespace srgb_test

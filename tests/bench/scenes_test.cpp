@@ -11,7 +11,7 @@
 #include <iterator>
 #include <unistd.h>
 
-namespace alpenglow::bench {
+namespace alpenglow::bench::scenes_test {
 namespace {
 
 struct Folder {
@@ -107,4 +107,4 @@ TEST(SceneParts, Rooms) {
 }
 
 } // namespace
-} // namespace alpenglow::bench
+} // namespace alpenglow::bench::scenes_test

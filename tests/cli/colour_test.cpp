@@ -4,6 +4,8 @@
 #include "display/imageio.h"
 #include <fstream>
 
+namespace colour_test {
+
 using namespace alpenglow;
 
 namespace {
@@ -151,3 +153,5 @@ TEST_F(Colour, MapsThatAreToldAndNumbers) {
     shows("Option \"texture\" \"string colorspace\" \"linear\"", "\"string map\" \"pic.png\"", asLight);
     shows(kNew, "\"string map\" \"pic.png\" \"float number\" 1", {asLight[0], asLight[0], asLight[0]}); // a float is data
 }
+
+} // namespace colour_test

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+namespace deepshadow_test {
+
 using namespace alpenglow;
 
 namespace {
@@ -247,3 +249,5 @@ TEST_F(DepthMaps, InTheMiddleOfTwoSurfaces) {
 }
 
 } // namespace
+
+} // namespace deepshadow_test

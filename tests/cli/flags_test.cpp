@@ -3,6 +3,8 @@
 #include "command_folder.h"
 #include <nlohmann/json.hpp>
 
+namespace flags_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -184,3 +186,5 @@ TEST_F(Flags, SeedOfTheFrame) {
     EXPECT_EQ(status, 2);
     EXPECT_TRUE(says("--seed: takes a whole number or frame, not x")) << errors();
 }
+
+} // namespace flags_test

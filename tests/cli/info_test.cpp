@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+namespace info_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_F(Info, WhatIsNotDrawnIsCalledSo) {
             << errors();
     }
 }
+
+} // namespace info_test

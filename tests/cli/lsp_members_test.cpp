@@ -1,6 +1,8 @@
 // The language server: members, what stands beside errors, texts that are open, and streams that lose their place.
 #include "lsp_fixture.h"
 
+namespace lsp_members_test {
+
 namespace {
 
 const std::string kClass =
@@ -184,3 +186,5 @@ TEST_F(Server, PluginsAreLoadedWhenTheyMayBe) {
     ASSERT_EQ(d.size(), 1u);
     EXPECT_EQ(d[0]["code"], "plugin-missing");
 }
+
+} // namespace lsp_members_test

@@ -2,6 +2,8 @@
 #include "lsp_fixture.h"
 #include <set>
 
+namespace lsp_navigation_test {
+
 namespace {
 
 const std::string kTwo = R"(float twice(float x) { return 2 * x; }
@@ -302,3 +304,5 @@ TEST(VsCode, ClientAndGrammars) {
             ("node '" + source + "/tests/cli/vscode_client.js' '" + source + "/editors/vscode' '" ALPENGLOW_PROGRAM "'").c_str()),
         0);
 }
+
+} // namespace lsp_navigation_test

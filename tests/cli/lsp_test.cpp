@@ -2,6 +2,8 @@
 #include "lsp_fixture.h"
 #include <random>
 
+namespace lsp_test {
+
 TEST_F(Server, LifeOfAServer) {
     begin();
     end();
@@ -321,3 +323,5 @@ TEST_F(Server, LimitOnDocumentsAndDiagnostics) {
     EXPECT_EQ(told, 1);
     EXPECT_EQ(status, 0);
 }
+
+} // namespace lsp_test

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+namespace models_test {
+
 namespace {
 
 class Models : public alpenglow::cli::testing::CommandFolder {
@@ -118,3 +120,5 @@ TEST_F(Models, WhatIsWrongWithThemIsSaid) {
         EXPECT_NE(err.find(c.said), std::string::npos) << c.name << "\n" << err;
     }
 }
+
+} // namespace models_test

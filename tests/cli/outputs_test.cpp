@@ -2,6 +2,8 @@
 #include "command_folder.h"
 #include <nlohmann/json.hpp>
 
+namespace outputs_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -169,3 +171,5 @@ TEST_F(Outputs, PartsAndGaps) {
     }
     EXPECT_EQ(go("merge --expect 8 p1.exr -o m.exr"), 2);
 }
+
+} // namespace outputs_test

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace plugins_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -56,3 +58,5 @@ TEST_F(PluginTools, ALibraryOfProceduralsFindsTheBindingInTheProgram) {
 }
 
 } // namespace
+
+} // namespace plugins_test

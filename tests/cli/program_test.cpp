@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
+namespace program_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -450,3 +452,5 @@ TEST_F(Program, MaketxTakesOldAndNewSpelling) {
     EXPECT_EQ(run("maketx -envcube a.png b.tx").status, 2);
     EXPECT_EQ(run("maketx none.png c.tx").status, 3);
 }
+
+} // namespace program_test

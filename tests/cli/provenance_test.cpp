@@ -4,6 +4,8 @@
 #include <regex>
 #include <set>
 
+namespace provenance_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -169,3 +171,5 @@ TEST_F(Provenance, EveryKeyIsInTheManual) {
     for (const auto& [key, value] : textsOf("b.png"))
         EXPECT_NE(page.substr(page.find("## In the pictures")).find("`" + key + "`"), std::string::npos) << key;
 }
+
+} // namespace provenance_test

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+namespace said_test {
+
 namespace {
 
 class Said : public alpenglow::cli::testing::CommandFolder {
@@ -345,3 +347,5 @@ TEST_F(Said, LinesOfManyMessages) {
     EXPECT_EQ(times("has no parameter"), many) << errors().substr(0, 600);
     EXPECT_EQ(times("^"), alpenglow::limits::kSourceLines);
 }
+
+} // namespace said_test

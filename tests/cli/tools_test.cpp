@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+namespace tools_test {
+
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
@@ -422,3 +424,5 @@ TEST_F(Tools, AFileOfSeveralShaders) {
     EXPECT_EQ(run("info lamp").rfind("light \"lamp\"", 0), 0u);
     EXPECT_EQ(run("info lamp").find("wood\"  ("), std::string::npos);
 }
+
+} // namespace tools_test

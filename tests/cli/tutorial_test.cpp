@@ -4,6 +4,8 @@
 #include <regex>
 #include <sstream>
 
+namespace tutorial_test {
+
 namespace {
 
 class Tutorial : public alpenglow::cli::testing::CommandFolder {
@@ -89,3 +91,5 @@ TEST_F(Tutorial, SlurmLinesOfTheReadme) {
     EXPECT_TRUE(text("whole.exr") == text("one.exr")) << "the very bits of one render";
     EXPECT_NE(shell("rm parts/3.exr.part; " + whole), 0) << "a part is missing";
 }
+
+} // namespace tutorial_test

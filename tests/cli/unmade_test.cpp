@@ -4,6 +4,8 @@
 #include "display/imageio.h"
 #include <sstream>
 
+namespace unmade_test {
+
 namespace {
 
 class Unmade : public alpenglow::cli::testing::CommandFolder {
@@ -102,3 +104,5 @@ TEST_F(Unmade, WhatNoRayComesToIsNotRead) {
 }
 
 } // namespace
+
+} // namespace unmade_test

@@ -1,6 +1,8 @@
 // render --watch: it renders again when any file that the scene uses becomes another.
 #include "command_folder.h"
 
+namespace watch_test {
+
 using Watch = alpenglow::cli::testing::CommandFolder;
 
 TEST_F(Watch, FollowsEveryFileOfTheScene) {
@@ -33,3 +35,5 @@ TEST_F(Watch, FollowsEveryFileOfTheScene) {
     pclose(p);
     EXPECT_EQ(out, "1\n2\n3\n4\n5\n5\n");
 }
+
+} // namespace watch_test

@@ -7,6 +7,8 @@
 #include "clouds/make.h"
 #include "display/imageio.h"
 
+namespace bake_test {
+
 namespace {
 
 using namespace alpenglow;
@@ -334,3 +336,5 @@ TEST(BakeLogs, LoopsThatBake) {
 }
 
 } // namespace
+
+} // namespace bake_test

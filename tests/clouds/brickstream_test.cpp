@@ -3,6 +3,8 @@
 #include "clouds/make.h"
 #include <random>
 
+namespace brickstream_test {
+
 namespace {
 
 using namespace alpenglow;
@@ -98,3 +100,5 @@ TEST_F(Clouds, CloudsThatDoNotFitAndAreDamaged) {
 }
 
 } // namespace
+
+} // namespace brickstream_test

@@ -4,6 +4,8 @@
 #include "clouds/make.h"
 #include <random>
 
+namespace cloudfile_test {
+
 using namespace alpenglow;
 using namespace alpenglow::clouds;
 using namespace alpenglow::clouds::test;
@@ -177,3 +179,5 @@ TEST_F(Clouds, PicturesOfWhatWasBaked) {
 }
 
 } // namespace
+
+} // namespace cloudfile_test

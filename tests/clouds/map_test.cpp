@@ -2,6 +2,8 @@
 #include "clouds/make.h"
 #include <random>
 
+namespace map_test {
+
 using namespace alpenglow;
 using namespace alpenglow::clouds;
 using namespace alpenglow::clouds::test;
@@ -151,3 +153,5 @@ TEST_F(Clouds, ABrickThatChangedIsSaidOnce) {
 }
 
 } // namespace
+
+} // namespace map_test

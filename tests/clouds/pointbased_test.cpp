@@ -6,6 +6,8 @@
 #include "display/imageio.h"
 #include <random>
 
+namespace pointbased_test {
+
 namespace {
 
 using namespace alpenglow;
@@ -516,3 +518,5 @@ TEST_F(PointScenes, SameBitsForAllThreads) {
 }
 
 } // namespace
+
+} // namespace pointbased_test

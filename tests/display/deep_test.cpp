@@ -10,6 +10,8 @@
 #include <cmath>
 #include <random>
 
+namespace deep_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -228,3 +230,5 @@ TEST(Deep, CutAndDamagedFilesAreRefusedOrRead) {
 }
 
 } // namespace
+
+} // namespace deep_test

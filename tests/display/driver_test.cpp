@@ -8,6 +8,8 @@
 #include <limits>
 #include <set>
 
+namespace driver_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -345,3 +347,5 @@ TEST(Diff, NonFiniteAndSizes) {
     EXPECT_FALSE(compareImages(a, makeImage(4, 1, {"y", "a"}), d));
     EXPECT_EQ(d.errors(), 2);
 }
+
+} // namespace driver_test

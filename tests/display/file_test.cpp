@@ -1,6 +1,8 @@
 // base/file.h: path policy, atomic publication, faults, search paths.
 #include "support.h"
 
+namespace file_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display::test;
 namespace fs = std::filesystem;
@@ -208,3 +210,5 @@ TEST(SearchPath, FindsByCaseSlashAndBaseName) {
     EXPECT_FALSE(findFile("Stone.tif", dirs));
     EXPECT_FALSE(findFile("", dirs));
 }
+
+} // namespace file_test

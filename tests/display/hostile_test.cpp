@@ -7,6 +7,8 @@
 #include <jpeglib.h>
 #include <random>
 
+namespace hostile_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -175,3 +177,5 @@ TEST(ImageLimits, ScansOfAJpeg) {
         std::free(out);
     }
 }
+
+} // namespace hostile_test

@@ -6,6 +6,8 @@
 #include <limits>
 #include <set>
 
+namespace imageio_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -356,3 +358,5 @@ TEST(HostileImage, JpegPrefixesAndDamage) {
         EXPECT_EQ(d.errors(), 1);
     }
 }
+
+} // namespace imageio_test

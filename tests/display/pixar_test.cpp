@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+namespace pixar_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -384,3 +386,5 @@ TEST(PixarNative, AShortFileCannotAskForMuchMemory) {
     EXPECT_FALSE(decoded(b, d));
     EXPECT_EQ(d.errors(), 1);
 }
+
+} // namespace pixar_test

@@ -4,6 +4,8 @@
 #include "support.h"
 #include <chrono>
 
+namespace targa_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -180,3 +182,5 @@ TEST(Foreign, WithoutTheModuleTheErrorSaysSo) {
     }
     unsetenv("ALPENGLOW_PICTURES");
 }
+
+} // namespace targa_test

@@ -3,6 +3,8 @@
 #include <half.h>
 #include <tiffio.h>
 
+namespace tiff_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -180,3 +182,5 @@ TEST(OwnTiff, TriplesAreColours) {
         EXPECT_EQ(again->data, m.data);
     }
 }
+
+} // namespace tiff_test

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace blobby_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -456,3 +458,5 @@ TEST(Blobby, CodeAndBoxesHaveTheirLimits) {
     EXPECT_GT(s->exactPrims(), 1u);
     EXPECT_LE(s->exactPrims(), limits::kBlobBoxes);
 }
+
+} // namespace blobby_test

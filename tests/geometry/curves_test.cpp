@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace curves_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -551,3 +553,5 @@ TEST(Curves, WhatIsFaultyIsSaidAndTheRestDrawn) {
     drawn(curves("cubic", {2000000000, 2000000000}, "nonperiodic", good), 0, "4 points given");
     drawn(curves("cubic", {2}, "nonperiodic", good), 0, "with too few points");
 }
+
+} // namespace curves_test

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace derivatives_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -175,3 +177,5 @@ TEST(Polygon, PartialsFollowObjectXAndYOrTheFallbackFrame) {
     EXPECT_NEAR(length(q.dPdv), 1, 1e-6);
     EXPECT_NEAR(dot(normalize(q.Ng), q.n), 1, 1e-6);
 }
+
+} // namespace derivatives_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace hostile_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -254,3 +256,5 @@ TEST(Dice, DisplacementMovesTheMeshAndReportsItsBound) {
         EXPECT_GT(dot(p.displacedN, p.n), 0.9) << prim->kind;
     }
 }
+
+} // namespace hostile_test

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace needs_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -158,3 +160,5 @@ TEST(PointNeeds, PlacesOnEmittersLieByArea) {
     EXPECT_EQ(s->sampleArea(0, 0.5).prim, 0u);
     EXPECT_EQ(s->sampleArea(1 - 1e-16, 0.5).prim, m.triangles() - 1);
 }
+
+} // namespace needs_test

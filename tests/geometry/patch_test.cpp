@@ -4,6 +4,8 @@
 #include <cstring>
 #include <gtest/gtest.h>
 
+namespace patch_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -183,3 +185,5 @@ TEST(Dicing, FlatnessIsThePixelsThatFacetsStray) {
         EXPECT_EQ(diag.errors() + diag.warnings(), 0);
     }
 }
+
+} // namespace patch_test

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace points_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -159,3 +161,5 @@ TEST(Points, VariablesAndFaultyNumbers) {
     EXPECT_TRUE(build(particles(kThree, "tadpole"), Matrix(), diag));
     EXPECT_NE(diag.all().back().message.find("tadpole"), std::string::npos);
 }
+
+} // namespace points_test

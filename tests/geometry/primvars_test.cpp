@@ -2,6 +2,8 @@
 #include "make.h"
 #include <gtest/gtest.h>
 
+namespace primvars_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -95,3 +97,5 @@ TEST(Primvars, WrongCountsAreReportedAndLeftOut) {
     EXPECT_EQ(diag.errors(), 1);
     EXPECT_EQ(diag.warnings(), 1);
 }
+
+} // namespace primvars_test

@@ -8,6 +8,8 @@
 #include <map>
 #include <random>
 
+namespace seams_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -455,3 +457,5 @@ TEST(DisplacementBound, CountsInItsOwnSpace) {
             if (radius < c.reach) EXPECT_NE(d.all()[0].hint.find("times 2.0"), std::string::npos) << d.all()[0].hint;
         }
 }
+
+} // namespace seams_test

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace subdivision_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -789,3 +791,5 @@ TEST(HierarchicalSubdivision, FaultyEditsAreReported) {
         EXPECT_EQ(diag.warnings(), 1) << t.name << " " << t.ints[0];
     }
 }
+
+} // namespace subdivision_test

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace trim_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -402,3 +404,5 @@ TEST(Trim, AreOfSoManyPiecesAtMost) {
     EXPECT_FALSE(TrimRegion::make(curves, kUnit, true, why, gap));
     EXPECT_NE(why.find(std::to_string(limits::kTrimPieces)), std::string::npos) << why;
 }
+
+} // namespace trim_test

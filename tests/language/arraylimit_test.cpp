@@ -3,7 +3,7 @@
 #include "rsl/evaluate.h"
 #include <gtest/gtest.h>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::arraylimit_test {
 namespace {
 
 TEST(ArrayLimit, GrowthEndsWithAMessage) {
@@ -23,4 +23,4 @@ TEST(ArrayLimit, GrowthEndsWithAMessage) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::arraylimit_test

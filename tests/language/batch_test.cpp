@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::batch_test {
 namespace {
 
 constexpr int kPoints = 83; // no multiple of any width
@@ -290,4 +290,4 @@ TEST(Evaluation, RandomIsInTheUnitIntervalAndAnotherAtEveryCall) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::batch_test

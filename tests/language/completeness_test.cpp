@@ -10,7 +10,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::completeness_test {
 namespace {
 
 bool internal(const Shadeop& op) { return op.name.rfind("__", 0) == 0; }
@@ -171,4 +171,4 @@ TEST(Completeness, EveryShadeopIsInAProgramThatIsRefusedForIt) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::completeness_test

@@ -5,7 +5,7 @@
 #include "rsl/compiler.h"
 #include <gtest/gtest.h>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::coshaders_test {
 namespace {
 
 const char* const kLayer = R"(
@@ -237,4 +237,4 @@ TEST(Structures, AtMostSoMany) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::coshaders_test

@@ -11,7 +11,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::damage_test {
 namespace {
 
 std::vector<std::string> words(const std::string& text) {
@@ -105,4 +105,4 @@ TEST(Damage, EveryProgramIsAcceptedOrExplained) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::damage_test

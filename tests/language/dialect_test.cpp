@@ -13,7 +13,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::dialect_test {
 namespace {
 
 std::vector<std::string> shaders() {
@@ -99,4 +99,4 @@ TEST(DialectMacros, EachHasItsOwnAndOurs) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::dialect_test

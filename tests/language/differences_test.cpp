@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::differences_test {
 namespace {
 
 /// A place of the unit square for each point, and its footprint.
@@ -228,4 +228,4 @@ TEST(Differences, WithoutAFootprintAreOverASmallStep) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::differences_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::drawn_test {
 namespace {
 
 std::vector<std::string> printed(const std::string& setup) {
@@ -33,4 +33,4 @@ TEST(Drawn, EveryTurnAndEveryCallHasItsOwn) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::drawn_test

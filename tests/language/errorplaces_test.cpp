@@ -21,7 +21,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::errorplaces_test {
 namespace {
 
 const char* const kVariables =
@@ -128,4 +128,4 @@ TEST(ErrorPlaces, EveryKindOfMessageAndThreeHundredPrograms) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::errorplaces_test

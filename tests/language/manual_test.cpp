@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::manual_test {
 namespace {
 
 struct Page {
@@ -127,4 +127,4 @@ TEST(Manual, EveryShadeopHasAnExampleThatIsTrue) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::manual_test

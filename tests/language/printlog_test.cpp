@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::printlog_test {
 namespace {
 
 std::string textOf(std::FILE* f) {
@@ -113,4 +113,4 @@ TEST(PrintLog, ThreadsDoNotShow) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::printlog_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::random_test {
 namespace {
 
 constexpr int kPrograms = kSanitized ? 50 : 200, kDerived = kSanitized ? 20 : 40, kPoints = 37;
@@ -397,4 +397,4 @@ TEST(RandomPrograms, DifferencesAreThoseOfTheNextPlace) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::random_test

@@ -24,7 +24,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::runner_test {
 namespace {
 
 /// A variable, a member, or an element by a number.
@@ -236,4 +236,4 @@ INSTANTIATE_TEST_SUITE_P(Files, Language, testing::ValuesIn(files()), [](const a
 });
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::runner_test

@@ -10,7 +10,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::shadersearch_test {
 namespace {
 
 struct Folder {
@@ -65,4 +65,4 @@ TEST(ShaderSearch, LinesOfMessagesAreCut) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::shadersearch_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::slopes_test {
 namespace {
 
 /// In the middle of nothing: no lattice point of noise, no end of a spline, no edge of a hue.
@@ -298,4 +298,4 @@ TEST(Slopes, ExceptionsAreShadeopsThroughWhichDerivativesPass) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::slopes_test

@@ -6,7 +6,7 @@
 #include <bit>
 #include <gtest/gtest.h>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::thisshader_test {
 namespace {
 
 const char* const kLayer = R"(
@@ -144,4 +144,4 @@ TEST(ThisShader, CirclesEndWhereTheyClose) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::thisshader_test

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::walker_test {
 namespace {
 
 constexpr int kBatch = 10, kPoints = 21, kMostShrinks = 3000;
@@ -269,4 +269,4 @@ TEST(Walker, SnippetsHaveTheirValues) {
 INSTANTIATE_TEST_SUITE_P(Parts, RandomTrees, testing::Range(0, kParts));
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::walker_test

@@ -1,6 +1,8 @@
 // Scenes that ended the program: lights whose shaders are not there, and lights that ask about what they light.
 #include "transport/harness.h"
 
+namespace attack_lights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -103,3 +105,5 @@ TEST(AttackLights, ManyLightsKeepNoListsOfEachOther) {
 }
 
 } // namespace
+
+} // namespace attack_lights_test

@@ -6,6 +6,8 @@
 #include <set>
 #include <sstream>
 
+namespace every_limit_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -59,3 +61,5 @@ TEST(Limits, EachIsUsedAndHasATest) {
 }
 
 } // namespace
+
+} // namespace every_limit_test

@@ -3,6 +3,8 @@
 #include "display/support.h"
 #include "render/partfile.h"
 
+namespace file_limits_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display;
 using namespace alpenglow::display::test;
@@ -116,3 +118,5 @@ TEST(FileLimits, HeadersOfPartFiles) {
     EXPECT_FALSE(render::parsePart(b, "stated.part", d));
     EXPECT_EQ(d.errors(), 2);
 }
+
+} // namespace file_limits_test

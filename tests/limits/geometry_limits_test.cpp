@@ -5,6 +5,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace geometry_limits_test {
+
 using namespace alpenglow;
 using namespace alpenglow::geometry;
 using namespace alpenglow::geometry::test;
@@ -198,3 +200,5 @@ TEST(GeometryLimits, PatternsOfSubdivisionSurfaces) {
     EXPECT_EQ(limitsSaid(d), 1);
     EXPECT_GT(limits::kLimitPatternBytes, size_t(1) << 20);
 }
+
+} // namespace geometry_limits_test

@@ -3,6 +3,8 @@
 #include "rsl/evaluate.h"
 #include "transport/harness.h"
 
+namespace local_arrays_test {
+
 using namespace alpenglow;
 using namespace alpenglow::rsl;
 
@@ -101,3 +103,5 @@ TEST(LocalArrays, OfAKernelThatWaits) {
     const auto results = scene.trace(rays);
     for (const auto& r : results) EXPECT_EQ(r.color.x, 1.5f * 19);
 }
+
+} // namespace local_arrays_test

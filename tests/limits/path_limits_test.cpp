@@ -2,6 +2,8 @@
 #include "base/limits.h"
 #include "transport/harness.h"
 
+namespace path_limits_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -105,3 +107,5 @@ TEST(PathLimits, FramesOfWaitingShaders) {
     const float want = .25f * (1 - std::pow(.5f, 7.f)) / .5f; // the last ray finds nothing
     for (const SampleResult& r : results) EXPECT_NEAR(r.color.x, want, 1e-5f);
 }
+
+} // namespace path_limits_test

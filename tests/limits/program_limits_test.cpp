@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace program_limits_test {
+
 using namespace alpenglow;
 namespace fs = std::filesystem;
 
@@ -382,3 +384,5 @@ TEST_F(ProgramLimits, ControlPointsOfSplines) {
     EXPECT_EQ(go("eval '" + spline("\"linear\", ", 101) + "'"), "50\n")
         << err; // segments between the second point and the last but one
 }
+
+} // namespace program_limits_test

@@ -4,6 +4,8 @@
 #include "ri/source.h"
 #include <zlib.h>
 
+namespace rib_limits_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -92,3 +94,5 @@ TEST(RibLimits, CopiesOfObjectsInObjects) {
         EXPECT_EQ(c->frame().instances.size(), 1u);
     }
 }
+
+} // namespace rib_limits_test

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+namespace shader_attacks_test {
+
 namespace fs = std::filesystem;
 using namespace alpenglow;
 using namespace alpenglow::rsl;
@@ -265,3 +267,5 @@ TEST(ShaderAttacks, TooManyLightBlocksAndOperationsHaveIds) {
                  "shader-too-large");
     EXPECT_STREQ(messageId("the local arrays of \"s\" need 2 bytes a point; the limit is 1"), "shader-memory");
 }
+
+} // namespace shader_attacks_test

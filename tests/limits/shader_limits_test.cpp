@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+namespace shader_limits_test {
+
 namespace fs = std::filesystem;
 using namespace alpenglow;
 using namespace alpenglow::rsl;
@@ -212,3 +214,5 @@ TEST(ShaderLimits, KernelsOnDisk) {
     EXPECT_GE(files, 1u);
     EXPECT_LE(total, limits::kKernelCacheBytes);
 }
+
+} // namespace shader_limits_test

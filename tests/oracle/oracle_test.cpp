@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <string_view>
 
+namespace oracle_test {
+
 using namespace oracle;
 
 namespace {
@@ -133,3 +135,5 @@ TEST(Oracle, EmbreeMeetsTheSame) {
 }
 
 } // namespace
+
+} // namespace oracle_test

@@ -4,6 +4,8 @@
 #include "transport/floorscene.h"
 #include "transport/photons.h"
 
+namespace caustics_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -441,3 +443,5 @@ TEST(Caustics, BiasShrinksWithTheRadius) {
 }
 
 } // namespace
+
+} // namespace caustics_test

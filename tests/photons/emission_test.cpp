@@ -6,6 +6,8 @@
 #include "transport/photons.h"
 #include <cstring>
 
+namespace emission_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -376,3 +378,5 @@ TEST(PhotonMaps, MissingMap) {
 }
 
 } // namespace
+
+} // namespace emission_test

@@ -5,6 +5,8 @@
 #include "statistics/nightly.h"
 #include <nlohmann/json.hpp>
 
+namespace hider_test {
+
 namespace {
 
 using namespace alpenglow;
@@ -151,3 +153,5 @@ TEST_F(PhotonHider, SameNarrowLobesInMotionOverThreadsAndParts) {
 }
 
 } // namespace
+
+} // namespace hider_test

@@ -9,6 +9,8 @@
 #include <set>
 #include <unistd.h>
 
+namespace photonmap_test {
+
 using namespace alpenglow;
 using namespace alpenglow::photons;
 
@@ -228,3 +230,5 @@ TEST_F(PhotonFile, DamageIsAnError) {
 }
 
 } // namespace
+
+} // namespace photonmap_test

@@ -8,7 +8,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::plugins_test {
 namespace {
 
 ShaderCompiler::Settings trusting(const std::string& cache = {}) {
@@ -192,4 +192,4 @@ TEST(Plugins, TheCacheKeepsCodeThatCallsThem) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::plugins_test

@@ -4,6 +4,8 @@
 #include "ptex/ball.h"
 #include <random>
 
+namespace filter_test {
+
 namespace {
 
 using namespace alpenglow;
@@ -364,3 +366,5 @@ TEST_F(PtexScenes, WhatCannotBe) {
 }
 
 } // namespace
+
+} // namespace filter_test

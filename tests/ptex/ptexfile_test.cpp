@@ -3,6 +3,8 @@
 #include "ptex/numbers.h"
 #include <random>
 
+namespace ptexfile_test {
+
 namespace {
 
 using namespace alpenglow;
@@ -304,3 +306,5 @@ TEST_F(Ptex, NumbersThatAreNoneAreNothing) {
 }
 
 } // namespace
+
+} // namespace ptexfile_test

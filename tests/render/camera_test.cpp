@@ -3,6 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace camera_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -321,3 +323,5 @@ TEST(Camera, StereoPairsMeetInTheFocalPlane) {
     Camera bad(o, d);
     EXPECT_EQ(d.errors(), 1);
 }
+
+} // namespace camera_test

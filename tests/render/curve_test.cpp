@@ -3,6 +3,8 @@
 #include "scene/numbers.h"
 #include <gtest/gtest.h>
 
+namespace curve_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -121,3 +123,5 @@ TEST(Curve, TheTableNamesIt) {
     EXPECT_EQ(curvesOf(planOutputs(o, {}, true, "", d)), "sRGB (a.png); none, by the display's exposure (c.png)");
     EXPECT_EQ(curvesOf(planOutputs(o, {}, true, "x.exr", d)), "none: the numbers are light");
 }
+
+} // namespace curve_test

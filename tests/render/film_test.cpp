@@ -8,6 +8,8 @@
 #include <random>
 #include <tbb/global_control.h>
 
+namespace film_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -298,3 +300,5 @@ TEST(Film, ThreadsAndTilesChangeNothing) {
             EXPECT_EQ(f.digest(), expected) << threads << " threads, tile " << tile;
         }
 }
+
+} // namespace film_test

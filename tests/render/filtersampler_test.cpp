@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace filtersampler_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 using namespace alpenglow::teststat;
@@ -160,3 +162,5 @@ TEST(FilterSampler, EdgeResponse) {
         EXPECT_NEAR(response(FilterKind::Gaussian, 2, t), gauss, 1e-4);
     }
 }
+
+} // namespace filtersampler_test

@@ -8,6 +8,8 @@
 #include <thread>
 #include <unistd.h>
 
+namespace growth_test {
+
 namespace {
 
 using namespace alpenglow;
@@ -163,3 +165,5 @@ TEST(GrowingFails, WhatAWatcherThrowsEndsTheFrame) {
 }
 
 } // namespace
+
+} // namespace growth_test

@@ -2,6 +2,8 @@
 #include "render/imagertext.h"
 #include <gtest/gtest.h>
 
+namespace imagertext_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -76,3 +78,5 @@ TEST(ImagerText, DamagedTextIsAnError) {
 }
 
 } // namespace
+
+} // namespace imagertext_test

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace imaging_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -66,3 +68,5 @@ TEST(Imaging, SampleClampKeepsTheHue) {
     EXPECT_EQ(clampSample(Color(2, 4, 6), 3), Color(1, 2, 3));
     EXPECT_EQ(clampSample(Color(20, 40, 60), 0), Color(20, 40, 60));
 }
+
+} // namespace imaging_test

@@ -4,6 +4,8 @@
 #include "transport/integrator.h"
 #include <gtest/gtest.h>
 
+namespace levels_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -142,3 +144,5 @@ TEST(Levels, FramesWithoutThemStayTheSame) {
     f->primitives = {sphere(std::make_shared<scene::Attributes>())};
     EXPECT_EQ(drawnLevels(f, Camera(f->options, d)), f);
 }
+
+} // namespace levels_test

@@ -2,6 +2,8 @@
 #include "render/outputs.h"
 #include <gtest/gtest.h>
 
+namespace lightchannels_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 using Source = OutputVariable::Source;
@@ -98,3 +100,5 @@ TEST(LightChannels, PixelsOfAFilm) {
 }
 
 } // namespace
+
+} // namespace lightchannels_test

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace noise_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -293,3 +295,5 @@ TEST(Noise, StudentQuantiles) {
     EXPECT_NEAR(confidenceInterval(e).halfWidth, 0.5 * 2.364624, 1e-6);
     EXPECT_EQ(confidenceInterval(e).mean, 2);
 }
+
+} // namespace noise_test

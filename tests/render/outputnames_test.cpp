@@ -2,6 +2,8 @@
 #include "render/outputnames.h"
 #include <gtest/gtest.h>
 
+namespace outputnames_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -97,3 +99,5 @@ TEST(OutputNames, DisplaysOfTheCommandLineAreNumbered) {
     EXPECT_EQ(names(true), "ri.pic ");
     EXPECT_EQ(names(false), "");
 }
+
+} // namespace outputnames_test

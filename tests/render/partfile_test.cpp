@@ -7,6 +7,8 @@
 #include <unistd.h>
 #include <zlib.h>
 
+namespace partfile_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 namespace fs = std::filesystem;
@@ -235,3 +237,5 @@ TEST_F(PartFile, AFullDiskKeepsTheOldFile) {
     EXPECT_GE(diag.errors(), 1);
     EXPECT_EQ(bytes("a.part"), old);
 }
+
+} // namespace partfile_test

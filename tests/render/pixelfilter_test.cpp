@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+namespace pixelfilter_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -88,3 +90,5 @@ TEST(PixelFilter, BadRequestsAreReported) {
     EXPECT_EQ(f.xw, limits::kFilterWidth);
     EXPECT_EQ(diag.errors(), 4);
 }
+
+} // namespace pixelfilter_test

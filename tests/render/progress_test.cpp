@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace progress_test {
+
 using namespace alpenglow::render;
 
 namespace {
@@ -110,3 +112,5 @@ TEST(Progress, NamesAndDurations) {
     EXPECT_EQ(formatDuration(2 * 86400 + 3 * 3600 + 300), "2d 3:05:00");
     EXPECT_EQ(formatDuration(-1), "?");
 }
+
+} // namespace progress_test

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+namespace renderer_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 namespace fs = std::filesystem;
@@ -707,3 +709,5 @@ TEST(Team, EveryTaskOnceAndExceptionsArrive) {
     EXPECT_THROW(team.run(1000, &halt, wait, [](size_t) { throw std::bad_alloc(); }), std::bad_alloc); // of who looks on, too
     EXPECT_EQ(halt, 1);
 }
+
+} // namespace renderer_test

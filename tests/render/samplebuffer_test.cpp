@@ -2,6 +2,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace samplebuffer_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -155,3 +157,5 @@ TEST(SampleBuffer, AFilterThatMeetsNoSampleFallsBackToThePixel) {
     EXPECT_EQ(i.at(0, 0, 3), 0);
     EXPECT_TRUE(std::isinf(i.at(0, 0, 7)) && i.at(0, 0, 7) > 0);
 }
+
+} // namespace samplebuffer_test

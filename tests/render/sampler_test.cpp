@@ -5,6 +5,8 @@
 #include <bit>
 #include <gtest/gtest.h>
 
+namespace sampler_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 using namespace alpenglow::teststat;
@@ -334,3 +336,5 @@ TEST(Sampler, ErrorFallsFasterThanRandom) {
     double random = (16.0 / 9 - 1) / n; // variance of the mean of 256 random values of 4 x y
     EXPECT_LT(square / pixels, random / 100);
 }
+
+} // namespace sampler_test

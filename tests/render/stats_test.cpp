@@ -3,6 +3,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+namespace stats_test {
+
 using namespace alpenglow::render;
 
 namespace {
@@ -74,3 +76,5 @@ TEST(Stats, TheProcessHasMemoryAndTime) {
     EXPECT_GT(peakMemoryBytes(), 1u << 20);
     EXPECT_GE(processCpuSeconds(), 0);
 }
+
+} // namespace stats_test

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace archive_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 namespace fs = std::filesystem;
@@ -202,3 +204,5 @@ TEST_F(Archives, ParsedAheadAreTheSame) {
     for (size_t i = 0; i < said.size(); ++i)
         if (said[i].place.file.find("main") == std::string::npos) EXPECT_EQ(toString(said[i]), toString(alsoSaid[i]));
 }
+
+} // namespace archive_test

@@ -5,6 +5,8 @@
 #include <random>
 #include <zlib.h>
 
+namespace binary_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -195,3 +197,5 @@ TEST(Hostile, ArchivesOfArchivesAreBounded) {
     for (int k = 0; k < 10000; ++k) t += "ReadArchive \"b0\" ";
     EXPECT_EQ(read(t)->only().code, Rie::Limit);
 }
+
+} // namespace binary_test

@@ -3,6 +3,8 @@
 #include "collect.h"
 #include <sstream>
 
+namespace grammar_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -216,3 +218,5 @@ TEST(Grammar, MessagesAreBounded) {
     EXPECT_EQ(c->count(), size_t(limits::kReportedProblems) + 1);
     EXPECT_FALSE(c->ok);
 }
+
+} // namespace grammar_test

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <regex>
 
+namespace knownoptions_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 using scene::Effect;
@@ -101,3 +103,5 @@ TEST(KnownOptions, NamesForHints) {
     EXPECT_EQ(std::count(categories.begin(), categories.end(), "visibility"), 1);
     EXPECT_EQ(nearestName("maxdpth", scene::knownNames(scene::knownOptions(), "trace")), "maxdepth");
 }
+
+} // namespace knownoptions_test

@@ -4,6 +4,8 @@
 #include <random>
 #include <set>
 
+namespace lightset_test {
+
 using alpenglow::scene::LightSet;
 
 TEST(LightSet, IsASet) {
@@ -34,3 +36,5 @@ TEST(LightSet, IsASet) {
     EXPECT_EQ(LightSet({5, 6, 8}), (std::vector<int>{5, 6, 8}));
     EXPECT_NE(LightSet({5, 6}), LightSet({5, 6, 8}));
 }
+
+} // namespace lightset_test

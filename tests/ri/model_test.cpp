@@ -10,6 +10,8 @@
 #include <fstream>
 #include <random>
 
+namespace model_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 using scene::Class;
@@ -392,3 +394,5 @@ TEST_F(ModelFiles, AreSoLargeAtMost) {
     EXPECT_TRUE(readModelFile(path, said.sink(), nullptr).empty());
     EXPECT_EQ(said.errors, 1) << said.text;
 }
+
+} // namespace model_test

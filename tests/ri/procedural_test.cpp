@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace procedural_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 namespace fs = std::filesystem;
@@ -297,3 +299,5 @@ TEST_F(Procedurals, OutsideThePictureAreNotExpandedWhereOnlyTheCameraCouldSeeThe
     EXPECT_EQ(drawn("", alone + "MotionBegin [0 1] Translate 8 0 5 Translate 0 0 5 MotionEnd"), 1u);
     EXPECT_EQ(drawn("", alone + "SolidBegin \"primitive\"" + away), 1u);
 }
+
+} // namespace procedural_test

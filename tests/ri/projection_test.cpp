@@ -2,6 +2,8 @@
 #include "collect.h"
 #include <cmath>
 
+namespace projection_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -44,3 +46,5 @@ TEST(Projection, StereoIsAPairOfPerspectives) {
     EXPECT_EQ(scene::find(o.projectionParams, "stereo")->strings[0], "sidebyside");
     EXPECT_EQ(scene::find(o.projectionParams, "eyeseparation")->numbers[0], 0.1f);
 }
+
+} // namespace projection_test

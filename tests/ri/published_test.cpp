@@ -1,6 +1,8 @@
 // What RIB files published by others ask for and other tests do not: empty meshes, names of other renderers, the teapot.
 #include "collect.h"
 
+namespace published_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -166,3 +168,5 @@ TEST(Published, SignsBeginNumbersAndOneNumberIsAGrey) {
     EXPECT_EQ(whole->count(), 0u) << whole->messages();
     EXPECT_EQ(whole->primitive().ints, (std::vector<int>{3}));
 }
+
+} // namespace published_test

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+namespace random_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -102,3 +104,5 @@ TEST(Random, RequestsKeepTheirPromises) {
     }
     EXPECT_GT(primitives, 1000u); // the damage is not so great that nothing is left to check
 }
+
+} // namespace random_test

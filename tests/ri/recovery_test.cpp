@@ -3,6 +3,8 @@
 #include "collect.h"
 #include "scene/solids.h"
 
+namespace recovery_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -270,3 +272,5 @@ TEST(Foreign, ArchiveOfAProcedure) {
     EXPECT_NE(c->frame().primitives[1]->attributes->color, Color(0, 1, 0)); // its attributes stay its own
     EXPECT_EQ(c->count(), 0u) << c->messages();
 }
+
+} // namespace recovery_test

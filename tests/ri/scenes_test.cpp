@@ -2,6 +2,8 @@
 #include "collect.h"
 #include <filesystem>
 
+namespace scenes_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -26,3 +28,5 @@ TEST(PublishedScenes, AreReadWithoutAWarning) {
         EXPECT_EQ(c.frame().options.pixelAspect, 1) << s.name;
     }
 }
+
+} // namespace scenes_test

@@ -5,6 +5,8 @@
 #include <fstream>
 #include <numbers>
 
+namespace state_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -536,3 +538,5 @@ TEST(Textures, ReachTheConsumerInOrder) {
     EXPECT_EQ(scene::find(c->textures[1].args, "fov")->numbers[0], 95);
     EXPECT_EQ(c->textures[2].kind, "MakeShadow");
 }
+
+} // namespace state_test

@@ -5,6 +5,8 @@
 #include "ri/requests/request.h"
 #include <set>
 
+namespace table_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 
@@ -213,3 +215,5 @@ TEST(Table, ManualNamesEveryRequest) {
     std::string m = requestManual();
     for (const Request& r : requestTable()) EXPECT_NE(m.find("\n| " + std::string(r.name) + " | "), std::string::npos) << r.name;
 }
+
+} // namespace table_test

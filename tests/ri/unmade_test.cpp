@@ -5,6 +5,8 @@
 #include <fstream>
 #include <unistd.h>
 
+namespace unmade_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 namespace fs = std::filesystem;
@@ -200,3 +202,5 @@ TEST_F(Unmade, WhatShinesOrIsSeenOrBelongsToOthersDoesNotWait) {
 }
 
 } // namespace
+
+} // namespace unmade_test

@@ -3,6 +3,8 @@
 #include "ri/declare.h"
 #include "scene/counts.h"
 
+namespace variables_test {
+
 using namespace alpenglow;
 using namespace alpenglow::ri;
 using scene::Class;
@@ -262,3 +264,5 @@ TEST(Volumes, ThatAreNoneAreErrors) {
     c = world("Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0]");
     EXPECT_NE(c->only().message.find("empty"), std::string::npos);
 }
+
+} // namespace variables_test

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace advice_test {
+
 namespace fs = std::filesystem;
 using namespace alpenglow;
 using namespace alpenglow::rsl;
@@ -176,3 +178,5 @@ TEST(Excerpts, OfVeryLongLines) {
         EXPECT_EQ(d.length, 6);
     }
 }
+
+} // namespace advice_test

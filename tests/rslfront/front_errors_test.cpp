@@ -4,7 +4,7 @@
 #include <chrono>
 #include <random>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::front_errors_test {
 namespace {
 
 struct Case {
@@ -302,4 +302,4 @@ TEST(FrontHostile, MutatedBytes) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::front_errors_test

@@ -1,7 +1,7 @@
 // Expressions: precedence (rsl.md 3), conversions (rsl.md 4), overloads. The expected trees follow from those tables.
 #include "front_helpers.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::front_expressions_test {
 namespace {
 
 struct Case {
@@ -165,4 +165,4 @@ TEST(FrontExpressions, VaryingFollowsOperands) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::front_expressions_test

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::front_preprocessor_test {
 namespace {
 
 struct Case {
@@ -129,4 +129,4 @@ TEST(FrontPreprocessor, AnnotationsWithoutQuotes) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::front_preprocessor_test

@@ -1,7 +1,7 @@
 // Statements, declarations, functions and shaders: rsl.md 2, 5, 6, 7 and the habits listed in wild.md.
 #include "front_helpers.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::front_statements_test {
 namespace {
 
 struct Case {
@@ -197,4 +197,4 @@ TEST(FrontFunctions, EveryRslShadeopCompiles) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::front_statements_test

@@ -8,6 +8,8 @@
 #include <regex>
 #include <set>
 
+namespace messages_test {
+
 using namespace alpenglow;
 using namespace alpenglow::rsl;
 
@@ -237,3 +239,5 @@ TEST(Lint, UniformUnderVaryingConditions) {
     EXPECT_EQ(linted("surface s() {\nuniform float n = 0;\nif (u > 0.5)\nn = 1;\nCi = n;\n}"), (Ids{"uniform-in-varying:4"}));
     EXPECT_EQ(linted("surface s(float k = 1;) {\nuniform float n = 0;\nif (k > 0.5)\nn = 1;\nCi = n;\n}"), Ids());
 }
+
+} // namespace messages_test

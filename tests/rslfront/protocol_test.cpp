@@ -2,6 +2,8 @@
 #include "rsl/front/protocol.h"
 #include <gtest/gtest.h>
 
+namespace protocol_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -96,3 +98,5 @@ TEST(ProtocolNames, Handles) {
 }
 
 } // namespace
+
+} // namespace protocol_test

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <sstream>
 
+namespace affine_test {
+
 using namespace alpenglow;
 using namespace alpenglow::rsl;
 using namespace alpenglow::rsl::ir;
@@ -158,3 +160,5 @@ TEST(Affine, IlluminanceUnderPathEmitsShadows) {
 }
 
 } // namespace
+
+} // namespace affine_test

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <sstream>
 
+namespace build_test {
+
 using namespace alpenglow;
 using namespace alpenglow::rsl;
 using namespace alpenglow::rsl::ir;
@@ -126,3 +128,5 @@ TEST(Build, UnboundedInliningIsAnError) {
 }
 
 } // namespace
+
+} // namespace build_test

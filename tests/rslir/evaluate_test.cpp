@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+namespace evaluate_test {
+
 using namespace alpenglow;
 using namespace alpenglow::rsl;
 using namespace alpenglow::rsl::ir;
@@ -184,3 +186,5 @@ TEST(Evaluate, AffineFormGivesTheSameSum) {
 }
 
 } // namespace
+
+} // namespace evaluate_test

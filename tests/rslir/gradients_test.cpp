@@ -1,6 +1,8 @@
 // Slopes of textures are asked for where derivatives are wanted, and nowhere else.
 #include "compile.h"
 
+namespace gradients_test {
+
 using namespace alpenglow;
 using namespace alpenglow::rsl;
 
@@ -65,3 +67,5 @@ TEST(Gradients, Forms) {
 }
 
 } // namespace
+
+} // namespace gradients_test

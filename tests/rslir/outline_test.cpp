@@ -2,7 +2,7 @@
 #include "compile.h"
 #include "rsl/passes/outline.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::outline_test {
 namespace {
 
 const char* const kTwice = "float f(float x) { float i, y = x; for (i = 0; i < x; i += 1) y += sin(i * x); return y; }\n"
@@ -81,4 +81,4 @@ TEST(Outline, ExponentialInliningStaysSmall) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::outline_test

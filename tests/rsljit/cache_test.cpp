@@ -18,7 +18,7 @@
 
 namespace fs = std::filesystem;
 
-namespace alpenglow::rsl::test {
+namespace alpenglow::rsl::test::cache_test {
 namespace {
 
 struct Directory {
@@ -387,4 +387,4 @@ TEST(Evaluate, ValuesAndErrors) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl::test
+} // namespace alpenglow::rsl::test::cache_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace alpenglow::rsl::test {
+namespace alpenglow::rsl::test::codegen_test {
 namespace {
 
 constexpr int kPoints = 150; // not a multiple of any strip
@@ -510,4 +510,4 @@ TEST(Codegen, RuntimeIsInlined) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl::test
+} // namespace alpenglow::rsl::test::codegen_test

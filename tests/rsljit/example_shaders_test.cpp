@@ -2,7 +2,7 @@
 #include "rsl/compiler.h"
 #include <gtest/gtest.h>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::example_shaders_test {
 namespace {
 
 struct ExampleShaders : testing::Test {
@@ -43,4 +43,4 @@ TEST_F(ExampleShaders, UberLightHasOneBlockAroundIt) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::example_shaders_test

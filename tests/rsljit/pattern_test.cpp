@@ -6,7 +6,7 @@
 #include <random>
 #include <regex.h>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::pattern_test {
 namespace {
 
 std::string repeat(const std::string& s, int n) {
@@ -153,4 +153,4 @@ TEST(Pattern, CostIsBounded) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::pattern_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-namespace alpenglow::rsl {
+namespace alpenglow::rsl::patterns_ir_test {
 namespace {
 
 /// Every instruction of the text that should not be there, one a line. Intrinsics that are one machine instruction may be called.
@@ -73,4 +73,4 @@ TEST(PatternsIrCheck, FindsWhatItLooksFor) {
 }
 
 } // namespace
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::patterns_ir_test

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+namespace scenes_test {
+
 using namespace alpenglow;
 
 namespace {
@@ -198,3 +200,5 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& i) { return std::string(i.param.name); });
 
 } // namespace
+
+} // namespace scenes_test

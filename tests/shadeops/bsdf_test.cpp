@@ -8,6 +8,8 @@
 #include <random>
 #include <string>
 
+namespace bsdf_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -288,3 +290,5 @@ TEST(Bsdf, BelowTheSurfaceAndOddInputs) {
 }
 
 } // namespace
+
+} // namespace bsdf_test

@@ -8,6 +8,8 @@
 #include <random>
 #include <string>
 
+namespace elementary_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -170,3 +172,5 @@ TEST(Elementary, ModStaysInRange) {
 }
 
 } // namespace
+
+} // namespace elementary_test

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace geometry_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -172,3 +174,5 @@ TEST(Lighting, SpecularBrdf) {
 }
 
 } // namespace
+
+} // namespace geometry_test

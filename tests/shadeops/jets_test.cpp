@@ -10,6 +10,8 @@
 #include <random>
 #include <string>
 
+namespace jets_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -232,3 +234,5 @@ TEST(Jets, EveryRuntimeSymbolAgainstCentralDifferences) {
 }
 
 } // namespace
+
+} // namespace jets_test

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+namespace noise_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -216,3 +218,5 @@ TEST_F(Noise, FarAndOddCoordinatesStayInRange) {
 }
 
 } // namespace
+
+} // namespace noise_test

@@ -14,6 +14,8 @@
 #include <set>
 #include <sstream>
 
+namespace registry_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -248,3 +250,5 @@ TEST(Registry, RuntimeShadeopsHaveExamples) {
 }
 
 } // namespace
+
+} // namespace registry_test

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace wide_lanes_test {
+
 using namespace alpenglow::rsl;
 
 namespace {
@@ -53,3 +55,5 @@ TEST(WideLanes, OddInputsNeitherTrapNorDiffer) {
 }
 
 } // namespace
+
+} // namespace wide_lanes_test

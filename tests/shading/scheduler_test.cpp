@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace scheduler_test {
+
 using namespace alpenglow;
 using namespace alpenglow::shading;
 
@@ -439,3 +441,5 @@ TEST(Scheduler, WhatIsHeldBackIsFollowedInTheEnd) {
             EXPECT_EQ(s.value(roots[size_t(i)]).radiance.x, float(i * (1 + i % 4))) << slice << " " << i;
     }
 }
+
+} // namespace scheduler_test

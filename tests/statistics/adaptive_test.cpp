@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+namespace adaptive_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 using namespace alpenglow::teststat;
@@ -295,3 +297,5 @@ TEST_F(Adaptive, WhereItIsUsed) {
     EXPECT_FALSE(part->spread());
     EXPECT_EQ(part->samplesPerPixel(), 40u);
 }
+
+} // namespace adaptive_test

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace agreement_test {
+
 using namespace alpenglow::teststat;
 
 namespace {
@@ -81,3 +83,5 @@ TEST(Agreement, KeptPValuesAreUniform) {
     if (p.size() < 500) GTEST_SKIP() << p.size() << " p-values kept; 500 are needed";
     EXPECT_GT(ksUniformP(p), 1e-3) << p.size() << " p-values";
 }
+
+} // namespace agreement_test

@@ -5,6 +5,8 @@
 #include "statistics/agreement.h"
 #include <gtest/gtest.h>
 
+namespace camera_sampling_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 using namespace alpenglow::teststat;
@@ -65,3 +67,5 @@ TEST(CameraSampling, PairsAreUniformAtEverySample) {
         EXPECT_GE(chiSquareP(hits, expected), kAlpha) << sample;
     }
 }
+
+} // namespace camera_sampling_test

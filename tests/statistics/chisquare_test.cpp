@@ -1,6 +1,8 @@
 #include "chisquare.h"
 #include <gtest/gtest.h>
 
+namespace chisquare_test {
+
 using namespace alpenglow::teststat;
 
 // Q(1, x) = exp(-x); Q(1/2, x) = erfc(sqrt x): both branches of the evaluation.
@@ -20,3 +22,5 @@ TEST(ChiSquare, RejectsAWrongDensity) {
     EXPECT_GT(chiSquareP(good, e), 0.99);
     EXPECT_LT(chiSquareP(bad, e), kAlpha);
 }
+
+} // namespace chisquare_test

@@ -3,6 +3,8 @@
 #include "render/noise.h"
 #include <gtest/gtest.h>
 
+namespace honest_noise_test {
+
 using namespace alpenglow;
 using namespace alpenglow::render;
 
@@ -147,3 +149,5 @@ TEST(HonestNoise, FilterSignsAreStrata) {
         if (n == 512) EXPECT_LT(square / renders, (weight * weight - 1) / n / 3);
     }
 }
+
+} // namespace honest_noise_test

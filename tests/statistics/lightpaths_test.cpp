@@ -7,6 +7,8 @@
 #include <rapidcheck.h>
 #include <set>
 
+namespace lightpaths_test {
+
 using namespace alpenglow;
 using scene::LightPaths;
 using scene::PathEvent;
@@ -278,3 +280,5 @@ TEST(LightPathExpressions, PartsOfAPixelAddUpToItsIntegers) {
 }
 
 } // namespace
+
+} // namespace lightpaths_test

@@ -8,6 +8,8 @@
 #include <rapidcheck.h>
 #include <rapidcheck/detail/TestListenerAdapter.h>
 
+namespace lobe_property_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 
@@ -108,3 +110,5 @@ INSTANTIATE_TEST_SUITE_P(Kinds, LobeProperty, ::testing::ValuesIn(lobeKinds().be
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
 });
+
+} // namespace lobe_property_test

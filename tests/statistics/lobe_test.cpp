@@ -10,6 +10,8 @@
 #include <set>
 #include <utility>
 
+namespace lobe_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 
@@ -425,3 +427,5 @@ TEST(Lobe, NarrowCones) {
 }
 
 } // namespace
+
+} // namespace lobe_test

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace whitefurnace_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 
@@ -75,3 +77,5 @@ TEST(WhiteFurnace, SamplesBringTheIntegral) {
     }
     EXPECT_GE(compared, 120); // of 245
 }
+
+} // namespace whitefurnace_test

@@ -4,6 +4,8 @@
 #include "texture/texture.h"
 #include <cmath>
 
+namespace cube_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -135,3 +137,5 @@ TEST(MakeRequest, ByName) {
     EXPECT_FALSE(runMakeRequest("MakeBrickMap", {"a", "b"}, {}, o, d));
     EXPECT_EQ(d.errors(), 2);
 }
+
+} // namespace cube_test

@@ -6,6 +6,8 @@
 #include <sys/wait.h>
 #include <thread>
 
+namespace damage_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -154,3 +156,5 @@ TEST(Damage, TwoProcessesThatMakeOneMap) {
     }
     EXPECT_EQ(s.files(), 3u); // and nothing is left beside it
 }
+
+} // namespace damage_test

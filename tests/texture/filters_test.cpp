@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+namespace filters_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::texture::test;
@@ -204,3 +206,5 @@ TEST(Environments, CubeMapsAreSumsOverDirectionsAcrossEdges) {
             << size; // a footprint stays on its face, beyond whose edge the last texels go on
     }
 }
+
+} // namespace filters_test

@@ -10,6 +10,8 @@
 #include <random>
 #include <thread>
 
+namespace lanes_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -236,3 +238,5 @@ TEST(Scratch, AFullDiskIsSaidAndTheMapStaysInMemory) {
     EXPECT_NE(messages(d).find("TMPDIR"), std::string::npos);
     EXPECT_FALSE(h->levels[0].values.mapped());
 }
+
+} // namespace lanes_test

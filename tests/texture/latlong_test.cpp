@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace latlong_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -82,3 +84,5 @@ TEST(LatLong, LooksUpAndWraps) {
     environmentLatLongQuad(t.get(), map, 0, 1, corners, {}, &v);
     EXPECT_NEAR(v, 3, 1e-4f);
 }
+
+} // namespace latlong_test

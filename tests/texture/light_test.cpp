@@ -5,6 +5,8 @@
 #include "texture/maketexture.h"
 #include <cmath>
 
+namespace light_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -162,3 +164,5 @@ TEST(Light, MapsOf8BitsAreCodesInMemory) {
     const Texels<float>& kept = floats->levels[0].values;
     EXPECT_EQ(std::vector<float>(kept.data(), kept.data() + kept.size()), m.data);
 }
+
+} // namespace light_test

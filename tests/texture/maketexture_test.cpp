@@ -3,6 +3,8 @@
 #include "texture/maketexture.h"
 #include "texture/shadow.h"
 
+namespace maketexture_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -104,3 +106,5 @@ TEST(MakeTexture, LatLongAndShadow) {
     EXPECT_TRUE(makeShadow("bare.z", "bare.shd", o, d));
     EXPECT_EQ(d.warnings(), 1);
 }
+
+} // namespace maketexture_test

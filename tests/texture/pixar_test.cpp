@@ -5,6 +5,8 @@
 #include "texture/shadow.h"
 #include <cmath>
 
+namespace pixar_test {
+
 using namespace alpenglow;
 using namespace alpenglow::display::test;
 using namespace alpenglow::texture;
@@ -131,3 +133,5 @@ TEST(PixarMaps, SampleAsInputOfMakeTexture) {
     ASSERT_TRUE(native && made) << messages(d);
     EXPECT_EQ(native->data, made->data);
 }
+
+} // namespace pixar_test

@@ -1,6 +1,8 @@
 // Reduced levels of a picture.
 #include "pictures.h"
 
+namespace pyramid_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -39,3 +41,5 @@ TEST(Pyramid, EveryKernelKeepsAConstant) {
     }
     EXPECT_FALSE(isReductionFilter("nonesuch"));
 }
+
+} // namespace pyramid_test

@@ -2,6 +2,8 @@
 #include "pictures.h"
 #include <cmath>
 
+namespace slopes_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::texture::test;
@@ -151,3 +153,5 @@ TEST(Curves, OfAnEnvironment) {
         for (float x : c) EXPECT_EQ(x, 0);
     }
 }
+
+} // namespace slopes_test

@@ -3,6 +3,8 @@
 #include <limits>
 #include <thread>
 
+namespace system_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -140,3 +142,5 @@ TEST(TextureSystem, DeclaredGammaBecomesLinear) {
     EXPECT_NEAR(value(raw, "half.png", 0), 64 / 255.0f, 1e-6f);
     EXPECT_TRUE(d.all().empty()) << messages(d);
 }
+
+} // namespace system_test

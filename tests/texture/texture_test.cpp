@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+namespace texture_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -269,3 +271,5 @@ TEST(Texture, InfinityInOneTexelStaysThere) {
     EXPECT_EQ(at(t, 0.125f, 0.125f), 1);
     EXPECT_EQ(at(t, 0.625f, 0.625f), 1); // beside it, weight 0
 }
+
+} // namespace texture_test

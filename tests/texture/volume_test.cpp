@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+namespace volume_test {
+
 using namespace alpenglow;
 using namespace alpenglow::texture;
 using namespace alpenglow::display::test;
@@ -168,3 +170,5 @@ TEST(Volumes, GridsOfOpenVdbThroughTheirModule) {
     }
 }
 #endif
+
+} // namespace volume_test

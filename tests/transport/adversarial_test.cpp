@@ -4,6 +4,8 @@
 #include "base/limits.h"
 #include "transport/floorscene.h"
 
+namespace adversarial_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -295,3 +297,5 @@ TEST(Adversarial, Many) {
 }
 
 } // namespace
+
+} // namespace adversarial_test

@@ -2,6 +2,8 @@
 // own.
 #include "transport/floorscene.h"
 
+namespace arealights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -81,3 +83,5 @@ TEST(AreaLights, OneSidedFromBehind) {
 }
 
 } // namespace
+
+} // namespace arealights_test

@@ -1,6 +1,8 @@
 // attribute(), option() and rayinfo() in rendered scenes, by every name that the reference has (rsl.md 11, Tables 6.20 and 6.21).
 #include "transport/floorscene.h"
 
+namespace attributes_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -289,3 +291,5 @@ TEST(RayInfo, EveryKeyword) {
 }
 
 } // namespace
+
+} // namespace attributes_test

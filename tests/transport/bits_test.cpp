@@ -3,6 +3,8 @@
 #include <cstring>
 #include <thread>
 
+namespace bits_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -315,3 +317,5 @@ TEST(Bits, BoxInEveryWidth) {
 }
 
 } // namespace
+
+} // namespace bits_test

@@ -2,6 +2,8 @@
 // reference.
 #include "transport/box.h"
 
+namespace box_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -157,3 +159,5 @@ TEST(BoxReference, FrameMeans) {
 }
 
 } // namespace
+
+} // namespace box_test

@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include <random>
 
+namespace coincident_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -60,3 +62,5 @@ TEST(Coincident, SurfacesOfEveryKind) {
 }
 
 } // namespace
+
+} // namespace coincident_test

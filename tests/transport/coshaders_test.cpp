@@ -1,6 +1,8 @@
 // RIB Shader: co-shaders of a shape, by their handles; a class that is a surface and a displacement. Closed forms.
 #include "transport/harness.h"
 
+namespace coshaders_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -157,3 +159,5 @@ TEST(CoShaders, AskingThePrimitive) {
     EXPECT_FLOAT_EQ(c.y, 101);
     EXPECT_FLOAT_EQ(c.z, .25f);
 }
+
+} // namespace coshaders_test

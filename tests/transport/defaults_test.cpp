@@ -2,6 +2,8 @@
 // forms.
 #include "transport/floorscene.h"
 
+namespace defaults_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -82,3 +84,5 @@ TEST(Defaults, TheImagerBackgroundTakesItsColourAsColor) {
 }
 
 } // namespace
+
+} // namespace defaults_test

@@ -3,6 +3,8 @@
 #include "transport/harness.h"
 #include "transport/maps.h"
 
+namespace derivatives_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -291,3 +293,5 @@ TEST(TextureDerivatives, OfAnEnvironment) {
 }
 
 } // namespace
+
+} // namespace derivatives_test

@@ -2,6 +2,8 @@
 #include "transport/harness.h"
 #include <cstring>
 
+namespace differences_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -174,3 +176,5 @@ TEST(Differences, AreTheSameBitsAtEveryWidth) {
 }
 
 } // namespace
+
+} // namespace differences_test

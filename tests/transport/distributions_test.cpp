@@ -7,6 +7,8 @@
 #include "transport/maps.h"
 #include <random>
 
+namespace distributions_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -271,3 +273,5 @@ TEST(TraceDistributions, WordsThatAreNotKnown) {
 }
 
 } // namespace
+
+} // namespace distributions_test

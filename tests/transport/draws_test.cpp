@@ -1,6 +1,8 @@
 // random(): its numbers in loops, functions, lights, and for uniform variables. Closed forms: uniform on [0, 1), independent.
 #include "transport/harness.h"
 
+namespace draws_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -68,3 +70,5 @@ TEST(Draws, AUniformVariableHasOneNumberAPrimitive) {
 }
 
 } // namespace
+
+} // namespace draws_test

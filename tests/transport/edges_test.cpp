@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include <fmt/format.h>
 
+namespace edges_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -76,3 +78,5 @@ TEST(Edges, SmallThingsFarAwayHaveTwoSides) {
 }
 
 } // namespace
+
+} // namespace edges_test

@@ -14,6 +14,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace emitter_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::geometry::test;
@@ -270,3 +272,5 @@ TEST(EmitterSurface, UniformOverUv) {
 }
 
 } // namespace
+
+} // namespace emitter_test

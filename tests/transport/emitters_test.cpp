@@ -5,6 +5,8 @@
 #include "transport/floorscene.h"
 #include "transport/maps.h"
 
+namespace emitters_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -224,3 +226,5 @@ TEST(Emitters, TheTreeAgainstEvenChoice) {
     std::printf("variance %.1f times, time %.2f times, efficiency %.1f times\n", b / a, timeA / timeB, b * timeB / (a * timeA));
     EXPECT_GT(b / a, 6);
 }
+
+} // namespace emitters_test

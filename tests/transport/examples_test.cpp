@@ -6,6 +6,8 @@
 #include <functional>
 #include <map>
 
+namespace examples_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -140,3 +142,5 @@ TEST(Examples, ThoseThatNeedAScene) {
 }
 
 } // namespace
+
+} // namespace examples_test

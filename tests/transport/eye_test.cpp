@@ -3,6 +3,8 @@
 #include "render/camera.h"
 #include "transport/floorscene.h"
 
+namespace eye_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -97,3 +99,5 @@ TEST(Eye, DepthAndLinesInDisplacementsAndLights) {
 }
 
 } // namespace
+
+} // namespace eye_test

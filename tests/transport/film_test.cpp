@@ -6,6 +6,8 @@
 #include "render/team.h"
 #include "transport/box.h"
 
+namespace film_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -366,3 +368,5 @@ TEST_F(FilmBits, SevenRangesInAnyOrder) {
 }
 
 } // namespace
+
+} // namespace film_test

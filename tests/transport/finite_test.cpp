@@ -1,6 +1,8 @@
 // Values that are not finite numbers: the sample that meets one is left out as a whole, and who made it is named.
 #include "transport/harness.h"
 
+namespace finite_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -92,3 +94,5 @@ TEST(NotFinite, OtherSamplesStay) {
 }
 
 } // namespace
+
+} // namespace finite_test

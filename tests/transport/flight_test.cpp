@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include "wave/engine.h"
 
+namespace flight_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -116,3 +118,5 @@ TEST(Flight, ARayCanGoOnElsewhere) {
 }
 
 } // namespace
+
+} // namespace flight_test

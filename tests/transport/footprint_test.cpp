@@ -3,6 +3,8 @@
 #include "display/imageio.h"
 #include "transport/floorscene.h"
 
+namespace footprint_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -172,3 +174,5 @@ TEST(Footprint, EmittersLookTheSameToLightSamplesAndRays) {
 }
 
 } // namespace
+
+} // namespace footprint_test

@@ -1,6 +1,8 @@
 // T5 a and b: furnaces, and a sphere with a light at its centre. Values are closed forms.
 #include "transport/harness.h"
 
+namespace furnace_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -218,3 +220,5 @@ TEST(Furnace, FogAndMatte) {
 }
 
 } // namespace
+
+} // namespace furnace_test

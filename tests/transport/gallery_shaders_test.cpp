@@ -3,6 +3,8 @@
 #include "transport/harness.h"
 #include <regex>
 
+namespace gallery_shaders_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -128,3 +130,5 @@ TEST(Gallery, ShowsAtLeastFortyAndAllAreListed) {
 }
 
 } // namespace
+
+} // namespace gallery_shaders_test

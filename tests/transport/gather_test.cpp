@@ -3,6 +3,8 @@
 #include "transport/maps.h"
 #include <cmath>
 
+namespace gather_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -465,3 +467,5 @@ TEST(Gather, EveryParameter) {
 }
 
 } // namespace
+
+} // namespace gather_test

@@ -2,6 +2,8 @@
 // stays.
 #include "transport/floorscene.h"
 
+namespace givenchannels_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -93,3 +95,5 @@ TEST(GivenChannels, OfAtmospheres) {
 }
 
 } // namespace
+
+} // namespace givenchannels_test

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <thread>
 
+namespace growth_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -333,3 +335,5 @@ TEST(Growth, CountsThatMakeNoSense) {
 }
 
 } // namespace
+
+} // namespace growth_test

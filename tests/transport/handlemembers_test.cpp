@@ -2,6 +2,8 @@
 // that is meant has to have the member. Arrays of texts of attributes and options.
 #include "transport/harness.h"
 
+namespace handlemembers_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -171,3 +173,5 @@ TEST(HandleMembers, LightsArePrintedByTheHandleOfTheirDeclaration) { // seed, fo
 }
 
 } // namespace
+
+} // namespace handlemembers_test

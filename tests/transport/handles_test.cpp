@@ -3,6 +3,8 @@
 #include "display/imageio.h"
 #include "transport/harness.h"
 
+namespace handles_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -258,3 +260,5 @@ TEST(ShadowOpacity, IsWhatTheMethodOpacityGives) {
 }
 
 } // namespace
+
+} // namespace handles_test

@@ -2,6 +2,8 @@
 // samples and shadows of area lights.
 #include "transport/floorscene.h"
 
+namespace information_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -270,3 +272,5 @@ TEST(Information, CategoriesOfLightsWithoutTheParameter) {
 }
 
 } // namespace
+
+} // namespace information_test

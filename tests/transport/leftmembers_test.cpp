@@ -2,6 +2,8 @@
 // derivatives.
 #include "transport/floorscene.h"
 
+namespace leftmembers_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -122,3 +124,5 @@ TEST(LeftMembers, OthersKeepTheirOwn) {
     for (const char* before : {"Displacement \"flat\"\n", "Displacement \"dune\"\n"})
         expectColor(seen(before + std::string("Surface \"dune\"\n") + kPatch, Hider::Hidden, .6f, .3f), {3, 0, 0}, before);
 }
+
+} // namespace leftmembers_test

@@ -1,6 +1,8 @@
 // Levels of detail that fade: each camera sample, with all that comes of it, sees one of two adjacent levels.
 #include "transport/floorscene.h"
 
+namespace levels_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -31,3 +33,5 @@ TEST(FadingLevels, EverySampleSeesOne) {
 }
 
 } // namespace
+
+} // namespace levels_test

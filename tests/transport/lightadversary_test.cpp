@@ -3,6 +3,8 @@
 // own formulas.
 #include "transport/floorscene.h"
 
+namespace lightadversary_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -99,3 +101,5 @@ TEST(LightAdversary, LightsThatTraceForWhatIsSent) {
 }
 
 } // namespace
+
+} // namespace lightadversary_test

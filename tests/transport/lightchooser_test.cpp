@@ -5,6 +5,8 @@
 #include <numeric>
 #include <random>
 
+namespace lightchooser_test {
+
 using namespace alpenglow;
 using transport::LightBound;
 using transport::LightChooser;
@@ -93,3 +95,5 @@ TEST(LightChooser, NoLights) {
     EXPECT_EQ(LightChooser().pmf(0, {0, 0, 0}), 0);
     EXPECT_TRUE(LightChooser().empty());
 }
+
+} // namespace lightchooser_test

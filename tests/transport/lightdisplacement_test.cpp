@@ -1,6 +1,8 @@
 // displacement() in lights: what the displacement shader of the lit primitive wrote, however the light comes to the surface.
 #include "transport/floorscene.h"
 
+namespace lightdisplacement_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -71,3 +73,5 @@ TEST(LightDisplacementPath, EmittersThatAreMet) {
 }
 
 } // namespace
+
+} // namespace lightdisplacement_test

@@ -3,6 +3,8 @@
 #include "base/limits.h"
 #include "transport/harness.h"
 
+namespace lightfeatures_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -228,3 +230,5 @@ TEST(ClippingPlane, CutsWhatTheCameraSees) {
 }
 
 } // namespace
+
+} // namespace lightfeatures_test

@@ -3,6 +3,8 @@
 #include "base/limits.h"
 #include "transport/floorscene.h"
 
+namespace lightloop_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -535,3 +537,5 @@ TEST(LightHandles, CastShadows) {
 }
 
 } // namespace
+
+} // namespace lightloop_test

@@ -2,6 +2,8 @@
 // surface.
 #include "transport/floorscene.h"
 
+namespace lightnormals_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -25,3 +27,5 @@ TEST(LightNormals, ShadingNormalInALight) {
 }
 
 } // namespace
+
+} // namespace lightnormals_test

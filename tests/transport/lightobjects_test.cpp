@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include "world/lightobjects.h"
 
+namespace lightobjects_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -165,3 +167,5 @@ TEST(LightObjects, ALightWithoutMethodsSaysSo) {
 }
 
 } // namespace
+
+} // namespace lightobjects_test

@@ -4,6 +4,8 @@
 #include "transport/floorscene.h"
 #include <cstring>
 
+namespace lightoutputs_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -223,3 +225,5 @@ TEST(LightOutputs, LoopsAndArrays) {
 }
 
 } // namespace
+
+} // namespace lightoutputs_test

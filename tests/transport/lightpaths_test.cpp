@@ -4,6 +4,8 @@
 #include "transport/floorscene.h"
 #include <cstring>
 
+namespace lightpaths_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -189,3 +191,5 @@ TEST(LightPathOutputs, SameBitsInEveryWidth) {
 }
 
 } // namespace
+
+} // namespace lightpaths_test

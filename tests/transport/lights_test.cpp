@@ -1,6 +1,8 @@
 // Which lights count where: through transparent surfaces, in mirrors, by category, by several samples, beside explicit emission.
 #include "transport/harness.h"
 
+namespace lights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -122,3 +124,5 @@ TEST(Lights, NonDiffuseAndNonSpecular) {
 }
 
 } // namespace
+
+} // namespace lights_test

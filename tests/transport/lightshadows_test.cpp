@@ -1,6 +1,8 @@
 // Shadows that a light's shader asks for with transmission(): none of the surface on itself, and the right ones of others.
 #include "transport/floorscene.h"
 
+namespace lightshadows_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -74,3 +76,5 @@ TEST(LightShadows, OthersShadow) {
 }
 
 } // namespace
+
+} // namespace lightshadows_test

@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include <cmath>
 
+namespace lightsheets_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -101,3 +103,5 @@ TEST(LightSheets, ClosedForm) {
         EXPECT_NEAR(double(got[i].color.x), want, 2e-5 * want);
     }
 }
+
+} // namespace lightsheets_test

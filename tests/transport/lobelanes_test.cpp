@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace lobelanes_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 
@@ -178,3 +180,5 @@ TEST(LobeColumns, ClosedForms) {
 }
 
 } // namespace
+
+} // namespace lobelanes_test

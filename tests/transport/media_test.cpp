@@ -1,6 +1,8 @@
 // Interior and Exterior: which volume shader runs over which way, by Beer's law exp(-k d) with ways that are known.
 #include "transport/floorscene.h"
 
+namespace media_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -288,3 +290,5 @@ TEST(MediaLight, EveryEstimatorOfAnEmitter) {
 }
 
 } // namespace
+
+} // namespace media_test

@@ -2,6 +2,8 @@
 #include "base/limits.h"
 #include "transport/floorscene.h"
 
+namespace mediavariables_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -125,3 +127,5 @@ TEST(ShaderLists, CategoriesMadeWhenTheShaderRuns) {
 }
 
 } // namespace
+
+} // namespace mediavariables_test

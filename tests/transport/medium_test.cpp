@@ -2,6 +2,8 @@
 #include "transport/floorscene.h"
 #include <functional>
 
+namespace medium_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -514,3 +516,5 @@ TEST(Slfog, ItsThreeModesAreExact) {
 }
 
 } // namespace
+
+} // namespace medium_test

@@ -2,6 +2,8 @@
 // atmosphere.
 #include "transport/floorscene.h"
 
+namespace messages_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -180,3 +182,5 @@ TEST(Messages, OpacityHearsTheDisplacement) {
 }
 
 } // namespace
+
+} // namespace messages_test

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstring>
 
+namespace motion_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -309,3 +311,5 @@ TEST(Motion, BitsDoNotDependOnTheBatch) {
         EXPECT_EQ(0, memcmp(&c, &all[i].color, sizeof c)) << i;
     }
 }
+
+} // namespace motion_test

@@ -1,6 +1,8 @@
 // Surface shaders that move P displace their primitives; what displacement shaders share and do not share.
 #include "transport/floorscene.h"
 
+namespace moving_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -196,3 +198,5 @@ TEST(Volumes, AskThePrimitive) {
 }
 
 } // namespace
+
+} // namespace moving_test

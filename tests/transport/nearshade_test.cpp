@@ -2,6 +2,8 @@
 // far trace() sees. No statistics: the answers are 0.
 #include "transport/floorscene.h"
 
+namespace nearshade_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -113,3 +115,5 @@ TEST(TraceMaxDistance, TheSkyIsBehindIt) {
     EXPECT_NEAR(shows("maxdist5", sky, lobe, 400).mean(), 1, 1e-5);
     EXPECT_NEAR(shows("maxdist6", sky + wall, lobe, 400).mean(), 1, 1e-5);
 }
+
+} // namespace nearshade_test

@@ -4,6 +4,8 @@
 #include "base/limits.h"
 #include "transport/floorscene.h"
 
+namespace nestedlights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -352,3 +354,5 @@ TEST(NestedIlluminance, OutputsOfTheSurfaceAreReadByLights) {
 }
 
 } // namespace
+
+} // namespace nestedlights_test

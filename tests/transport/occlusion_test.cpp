@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+namespace occlusion_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -321,3 +323,5 @@ TEST(Occlusion, EveryParameter) {
 }
 
 } // namespace
+
+} // namespace occlusion_test

@@ -2,6 +2,8 @@
 // the origin.
 #include "transport/harness.h"
 
+namespace oldlights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -74,3 +76,5 @@ TEST(OldLights, ShadowsByAttribute) {
 }
 
 } // namespace
+
+} // namespace oldlights_test

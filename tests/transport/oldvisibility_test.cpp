@@ -1,6 +1,8 @@
 // Who is visible to traced rays under the older hiders: what the scene says; all where it says nothing, as in BMRT's time.
 #include "transport/harness.h"
 
+namespace oldvisibility_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -54,3 +56,5 @@ TEST(OldVisibility, BmrtsFlags) {
         EXPECT_NEAR(fromAbove.z, flags & 1 ? 1 : 0, 1e-6) << flags; // the card itself, or the floor through it
     }
 }
+
+} // namespace oldvisibility_test

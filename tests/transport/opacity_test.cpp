@@ -3,6 +3,8 @@
 #include "rsl/compiler.h"
 #include "transport/harness.h"
 
+namespace opacity_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -229,3 +231,5 @@ TEST(Atmosphere, SlopeIsProved) {
 }
 
 } // namespace
+
+} // namespace opacity_test

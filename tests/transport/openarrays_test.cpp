@@ -1,6 +1,8 @@
 // Parameters whose arrays are of open length, `float w[] = {}`: as long as what the scene gives. Closed forms.
 #include "transport/harness.h"
 
+namespace openarrays_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -64,3 +66,5 @@ TEST(OpenArrays, OfCoShaders) {
 }
 
 } // namespace
+
+} // namespace openarrays_test

@@ -2,6 +2,8 @@
 // forms.
 #include "transport/floorscene.h"
 
+namespace outputs_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -393,3 +395,5 @@ TEST(Outputs, AttributesOfAnotherTypeAreNotTold) {
 }
 
 } // namespace
+
+} // namespace outputs_test

@@ -2,6 +2,8 @@
 // space of co-shaders by a name that is made when the shader runs. Closed forms.
 #include "transport/floorscene.h"
 
+namespace overrides_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -151,3 +153,5 @@ TEST(Overrides, TheSpaceOfACoShaderHasItsNameAtRunTimeToo) {
 }
 
 } // namespace
+
+} // namespace overrides_test

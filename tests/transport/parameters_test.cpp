@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include "transport/maps.h"
 
+namespace parameters_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -255,3 +257,5 @@ TEST(Parameters, FiltersOfPointsAreTheirOwn) {
     EXPECT_GT(std::fabs(together[1] - together[2]), .02f) << together[1]; // a box is not the default
     EXPECT_LT(std::fabs(together[2] - together[3]), .1f) << together[2];  // which is the gaussian
 }
+
+} // namespace parameters_test

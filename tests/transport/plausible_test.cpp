@@ -2,6 +2,8 @@
 // indirectspecular() sends the rays that the material wants.
 #include "transport/floorscene.h"
 
+namespace plausible_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -169,3 +171,5 @@ TEST(Plausible, RaysWhereAnotherMaterialWantsThem) {
 }
 
 } // namespace
+
+} // namespace plausible_test

@@ -4,6 +4,8 @@
 #include "transport/maps.h"
 #include <cmath>
 
+namespace plausiblesamples_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -190,3 +192,5 @@ TEST(PlausibleSamples, EmissionOfAPrimitive) {
 }
 
 } // namespace
+
+} // namespace plausiblesamples_test

@@ -4,6 +4,8 @@
 #include <random>
 #include <thread>
 
+namespace prints_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -100,3 +102,5 @@ TEST(Prints, InTheOrderOfSamples) {
 }
 
 } // namespace
+
+} // namespace prints_test

@@ -1,6 +1,8 @@
 // Lights that published RIB files name: windowlight, indirect, causticlight.
 #include "transport/floorscene.h"
 
+namespace publishedlights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -70,3 +72,5 @@ TEST(PublishedLights, CausticsWithoutAMapAreNone) {
 }
 
 } // namespace
+
+} // namespace publishedlights_test

@@ -2,6 +2,8 @@
 // surfaces.
 #include "transport/floorscene.h"
 
+namespace rayserver_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -62,3 +64,5 @@ TEST(RayServer, WhatSurfacesAsk) {
 }
 
 } // namespace
+
+} // namespace rayserver_test

@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include "transport/maps.h"
 
+namespace raysets_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -319,3 +321,5 @@ TEST(RaySets, LightsThatTrace) {
 }
 
 } // namespace
+
+} // namespace raysets_test

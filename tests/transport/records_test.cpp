@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace records_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -213,3 +215,5 @@ TEST(Records, AreOfTheRaysThatTheirSurfacesSend) {
 }
 
 } // namespace
+
+} // namespace records_test

@@ -3,6 +3,8 @@
 #include "base/limits.h"
 #include "transport/floorscene.h"
 
+namespace sampledlights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -205,3 +207,5 @@ INSTANTIATE_TEST_SUITE_P(Hiders, SampledLights, ::testing::Values(Hider::Hidden,
                          [](const auto& i) { return i.param == Hider::Path ? "Path" : "Hidden"; });
 
 } // namespace
+
+} // namespace sampledlights_test

@@ -3,6 +3,8 @@
 #include "harness.h"
 #include <gtest/gtest.h>
 
+namespace samplesets_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -93,3 +95,5 @@ TEST(SampleSets, RaysOfOneTransmission) {
     };
     expectSpread(rib, .5, Hider::Hidden, "transmission");
 }
+
+} // namespace samplesets_test

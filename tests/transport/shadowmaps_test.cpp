@@ -3,6 +3,8 @@
 #include "transport/floorscene.h"
 #include "transport/maps.h"
 
+namespace shadowmaps_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -214,3 +216,5 @@ TEST(ShadowMaps, SamplesOfClassLights) {
 }
 
 } // namespace
+
+} // namespace shadowmaps_test

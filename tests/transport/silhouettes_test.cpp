@@ -2,6 +2,8 @@
 // ellipsoid, which rays meet by the sign of a quadratic's discriminant.
 #include "transport/floorscene.h"
 
+namespace silhouettes_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -130,3 +132,5 @@ TEST_P(Silhouettes, Moving) {
 INSTANTIATE_TEST_SUITE_P(All, Silhouettes, ::testing::Values(Hider::Hidden, Hider::Raytrace, Hider::Path));
 
 } // namespace
+
+} // namespace silhouettes_test

@@ -5,6 +5,8 @@
 #include "transport/floorscene.h"
 #include "transport/maps.h"
 
+namespace skies_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -202,3 +204,5 @@ TEST(Skies, Maps) {
         EXPECT_LE(m.se(), .02 * want);
     }
 }
+
+} // namespace skies_test

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace skytable_test {
+
 using namespace alpenglow;
 using transport::SkyTable;
 
@@ -131,3 +133,5 @@ TEST(SkyTable, BlackSkiesAndEnds) {
             }
     }
 }
+
+} // namespace skytable_test

@@ -1,6 +1,8 @@
 // slclassic.sl: SLProject's classic ray tracer by its formulas (pathtracer.md 9), each at points where they are known.
 #include "transport/floorscene.h"
 
+namespace slclassic_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -165,3 +167,5 @@ TEST(SlClassic, ContributionIsCut) {
     EXPECT_NEAR(s.one(rayTo({0, .5f, 0}, {0, 0, 0})).x, 1 + .25 + .0625 + .015625,
                 1e-6); // (1/2 of the sum) times (1/2 of the weight)
 }
+
+} // namespace slclassic_test

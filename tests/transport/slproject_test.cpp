@@ -2,6 +2,8 @@
 #include "transport/maps.h"
 #include <cmath>
 
+namespace slproject_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -126,3 +128,5 @@ TEST(SlProject, KindsByNames) {
             std::string(" if (slTextureType(\"") + name + "\") == \"" + kind + "\") n += 1; else printf(\"" + name + "\\n\");";
     expectNear(valueOf(body + " Ci = n;"), Color(float(std::size(names))), "names");
 }
+
+} // namespace slproject_test

@@ -6,6 +6,8 @@
 #include <array>
 #include <random>
 
+namespace solids_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -333,3 +335,5 @@ TEST(SolidParts, ALampMoves) {
         expectLight("Shutter 0 1\n" + onFloor(lamp(1, "one", lens)), underDisc(.8, 3 - double(t), 0), 1e-3, "at " + text(t),
                     at(t, kView));
 }
+
+} // namespace solids_test

@@ -5,6 +5,8 @@
 #include "wave/subsurface.h"
 #include <random>
 
+namespace subsurface_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -319,3 +321,5 @@ TEST_F(Subsurface, NoBitDependsOnWhoSharesABatch) {
 }
 
 } // namespace
+
+} // namespace subsurface_test

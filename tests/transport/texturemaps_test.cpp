@@ -1,6 +1,8 @@
 // texture(), environment() and textureinfo() of shaders: what maps are found, and what shaders see of those that are not.
 #include "transport/maps.h"
 
+namespace texturemaps_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -104,3 +106,5 @@ TEST(TextureMaps, ValuesWithAndWithoutSlopesAreTheSame) {
     const Looked n = looked("", "Surface \"noslopes\" \"string map\" [" + map + "]");
     expectColor(l.color, n.color, 1e-6f);
 }
+
+} // namespace texturemaps_test

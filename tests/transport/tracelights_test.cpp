@@ -3,6 +3,8 @@
 // sqrt(D^2 - h^2), the same.
 #include "transport/harness.h"
 
+namespace tracelights_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -149,3 +151,5 @@ TEST(TraceLights, LightsThatSeeWhatTheyLight) {
 }
 
 } // namespace
+
+} // namespace tracelights_test

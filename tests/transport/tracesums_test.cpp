@@ -1,6 +1,8 @@
 // trace() in sums and products: light in a color, however many numbers it is multiplied by, and a distance in a float.
 #include "transport/floorscene.h"
 
+namespace tracesums_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -27,3 +29,5 @@ TEST(TraceSums, AreLightInAColor) {
 }
 
 } // namespace
+
+} // namespace tracesums_test

@@ -3,6 +3,8 @@
 // lobes.
 #include "transport/floorscene.h"
 
+namespace twolobes_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -133,3 +135,5 @@ TEST(TwoLobes, APanelCutIntoThirtyTwoLights) {
         expectMean(cut.estimate(view, n), want, precision, std::string("thirty-two, ") + kModes[which]);
     }
 }
+
+} // namespace twolobes_test

@@ -1,6 +1,8 @@
 // A uniform variable takes no varying output of another shader: that is said once, with the place of the call.
 #include "transport/floorscene.h"
 
+namespace uniformreceivers_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -37,3 +39,5 @@ TEST(UniformReceivers, AreToldOf) {
 }
 
 } // namespace
+
+} // namespace uniformreceivers_test

@@ -3,6 +3,8 @@
 #include "transport/harness.h"
 #include <set>
 
+namespace units_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -440,3 +442,5 @@ TEST(Irradiance, IlluminateOff) {
 }
 
 } // namespace
+
+} // namespace units_test

@@ -2,7 +2,7 @@
 #include "transport/harness.h"
 #include <cstring>
 
-namespace alpenglow::transport::testing {
+namespace alpenglow::transport::testing::vertices_test {
 namespace {
 
 Settings path() {
@@ -92,4 +92,4 @@ TEST(Vertices, RareShaders) {
 }
 
 } // namespace
-} // namespace alpenglow::transport::testing
+} // namespace alpenglow::transport::testing::vertices_test

@@ -1,6 +1,8 @@
 // Words of published light shaders: Ngs, getlights(); and rays that are asked for nothing but the light of area lights.
 #include "transport/floorscene.h"
 
+namespace words_test {
+
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
@@ -123,3 +125,5 @@ TEST(TraceForAreaLights, NoRaysWithoutLights) {
 }
 
 } // namespace
+
+} // namespace words_test

@@ -8,6 +8,8 @@
 #include <sys/resource.h>
 #include <thread>
 
+namespace http_test {
+
 using namespace alpenglow::view;
 using namespace alpenglow::view::testing;
 
@@ -233,3 +235,5 @@ TEST(Token, IsLongAndNew) {
 }
 
 } // namespace
+
+} // namespace http_test

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
+namespace picture_test {
+
 using namespace alpenglow;
 using namespace alpenglow::view;
 
@@ -99,3 +101,5 @@ TEST(Pixels, WhatWasRenderedFirstLiesOverTheWhole) {
 }
 
 } // namespace
+
+} // namespace picture_test

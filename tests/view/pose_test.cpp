@@ -3,6 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+namespace pose_test {
+
 using namespace alpenglow;
 using view::Pose;
 
@@ -147,3 +149,5 @@ TEST(Pose, RaysGoToWhereTheWorldWasBuilt) {
 }
 
 } // namespace
+
+} // namespace pose_test

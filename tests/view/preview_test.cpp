@@ -12,6 +12,8 @@
 #include <thread>
 #include <unistd.h>
 
+namespace preview_test {
+
 using namespace alpenglow;
 using namespace alpenglow::view;
 
@@ -300,3 +302,5 @@ TEST_F(PreviewProgram, TheTerminalShowsThePictureAndItIsTheSame) {
 }
 
 } // namespace
+
+} // namespace preview_test

@@ -4,6 +4,8 @@
 #include <csignal>
 #include <fcntl.h>
 
+namespace program_test {
+
 using namespace alpenglow::view::testing;
 
 namespace {
@@ -157,3 +159,5 @@ TEST_F(ViewProgram, ASceneThatCannotBeReadIsSaid) {
 }
 
 } // namespace
+
+} // namespace program_test

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+namespace session_test {
+
 using namespace alpenglow;
 using namespace alpenglow::view;
 using Json = nlohmann::json;
@@ -530,3 +532,5 @@ TEST_F(ViewSession, EndsWhileItRenders) {
 }
 
 } // namespace
+
+} // namespace session_test

@@ -1,5 +1,6 @@
 #include "cli/manual.h"
 #include "rsl/front/ast.h"
+#include <cctype>
 #include <map>
 #include <vector>
 
@@ -64,6 +65,12 @@ std::string cell(const std::string& s) {
         t += c;
     }
     return t;
+}
+
+/// The anchor of a heading, as web pages make it.
+std::string headingAnchor(std::string name) {
+    for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return name;
 }
 
 bool isInternal(const rsl::Shadeop& s) { return s.name.rfind("__", 0) == 0; }
@@ -169,7 +176,7 @@ std::string manualPage() {
         "mean for any number of samples, *consistent* ones in the limit, *biased* ones for the reason that is given.\n\n";
     for (const auto& name : sections) {
         t += "**" + name + "**:";
-        for (const rsl::Shadeop* s : bySection[name]) t += " [" + s->name + "](#" + s->name + ")";
+        for (const rsl::Shadeop* s : bySection[name]) t += " [" + s->name + "](#" + headingAnchor(s->name) + ")";
         t += "\n\n";
     }
     for (const auto& name : sections) {

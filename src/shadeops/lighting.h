@@ -154,7 +154,7 @@ color phong(vector n, v; float size) {
                         "glass-ggx (reflected, refracted) or of hair "
                         "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the "
                         "plane of \"horizon\" is 0. The "
-                        "hidden shadeops __bsdf_<name> document each distribution.");
+                        "hidden shadeops __bsdf_NAME document each distribution.");
     bsdf.source = "seed; formulas rsl.md 12.4 (k)";
     bsdf.derivative = DerivativeRule::Inherent;
     bsdf.optional = distributionParameters();

@@ -125,13 +125,13 @@ std::vector<Shadeop> splineShadeops() {
              "catmull-rom, bspline "
              "and linear (which ignores the first and the last), 3 for bezier, 2 for hermite (point, tangent, point, tangent); "
              "the number of segments "
-             "is (n - 4) / step + 1. al_splinesegment(v, segments) gives s and the local parameter t; al_spline_<basis>_f and "
+             "is (n - 4) / step + 1. al_splinesegment(v, segments) gives s and the local parameter t; al_spline_BASIS_f and "
              "_t(t, p0, p1, p2, p3) "
              "evaluate, basis spelled catmullrom, bezier, bspline, hermite, linear. The prefix \"solve\" (floats only) inverts: "
              "the v for which the spline "
              "has the given value, for control points that rise or fall; the first such segment; outside the range the nearer "
              "end, 0 or 1. A segment "
-             "contains the value when it lies between the segment's values at t = 0 and t = 1; al_splinesolve_<basis>(value, p0, "
+             "contains the value when it lies between the segment's values at t = 0 and t = 1; al_splinesolve_BASIS(value, p0, "
              "p1, p2, p3) then "
              "gives t, and v = (s + t) / segments.";
     op.source = "seed; point counts (k)";

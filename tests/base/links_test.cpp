@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+namespace links_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -89,3 +91,5 @@ TEST(Documents, EveryLinkLeadsSomewhere) {
     }
     EXPECT_GT(links, 300);
 }
+
+} // namespace links_test

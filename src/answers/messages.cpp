@@ -1,5 +1,6 @@
 // What shaders tell each other: parameters and outputs of the shaders of a primitive, of lights and volumes; attributes.
 #include "answers/answers.h"
+#include "scene/scene.h"
 
 namespace alpenglow::transport {
 

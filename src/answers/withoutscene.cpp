@@ -1,5 +1,6 @@
 #include "answers/withoutscene.h"
 #include "answers/answers.h"
+#include "scene/scene.h"
 #include "world/cloudstore.h"
 
 namespace alpenglow::transport {

@@ -1,7 +1,7 @@
 // The mode of a Display request: which variables it shows and what its channels are called. Source: ri.md 3.2.
 #pragma once
 #include "base/diagnostics.h"
-#include "scene/scene.h"
+#include "scene/param.h"
 #include <map>
 #include <string>
 #include <vector>

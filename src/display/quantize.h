@@ -2,7 +2,7 @@
 // nothing here changes the colour space.
 #pragma once
 #include "base/diagnostics.h"
-#include "scene/scene.h"
+#include "scene/display.h"
 #include <cstdint>
 
 namespace alpenglow::display {

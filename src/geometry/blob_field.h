@@ -8,7 +8,7 @@
 #include "base/diagnostics.h"
 #include "base/matrix.h"
 #include "base/vec.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <cstdint>
 #include <memory>
 #include <string>

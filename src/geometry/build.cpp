@@ -5,6 +5,7 @@
 #include "geometry/factories.h"
 #include "geometry/instance_attributes.h"
 #include "geometry/placed.h"
+#include "scene/scene.h"
 #include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,10 @@
 #include "base/limits.h"
 #include "geometry/shape.h"
 
+namespace alpenglow::scene {
+struct Frame;
+} // namespace alpenglow::scene
+
 namespace alpenglow::geometry {
 
 /// Makes a shape of one primitive; null when it was reported as faulty or not yet drawn. attributes may be null (defaults).

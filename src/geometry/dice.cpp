@@ -7,6 +7,7 @@
 #include "geometry/placed.h"
 #include "geometry/polygon_mesh.h"
 #include "geometry/seams.h"
+#include "scene/scene.h"
 #include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,10 @@
 #include "geometry/shape.h"
 #include <functional>
 
+namespace alpenglow::scene {
+struct Options;
+} // namespace alpenglow::scene
+
 namespace alpenglow::geometry {
 
 /// What dicing must know of the camera: pixels per unit of length.

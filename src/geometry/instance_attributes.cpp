@@ -1,5 +1,6 @@
 #include "geometry/instance_attributes.h"
 #include "scene/motion.h"
+#include "scene/scene.h"
 #include <cstring>
 
 namespace alpenglow::geometry {

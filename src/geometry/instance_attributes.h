@@ -1,5 +1,9 @@
 #pragma once
-#include "scene/scene.h"
+#include "scene/primitive.h"
+
+namespace alpenglow::scene {
+struct Instance;
+} // namespace alpenglow::scene
 
 namespace alpenglow::geometry {
 

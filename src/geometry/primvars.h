@@ -2,7 +2,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "base/matrix.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <memory>
 #include <string>
 #include <string_view>

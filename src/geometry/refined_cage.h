@@ -1,7 +1,7 @@
 // A cage that is refined as a whole, level by level, with the values that lie on it. OpenSubdiv has the rules.
 #pragma once
 #include "geometry/limit_surface.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <map>
 
 namespace alpenglow::geometry {

@@ -6,7 +6,7 @@
 #include "base/diagnostics.h"
 #include "geometry/bounds.h"
 #include "geometry/primvars.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <bit>
 #include <cmath>
 #include <cstdint>

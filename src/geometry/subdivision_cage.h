@@ -1,7 +1,7 @@
 // What SubdivisionMesh says: faces, tags and their arguments, checked (ri.md 8.8).
 #pragma once
 #include "geometry/limit_surface.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <vector>
 
 namespace alpenglow::geometry {

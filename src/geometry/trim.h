@@ -5,7 +5,7 @@
 // pieces.
 #pragma once
 #include "base/diagnostics.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <memory>
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 // How many values a primitive variable has, by class (ri.md 7.1).
 #pragma once
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <cstdint>
 
 namespace alpenglow::scene {

@@ -13,15 +13,26 @@ struct Kind {
     PathEvent event;
     PathScattering scattering;
 };
-using enum PathEvent;
-using enum PathScattering;
 /// What there is.
-constexpr Kind kKinds[] = {{Object, None},           {Camera, None},          {Reflection, Diffuse},  {Reflection, Glossy},
-                           {Reflection, Singular},   {Transmission, Diffuse}, {Transmission, Glossy}, {Transmission, Singular},
-                           {Transmission, Straight}, {Volume, None},          {Light, None},          {Sky, None}};
+constexpr auto kKinds = [] {
+    using enum PathEvent;
+    using enum PathScattering;
+    return std::array<Kind, 12>{{{Object, None},
+                                 {Camera, None},
+                                 {Reflection, Diffuse},
+                                 {Reflection, Glossy},
+                                 {Reflection, Singular},
+                                 {Transmission, Diffuse},
+                                 {Transmission, Glossy},
+                                 {Transmission, Singular},
+                                 {Transmission, Straight},
+                                 {Volume, None},
+                                 {Light, None},
+                                 {Sky, None}}};
+}();
 constexpr size_t kKindCount = std::size(kKinds);
 constexpr size_t kStraightKind = 8;
-static_assert(kKinds[kStraightKind].scattering == Straight);
+static_assert(kKinds[kStraightKind].scattering == PathScattering::Straight);
 
 /// Sets of up to two of so many labels.
 size_t labelSets(size_t labels) { return 1 + labels + labels * (labels - (labels > 0)) / 2; }
@@ -232,7 +243,7 @@ bool LightPaths::build(std::span<const LightPathText> texts, std::string& why) {
             table_.push_back(number(to));
         }
     }
-    begin_ = next(start, symbol(Camera));
+    begin_ = next(start, symbol(PathEvent::Camera));
     std::vector<uint64_t> accepts;
     for (const Places& p : states) accepts.push_back(joint.endsIn(p));
     accepts[kNone] = 0;

@@ -1,4 +1,5 @@
 #include "scene/motion.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,5 @@
 #include "scene/numbers.h"
+#include "scene/scene.h"
 #include <algorithm>
 
 namespace alpenglow::scene {

@@ -1,7 +1,7 @@
 // Where a primitive stands in a solid (RISpec 3.2, "Solids"): a path from the outermost SolidBegin to the part that it bounds,
 // kept among its attributes, so that instances have it as well.
 #pragma once
-#include "scene/scene.h"
+#include "scene/primitive.h"
 
 namespace alpenglow::scene {
 

@@ -1,7 +1,7 @@
 // Procedurals whose content is not yet made: they stand among the primitives of a frame, and give way to what is in them once
 // a ray comes to their bound.
 #pragma once
-#include "scene/scene.h"
+#include "scene/primitive.h"
 
 namespace alpenglow::scene {
 

@@ -5,7 +5,7 @@
 #include "base/limits.h"
 #include "base/sampler.h"
 #include "geometry/shape.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include "shading/scheduler.h"
 #include <algorithm>
 

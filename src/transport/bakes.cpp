@@ -1,4 +1,5 @@
 #include "transport/bakes.h"
+#include "scene/scene.h"
 #include "shading/grids.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"

@@ -1,4 +1,5 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
+#include "scene/scene.h"
 #include "shadeops/specular.h"
 #include "world/cloudsite.h"
 #include "world/gathersite.h"

@@ -1,5 +1,6 @@
 // Lights of a frame bound to their kernels. A shader with several illuminate or solar statements becomes several lights: the
 // first keeps the frame's index, the others are its parts, numbered behind all of the frame's.
+#include "scene/scene.h"
 #include "world/impl.h"
 #include "world/outputs.h"
 

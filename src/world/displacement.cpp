@@ -1,6 +1,7 @@
 // Displacement when shapes are diced: by displacement shaders, by classes that are both, and by surface shaders that move P.
 #include "geometry/dice.h"
 #include "rsl/ir/edit.h"
+#include "scene/scene.h"
 #include "world/impl.h"
 #include "world/turned.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/compiler.h"
-#include "scene/scene.h"
+#include "scene/param.h"
 #include <optional>
 
 namespace alpenglow::transport {

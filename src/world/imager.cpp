@@ -1,4 +1,5 @@
 // The imager of a frame, run over finished pixels.
+#include "scene/scene.h"
 #include "world/impl.h"
 #include <algorithm>
 

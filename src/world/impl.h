@@ -15,6 +15,11 @@
 #include <functional>
 #include <unordered_map>
 
+namespace alpenglow::scene {
+struct Frame;
+struct Options;
+} // namespace alpenglow::scene
+
 namespace alpenglow::transport {
 
 /// The subsets of a world's shapes that rays were restricted to.
@@ -95,7 +100,7 @@ public:
     /// Calls f for the lights of such a list: of a shader with several blocks one behind the other. Until f says true.
     template <class F> void eachLight(const scene::LightSet& lights, F&& f) const {
         for (const int l : lights) {
-            if (size_t(l) >= frame_->lights.size()) return; // parts: their shader's turn has been
+            if (size_t(l) >= sceneLights_) return; // the rest are parts, which follow their shader's first block
             if (f(l)) return;
             for (const int part : lights_[size_t(l)].parts)
                 if (f(part)) return;
@@ -113,6 +118,7 @@ public:
     void groupLights(Diagnostics&);
 
     std::shared_ptr<const scene::Frame> frame_;
+    size_t sceneLights_ = 0;   ///< lights of frame_; those after them in lights_ are further blocks of their shaders
     MakeEvaluator evaluators_; ///< kept for the imager
     Settings settings_;
     bool rispecSpecular_ = false;                                   ///< specular() has RISpec's exponent (shadeops/specular.h)

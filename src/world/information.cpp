@@ -1,4 +1,5 @@
 #include "world/information.h"
+#include "scene/scene.h"
 #include <algorithm>
 
 namespace alpenglow::transport {

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "rsl/front/visit.h"
 #include "rsl/ir/build.h"
+#include "scene/scene.h"
 #include "world/fitparameter.h"
 #include "world/impl.h"
 #include "world/lightobjects.h"

@@ -1,5 +1,6 @@
 // Coordinate systems: the camera's own, named ones, and the matrices between them.
 #include "base/exact.h"
+#include "scene/scene.h"
 #include "world/impl.h"
 #include "world/lightobjects.h"
 #include <set>

@@ -5,6 +5,7 @@
 #include "geometry/placed.h"
 #include "rsl/front/headers.h"
 #include "scene/numbers.h"
+#include "scene/scene.h"
 #include "scene/unmade.h"
 #include "world/cloudstore.h"
 #include "world/surfaces.h"
@@ -168,6 +169,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     double begin = buildClock();
     auto w = std::make_shared<WorldImpl>();
     w->frame_ = frame;
+    w->sceneLights_ = frame->lights.size();
     w->settings_ = settings;
     for (const std::string& name : settings.outputs) w->wanted_.push_back(rsl::OutputName::parse(name));
     w->diagnostics_ = &d;

@@ -1,0 +1,26 @@
+# cmake -DPROGRAM=FILE -DNAME=render -DOUT=FILE -DCOSTS=FILE -P suites.cmake: the suites of a GoogleTest program as tests of CTest.
+# One process a suite, not one a test: to start a process is most of what a small test costs.
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE list RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${PROGRAM} --gtest_list_tests failed: ${status}")
+endif()
+file(STRINGS ${COSTS} costs REGEX "^[^#]")
+string(REPLACE ";" "\\;" list "${list}")
+string(REPLACE "\n" ";" list "${list}")
+set(all "")
+foreach(line ${list})
+  if(NOT line MATCHES "^([^ ]+)[.]( *#.*)?$")
+    continue() # a test, or what main() prints
+  endif()
+  set(suite ${CMAKE_MATCH_1})
+  set(test "${NAME}/${suite}")
+  set(cost 0)
+  foreach(c ${costs})
+    if(c MATCHES "^${test} ([0-9]+)$")
+      set(cost ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  string(APPEND all "add_test([==[${test}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${suite}.*]==])\n"
+    "set_tests_properties([==[${test}]==] PROPERTIES LABELS ${NAME} COST ${cost} TIMEOUT 5400)\n")
+endforeach()
+file(WRITE ${OUT} "${all}")

@@ -1,0 +1,24 @@
+// Where a picture goes.
+#pragma once
+#include "scene/param.h"
+#include <string>
+
+namespace alpenglow::scene {
+
+struct PixelFilter {
+    std::string name = "gaussian";
+    float xwidth = 2, ywidth = 2;
+};
+struct Quantize {
+    float one = 0, min = 0, max = 0, dither = 0;
+    bool set = false;
+};
+
+struct Display {
+    std::string name = "ri.pic", type = "file", mode = "rgba";
+    ParamList params; ///< "quantize", "exposure", "filter", "filterwidth", "dither" etc.
+    SourcePlace place;
+    bool read = false; ///< a Make request of the scene reads its file
+};
+
+} // namespace alpenglow::scene

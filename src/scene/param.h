@@ -1,0 +1,60 @@
+// Values of requests: parameters, what moves, calls of shaders.
+#pragma once
+#include "base/diagnostics.h"
+#include "base/matrix.h"
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace alpenglow::scene {
+
+enum class Class { Constant, Uniform, Varying, Vertex, FaceVarying, FaceVertex };
+enum class Type { Float, Integer, String, Color, Point, Vector, Normal, HPoint, Matrix };
+/// Floats per element: Float/Integer/String 1, tuples 3, HPoint 4, Matrix 16.
+int componentCount(Type);
+
+/// One parameter of a request: a primitive variable, a shader parameter, an option or attribute value.
+struct Param {
+    std::string name;
+    Class cls = Class::Uniform;
+    Type type = Type::Float;
+    int arrayLength = 0;              ///< 0 = not an array
+    bool declared = true;             ///< false: type guessed from the values; a shader's own declaration decides (wild.md)
+    std::vector<float> numbers;       ///< all numeric types, flattened (integers too)
+    std::vector<std::string> strings; ///< Type::String
+    SourcePlace place;
+};
+using ParamList = std::vector<Param>;
+const Param* find(const ParamList&, std::string_view name);
+
+/// A value that may move: keys[i] at times[i], in shutter units, times increasing. One key when static. Between keys interpolate
+/// linearly, element by element; outside hold the end. (A moving Rotate comes with keys close enough for that.)
+template <class T> struct Moving {
+    std::vector<float> times{0};
+    std::vector<T> keys{T{}};
+    Moving() = default;
+    Moving(T v) : keys{std::move(v)} {}
+    const T& first() const { return keys.front(); }
+    bool moves() const { return keys.size() > 1; }
+};
+using Transform = Moving<Matrix>;
+
+/// A shader call: Surface "plastic" "Kd" .5
+struct ShaderCall {
+    std::string name;
+    ParamList params;
+    Transform toWorld; ///< "shader" space to world: the CTM at the call
+    SourcePlace place;
+};
+using ShaderRef = std::shared_ptr<const ShaderCall>;
+
+/// Rows as in ri.md 8.3: value at t = (t^3 t^2 t 1) * m * (P0 P1 P2 P3). Bezier by default.
+struct Basis {
+    double m[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
+    int step = 3;
+    std::string name = "bezier"; ///< "" for a matrix of the file's own
+};
+
+} // namespace alpenglow::scene

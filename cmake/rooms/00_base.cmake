@@ -10,4 +10,5 @@ foreach(way "4 v2" "8 v3" "16 v4")
     "-march=x86-64-${level};-mprefer-vector-width=512;-fno-vectorize;-fno-slp-vectorize;-fno-builtin")
   target_sources(base PRIVATE ${file})
 endforeach()
+find_path(XXHASH_HEADERS xxhash.h REQUIRED) # base/digest.cpp, nothing is linked
 room_tests(base DEPS base)

@@ -1,4 +1,5 @@
 #include "base/file.h"
+#include "base/digest.h"
 #include "base/limits.h"
 #include <algorithm>
 #include <cctype>
@@ -110,12 +111,7 @@ std::string machineName() {
     gethostname(host, sizeof host - 1);
     char space[64] = "";
     [[maybe_unused]] ssize_t n = readlink("/proc/self/ns/pid", space, sizeof space - 1);
-    uint32_t h = 2166136261u; // FNV-1a
-    for (const char* s : {static_cast<const char*>(host), static_cast<const char*>(space)})
-        for (; *s; ++s) h = (h ^ static_cast<unsigned char>(*s)) * 16777619u;
-    char text[12];
-    std::snprintf(text, sizeof text, "%08x", unsigned(h));
-    return text;
+    return digestText(digest(std::string(host) + space)).substr(0, 8);
 }
 
 /// Removes temporaries that killed renders left in a folder: those of a process of this machine that is gone, and any of a day

@@ -1,23 +1,21 @@
 #include "render/digest.h"
-#include "base/hash.h"
-#include <cstring>
+#include "base/digest.h"
 #include <type_traits>
 #include <unordered_map>
+#include <utility>
 
 namespace alpenglow::render {
 namespace {
 
-class Digest {
+class SceneDigest {
 public:
-    uint64_t value() const { return mix64(h_); }
+    uint64_t value() const { return digest_.value(); }
 
-    void bits(uint64_t v) { h_ = mix64(h_ ^ v) + 0x9e3779b97f4a7c15ull; }
+    void bits(uint64_t v) { digest_.add(&v, sizeof v); }
     template <class T>
         requires(std::is_arithmetic_v<T>)
     void add(T v) {
-        uint64_t b = 0;
-        std::memcpy(&b, &v, sizeof v);
-        bits(b);
+        digest_.add(&v, sizeof v);
     }
     void add(const std::string& s) { bytes(s.data(), s.size()); }
     template <class T> void add(const std::vector<T>& v) {
@@ -89,11 +87,10 @@ public:
         if (!p) return bits(0);
         auto [i, fresh] = known_.try_emplace(p.get(), 0);
         if (fresh) {
-            uint64_t outer = h_;
-            h_ = 1;
+            const Digest outer = std::exchange(digest_, Digest());
             add(*p);
             known_[p.get()] = value(); // the walk may have moved the table
-            h_ = outer;
+            digest_ = outer;
         }
         bits(known_[p.get()]);
     }
@@ -147,24 +144,16 @@ public:
 private:
     void bytes(const void* data, size_t n) {
         bits(n);
-        const char* p = static_cast<const char*>(data);
-        for (; n >= 8; n -= 8, p += 8) {
-            uint64_t v;
-            std::memcpy(&v, p, 8);
-            bits(v);
-        }
-        uint64_t v = 0;
-        if (n > 0) std::memcpy(&v, p, n); // of nothing there may be no address
-        bits(v);
+        digest_.add(data, n);
     }
-    uint64_t h_ = 0;
+    Digest digest_;
     std::unordered_map<const void*, uint64_t> known_;
 };
 
 } // namespace
 
 std::string sceneDigest(const scene::Frame& f, const std::string& extra) {
-    Digest d;
+    SceneDigest d;
     d.add(extra);
     d.add(f.options);
     d.add(f.lights);
@@ -172,9 +161,7 @@ std::string sceneDigest(const scene::Frame& f, const std::string& extra) {
     d.add(f.objects);
     d.add(f.instances);
     d.add(f.coordinateSystems);
-    char text[24];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(d.value()));
-    return text;
+    return digestText(d.value());
 }
 
 } // namespace alpenglow::render

@@ -1,4 +1,5 @@
 #include "render/film.h"
+#include "base/digest.h"
 #include "base/limits.h"
 #include <algorithm>
 #include <atomic>
@@ -302,8 +303,8 @@ std::optional<DroppedSample> Film::firstDropped() const {
 }
 
 uint64_t Film::digest() const {
-    uint64_t h = 0;
-    auto mix = [&](uint64_t v) { h = mix64(h ^ v) + 0x9e3779b97f4a7c15ull; };
+    Digest all;
+    auto mix = [&](uint64_t v) { all.add(&v, sizeof v); };
     auto mix128 = [&](Int128 v) {
         mix(uint64_t(v));
         mix(uint64_t(v >> 64));
@@ -324,7 +325,7 @@ uint64_t Film::digest() const {
         mix(uint64_t(spread_->base) << 32 | spread_->steps);
         for (uint16_t v : spread_->rates) mix(v);
     }
-    return h;
+    return all.value();
 }
 
 } // namespace alpenglow::render

@@ -1,5 +1,6 @@
 // The bitcode files of the build folder as arrays, by the assembler's .incbin.
 #include "shadeops/bitcode.h"
+#include "base/digest.h"
 #include "shadeops/descriptor.h"
 #include <cstdint>
 #include <string>
@@ -27,12 +28,12 @@ namespace {
 
 Bitcode between(const unsigned char* begin, const unsigned char* end) { return {begin, static_cast<size_t>(end - begin)}; }
 
-/// FNV-1a over everything in the descriptors that becomes code.
+/// Over everything in the descriptors that becomes code.
 uint64_t hashDescriptors() {
-    uint64_t h = 14695981039346656037ull;
-    const auto add = [&h](std::string_view text) {
-        for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-        h = (h ^ 0xffu) * 1099511628211ull;
+    Digest all;
+    const auto add = [&all](std::string_view text) {
+        all.add(text);
+        all.add("\xff");
     };
     for (const Shadeop& op : shadeops()) {
         add(op.name);
@@ -44,7 +45,7 @@ uint64_t hashDescriptors() {
             add(s.symbol);
         }
     }
-    return h;
+    return all.value();
 }
 
 } // namespace

@@ -1,12 +1,12 @@
 #include "rsl/jit/kernelfile.h"
-#include "rsl/jit/sha256.h"
+#include "base/digest.h"
 #include <cstring>
 
 namespace alpenglow::rsl::jit {
 namespace {
 
-constexpr char kMagic[] = "alpenglow kernel 3\n";
-constexpr size_t kDigest = 64;
+constexpr char kMagic[] = "alpenglow kernel 4\n";
+constexpr size_t kDigest = 16; // digits
 
 // One function a type describes both directions: `a(x)` writes x or reads it.
 struct Writer {
@@ -158,13 +158,13 @@ std::string pack(const KernelFile& k) {
     Writer w;
     KernelFile copy = k;
     item(w, copy);
-    return kMagic + sha256(w.bytes) + w.bytes;
+    return kMagic + digestText(digest(w.bytes)) + w.bytes;
 }
 
 std::optional<KernelFile> unpack(const std::string& bytes) {
     const size_t head = sizeof kMagic - 1;
     if (bytes.size() < head + kDigest || bytes.compare(0, head, kMagic) != 0) return {};
-    if (sha256(std::string_view(bytes).substr(head + kDigest)) != bytes.substr(head, kDigest)) return {};
+    if (digestText(digest(std::string_view(bytes).substr(head + kDigest))) != bytes.substr(head, kDigest)) return {};
     Loader r{bytes, head + kDigest};
     KernelFile k;
     item(r, k);

@@ -1,0 +1,28 @@
+// Digests of data against accidents such as damaged files: XXH3 of xxHash. It does not resist people who look for two texts of
+// the same digest. The keys of compiled shaders, whose text may be a stranger's, are SHA-256 (rsl/jit/sha256.h).
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace alpenglow {
+
+/// Of bytes that come in pieces: the same as that of all of them at once.
+class Digest {
+public:
+    Digest();
+    void add(const void* data, size_t bytes);
+    void add(std::string_view text) { add(text.data(), text.size()); }
+    uint64_t value() const;
+
+private:
+    alignas(64) std::array<std::byte, 576> state_; ///< XXH3_state_t
+};
+
+uint64_t digest(std::string_view bytes);
+/// Sixteen hexadecimal digits.
+std::string digestText(uint64_t);
+
+} // namespace alpenglow

@@ -1,3 +1,4 @@
+find_path(BEAST_HEADERS boost/beast/http/parser.hpp REQUIRED) # httpserver.cpp, nothing is linked
 room(view DEPS render ri nlohmann_json::nlohmann_json)
 # The page goes into the program. Its library is of its own, so that a change of the page builds one small file.
 file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/view/page/*)

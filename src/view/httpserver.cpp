@@ -3,6 +3,8 @@
 #include <arpa/inet.h>
 #include <array>
 #include <atomic>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -12,7 +14,6 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/eventfd.h>
-#include <sys/random.h>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
@@ -21,38 +22,16 @@
 namespace alpenglow::view {
 namespace {
 
+namespace http = boost::beast::http;
+using Parser = http::request_parser<http::string_body>;
+
 double secondsNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-const char* phrase(int status) {
-    switch (status) {
-    case 200:
-        return "OK";
-    case 400:
-        return "Bad Request";
-    case 403:
-        return "Forbidden";
-    case 404:
-        return "Not Found";
-    case 405:
-        return "Method Not Allowed";
-    case 408:
-        return "Request Timeout";
-    case 411:
-        return "Length Required";
-    case 413:
-        return "Content Too Large";
-    case 431:
-        return "Request Header Fields Too Large";
-    case 503:
-        return "Service Unavailable";
-    default:
-        return "Error";
-    }
-}
+std::string text(boost::beast::string_view s) { return {s.data(), s.size()}; }
 
 std::string headOf(const HttpResponse& r, bool close) {
-    return "HTTP/1.1 " + std::to_string(r.status) + " " + phrase(r.status) + "\r\nContent-Type: " + r.type +
-           "\r\nContent-Length: " + std::to_string(r.body.size()) +
+    return "HTTP/1.1 " + std::to_string(r.status) + " " + text(http::obsolete_reason(http::status(r.status))) +
+           "\r\nContent-Type: " + r.type + "\r\nContent-Length: " + std::to_string(r.body.size()) +
            "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\nReferrer-Policy: "
            "no-referrer\r\n"
            "Cross-Origin-Resource-Policy: same-origin\r\nContent-Security-Policy: default-src 'none'; script-src 'self'; "
@@ -89,13 +68,48 @@ std::map<std::string, std::string> argumentsOf(const std::string& query) {
     return all;
 }
 
-/// Header names are compared whatever their case; spaces around the value do not count.
-bool isHeader(const std::string& line, const char* name, std::string* value) {
-    const size_t n = std::strlen(name);
-    if (line.size() <= n || line[n] != ':' || strncasecmp(line.c_str(), name, n) != 0) return false;
-    const size_t a = line.find_first_not_of(" \t", n + 1), b = line.find_last_not_of(" \t");
-    *value = a == line.npos ? "" : line.substr(a, b - a + 1);
-    return true;
+HttpRequest requestOf(Parser::value_type&& m) {
+    HttpRequest r;
+    r.method = text(m.method_string());
+    const std::string target = text(m.target());
+    const size_t query = target.find('?');
+    r.path = target.substr(0, query);
+    if (query != target.npos) r.arguments = argumentsOf(target.substr(query + 1));
+    r.host = text(m[http::field::host]);
+    r.origin = text(m[http::field::origin]);
+    r.body = std::move(m.body());
+    return r;
+}
+
+HttpResponse refusal(int status, const char* why) { return {status, "text/plain; charset=utf-8", why}; }
+
+/// Whether the parser refused a Content-Length because it is too large a number. The parser has one code for all it refuses.
+bool lengthIsHuge(std::string_view head) {
+    const std::string_view name = "content-length:";
+    const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+    const auto at = std::search(head.begin(), head.end(), name.begin(), name.end(), same);
+    const std::string_view value = head.substr(std::min(size_t(at - head.begin()) + name.size(), head.size()));
+    const size_t first = std::min(value.find_first_not_of(" \t"), value.size());
+    const size_t end = std::min(value.find_first_not_of("0123456789", first), value.size());
+    return end - first > 9;
+}
+
+/// The answer to bytes that are no request.
+HttpResponse refusalOf(const boost::system::error_code& e, std::string_view head) {
+    if (e == http::error::header_limit) return refusal(431, "The headers are too long.\n");
+    if (e == http::error::body_limit || (e == http::error::bad_content_length && lengthIsHuge(head)))
+        return refusal(413, "The request is too long.\n");
+    if (e == http::error::bad_content_length) return refusal(400, "Content-Length makes no sense.\n");
+    return refusal(400, "This is no request of HTTP/1.\n");
+}
+
+/// The answer to a request that is refused by its headers; nothing when it is not.
+std::optional<HttpResponse> refusalOf(const Parser& p) {
+    const auto& m = p.get();
+    if (m.target().empty() || m.target()[0] != '/') return refusal(400, "This is no request of HTTP/1.\n");
+    if (m.method() != http::verb::get && m.method() != http::verb::post) return refusal(405, "Only GET and POST are known.\n");
+    if (p.chunked()) return refusal(411, "A request needs Content-Length.\n");
+    return {};
 }
 
 /// Draining: the last answer is written; what still comes in is thrown away, so that closing does not take the answer back.
@@ -108,9 +122,9 @@ struct Connection {
     State state = State::Reading;
     std::string in, out;
     size_t written = 0;
+    std::optional<Parser> parser; ///< of the request that comes in
     HttpRequest request;
-    size_t body = 0; ///< bytes that the request's body has
-    bool headers = false, close = false, known = false;
+    bool close = false, known = false;
     double since = 0;   ///< when its state began, or its request
     bool begun = false; ///< a byte of the request is there
     ~Connection() {
@@ -138,7 +152,6 @@ struct HttpServer::Loop {
     bool read(Connection&);
     bool write(Connection&);
     bool advance(Connection&);
-    bool takeHeaders(Connection&, size_t end);
     void answer(Connection&, HttpResponse, bool close);
     bool ask(Connection&, bool last);
     bool timeOut(Connection&, double t);
@@ -197,7 +210,7 @@ void HttpServer::Loop::accept() {
                 oldest = std::find_if(connections.begin(), connections.end(),
                                       [](const Connection& c) { return c.state == State::Reading && !c.begun; });
             if (oldest == connections.end()) {
-                HttpResponse r{503, "text/plain; charset=utf-8", "Too many viewers at a time.\n"};
+                const HttpResponse r = refusal(503, "Too many viewers at a time.\n");
                 const std::string text = headOf(r, true) + r.body;
                 [[maybe_unused]] ssize_t k = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
                 ::close(fd);
@@ -243,64 +256,35 @@ void HttpServer::Loop::answer(Connection& c, HttpResponse r, bool close) {
 /// Takes a request out of what has come in, once it is whole.
 bool HttpServer::Loop::advance(Connection& c) {
     if (c.state != State::Reading) return true;
-    if (!c.headers) {
-        const size_t end = c.in.find("\r\n\r\n");
-        if (end == c.in.npos || end > limits.headerBytes) {
-            if (c.in.size() <= limits.headerBytes) return true;
-            answer(c, {431, "text/plain; charset=utf-8", "The headers are too long.\n"}, true);
+    if (!c.parser) {
+        c.parser.emplace();
+        c.parser->header_limit(uint32_t(limits.headerBytes));
+        c.parser->body_limit(limits.bodyBytes);
+    }
+    while (!c.parser->is_done()) { // headers, then body
+        if (c.in.empty()) return true;
+        const bool headers = !c.parser->is_header_done();
+        boost::system::error_code fault;
+        const size_t taken = c.parser->put(boost::asio::const_buffer(c.in.data(), c.in.size()), fault);
+        if (fault == http::error::need_more) {
+            c.in.erase(0, taken);
+            return true;
+        }
+        std::optional<HttpResponse> refused;
+        if (fault) refused = refusalOf(fault, c.in);
+        else if (headers && c.parser->is_header_done()) refused = refusalOf(*c.parser);
+        if (refused) {
+            answer(c, std::move(*refused), true);
             return write(c);
         }
-        if (!takeHeaders(c, end)) return write(c);
+        c.in.erase(0, taken);
     }
-    if (c.in.size() < c.body) return true;
-    c.request.body = c.in.substr(0, c.body);
-    c.in.erase(0, c.body);
-    c.headers = c.begun = false;
+    c.close |= !c.parser->keep_alive();
+    c.request = requestOf(c.parser->release());
+    c.parser.reset();
+    c.begun = false;
     c.since = secondsNow();
     return ask(c, false);
-}
-
-/// Reads request line and headers. False: they are refused, and the answer is ready.
-bool HttpServer::Loop::takeHeaders(Connection& c, size_t end) {
-    const auto refuse = [&](int status, const char* text) {
-        answer(c, {status, "text/plain; charset=utf-8", text}, true);
-        return false;
-    };
-    const std::string head = c.in.substr(0, end);
-    c.in.erase(0, end + 4);
-    c.request = {};
-    c.body = 0;
-    bool length = false;
-    for (size_t at = 0, line = 0; at <= head.size(); ++line) {
-        const size_t stop = std::min(head.find("\r\n", at), head.size());
-        const std::string text = head.substr(at, stop - at);
-        at = stop + 2;
-        std::string value;
-        if (line == 0) {
-            const size_t a = text.find(' '), b = text.rfind(' ');
-            if (a == text.npos || b <= a + 1 || text[a + 1] != '/' || text.compare(b + 1, 7, "HTTP/1.") != 0)
-                return refuse(400, "This is no request of HTTP/1.\n");
-            c.request.method = text.substr(0, a);
-            const std::string target = text.substr(a + 1, b - a - 1);
-            const size_t query = target.find('?');
-            c.request.path = target.substr(0, query);
-            if (query != target.npos) c.request.arguments = argumentsOf(target.substr(query + 1));
-            if (text.compare(b + 1, text.npos, "HTTP/1.1") != 0) c.close = true;
-        } else if (isHeader(text, "Host", &value)) c.request.host = value;
-        else if (isHeader(text, "Origin", &value)) c.request.origin = value;
-        else if (isHeader(text, "Connection", &value)) c.close |= strcasecmp(value.c_str(), "close") == 0;
-        else if (isHeader(text, "Transfer-Encoding", &value)) return refuse(411, "A request needs Content-Length.\n");
-        else if (isHeader(text, "Content-Length", &value)) {
-            if (length || value.empty() || value.size() > 9 || value.find_first_not_of("0123456789") != value.npos)
-                return refuse(value.size() > 9 ? 413 : 400, "Content-Length makes no sense.\n");
-            length = true;
-            c.body = size_t(std::stoul(value));
-        }
-    }
-    if (c.request.method != "GET" && c.request.method != "POST") return refuse(405, "Only GET and POST are known.\n");
-    if (c.body > limits.bodyBytes) return refuse(413, "The request is too long.\n");
-    c.headers = true;
-    return true;
 }
 
 bool HttpServer::Loop::ask(Connection& c, bool last) {
@@ -308,7 +292,7 @@ bool HttpServer::Loop::ask(Connection& c, bool last) {
     try {
         r = handler(c.request, last, &c.known);
     } catch (const std::exception&) { // no room for the answer
-        answer(c, {503, "text/plain; charset=utf-8", "There is no memory for this.\n"}, true);
+        answer(c, refusal(503, "There is no memory for this.\n"), true);
         return write(c);
     }
     if (r) {
@@ -352,7 +336,7 @@ bool HttpServer::Loop::timeOut(Connection& c, double t) {
     case State::Reading:
         if (!c.begun) return spent < limits.idleSeconds;
         if (spent < limits.requestSeconds) return true;
-        answer(c, {408, "text/plain; charset=utf-8", "The request took too long.\n"}, true);
+        answer(c, refusal(408, "The request took too long.\n"), true);
         return write(c);
     }
     return true;
@@ -400,26 +384,6 @@ void HttpServer::stop() {
     loop_->end = true;
     wake();
     loop_->thread.join();
-}
-
-std::string randomToken() {
-    std::array<unsigned char, 16> bytes{};
-    for (size_t n = 0; n < bytes.size();) {
-        const ssize_t k = ::getrandom(bytes.data() + n, bytes.size() - n, 0);
-        if (k > 0) n += size_t(k);
-    }
-    std::string text;
-    for (unsigned char b : bytes) {
-        text += "0123456789abcdef"[b >> 4];
-        text += "0123456789abcdef"[b & 15];
-    }
-    return text;
-}
-
-bool sameText(const std::string& a, const std::string& b) {
-    unsigned char differs = a.size() != b.size();
-    for (size_t i = 0; i < a.size(); ++i) differs |= static_cast<unsigned char>(a[i] ^ b[i % std::max<size_t>(b.size(), 1)]);
-    return !differs;
 }
 
 } // namespace alpenglow::view

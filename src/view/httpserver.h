@@ -1,5 +1,5 @@
 // A small HTTP/1.1 server for the page of a view: one thread, 127.0.0.1 only, bounded in everything that a stranger can send.
-// Of its own, because the library in reach keeps headers without end and gives each connection a thread.
+// Boost.Beast parses the requests. Why not its connections, too: docs/design/dependencies.md.
 #pragma once
 #include <cstdint>
 #include <functional>

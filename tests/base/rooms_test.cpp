@@ -52,7 +52,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
 const std::map<std::string, std::set<std::string>> kForeign = {
     {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},  {"embree3", {}},        {"OpenImageIO", {"texture"}},
     {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
-    {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},
+    {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},         {"boost", {"view"}},    {"xxhash.h", {"base"}},
 };
 
 TEST(Rooms, IncludeTable) {

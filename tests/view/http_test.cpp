@@ -5,6 +5,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <list>
+#include <random>
 #include <sys/resource.h>
 #include <thread>
 
@@ -114,6 +115,48 @@ TEST_F(Http, WhatIsNoRequestIsRefusedInWords) {
         EXPECT_TRUE(s.closed(3)) << text;
     }
     EXPECT_EQ(asked, 0);
+}
+
+TEST_F(Http, RequestsMayComeByteByByte) {
+    begin();
+    Socket s(server->port());
+    for (const std::string& text : {post(server->port(), "/p?a=b", "hello"), get(server->port(), "/q")})
+        for (char c : text) ASSERT_TRUE(s.send(std::string(1, c)));
+    EXPECT_EQ(bodyOf(s.answer()), "POST /p [hello] a=b");
+    EXPECT_EQ(bodyOf(s.answer()), "GET /q []");
+}
+
+TEST_F(Http, DamagedRequestsAreAnsweredOrClosed) {
+    HttpLimits l;
+    l.requestSeconds = l.idleSeconds = 0.1; // for those that became longer than what is sent
+    begin(l);
+    std::mt19937 random(1);
+    const std::string whole = post(server->port(), "/p?a=%20b", "hello") + get(server->port(), "/q", "Connection: close\r\n");
+    for (int k = 0; k < 200; ++k) {
+        std::string text = whole;
+        for (unsigned n = 1 + random() % 6; n > 0 && !text.empty(); --n) {
+            const size_t at = random() % text.size();
+            switch (random() % 4) {
+            case 0:
+                text[at] = char(random());
+                break;
+            case 1:
+                text.erase(at, 1 + random() % 8);
+                break;
+            case 2:
+                text.insert(at, text.substr(random() % text.size(), random() % 20));
+                break;
+            default:
+                text[at] = "0123456789 :/%?\r\n"[random() % 17];
+            }
+        }
+        Socket s(server->port());
+        const size_t cut = random() % (text.size() + 1);
+        s.send(text.substr(0, cut));
+        s.send(text.substr(cut));
+        EXPECT_TRUE(s.closed(5)) << text;
+    }
+    EXPECT_EQ(bodyOf(ask(get(server->port(), "/still"))), "GET /still []");
 }
 
 TEST_F(Http, HeadersWithoutEndAreCutOff) {

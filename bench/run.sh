@@ -4,6 +4,7 @@
 # CPU time unless it says wall. Exit 1 when a limit was missed.
 cd "$(dirname "$0")/.." || exit 1
 build=${1:-build/release}
+(source scripts/common.sh && install_packages libembree-dev) || exit 1 # of box_bench
 [ -f "$build/build.ninja" ] || { echo "bench/run.sh: $build has not been configured; ./check or ./render do that" >&2; exit 1; }
 ninja -C "$build" alpenglow bench >/dev/null || { echo "bench/run.sh: the build failed" >&2; exit 1; }
 program=$build/bin/alpenglow

@@ -36,7 +36,6 @@ if(TARGET test_rsljit)
 endif()
 room_tests(language DEPS rsl_jit)
 if(TARGET test_language) # the second evaluator, and the programs that it is asked about
-  find_package(rapidcheck CONFIG REQUIRED)
   target_sources(test_language PRIVATE ${CMAKE_SOURCE_DIR}/tests/language/walker.cpp
                  ${CMAKE_SOURCE_DIR}/tests/language/walker_shadeops.cpp ${CMAKE_SOURCE_DIR}/tests/language/programs.cpp
                  ${CMAKE_SOURCE_DIR}/tests/language/programs_grammar.cpp)

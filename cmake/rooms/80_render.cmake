@@ -4,7 +4,6 @@ room(render DEPS transport display texture base ZLIB::ZLIB nlohmann_json::nlohma
 room_tests(render DEPS render)
 room_tests(statistics DEPS render transport)
 if(TARGET test_statistics)
-  find_package(rapidcheck CONFIG REQUIRED)
   target_link_libraries(test_statistics PRIVATE rapidcheck)
   target_include_directories(test_statistics PRIVATE ${CMAKE_SOURCE_DIR}/tests)
 endif()

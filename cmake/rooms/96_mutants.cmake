@@ -1,7 +1,6 @@
 # Single mistakes that the tests must notice (tests/mutants/run). On every change only whether the list still fits the source; nightly all of
 # them, in a build of their own.
 if(ALPENGLOW_TESTS)
-  find_package(Python3 REQUIRED COMPONENTS Interpreter)
   add_test(NAME Mutants.ListFitsTheSource COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tests/mutants/run --check)
   add_test(NAME Mutants.AreKilled COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tests/mutants/run --nightly-only)
   set_tests_properties(Mutants.ListFitsTheSource Mutants.AreKilled PROPERTIES LABELS mutants)

@@ -1,29 +1,8 @@
 #include "ptex/numbers.h"
+#include "base/half.h"
 #include <algorithm>
-#include <cmath>
 
 namespace alpenglow::ptex {
-
-namespace {
-
-float ofHalf(uint16_t h) {
-    const uint32_t sign = uint32_t(h & 0x8000) << 16, exponent = h >> 10 & 31, fraction = h & 1023;
-    if (exponent == 31) return std::bit_cast<float>(sign | 0x7f800000u | fraction << 13);
-    if (exponent == 0) return std::bit_cast<float>(sign | std::bit_cast<uint32_t>(float(fraction) * 0x1p-24f));
-    return std::bit_cast<float>(sign | (exponent + 112) << 23 | fraction << 13);
-}
-
-/// To the nearest, ties to even.
-uint16_t toHalf(float f) {
-    const uint32_t bits = std::bit_cast<uint32_t>(f), sign = bits >> 16 & 0x8000;
-    const float a = std::fabs(f);
-    if (!(a < 65520.f)) return uint16_t(sign | (std::isnan(f) ? 0x7e00 : 0x7c00));
-    if (a < 0x1p-14f) return uint16_t(sign | uint32_t(std::nearbyint(a * 0x1p24f)));
-    const uint32_t m = (bits & 0x7fffffff) - (112u << 23);
-    return uint16_t(sign | ((m + 0xfff + (m >> 13 & 1)) >> 13));
-}
-
-} // namespace
 
 float toFloat(Number n, const uint8_t* from) {
     switch (n) {

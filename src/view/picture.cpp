@@ -1,4 +1,5 @@
 #include "view/picture.h"
+#include "base/half.h"
 #include "render/noise.h"
 #include <algorithm>
 #include <bit>
@@ -9,18 +10,6 @@ namespace alpenglow::view {
 const Plane* Picture::plane(const std::string& name) const {
     const auto i = std::find_if(planes.begin(), planes.end(), [&](const Plane& p) { return p.name == name; });
     return i == planes.end() ? nullptr : &*i;
-}
-
-uint16_t toHalf(float f) {
-    const uint32_t bits = std::bit_cast<uint32_t>(f), sign = bits >> 16 & 0x8000, magnitude = bits & 0x7fffffff;
-    if (magnitude > 0x7f800000) return uint16_t(sign | 0x7e00);
-    if (magnitude >= 0x477ff000) return uint16_t(sign | 0x7c00); // rounds to 65536 or more
-    if (magnitude < 0x38800000) {                                // subnormal: the adder rounds
-        const float sum = std::bit_cast<float>(magnitude) + 0.5f;
-        return uint16_t(sign | (std::bit_cast<uint32_t>(sum) - 0x3f000000));
-    }
-    const uint32_t odd = magnitude >> 13 & 1;
-    return uint16_t(sign | ((magnitude - 0x38000000 + 0xfff + odd) >> 13));
 }
 
 display::Image noisePlane(const render::Film& film) {

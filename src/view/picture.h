@@ -47,7 +47,5 @@ void fill(Picture& onto, const std::vector<uint8_t>& there, const Picture& from)
 std::string halves(const Picture&, const Plane&, const std::map<std::string, double>& dim);
 /// Red, green and blue of "picture" with lights dimmed.
 display::Image dimmed(const Picture&, const std::map<std::string, double>& dim);
-/// IEEE 754 binary16, to nearest even.
-uint16_t toHalf(float);
 
 } // namespace alpenglow::view

@@ -53,6 +53,7 @@ const std::map<std::string, std::set<std::string>> kForeign = {
     {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},  {"embree3", {}},        {"OpenImageIO", {"texture"}},
     {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
     {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},         {"boost", {"view"}},    {"xxhash.h", {"base"}},
+    {"Imath", {"base"}},
 };
 
 TEST(Rooms, IncludeTable) {

@@ -1,0 +1,12 @@
+// Half floats, by Imath: to the nearest, ties to even.
+#pragma once
+#define IMATH_HALF_NO_LOOKUP_TABLE // then nothing is linked
+#include <Imath/half.h>
+#include <cstdint>
+
+namespace alpenglow {
+
+inline uint16_t toHalf(float f) { return imath_float_to_half(f); }
+inline float ofHalf(uint16_t h) { return imath_half_to_float(h); }
+
+} // namespace alpenglow

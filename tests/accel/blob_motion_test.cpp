@@ -4,6 +4,7 @@
 #include "../statistics/nightly.h"
 #include "accel/accel.h"
 #include "geometry/placed.h"
+#include "scene/scene.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>

@@ -2,6 +2,7 @@
 #include "../geometry/make.h"
 #include "accel/accel.h"
 #include "geometry/placed.h"
+#include "scene/scene.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>

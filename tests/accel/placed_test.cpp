@@ -4,6 +4,7 @@
 #include "geometry/build.h"
 #include "geometry/dice.h"
 #include "geometry/placed.h"
+#include "scene/scene.h"
 #include <gtest/gtest.h>
 #include <random>
 

@@ -2,6 +2,7 @@
 #include "geometry/solve.h"
 #include "geometry/triangulate.h"
 #include "make.h"
+#include "scene/scene.h"
 #include <cmath>
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "geometry/edge_curve.h"
 #include "geometry/placed.h"
 #include "make.h"
+#include "scene/scene.h"
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <map>

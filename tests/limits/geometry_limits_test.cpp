@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "geometry/make.h"
 #include "geometry/triangulate.h"
+#include "scene/scene.h"
 #include <cmath>
 #include <gtest/gtest.h>
 

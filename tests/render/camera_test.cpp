@@ -1,5 +1,6 @@
 // The camera against the formulas of ri.md 6, worked out by hand in each test.
 #include "render/camera.h"
+#include "scene/scene.h"
 #include <cmath>
 #include <gtest/gtest.h>
 

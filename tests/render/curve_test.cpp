@@ -1,6 +1,7 @@
 // Which pictures go through the display curve, and which frames keep their own numbers (docs/colour.md).
 #include "render/curve.h"
 #include "scene/numbers.h"
+#include "scene/scene.h"
 #include <gtest/gtest.h>
 
 namespace curve_test {

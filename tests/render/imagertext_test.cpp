@@ -1,5 +1,6 @@
 // What part files keep of an imager's scene: as it was, and whatever is wrong with the text, an error.
 #include "render/imagertext.h"
+#include "scene/scene.h"
 #include <gtest/gtest.h>
 
 namespace imagertext_test {

@@ -1,5 +1,6 @@
 // Outputs by light path and figures of pixels: how displays ask for them, and what images hold.
 #include "render/outputs.h"
+#include "scene/scene.h"
 #include <gtest/gtest.h>
 
 namespace lightchannels_test {

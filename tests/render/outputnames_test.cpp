@@ -1,5 +1,6 @@
 // Names of outputs: numbers in them, which displays are maps, and that no two share a file.
 #include "render/outputnames.h"
+#include "scene/scene.h"
 #include <gtest/gtest.h>
 
 namespace outputnames_test {

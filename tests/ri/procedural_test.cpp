@@ -3,6 +3,7 @@
 #include "collect.h"
 #include "ri/program.h"
 #include "scene/motion.h"
+#include "scene/scene.h"
 #include <chrono>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,6 @@
 // Projections: by name, and by matrices in front of the world.
 #include "collect.h"
+#include "scene/scene.h"
 #include <cmath>
 
 namespace projection_test {

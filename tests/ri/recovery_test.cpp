@@ -1,6 +1,7 @@
 // Scopes, crossed and forgotten blocks, conditions, foreign code: what is mended and what is said.
 #include "base/limits.h"
 #include "collect.h"
+#include "scene/scene.h"
 #include "scene/solids.h"
 
 namespace recovery_test {

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "collect.h"
 #include "ri/lookahead.h"
+#include "scene/scene.h"
 #include <fstream>
 #include <numbers>
 

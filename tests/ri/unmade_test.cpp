@@ -1,5 +1,6 @@
 // Procedurals outside of the picture wait until somebody asks for their content, which is what it would have been at once.
 #include "collect.h"
+#include "scene/scene.h"
 #include "scene/unmade.h"
 #include <filesystem>
 #include <fstream>

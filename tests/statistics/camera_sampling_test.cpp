@@ -2,6 +2,7 @@
 // numbers, one sample of as many pixels. Power: alternating +-5 % over 200 cells is found at 1e5 draws.
 #include "base/sampler.h"
 #include "render/camera.h"
+#include "scene/scene.h"
 #include "statistics/agreement.h"
 #include <gtest/gtest.h>
 

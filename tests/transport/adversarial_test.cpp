@@ -2,6 +2,7 @@
 // mean something, and says what it cannot do. Values follow from the lamps: Cl of 1, 10 and 100 at heights 2, 3 and 5 straight
 // above the floor.
 #include "base/limits.h"
+#include "scene/scene.h"
 #include "transport/floorscene.h"
 
 namespace adversarial_test {

@@ -1,5 +1,6 @@
 // Variables of primitives and the shaders of Interior and Exterior; how many volumes a ray is known to be in.
 #include "base/limits.h"
+#include "scene/scene.h"
 #include "transport/floorscene.h"
 
 namespace mediavariables_test {

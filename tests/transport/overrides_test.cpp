@@ -1,5 +1,6 @@
 // Variables of primitives that do not fit the parameters of shaders: the parameters keep their values, and it is said. "shader"
 // space of co-shaders by a name that is made when the shader runs. Closed forms.
+#include "scene/scene.h"
 #include "transport/floorscene.h"
 
 namespace overrides_test {

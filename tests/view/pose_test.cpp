@@ -1,4 +1,5 @@
 // The camera of a view against matrices worked out by hand. Camera space is left-handed: +x right, +y up, +z into the scene.
+#include "scene/scene.h"
 #include "view/pose.h"
 #include <cmath>
 #include <gtest/gtest.h>

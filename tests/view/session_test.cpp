@@ -1,5 +1,6 @@
 // A view without its page: what is rendered after what was asked for, against what render makes of the same scene.
 #include "display/imageio.h"
+#include "scene/scene.h"
 #include "view/session.h"
 #include "view/viewserver.h"
 #include <atomic>

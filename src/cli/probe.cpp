@@ -10,6 +10,7 @@
 #include "cli/ranges.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>

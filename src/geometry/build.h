@@ -2,10 +2,7 @@
 #pragma once
 #include "base/limits.h"
 #include "geometry/shape.h"
-
-namespace alpenglow::scene {
-struct Frame;
-} // namespace alpenglow::scene
+#include "scene/fwd.h"
 
 namespace alpenglow::geometry {
 

@@ -2,11 +2,8 @@
 #pragma once
 #include "base/stopflag.h"
 #include "geometry/shape.h"
+#include "scene/fwd.h"
 #include <functional>
-
-namespace alpenglow::scene {
-struct Options;
-} // namespace alpenglow::scene
 
 namespace alpenglow::geometry {
 

@@ -1,9 +1,6 @@
 #pragma once
+#include "scene/fwd.h"
 #include "scene/primitive.h"
-
-namespace alpenglow::scene {
-struct Instance;
-} // namespace alpenglow::scene
 
 namespace alpenglow::geometry {
 

@@ -1,6 +1,7 @@
 #include "render/camera.h"
 #include "base/exact.h"
 #include "base/limits.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 

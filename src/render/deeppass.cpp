@@ -1,6 +1,7 @@
 #include "render/deeppass.h"
 #include "base/limits.h"
 #include "display/deep.h"
+#include "scene/scene.h"
 
 namespace alpenglow::render {
 namespace {

@@ -1,5 +1,7 @@
 #include "render/digest.h"
 #include "base/digest.h"
+#include "scene/primitive.h"
+#include "scene/scene.h"
 #include <type_traits>
 #include <unordered_map>
 #include <utility>

@@ -1,6 +1,6 @@
 // A digest of a scene: two renders are parts of one picture only when theirs are equal.
 #pragma once
-#include "scene/scene.h"
+#include "scene/fwd.h"
 #include <string>
 
 namespace alpenglow::render {

@@ -5,6 +5,7 @@
 #include "render/provenance.h"
 #include "render/renderer.h"
 #include "render/rendering.h"
+#include "scene/scene.h"
 #include <optional>
 
 namespace alpenglow::render {

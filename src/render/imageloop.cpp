@@ -6,6 +6,7 @@
 #include "render/noise.h"
 #include "render/rendering.h"
 #include "render/watcher.h"
+#include "scene/scene.h"
 #include "transport/unmade.h"
 #include <algorithm>
 #include <cmath>

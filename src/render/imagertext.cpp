@@ -1,5 +1,6 @@
 #include "render/imagertext.h"
 #include "base/limits.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>

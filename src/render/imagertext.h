@@ -1,6 +1,6 @@
 // What an imager sees of its frame as JSON, for part files: merging runs it without the scene.
 #pragma once
-#include "scene/scene.h"
+#include "scene/fwd.h"
 #include "transport/integrator.h"
 #include <optional>
 #include <string>

@@ -1,5 +1,6 @@
 #include "render/lacks.h"
 #include "base/printable.h"
+#include "scene/scene.h"
 #include <algorithm>
 
 namespace alpenglow::render {

@@ -1,5 +1,6 @@
 #include "render/levels.h"
 #include "geometry/instance_attributes.h"
+#include "scene/scene.h"
 #include "transport/integrator.h"
 #include <algorithm>
 #include <cmath>

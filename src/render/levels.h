@@ -2,7 +2,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "render/camera.h"
-#include "scene/scene.h"
+#include "scene/fwd.h"
 
 namespace alpenglow::render {
 

@@ -1,5 +1,6 @@
 // Outputs that are no outputs of shaders: light by its path, what the camera sees first, figures of the pixel.
 #include "render/outputs.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <tuple>
 

@@ -1,6 +1,7 @@
 #include "render/outputnames.h"
 #include "base/file.h"
 #include "display/drivers/picture.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cctype>
 #include <cstdio>

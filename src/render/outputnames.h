@@ -1,7 +1,7 @@
 // Names of what a run writes: the numbers of frames in them, which displays are maps, and that no two outputs share a file.
 #pragma once
 #include "render/settings.h"
-#include "scene/scene.h"
+#include "scene/fwd.h"
 #include <map>
 #include <string>
 #include <vector>

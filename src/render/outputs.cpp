@@ -7,6 +7,7 @@
 #include "render/imaging.h"
 #include "render/outputnames.h"
 #include "scene/numbers.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>

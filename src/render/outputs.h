@@ -7,8 +7,9 @@
 #include "render/film.h"
 #include "render/samplebuffer.h"
 #include "render/settings.h"
+#include "scene/display.h"
+#include "scene/fwd.h"
 #include "scene/lightpaths.h"
-#include "scene/scene.h"
 #include "transport/integrator.h"
 #include <functional>
 

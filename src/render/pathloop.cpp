@@ -7,6 +7,7 @@
 #include "render/photonpass.h"
 #include "render/rendering.h"
 #include "render/watcher.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 #include <new>

@@ -2,6 +2,7 @@
 #include "base/hash.h"
 #include "photons/limits.h"
 #include "photons/photonmap.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <utility>
 

@@ -1,4 +1,5 @@
 #include "render/provenance.h"
+#include "scene/scene.h"
 #include <cmath>
 #include <ctime>
 #include <fmt/format.h>

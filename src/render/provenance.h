@@ -2,7 +2,7 @@
 #pragma once
 #include "render/outputs.h"
 #include "render/settings.h"
-#include "scene/scene.h"
+#include "scene/fwd.h"
 
 namespace alpenglow::render {
 

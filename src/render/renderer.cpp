@@ -14,6 +14,7 @@
 #include "render/photonpass.h"
 #include "render/provenance.h"
 #include "render/rendering.h"
+#include "scene/scene.h"
 #include "texture/maketexture.h"
 #include <cmath>
 #include <filesystem>

@@ -6,7 +6,7 @@
 #include "render/progress.h"
 #include "render/settings.h"
 #include "render/stats.h"
-#include "scene/scene.h"
+#include "scene/frameconsumer.h"
 #include <functional>
 #include <set>
 #include <span>

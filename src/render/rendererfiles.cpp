@@ -4,6 +4,7 @@
 #include "render/outputnames.h"
 #include "render/partfile.h"
 #include "render/renderer.h"
+#include "scene/scene.h"
 #include <filesystem>
 
 namespace alpenglow::render {

@@ -4,7 +4,7 @@
 #include "base/stopflag.h"
 #include "render/film.h"
 #include "render/progress.h"
-#include "scene/scene.h"
+#include "scene/display.h"
 #include <array>
 #include <memory>
 #include <optional>

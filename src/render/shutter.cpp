@@ -1,4 +1,5 @@
 #include "render/shutter.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 

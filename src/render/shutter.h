@@ -1,7 +1,7 @@
 // How a shutter opens.
 #pragma once
 #include "base/diagnostics.h"
-#include "scene/scene.h"
+#include "scene/fwd.h"
 
 namespace alpenglow::render {
 

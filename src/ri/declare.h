@@ -1,6 +1,6 @@
 // Declarations of parameters: "class type[n] name", Declare, and what is known without either (ri.md 2.2, 2.3, 15).
 #pragma once
-#include "scene/scene.h"
+#include "scene/param.h"
 #include <map>
 #include <optional>
 #include <string>

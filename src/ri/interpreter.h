@@ -11,6 +11,7 @@
 #include "ri/reporter.h"
 #include "ri/requests/request.h"
 #include "ri/source.h"
+#include "scene/scene.h"
 #include "scene/solids.h"
 #include <functional>
 #include <map>

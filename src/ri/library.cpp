@@ -1,5 +1,6 @@
 #include "ri/library.h"
 #include "ri/c/client.h"
+#include "scene/scene.h"
 #include <dlfcn.h>
 #include <exception>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "base/limits.h"
 #include "base/readlog.h"
 #include "base/stopflag.h"
-#include "scene/scene.h"
+#include "scene/frameconsumer.h"
 #include "scene/unmade.h"
 #include <functional>
 #include <istream>

@@ -1,6 +1,7 @@
 // Procedurals whose content is made while their frame is rendered, once a ray comes to their bound. What is in one depends on
 // the scene and on what it stands in, never on which others were made before: names that one declares are its own.
 #include "ri/unmade.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <map>
 #include <utility>

@@ -1,5 +1,6 @@
 #include "ri/userprojection.h"
 #include "base/exact.h"
+#include "scene/scene.h"
 #include <cmath>
 
 namespace alpenglow::ri {

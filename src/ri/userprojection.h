@@ -1,7 +1,8 @@
 // Projections by a matrix of the user's (RISpec 3.2, RiProjection with a null name): the transformations in front of WorldBegin
 // lead to the screen, perspective included.
 #pragma once
-#include "scene/scene.h"
+#include "scene/fwd.h"
+#include "scene/param.h"
 
 namespace alpenglow::ri {
 

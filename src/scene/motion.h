@@ -1,10 +1,9 @@
 // Arithmetic of what moves: transforms and primitives at a time, and over the shutter.
 #pragma once
+#include "scene/fwd.h"
 #include "scene/primitive.h"
 
 namespace alpenglow::scene {
-
-struct Options;
 
 /// m at a time: linear between keys, element by element; the end keys outside.
 Matrix at(const Transform& m, double time);

@@ -1,11 +1,10 @@
 // Whether a frame is rendered in light or in numbers of its own (docs/colour.md).
 #pragma once
 #include "base/diagnostics.h"
+#include "scene/fwd.h"
 #include "scene/primitive.h"
 
 namespace alpenglow::scene {
-
-struct Options;
 
 /// Whether a frame keeps its own numbers: its 8-bit maps are read as they are, and so are its pictures written. Never under path.
 /// Under hidden and raytrace an old scene does, told by what it says itself: Exposure, Quantize, or a Display of a type that

@@ -73,18 +73,4 @@ struct Frame {
     std::map<std::string, Transform> coordinateSystems;
 };
 
-/// What a RIB stream does; ri/ calls it, render/ implements it.
-class FrameConsumer {
-public:
-    virtual ~FrameConsumer() = default;
-    /// WorldEnd. The frame is complete; the call returns when it is rendered (or refused).
-    virtual void render(std::shared_ptr<const Frame>) = 0;
-    /// MakeTexture and its kin, in stream order. kind = request name.
-    virtual void makeTexture(const std::string& kind, const std::vector<std::string>& files, const ParamList& args,
-                             const SourcePlace&) = 0;
-    /// A world, or a Make request, of a frame that is not wanted: nothing is made.
-    virtual void passOver(const Options&) {}
-    virtual void passOverTexture(const std::vector<std::string>& /*files*/) {}
-};
-
 } // namespace alpenglow::scene

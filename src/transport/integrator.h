@@ -2,15 +2,12 @@
 // "raytrace" shaders mean what they meant; under "path" their lobes are estimated with all light (design decisions 1 to 4).
 #pragma once
 #include "base/diagnostics.h"
+#include "scene/fwd.h"
 #include "scene/primitive.h"
 #include "wave/samples.h"
 #include "world/world.h"
 #include <memory>
 #include <span>
-
-namespace alpenglow::scene {
-struct Frame;
-} // namespace alpenglow::scene
 
 namespace alpenglow::transport {
 

@@ -2,6 +2,7 @@
 #include "render/filmpicture.h"
 #include "render/imaging.h"
 #include "render/noise.h"
+#include "scene/scene.h"
 #include "view/session.h"
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "view/materials.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>

@@ -1,6 +1,7 @@
 // The shaders of a frame with their parameters, and frames in which some of these are others.
 #pragma once
-#include "scene/scene.h"
+#include "scene/fwd.h"
+#include "scene/primitive.h"
 #include <map>
 
 namespace alpenglow::view {

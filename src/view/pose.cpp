@@ -1,4 +1,5 @@
 #include "view/pose.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "base/matrix.h"
 #include "render/engine.h"
-#include "scene/scene.h"
+#include "scene/fwd.h"
 
 namespace alpenglow::view {
 

@@ -3,6 +3,7 @@
 #include "render/camera.h"
 #include "render/levels.h"
 #include "scene/numbers.h"
+#include "scene/scene.h"
 #include "view/session.h"
 #include <algorithm>
 #include <cmath>

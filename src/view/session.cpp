@@ -1,6 +1,7 @@
 // The thread of a view, and what viewers ask of it.
 #include "view/session.h"
 #include "render/outputnames.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
+#include "scene/fwd.h"
 #include "scene/motion.h"
 #include "texture/irradiance.h"
 #include "texture/skydirections.h"
@@ -14,11 +15,6 @@
 #include "world/world.h"
 #include <functional>
 #include <unordered_map>
-
-namespace alpenglow::scene {
-struct Frame;
-struct Options;
-} // namespace alpenglow::scene
 
 namespace alpenglow::transport {
 

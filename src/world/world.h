@@ -1,13 +1,10 @@
 // A frame made ready (World): what others see of it. What rays, answers and lights are bound to is in impl.h.
 #pragma once
 #include "base/diagnostics.h"
+#include "scene/fwd.h"
 #include "scene/primitive.h"
 #include "world/settings.h"
 #include <span>
-
-namespace alpenglow::scene {
-struct Frame;
-} // namespace alpenglow::scene
 
 namespace alpenglow::transport {
 

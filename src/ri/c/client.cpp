@@ -1,5 +1,6 @@
 #include "ri/c/client.h"
 #include "ri/parser.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <fmt/format.h>
 #include <new>

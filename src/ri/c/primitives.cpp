@@ -1,5 +1,6 @@
 // ri.h: primitives, archives and procedurals of procedurals.
 #include "ri/c/pairs.h"
+#include "scene/scene.h"
 #include <cstdlib>
 
 using namespace alpenglow;

@@ -6,7 +6,7 @@
 #include "base/diagnostics.h"
 #include "base/readlog.h"
 #include "base/vec.h"
-#include "scene/scene.h"
+#include "scene/primitive.h"
 #include <functional>
 #include <memory>
 #include <optional>

@@ -7,6 +7,7 @@
 #include "lobes/sampling.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include "transport/integrator.h"
 #include "world/impl.h"
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "lobes/sampling.h"
 #include "render/camera.h"
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

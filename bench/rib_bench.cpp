@@ -2,6 +2,7 @@
 // two take turns, the best of all turns counts. The reader tokenises, checks, binds and builds the scene; fast_float only
 // converts. Exit 1 when the reader is slower than the limit.
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -7,6 +7,7 @@
 #include "render/progress.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -5,6 +5,7 @@
 #include "render/progress.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 #include "ri/models/model.h"
 #include "ri/reader.h"
 #include "rsl/front/ast.h"
+#include "scene/scene.h"
 #include "targets.h"
 #include "texture/texture.h"
 #include "worker.h"

@@ -1,6 +1,7 @@
 // Pictures of hidden and raytrace while they grow: what is there is what it will be, and more and more is there.
 #include "render/renderer.h"
 #include "render/watcher.h"
+#include "scene/scene.h"
 #include <chrono>
 #include <cmath>
 #include <filesystem>

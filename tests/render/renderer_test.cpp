@@ -4,6 +4,7 @@
 #include "render/partfile.h"
 #include "render/renderer.h"
 #include "render/team.h"
+#include "scene/scene.h"
 #include <cmath>
 #include <filesystem>
 #include <fstream>

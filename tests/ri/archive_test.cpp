@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "collect.h"
 #include "ri/interpreter.h"
+#include "scene/scene.h"
 #include <filesystem>
 #include <fstream>
 

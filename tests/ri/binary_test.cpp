@@ -1,6 +1,7 @@
 // Binary RIB (ri.md 17) from hand-assembled bytes, gzip, and damaged streams.
 #include "base/limits.h"
 #include "collect.h"
+#include "scene/scene.h"
 #include <fstream>
 #include <random>
 #include <zlib.h>

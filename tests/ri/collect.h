@@ -1,6 +1,7 @@
 // Reads RIB text and keeps what comes out.
 #pragma once
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include <gtest/gtest.h>
 
 namespace alpenglow::ri {

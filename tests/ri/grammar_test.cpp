@@ -1,6 +1,7 @@
 // ASCII RIB: ri.md 16, and what files in the wild do (wild.md).
 #include "base/limits.h"
 #include "collect.h"
+#include "scene/scene.h"
 #include <sstream>
 
 namespace grammar_test {

@@ -2,6 +2,7 @@
 // looks names up agree, by the text of the sources.
 #include "collect.h"
 #include "scene/knownoptions.h"
+#include "scene/scene.h"
 #include <filesystem>
 #include <fstream>
 #include <regex>

@@ -1,5 +1,6 @@
 // What RIB files published by others ask for and other tests do not: empty meshes, names of other renderers, the teapot.
 #include "collect.h"
+#include "scene/scene.h"
 
 namespace published_test {
 

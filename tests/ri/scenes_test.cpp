@@ -1,5 +1,6 @@
 // The eight published scenes of ../shared/scenes: not a word to say, and every primitive there.
 #include "collect.h"
+#include "scene/scene.h"
 #include <filesystem>
 
 namespace scenes_test {

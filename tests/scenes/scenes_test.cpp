@@ -3,6 +3,7 @@
 #include "facets.h"
 #include "render/renderer.h"
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -4,6 +4,7 @@
 #include "render/noise.h"
 #include "render/partfile.h"
 #include "render/renderer.h"
+#include "scene/scene.h"
 #include "statistics/chisquare.h"
 #include "statistics/nightly.h"
 #include <cmath>

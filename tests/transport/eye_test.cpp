@@ -1,6 +1,7 @@
 // I, E and depths: I is P - E though camera rays begin at the near plane (RISpec 3.2, table 12.1), behind transparent surfaces
 // too; what displacements and lights ask of depth() and ptlined().
 #include "render/camera.h"
+#include "scene/scene.h"
 #include "transport/floorscene.h"
 
 namespace eye_test {

@@ -4,6 +4,7 @@
 #include "render/noise.h"
 #include "render/renderer.h"
 #include "render/team.h"
+#include "scene/scene.h"
 #include "transport/box.h"
 
 namespace film_test {

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "render/camera.h"
 #include "sanitized.h"
+#include "scene/scene.h"
 #include "transport/harness.h"
 #include <chrono>
 #include <ctime>

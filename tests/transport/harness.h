@@ -2,6 +2,7 @@
 // The unit of statistics is a random stream of its own for every sample (testing rule 7): each sample gets a pixel of its own.
 #pragma once
 #include "ri/reader.h"
+#include "scene/scene.h"
 #include "statistics/agreement.h"
 #include "transport/integrator.h"
 #include <cmath>

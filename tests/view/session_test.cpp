@@ -373,34 +373,39 @@ TEST_F(ViewSession, PicturesOfHiddenGrowTileByTile) {
         "Display \"x.exr\" \"openexr\" \"rgba\"\nFormat 320 240 1\nPixelFilter \"box\" 1 1\nHider \"hidden\"\nPixelSamples 4 4\n"
         "Projection \"perspective\" \"fov\" 40\nTranslate 0 0 5\nWorldBegin\nSurface \"busy\"\n"
         "Polygon \"P\" [-9 -9 0  9 -9 0  9 9 0  -9 9 0]\nWorldEnd\n";
-    std::vector<std::shared_ptr<const Picture>> seen;
-    ASSERT_TRUE(open(false, {{"continuous", false}, {"spp", 36}}));
-    ASSERT_TRUE(until([&] {
-        const auto p = session->look("picture").picture;
-        if (p && (seen.empty() || seen.back() != p)) seen.push_back(p);
-        return session->state(0, 0)["done"] == true;
-    }));
-    seen.push_back(done());
-    const display::Image& last = *seen.back()->planes[0].image;
-    render::RenderSettings s;
-    s.spp = 36;
-    EXPECT_EQ(difference(last, rendered(scene, s)), 0);
-    size_t before = 0, between = 0, black = 0;
-    for (const auto& p : seen) {
-        const display::Image& image = *p->planes[0].image;
-        if (image.width != last.width) continue; // the first coarse one
-        size_t same = 0;
-        for (int y = 0; y < last.height; ++y)
-            for (int x = 0; x < last.width; ++x) {
-                same += image.pixel(x, y)[0] == last.pixel(x, y)[0];
-                black += image.pixel(x, y)[3] == 0;
-            }
-        EXPECT_GE(same, before);
-        between += same > 76800 / 20 && same < 76800 * 19 / 20;
-        before = same;
+    // On a busy machine a short render may be over before a picture of its middle is seen: then a longer one.
+    size_t between = 0;
+    for (int spp = 36; between == 0 && spp <= 576; spp *= 4) {
+        SCOPED_TRACE(spp);
+        std::vector<std::shared_ptr<const Picture>> seen;
+        ASSERT_TRUE(open(false, {{"continuous", false}, {"spp", spp}}));
+        ASSERT_TRUE(until([&] {
+            const auto p = session->look("picture").picture;
+            if (p && (seen.empty() || seen.back() != p)) seen.push_back(p);
+            return session->state(0, 0)["done"] == true;
+        }));
+        seen.push_back(done());
+        const display::Image& last = *seen.back()->planes[0].image;
+        render::RenderSettings s;
+        s.spp = uint32_t(spp);
+        EXPECT_EQ(difference(last, rendered(scene, s)), 0);
+        size_t before = 0, black = 0;
+        for (const auto& p : seen) {
+            const display::Image& image = *p->planes[0].image;
+            if (image.width != last.width) continue; // the first coarse one
+            size_t same = 0;
+            for (int y = 0; y < last.height; ++y)
+                for (int x = 0; x < last.width; ++x) {
+                    same += image.pixel(x, y)[0] == last.pixel(x, y)[0];
+                    black += image.pixel(x, y)[3] == 0;
+                }
+            EXPECT_GE(same, before);
+            between += same > 76800 / 20 && same < 76800 * 19 / 20;
+            before = same;
+        }
+        EXPECT_EQ(black, 0u); // what is not there is the coarse picture
     }
-    EXPECT_GE(between, 1u) << seen.size(); // half done
-    EXPECT_EQ(black, 0u);                  // what is not there is the coarse picture
+    EXPECT_GE(between, 1u); // half done
 }
 
 TEST_F(ViewSession, EndsWhileTheSceneIsRead) {

@@ -17,7 +17,7 @@ public:
     }
     float at(int row, int lane) const { return in[size_t(row) * lanes + lane]; }
     void put(int row, int lane, float v) const { out[size_t(row) * lanes + lane] = v; }
-    void putText(int row, int lane, const std::string& s) const { put(row, lane, std::bit_cast<float>(rsl::internString(s))); }
+    void putText(int row, int lane, const std::string& t) const { put(row, lane, std::bit_cast<float>(rsl::internString(t))); }
     /// The first string of the call, where each point may have its own.
     std::string name(int lane) const;
     /// The same, interned.

@@ -28,7 +28,7 @@ bool classBytes(const std::string& name, Bytes& out) {
         {"print", std::isprint}, {"graph", std::isgraph}, {"cntrl", std::iscntrl}, {"xdigit", std::isxdigit}};
     for (const auto& [n, is] : known)
         if (name == n) {
-            out |= bytesThat([is = is](unsigned char c) { return is(c) != 0; });
+            out |= bytesThat([test = is](unsigned char c) { return test(c) != 0; });
             return true;
         }
     return false;

@@ -244,8 +244,8 @@ Json LanguageServer::hover(const Json& params) {
         text = manualMarkdown(*use.shadeop, use.signature);
     } else if (const auto list = d->functions(name); !list.empty()) {
         function(*list[0]);
-    } else if (const rsl::Shadeop* op = rsl::findShadeop(name)) {
-        text = manualMarkdown(*op);
+    } else if (const rsl::Shadeop* shadeop = rsl::findShadeop(name)) {
+        text = manualMarkdown(*shadeop);
     } else if (const auto* g = globalNamed(name, kind())) {
         global(*g);
     } else if (const auto m = d->macro(name)) {

@@ -79,9 +79,9 @@ double BlobGround::above(const Vec3d& p) const {
     const int i0 = std::clamp(int(std::floor(i)), 0, std::max(0, width - 2)),
               j0 = std::clamp(int(std::floor(j)), 0, std::max(0, height - 2));
     const int i1 = std::min(i0 + 1, width - 1), j1 = std::min(j0 + 1, height - 1);
-    const double a = std::clamp(i - i0, 0.0, 1.0), b = std::clamp(j - j0, 0.0, 1.0);
+    const double u = std::clamp(i - i0, 0.0, 1.0), v = std::clamp(j - j0, 0.0, 1.0);
     const auto at = [&](int x0, int y0) { return double(depth[size_t(y0) * size_t(width) + size_t(x0)]); };
-    const double z = (1 - b) * ((1 - a) * at(i0, j0) + a * at(i1, j0)) + b * ((1 - a) * at(i0, j1) + a * at(i1, j1));
+    const double z = (1 - v) * ((1 - u) * at(i0, j0) + u * at(i1, j0)) + v * ((1 - u) * at(i0, j1) + u * at(i1, j1));
     return z - transformPoint(toCamera, p).z;
 }
 

@@ -5,9 +5,9 @@
 
 namespace alpenglow::geometry {
 
-using Kind = BlobOp::Kind;
-
 namespace {
+
+using Kind = BlobOp::Kind;
 
 struct Matrix3 {
     double m[3][3] = {};

@@ -8,7 +8,9 @@
 
 namespace alpenglow::geometry {
 
+namespace {
 using Kind = BlobOp::Kind;
+}
 
 struct BlobField::Reader {
     BlobField& field;

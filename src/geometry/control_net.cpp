@@ -342,7 +342,7 @@ SurfacePoint ControlNet::sampleArea(double xi1, double xi2) const {
 }
 
 double ControlNet::sampleDensity(const SurfacePoint& p) const {
-    return trim_ ? Parametric::sampleDensity(p) * trim_->density(p.b1, p.b2) : Parametric::sampleDensity(p);
+    return trim_ ? Parametric::sampleDensity(p) * trim_->density(p.b2) : Parametric::sampleDensity(p);
 }
 
 size_t ControlNet::classCount(Class c) const {

@@ -15,7 +15,7 @@ class EdgeCurve;
 class Parametric : public Shape {
 public:
     using Shape::Shape;
-    SurfacePoint evaluate(int face, double u, double v) const override { return evaluateLocal(0, u, v); }
+    SurfacePoint evaluate(int /*face*/, double u, double v) const override { return evaluateLocal(0, u, v); }
     double area() const override;
     SurfacePoint sampleArea(double xi1, double xi2) const override { return evaluateLocal(0, xi1, xi2); }
     double sampleDensity(const SurfacePoint&) const override;
@@ -36,7 +36,7 @@ protected:
     /// Where those borders lie along u (0) or v (1), from 0 to 1.
     virtual std::vector<double> borders(int direction) const;
     /// Whether the surface is torn at such a border.
-    virtual bool torn(int direction, double border) const { return false; }
+    virtual bool torn(int /*direction*/, double /*border*/) const { return false; }
     /// The edge of a patch on the border of the surface, in the direction of u or v; side 0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0;
     /// cell: which patch along it, between `from` and `to`. False: it is no data of its own.
     virtual bool edgeCurve(int /*side*/, int /*cell*/, double /*from*/, double /*to*/, EdgeCurve&) const { return false; }

@@ -46,11 +46,11 @@ Quadric::Quadric(ShapeSource s, double degrees, Diagnostics& diag) : Parametric(
 }
 
 void Quadric::finish(Diagnostics& diag) {
-    constexpr int kSteps = 64;
+    constexpr int kProfileSteps = 64;
     zLo_ = INFINITY;
     zHi_ = -INFINITY;
-    for (int i = 0; i <= kSteps; ++i) {
-        Profile p = profile(double(i) / kSteps);
+    for (int i = 0; i <= kProfileSteps; ++i) {
+        Profile p = profile(double(i) / kProfileSteps);
         radius_ = std::max(radius_, exact::hypot(p.p.x, p.p.y));
         zLo_ = std::min(zLo_, p.p.z);
         zHi_ = std::max(zHi_, p.p.z);

@@ -182,7 +182,7 @@ public:
     /// A point for two numbers of [0,1): parametric surfaces uniform over (u, v), polygons uniform over area.
     virtual SurfacePoint sampleArea(double xi1, double xi2) const = 0;
     /// The same, written in place.
-    virtual void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
+    virtual void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t /*needs*/ = kNeedAll) const {
         out = sampleArea(xi1, xi2);
     }
     /// The same for a point that is lit: what faces rays is where rays from there would meet it.
@@ -222,7 +222,7 @@ protected:
     /// evaluate() by (prim, b1, b2) of the undiced surface.
     virtual SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const = 0;
     /// The same, written in place. needs: PointNeed.
-    virtual void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs) const {
+    virtual void evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t /*needs*/) const {
         out = evaluateLocal(prim, b1, b2);
     }
     /// The same for many hits of an undiced surface.

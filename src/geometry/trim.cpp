@@ -397,7 +397,7 @@ bool TrimRegion::sample(double xi1, double xi2, double& u, double& v) const {
     return true;
 }
 
-double TrimRegion::density(double u, double v) const {
+double TrimRegion::density(double v) const {
     const Strip& s = stripOf(v);
     const double length = keptLength(v);
     return length > 0 && s.hi > s.lo ? s.share / ((s.hi - s.lo) * length) : 0;

@@ -36,8 +36,8 @@ public:
     double area() const { return area_; }
     /// A kept point for two numbers of [0,1), with density(): false where there is none at the v that it came to.
     bool sample(double xi1, double xi2, double& u, double& v) const;
-    /// Density by du dv with which sample() gives this point; it is about 1 / area(). 0 where nothing is kept.
-    double density(double u, double v) const;
+    /// Density by du dv with which sample() gives points at this v; it is about 1 / area(). 0 where nothing is kept.
+    double density(double v) const;
     /// Nodes and weights for integrals over what is kept, by du dv.
     struct Node {
         double u, v, weight;

@@ -179,11 +179,11 @@ void Camera::setProjection(const scene::Options& o, Diagnostics& diags) {
 }
 
 LensGrid lensGridOf(const scene::Options& o) {
-    constexpr float kMost = 256; // of one side: 65,536 rays a pixel
+    constexpr float kMostOfSide = 256; // 65,536 rays a pixel
     const scene::Param* p = o.hider == "raytrace" ? scene::find(o.hiderParams, "lensSamples") : nullptr;
     if (!p || p->numbers.empty()) return {};
     const float x = p->numbers[0], y = p->numbers.size() > 1 ? p->numbers[1] : x;
-    const auto good = [&](float n) { return n >= 1 && n <= kMost && n == std::floor(n); };
+    const auto good = [&](float n) { return n >= 1 && n <= kMostOfSide && n == std::floor(n); };
     return good(x) && good(y) ? LensGrid{int(x), int(y)} : LensGrid{};
 }
 

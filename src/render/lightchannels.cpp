@@ -6,9 +6,9 @@
 
 namespace alpenglow::render {
 
-using Source = OutputVariable::Source;
-
 namespace {
+
+using Source = OutputVariable::Source;
 
 constexpr std::pair<const char*, Source> kWords[] = {
     {"direct", Source::Light},  {"indirect", Source::Light},    {"other", Source::Light},    {"albedo", Source::Albedo},

@@ -94,11 +94,11 @@ OutputSpec specOf(const scene::Display& d, const scene::Options& o, const Output
         else setSource(out, o, plan, d.place, diags);
         if (out.source == Source::Engine) {
             auto& names = plan.engineOutputs;
-            const std::string& name = out.asked.empty() ? out.name : out.asked;
-            auto i = std::find(names.begin(), names.end(), name);
+            const std::string& wanted = out.asked.empty() ? out.name : out.asked;
+            auto i = std::find(names.begin(), names.end(), wanted);
             out.engine = int(i - names.begin());
             if (i == names.end()) {
-                names.push_back(name);
+                names.push_back(wanted);
                 plan.engineWidths.push_back(0);
             }
             int& width = plan.engineWidths[size_t(out.engine)];

@@ -48,8 +48,8 @@ bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const 
 }
 
 bool Job::makeMet() {
-    const std::vector<int> met = transport::procedurals(*world);
-    std::shared_ptr<const transport::World> next = make && !met.empty() ? make(met) : nullptr;
+    const std::vector<int> numbers = transport::procedurals(*world);
+    std::shared_ptr<const transport::World> next = make && !numbers.empty() ? make(numbers) : nullptr;
     if (!next) {
         if (!pollStop()) throw std::runtime_error("procedurals that rays came to cannot be made");
         return false;

@@ -200,13 +200,12 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         if (!unscanned_.empty()) ahead_.scan(std::exchange(unscanned_, {}));
         parsed = ahead_.take(name, file);
     }
-    if (parsed) executeParsed(*parsed, key, file, place);
+    if (parsed) executeParsed(*parsed, key, file);
     else readOpened(key, file, calls, std::move(source), place);
 }
 
-void Interpreter::executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file,
-                                const SourcePlace& place) {
-    inPart(key, place, [&] {
+void Interpreter::executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file) {
+    inPart(key, [&] {
         auto outer = std::move(reporter.lineText);
         reporter.lineText = [&](const SourcePlace& p) { return p.file == file ? lineOfFile(file, p.line) : std::string(); };
         for (const Call& c : archive.calls) {
@@ -220,7 +219,7 @@ void Interpreter::executeParsed(const ParsedArchive& archive, const std::string&
 
 void Interpreter::readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
                              std::unique_ptr<ByteSource> source, const SourcePlace& place) {
-    inPart(key, place, [&] {
+    inPart(key, [&] {
         if (calls) {
             for (const Call& c : *calls) {
                 if (stopped() || !mayReplay(c)) break;
@@ -234,7 +233,7 @@ void Interpreter::readOpened(const std::string& key, const std::string& file, co
     });
 }
 
-void Interpreter::inPart(const std::string& key, const SourcePlace& place, const std::function<SourcePlace()>& body) {
+void Interpreter::inPart(const std::string& key, const std::function<SourcePlace()>& body) {
     bool wasReplaying = replaying_;
     if (!archivesRead_.insert(key).second) replaying_ = true;
     openArchives_.push_back(key);

@@ -193,8 +193,8 @@ private:
                     std::unique_ptr<ByteSource> source, const SourcePlace& place);
     /// Does `body`, which gives back where it ended, within archives and procedurals that are open, and closes what it leaves
     /// open.
-    void inPart(const std::string& key, const SourcePlace& place, const std::function<SourcePlace()>& body);
-    void executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file, const SourcePlace& place);
+    void inPart(const std::string& key, const std::function<SourcePlace()>& body);
+    void executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file);
     double detailOf(const std::vector<float>& bound) const;
     /// Makes what is in a procedural, here and now.
     void makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,

@@ -83,7 +83,7 @@ void Interpreter::subdivide(const std::function<void(float)>& make, const std::s
     const double detail = detailOf(bound);
     if (detail < 0) return; // not in the picture
     if (!begin(BlockKind::Attribute, call)) return;
-    inPart(fmt::format("library:{}", ++programSerial_), call.place, [&] {
+    inPart(fmt::format("library:{}", ++programSerial_), [&] {
         const Client client(*this, call);
         try {
             make(detail < 1e38 ? float(detail) : RI_INFINITY);

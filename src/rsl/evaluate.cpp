@@ -100,8 +100,8 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     call.stride = stride;
     call.strings = k.strings().data();
     call.user = &context;
-    call.service = [](KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
-        auto& x = *static_cast<PointContext*>(c->user);
+    call.service = [](KernelCall* kc, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+        auto& x = *static_cast<PointContext*>(kc->user);
         if (site < 0) return;
         if (*x.answer && (*x.answer)(*x.kernel, site, first, mask, lanes, in, out)) return;
         const ir::Site& s = x.kernel->sites()[size_t(site)];

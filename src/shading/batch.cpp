@@ -174,14 +174,14 @@ Batch::Batch(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan
     std::vector<uint32_t> of;
     of.reserve(views.size());
     for (const InstanceView& v : views) {
-        size_t k = different.size(), end = k > kLast ? k - kLast : 0;
+        size_t last = different.size(), end = last > kLast ? last - kLast : 0;
         auto same = [&](const InstanceView& a) { return a.parameters == v.parameters && a.shaderToCurrent == v.shaderToCurrent; };
-        while (k > end && !same(different[k - 1])) --k;
-        if (k == end) {
+        while (last > end && !same(different[last - 1])) --last;
+        if (last == end) {
             different.push_back(v);
-            k = different.size();
+            last = different.size();
         }
-        of.push_back(uint32_t(k - 1));
+        of.push_back(uint32_t(last - 1));
     }
     assign(std::move(k), plan, points, different, of, spaces);
 }

@@ -344,8 +344,8 @@ Handle TextureSystem::open(const std::string& name, const std::vector<std::strin
         entry = e;
     }
     std::call_once(entry->once, [&] {
-        const bool faces = name.find(kFace) != std::string::npos && !find(name, searchPath);
-        if (faces) return void(entry->texture = loadFaces(name, searchPath, place));
+        const bool sixFaces = name.find(kFace) != std::string::npos && !find(name, searchPath);
+        if (sixFaces) return void(entry->texture = loadFaces(name, searchPath, place));
         bool tiles = tileNumberIn(name) && !find(name, searchPath);
         entry->texture = tiles ? loadTiles(name, searchPath, place) : loadFile(name, searchPath, place);
     });

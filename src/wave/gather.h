@@ -105,7 +105,7 @@ private:
     void pick(size_t point, float number);
     void draw(int turn);
     void throwDice(int turn);
-    void sendRay(const Sent&, int turn, Sched&);
+    void sendRay(const Sent&, Sched&);
     bool meetsEmitter(const LobeVertex&, const Vec3& w) const;
     /// Divides the weight by the chance that the ray goes on; false: it does not.
     bool roulette(const LobeVertex&, const Sent&, uint16_t& asked, Color& weight) const;

@@ -77,13 +77,13 @@ struct Asking {
         if (!(angle > 0)) return axis;
         const bool cosine = s.gather->cosine;
         const double a = std::min(double(angle), cosine ? kPi / 2 : kPi);
-        const Vec2 e = pair(k, count);
+        const Vec2 xi = pair(k, count);
         if (!cosine) {
             const float half = float(exact::sin(.5 * a));
-            return Basis(axis).toWorld(sampleCone(2 * half * half, e));
+            return Basis(axis).toWorld(sampleCone(2 * half * half, xi));
         }
-        const float sine = float(exact::sin(a)), r2 = e.x * sine * sine, r = std::sqrt(r2);
-        const Vec2 d = unitCircle(e.y);
+        const float sine = float(exact::sin(a)), r2 = xi.x * sine * sine, r = std::sqrt(r2);
+        const Vec2 d = unitCircle(xi.y);
         return Basis(axis).toWorld({r * d.x, r * d.y, std::sqrt(std::max(0.f, 1 - r2))});
     }
 

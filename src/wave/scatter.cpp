@@ -22,7 +22,7 @@ void Gather::scatter(Sched& sched) {
         if (e_.photonTrace()) lookBack(sched);
         throwDice(turn);
         for (const Sent& s : sent_)
-            if (s.goes) sendRay(s, turn, sched);
+            if (s.goes) sendRay(s, sched);
     }
 }
 
@@ -159,7 +159,7 @@ bool Gather::roulette(const LobeVertex& l, const Sent& s, uint16_t& asked, Color
     return true;
 }
 
-void Gather::sendRay(const Sent& s, int turn, Sched& sched) {
+void Gather::sendRay(const Sent& s, Sched& sched) {
     const LobeVertex& l = e_.lobes[size_t(s.lobe)];
     const ShadePoint& p = c_->points[size_t(s.point)];
     const PathRay& from = c_->rays[size_t(s.point)];

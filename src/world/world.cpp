@@ -191,7 +191,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     cs.reads = settings.reads;
     w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
-        for (auto& path : splitSearchPath(e)) w->settings_.shaderPaths.push_back(path);
+        for (auto& folder : splitSearchPath(e)) w->settings_.shaderPaths.push_back(folder);
     w->settings_.shaderPaths.push_back(shippedShaders());
     w->photons_ = std::make_shared<PhotonStore>(MapFiles{settings.texturePaths, settings.read}, w->worldToCamera_, d);
     w->clouds_ = std::make_shared<CloudStore>(MapFiles{settings.texturePaths, settings.read}, d);

@@ -216,7 +216,7 @@ TEST(Trim, SamplesAreKeptAndDenseAsTheySay) {
         for (int i = 0; i < kSide; ++i) {
             double u, v;
             ASSERT_TRUE(r->sample((j + 0.5) / kSide, (i + 0.5) / kSide, u, v) || true);
-            const double d = r->density(u, v);
+            const double d = r->density(v);
             if (!(d > 0)) continue;
             EXPECT_TRUE(r->keeps(u, v) || std::fabs(std::hypot(u - 0.45, v - 0.55) - 0.3) < 1e-6 ||
                         std::fabs(std::hypot(u - 0.45, v - 0.55) - 0.4) < 1e-6);

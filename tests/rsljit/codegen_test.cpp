@@ -181,10 +181,10 @@ TEST(Codegen, VaryingLoopAndIf) {
         auto value = [](int, int n, int) { return float(n % 13) - 1.5f; };
         run(*kernel, o, value);
         for (int n = 0; n < kPoints; n++) {
-            float sum = 0;
-            const float x = value(0, n, 0);
-            for (float i = 0; i < x; i += 1) sum += x > 5 ? i : 2 * i;
-            EXPECT_EQ(run(0, 0, n), sum) << n;
+            float expected = 0;
+            const float given = value(0, n, 0);
+            for (float i = 0; i < given; i += 1) expected += given > 5 ? i : 2 * i;
+            EXPECT_EQ(run(0, 0, n), expected) << n;
         }
     }
 }
@@ -252,12 +252,12 @@ TEST(Codegen, Arrays) {
         auto value = [](int, int n, int) { return float(n) * 0.5f - 5; };
         run(*kernel, o, value);
         for (int n = 0; n < kPoints; n++) {
-            const float x = value(0, n, 0);
-            const int ka = std::min(9, std::max(0, int(x))), kb = std::min(19, std::max(0, int(x)));
+            const float given = value(0, n, 0);
+            const int ka = std::min(9, std::max(0, int(given))), kb = std::min(19, std::max(0, int(given)));
             EXPECT_EQ(run(0, 0, n), float(ka * ka)) << n;
-            EXPECT_EQ(run(1, 0, n), x > 0 ? x : 0.0f) << n;
-            EXPECT_EQ(run(1, 2, n), x > 0 ? 10.0f : 0.0f) << n;
-            EXPECT_EQ(run(2, 0, n), kb == 3 && x > 0 ? x : 0.0f) << n;
+            EXPECT_EQ(run(1, 0, n), given > 0 ? given : 0.0f) << n;
+            EXPECT_EQ(run(1, 2, n), given > 0 ? 10.0f : 0.0f) << n;
+            EXPECT_EQ(run(2, 0, n), kb == 3 && given > 0 ? given : 0.0f) << n;
         }
     }
 }
@@ -330,8 +330,8 @@ TEST(Codegen, ServicesSeeTheMask) {
         };
         run(*kernel, o, [](int, int n, int) { return float(n % 5) - 2; });
         for (int n = 0; n < kPoints; n++) {
-            const float x = float(n % 5) - 2;
-            EXPECT_EQ(run(0, 0, n), x > 0 ? x * x : 0.0f);
+            const float given = float(n % 5) - 2;
+            EXPECT_EQ(run(0, 0, n), given > 0 ? given * given : 0.0f);
         }
         EXPECT_EQ(lanesServed, kPoints / 5 * 2);
     }
@@ -447,18 +447,18 @@ TEST(Codegen, SuspendsAndResumes) {
             strips.push_back({h, scheduler.last});
         }
         while (!strips.empty()) {
-            Strip s = strips.back();
+            Strip strip = strips.back();
             strips.pop_back();
-            for (int l = 0; l < s.pending.lanes; l++)
-                if (s.pending.mask >> l & 1) s.pending.out[l] = 10 * s.pending.in[l];
-            kernel->resume(s.handle);
-            if (kernel->finished(s.handle)) kernel->destroy(s.handle);
-            else strips.insert(strips.begin(), {s.handle, scheduler.last});
+            for (int l = 0; l < strip.pending.lanes; l++)
+                if (strip.pending.mask >> l & 1) strip.pending.out[l] = 10 * strip.pending.in[l];
+            kernel->resume(strip.handle);
+            if (kernel->finished(strip.handle)) kernel->destroy(strip.handle);
+            else strips.insert(strips.begin(), {strip.handle, scheduler.last});
         }
         EXPECT_EQ(scheduler.live, 0);
         for (int n = 0; n < kPoints; n++) {
-            const float x = in[n], y = 10 * x;
-            EXPECT_EQ(out[n], x + y + (x > 0 ? 10 * (y + 1) : 0)) << n;
+            const float given = in[n], answer = 10 * given;
+            EXPECT_EQ(out[n], given + answer + (given > 0 ? 10 * (answer + 1) : 0)) << n;
         }
     }
 }

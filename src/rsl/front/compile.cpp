@@ -97,10 +97,10 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     checker.run();
     // An include that is missing does no harm when nothing of it is missed.
     for (const auto& m : p.missing) {
-        const std::string text = "cannot find the included file '" + m.name + "'";
+        const std::string message = "cannot find the included file '" + m.name + "'";
         if (unit.missed || sources.errors() > 0)
-            sources.error(m.place, text, "it is looked for beside the including file, then along the include path");
-        else sources.warning(m.place, text + "; nothing of it seems to be used");
+            sources.error(m.place, message, "it is looked for beside the including file, then along the include path");
+        else sources.warning(m.place, message + "; nothing of it seems to be used");
     }
     const bool failed = sources.errors() > 0;
     checkColourNames(*program, sources);

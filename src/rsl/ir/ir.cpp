@@ -26,10 +26,10 @@ const char* name(Op op) {
     return names[static_cast<size_t>(op)];
 }
 
-Inst* Kernel::make(Op op, Kind kind, std::vector<Inst*> args) {
+Inst* Kernel::make(Op op, Kind result, std::vector<Inst*> args) {
     auto inst = std::make_unique<Inst>();
     inst->op = op;
-    inst->kind = kind;
+    inst->kind = result;
     inst->args = std::move(args);
     inst->id = static_cast<uint32_t>(pool.size());
     pool.push_back(std::move(inst));

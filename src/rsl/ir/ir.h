@@ -166,7 +166,7 @@ struct Kernel {
     KernelFacts facts;
     std::deque<std::unique_ptr<Inst>> pool;
 
-    Inst* make(Op op, Kind kind, std::vector<Inst*> args = {});
+    Inst* make(Op op, Kind result, std::vector<Inst*> args = {});
 };
 
 } // namespace alpenglow::rsl::ir

@@ -22,6 +22,7 @@ static void halve(RtPointer data, RtFloat detail) {
     Wish* w = data;
     RtBound bound;
     int i;
+    (void)detail;
     if (w->number < 1) {
         RiSphere(w->number, -w->number, w->number, 360, RI_NULL);
         return;
@@ -39,6 +40,8 @@ static void halve(RtPointer data, RtFloat detail) {
 
 static void forever(RtPointer data, RtFloat detail) {
     RtBound bound = {-1, 1, -1, 1, -1, 1};
+    (void)data;
+    (void)detail;
     RiProcedural(NULL, bound, forever, NULL);
 }
 

@@ -3,6 +3,13 @@
 
 extern RtVoid RiNotThere(void);
 
-RtPointer ConvertParameters(RtString data) { return 0; }
-RtVoid Subdivide(RtPointer data, RtFloat detail) { RiNotThere(); }
-RtVoid Free(RtPointer data) {}
+RtPointer ConvertParameters(RtString data) {
+    (void)data;
+    return 0;
+}
+RtVoid Subdivide(RtPointer data, RtFloat detail) {
+    (void)data;
+    (void)detail;
+    RiNotThere();
+}
+RtVoid Free(RtPointer data) { (void)data; }

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 namespace renderer_test {
-
 using namespace alpenglow;
 using namespace alpenglow::render;
 namespace fs = std::filesystem;

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 namespace session_test {
-
 using namespace alpenglow;
 using namespace alpenglow::view;
 using Json = nlohmann::json;
@@ -376,7 +375,6 @@ TEST_F(ViewSession, PicturesOfHiddenGrowTileByTile) {
     // On a busy machine a short render may be over before a picture of its middle is seen: then a longer one.
     size_t between = 0;
     for (int spp = 36; between == 0 && spp <= 576; spp *= 4) {
-        SCOPED_TRACE(spp);
         std::vector<std::shared_ptr<const Picture>> seen;
         ASSERT_TRUE(open(false, {{"continuous", false}, {"spp", spp}}));
         ASSERT_TRUE(until([&] {
@@ -386,19 +384,17 @@ TEST_F(ViewSession, PicturesOfHiddenGrowTileByTile) {
         }));
         seen.push_back(done());
         const display::Image& last = *seen.back()->planes[0].image;
-        render::RenderSettings s;
-        s.spp = uint32_t(spp);
-        EXPECT_EQ(difference(last, rendered(scene, s)), 0);
+        EXPECT_EQ(difference(last, rendered(scene, {.spp = uint32_t(spp)})), 0);
         size_t before = 0, black = 0;
         for (const auto& p : seen) {
             const display::Image& image = *p->planes[0].image;
             if (image.width != last.width) continue; // the first coarse one
             size_t same = 0;
-            for (int y = 0; y < last.height; ++y)
-                for (int x = 0; x < last.width; ++x) {
-                    same += image.pixel(x, y)[0] == last.pixel(x, y)[0];
-                    black += image.pixel(x, y)[3] == 0;
-                }
+            for (int i = 0; i < last.width * last.height; ++i) {
+                const int x = i % last.width, y = i / last.width;
+                same += image.pixel(x, y)[0] == last.pixel(x, y)[0];
+                black += image.pixel(x, y)[3] == 0;
+            }
             EXPECT_GE(same, before);
             between += same > 76800 / 20 && same < 76800 * 19 / 20;
             before = same;
@@ -538,5 +534,4 @@ TEST_F(ViewSession, EndsWhileItRenders) {
 }
 
 } // namespace
-
 } // namespace session_test

@@ -1,4 +1,6 @@
 room(base DEPS TBB::tbb fmt::fmt Threads::Threads)
+include(cmake/layout.cmake)
+target_include_directories(base PRIVATE ${CMAKE_BINARY_DIR}/generated)
 # The sampler in lanes, once for each width and the processors that have it; base/numberlanes.cpp chooses.
 foreach(way "4 v2" "8 v3" "16 v4")
   separate_arguments(way)

@@ -4,8 +4,6 @@ find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(ZLIB REQUIRED)
 room(display DEPS base scene OpenEXR::OpenEXR TIFF::TIFF PNG::PNG JPEG::JPEG ZLIB::ZLIB ${CMAKE_DL_LIBS})
-target_compile_definitions(display PRIVATE ALPENGLOW_PICTURES_MODULE="${CMAKE_BINARY_DIR}/bin/libalpenglow_pictures.so"
-                           ALPENGLOW_GRIDS_MODULE="${CMAKE_BINARY_DIR}/bin/libalpenglow_grids.so")
 # The module for other formats of pictures. Without OpenImageIO it is not built, and such files are an error that says so.
 # (Its own configuration wants the package of its tools, too.)
 find_path(OPENIMAGEIO_HEADERS OpenImageIO/imageio.h)

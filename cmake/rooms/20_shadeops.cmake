@@ -7,6 +7,8 @@ find_program(ALPENGLOW_CLANG NAMES clang++-19 REQUIRED)
 set(bitcode_dir ${CMAKE_BINARY_DIR}/bitcode)
 file(MAKE_DIRECTORY ${bitcode_dir})
 set(bitcode_source ${CMAKE_SOURCE_DIR}/src/shadeops/bitcode/runtime.inc)
+# Bitcode holds the name of the file that was compiled, and the program holds the bitcode: this name has no folder of the build in it.
+file(CONFIGURE OUTPUT ${bitcode_dir}/runtime.cpp CONTENT "#include \"shadeops/bitcode/runtime.inc\"\n")
 set(bitcode_files)
 set(bitcode_names)
 foreach(lanes 4 8 16 32 64)
@@ -21,8 +23,8 @@ foreach(lanes 4 8 16 32 64)
     COMMAND ${ALPENGLOW_CLANG} -x c++ -std=c++20 -O2 -c -emit-llvm -march=${march} -DALPENGLOW_BITCODE -DALPENGLOW_LANES=${lanes}
       -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-exceptions -fno-rtti -fno-vectorize -fno-slp-vectorize -fno-builtin
       -fno-stack-protector -fno-asynchronous-unwind-tables -Wall -Wno-psabi -I${CMAKE_SOURCE_DIR}/src
-      -MD -MF ${bc}.d -MT ${bc} ${bitcode_source} -o ${bc}
-    DEPENDS ${bitcode_source} DEPFILE ${bc}.d COMMENT "Runtime bitcode, ${lanes} lanes" VERBATIM)
+      -MD -MF ${bc}.d -MT ${bc} bitcode/runtime.cpp -o ${bc}
+    WORKING_DIRECTORY ${CMAKE_BINARY_DIR} DEPENDS ${bitcode_source} DEPFILE ${bc}.d COMMENT "Runtime bitcode, ${lanes} lanes" VERBATIM)
   list(APPEND bitcode_files ${bc})
   list(APPEND bitcode_names runtime${lanes}.bc)
 endforeach()

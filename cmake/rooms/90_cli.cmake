@@ -6,7 +6,6 @@ find_package(CLI11 REQUIRED)
 add_library(cli STATIC ${cli_sources})
 target_link_libraries(cli PUBLIC view render ri transport shading texture display clouds photons ptex rsl_jit shadeops base
                       CLI11::CLI11 nlohmann_json::nlohmann_json)
-target_compile_definitions(cli PRIVATE ALPENGLOW_VERSION="0.1")
 add_executable(alpenglow ${CMAKE_SOURCE_DIR}/src/cli/main.cpp)
 target_link_libraries(alpenglow PRIVATE cli)
 add_custom_target(commit_header

@@ -45,4 +45,9 @@ int threadsWithin(int allowed, const std::vector<std::string>& groups, const cha
 
 int defaultThreads() { return threadsWithin(affinity(), controlGroupFolders("cpu"), std::getenv("SLURM_CPUS_PER_TASK")); }
 
+const char* processorLevel() {
+    __builtin_cpu_init();
+    return __builtin_cpu_supports("x86-64-v4") ? "x86-64-v4" : __builtin_cpu_supports("x86-64-v3") ? "x86-64-v3" : "x86-64-v2";
+}
+
 } // namespace alpenglow

@@ -1,4 +1,4 @@
-// How many threads a run may keep busy.
+// How many threads a run may keep busy, and what the processors can do.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,5 +12,8 @@ int defaultThreads();
 /// The same from its parts: `allowed` processors, folders of control groups from the inner to the outer, the text of
 /// SLURM_CPUS_PER_TASK (may be null).
 int threadsWithin(int allowed, const std::vector<std::string>& groups, const char* slurm);
+
+/// The level of this machine's instruction set that the program makes use of: "x86-64-v2", "x86-64-v3" or "x86-64-v4".
+const char* processorLevel();
 
 } // namespace alpenglow

@@ -1,4 +1,5 @@
 #include "cli/ball.h"
+#include "base/installation.h"
 #include "cli/command.h"
 #include "cli/ribtext.h"
 #include "render/renderer.h"

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
-#include <climits>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -61,12 +60,18 @@ extern "C" void onInterrupt(int) {
     interrupted = 1;
 }
 
-bool isFolder(const std::string& p) {
-    struct stat s;
-    return stat(p.c_str(), &s) == 0 && S_ISDIR(s.st_mode);
-}
-
 } // namespace
+
+std::span<const StatusText> statusTexts() {
+    static const StatusText all[] = {{kDone, "done"},
+                                     {kDoneWithErrors, "done, but requests failed"},
+                                     {kWrongUse, "wrong use"},
+                                     {kNothingRendered, "nothing could be rendered"},
+                                     {kLimit, "a limit or memory"},
+                                     {kOutputFailed, "an output could not be written"},
+                                     {kInterrupted, "interrupted, what was done is saved"}};
+    return all;
+}
 
 const StopFlag* watchInterrupts() {
     struct sigaction a;
@@ -76,17 +81,6 @@ const StopFlag* watchInterrupts() {
     sigaction(SIGINT, &a, nullptr);
     sigaction(SIGTERM, &a, nullptr);
     return &interrupted;
-}
-
-std::string shippedShaders() {
-    char path[PATH_MAX];
-    ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (n <= 0) return "";
-    std::string p(path, size_t(n));
-    p.erase(p.find_last_of('/'));
-    for (const char* up : {"/../share/alpenglow/shaders", "/../../../shaders", "/../shaders", "/shaders"})
-        if (isFolder(p + up)) return p + up;
-    return "";
 }
 
 std::vector<std::string> environmentShaders() {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,13 @@ enum Status : int {
     kOutputFailed = 5,
     kInterrupted = 130
 };
+
+/// What each status means, for help texts.
+struct StatusText {
+    Status status;
+    const char* meaning;
+};
+std::span<const StatusText> statusTexts();
 
 /// Each describes its options to the parser and, when its subcommand is called, does the work and sets *status.
 void addRender(CLI::App&, int* status, const std::string& command); ///< `command`: the whole line, for --stats and --stamp
@@ -46,8 +54,6 @@ Diagnostics::Handler printer(Severity least = Severity::Warning);
 /// Flags of the process that a signal sets: 0, then 1 after the first Ctrl-C. A second ends the process at once with status 130.
 const StopFlag* watchInterrupts();
 
-/// Folder of the shaders that ship; "" when none is found beside the program.
-std::string shippedShaders();
 /// Folders of ALPENGLOW_SHADERS.
 std::vector<std::string> environmentShaders();
 /// --searchpath: ':' separated.

@@ -1,4 +1,5 @@
 // alpenglow compile: checks shaders, compiles them to machine code, shows what became of them.
+#include "base/installation.h"
 #include "base/printable.h"
 #include "cli/command.h"
 #include "rsl/compiler.h"
@@ -84,7 +85,7 @@ void addCompile(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("compile", "Check and compile shaders");
-    c->add_option("shaders", a->files, "RSL files; - is standard input")->required();
+    c->add_option("shaders", a->files, "RSL files; - is standard input")->type_name("FILE")->required();
     c->add_option("-I,--searchpath", a->searchPaths, "Folders for #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);

@@ -15,8 +15,10 @@ void addDiff(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("diff", "Compare two pictures: mean and maximum error, RMSE");
-    c->add_option("a", a->a, "Picture: EXR, TIFF, PNG, JPEG, Radiance, zfile or Pixar's native texture")->required();
-    c->add_option("b", a->b, "Picture of the same size")->required();
+    c->add_option("a", a->a, "Picture: EXR, TIFF, PNG, JPEG, Radiance, zfile or Pixar's native texture")
+        ->type_name("FILE")
+        ->required();
+    c->add_option("b", a->b, "Picture of the same size")->type_name("FILE")->required();
     c->add_option("-o", a->output, "Write the absolute difference as a picture")->type_name("FILE");
     c->add_option("--tolerance", a->tolerance, "Largest error that is still equal; 0 when not given")
         ->check(notNegative())

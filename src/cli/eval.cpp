@@ -17,7 +17,7 @@ void addEval(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("eval", "Run RSL at one point and print the value");
-    c->add_option("expression", a->expression, "An expression, or statements that print")->required();
+    c->add_option("expression", a->expression, "An expression, or statements that print")->type_name("RSL")->required();
     c->add_option("--setup", a->setup, "Statements that run first, for example 'float x = 2;'")->type_name("'STATEMENTS'");
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     addDialect(*c, a->dialect);

@@ -1,4 +1,5 @@
 // alpenglow info: what a shader is, which shaders there are, and the manuals of shadeops, requests, options and displays.
+#include "base/installation.h"
 #include "base/printable.h"
 #include "cli/command.h"
 #include "cli/manual.h"
@@ -109,7 +110,8 @@ int shader(const InfoArguments& a) {
 void addInfo(CLI::App& app, int* status) {
     auto a = std::make_shared<InfoArguments>();
     CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how shadeops, requests, options and displays work");
-    c->add_option("shader", a->file, "RSL file (all of its shaders), or the name of a shader on the search path");
+    c->add_option("shader", a->file, "RSL file (all of its shaders), or the name of a shader on the search path")
+        ->type_name("FILE");
     CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")
                            ->expected(0, 1)
                            ->type_name("[NAME]");

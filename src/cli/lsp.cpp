@@ -1,4 +1,5 @@
 // alpenglow lsp: the language server on standard input and output.
+#include "base/installation.h"
 #include "base/limits.h"
 #include "cli/command.h"
 #include "cli/languageserver.h"

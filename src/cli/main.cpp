@@ -4,6 +4,8 @@
 #include "base/printable.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/completion.h"
+#include "cli/manpage.h"
 #include "cli/oldflags.h"
 #include "cli/version.h"
 #include <CLI/CLI.hpp>
@@ -27,10 +29,11 @@ using namespace alpenglow::cli;
 
 namespace {
 
-/// A command line as the parser takes it. `error`: not "", then it ends with status 2 and this text.
+/// A command line as the parser takes it. `error`: not "", then it ends with status 2 and this text. `text`: not "", then it is
+/// printed, and that is all.
 struct CommandLine {
     std::vector<std::string> arguments;
-    std::string error;
+    std::string error, text;
 };
 
 std::vector<std::string> commandNames(const CLI::App& app) {
@@ -46,12 +49,23 @@ std::string unknownCommand(const std::string& word, const std::vector<std::strin
     return near.empty() ? "" : "there is no command and no file \"" + word + "\"; did you mean \"" + near + "\"?";
 }
 
-/// help, help COMMAND.
-CommandLine helpFor(const std::vector<std::string>& args, const std::vector<std::string>& commands) {
-    if (args.size() < 2) return {{"--help"}, ""};
-    if (std::find(commands.begin(), commands.end(), args[1]) != commands.end()) return {{args[1], "--help"}, ""};
-    const std::string near = nearestName(args[1], commands);
-    return {{}, "there is no command \"" + args[1] + "\"" + (near.empty() ? "" : "; did you mean \"" + near + "\"?")};
+/// help, help COMMAND, help --man [COMMAND], help --completion SHELL, help --commands.
+CommandLine helpFor(const std::vector<std::string>& args, const CLI::App& app) {
+    const std::string what = args.size() > 1 ? args[1] : "";
+    if (what == "--completion") {
+        const std::string shell = args.size() > 2 ? args[2] : "", text = completion(programText(app), shell);
+        return {{}, text.empty() ? "help --completion takes bash, zsh or fish" : "", text};
+    }
+    const std::vector<std::string> commands = commandNames(app);
+    if (what == "--commands") return {{}, "", joined(commands, "\n") + "\n"};
+    const bool man = what == "--man";
+    const std::string command = !man ? what : args.size() > 2 ? args[2] : "";
+    if (!command.empty() && std::find(commands.begin(), commands.end(), command) == commands.end()) {
+        const std::string near = nearestName(command, commands);
+        return {{}, "there is no command \"" + command + "\"" + (near.empty() ? "" : "; did you mean \"" + near + "\"?"), ""};
+    }
+    if (man) return {{}, "", manPage(programText(app), command)};
+    return {command.empty() ? std::vector<std::string>{"--help"} : std::vector<std::string>{command, "--help"}, "", ""};
 }
 
 /// Flags of other renderers, as render takes them; what was replaced is noted under -v.
@@ -69,11 +83,11 @@ void takeOldFlags(CommandLine& line) {
 
 /// Finds the command, and makes old tools' spellings what the parser takes: prman's -res, maketx's -envlatl, numbers like -.5.
 CommandLine normalise(int argc, char** argv, const CLI::App& app) {
-    CommandLine line{{argv + 1, argv + argc}, ""};
+    CommandLine line{{argv + 1, argv + argc}, "", ""};
     std::vector<std::string>& args = line.arguments;
     const std::vector<std::string> commands = commandNames(app);
     if (!args.empty()) {
-        if (args[0] == "help") return helpFor(args, commands);
+        if (args[0] == "help") return helpFor(args, app);
         const bool known = std::find(commands.begin(), commands.end(), args[0]) != commands.end();
         if (!known) line.error = unknownCommand(args[0], commands);
         if (!known && args[0] != "-h" && args[0] != "--help" && args[0] != "--version" && args[0] != "--help-all")
@@ -130,11 +144,12 @@ bool outputArrived() {
     return fine;
 }
 
-/// "alpenglow 0.1 (5f06283)": the name as it is typed.
-std::string versionLine() {
-    std::string name = softwareName();
-    name[0] = 'a';
-    return name;
+/// "Exit status: 0 done; 1 ...", in two lines.
+std::string exitStatuses() {
+    std::string s = "Exit status: ";
+    for (const StatusText& t : statusTexts())
+        s += std::to_string(t.status) + " " + t.meaning + (t.status == kInterrupted ? "." : t.status == kLimit ? ";\n" : "; ");
+    return s;
 }
 
 /// Status 2, with the reason and where to read on.
@@ -147,14 +162,13 @@ int runProgram(int argc, char** argv) {
     int status = kDone;
     CLI::App app("Alpenglow renders RenderMan scenes: RIB in, shaders in RSL as machine code, path-traced pictures out.",
                  "alpenglow");
-    app.set_version_flag("--version", versionLine());
+    app.set_version_flag("--version", versionReport);
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
     app.footer(
         "alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow help COMMAND tells more.\n"
-        "Flags of prman, renderdl and aqsis (-t:4, -res 640 480, -progress) are taken, too: docs/options.md lists them.\n\n"
-        "Exit status: 0 done; 1 done, but requests failed; 2 wrong use; 3 nothing could be rendered; 4 a limit or memory;\n"
-        "5 an output could not be written; 130 interrupted, what was done is saved.");
+        "Flags of prman, renderdl and aqsis (-t:4, -res 640 480, -progress) are taken, too: docs/options.md lists them.\n\n" +
+        exitStatuses());
     addRender(app, &status, commandText(argc, argv));
     addView(app, &status);
     addEval(app, &status);
@@ -169,6 +183,7 @@ int runProgram(int argc, char** argv) {
     addLsp(app, &status);
     CommandLine line = normalise(argc, argv, app);
     if (!line.error.empty()) return wrongUse(line.error, "alpenglow --help");
+    if (!line.text.empty()) return std::fputs(line.text.c_str(), stdout) < 0 ? kOutputFailed : kDone;
     std::vector<std::string>& args = line.arguments;
     const bool own = !args.empty() && args.front() == "render"; // has an option for it
     const MemoryLimit limit(own ? 0 : defaultMemoryLimit(), defaultThreads());

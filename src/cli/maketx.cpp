@@ -9,20 +9,26 @@
 
 namespace alpenglow::cli {
 
+namespace {
+
+struct MaketxArguments {
+    std::vector<std::string> files;
+    texture::MakeOptions options;
+    std::string mode, smode, tmode, output, number = "half";
+    std::vector<float> width;
+    float fov = 90;
+    int side = 8, radius = 1, smooth = 0;
+    bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false;
+};
+
+} // namespace
+
 void addMaketx(CLI::App& app, int* status) {
-    struct Arguments {
-        std::vector<std::string> files;
-        texture::MakeOptions options;
-        std::string mode, smode, tmode, output;
-        float fov = 90;
-        std::vector<float> width;
-        int side = 8, radius = 1, smooth = 0;
-        std::string number = "half";
-        bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false;
-    };
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<MaketxArguments>();
     CLI::App* c = app.add_subcommand("maketx", "Make textures, environment and shadow maps of pictures");
-    c->add_option("files", a->files, "Picture and map; with --envcube six pictures (px nx py ny pz nz) and the map")->required();
+    c->add_option("files", a->files, "Picture and map; with --envcube six pictures (px nx py ny pz nz) and the map")
+        ->type_name("FILE")
+        ->required();
     c->add_option("-o", a->output, "The map, instead of naming it last")->type_name("FILE");
     auto* kinds = c->add_option_group("Kind", "What is made; a texture when none is given");
     kinds->add_flag("--envlatl", a->latlong, "A latitude-longitude environment map");

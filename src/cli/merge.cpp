@@ -15,7 +15,9 @@ void addMerge(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("merge", "Add parts rendered with --samples; the same bits as one render");
-    c->add_option("parts", a->parts, "Pictures with their .part files beside them, or .part files, in any order")->required();
+    c->add_option("parts", a->parts, "Pictures with their .part files beside them, or .part files, in any order")
+        ->type_name("FILE")
+        ->required();
     c->add_option("-o", a->output, "The picture; without it, those that the scene's displays name")->type_name("FILE");
     c->add_option("--expect", a->expect, "Samples that the parts must hold together: missing or further ones are errors")
         ->type_name("A:B");

@@ -4,6 +4,7 @@
 // camera rays meet it straight on, over and over. So all light counts as it does in pictures: lights sampled, the rest followed.
 // The rays meet a narrow ring around the point, not the point: where something touches the surface just there (a ball on the
 // floor), whatever is a hair above the point lies inside of it.
+#include "base/installation.h"
 #include "base/processors.h"
 #include "base/sampler.h"
 #include "cli/command.h"
@@ -215,9 +216,9 @@ void addProbe(CLI::App& app, int* status) {
     auto a = std::make_shared<ProbeArguments>();
     CLI::App* c =
         app.add_subcommand("probe", "Print the radiance leaving a white diffuse point of a scene, and its standard error");
-    c->add_option("scene", a->scene, "RIB file; - is standard input")->required();
-    c->add_option("point", a->point, "X,Y,Z in world space")->required();
-    c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->required();
+    c->add_option("scene", a->scene, "RIB file; - is standard input")->type_name("FILE")->required();
+    c->add_option("point", a->point, "X,Y,Z in world space")->type_name("X,Y,Z")->required();
+    c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->type_name("NX,NY,NZ")->required();
     c->add_option("--spp", a->spp, "Samples")->check(wholeBetween(2, 1u << 26))->type_name("N")->capture_default_str();
     c->add_option("--seed", a->seed, "Seed of all random numbers")->type_name("N");
     c->add_option("--threads", a->threads, "Threads; as many as the process may use when not given")

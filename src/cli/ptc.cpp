@@ -207,7 +207,7 @@ void addPtc(CLI::App& app, int* status) {
                   "a brick map; bounce: light that points send to each other; picture: how it looks")
         ->required()
         ->check(CLI::IsMember({"info", "merge", "filter", "toply", "fromply", "brick", "bounce", "picture"}));
-    c->add_option("files", a->files, "What is read, and last what is written; info only reads")->required();
+    c->add_option("files", a->files, "What is read, and last what is written; info only reads")->type_name("FILE")->required();
     auto* filter = c->add_option_group("Of filter");
     filter->add_option("--channels", a->channels, "Channels that are kept, separated by commas")
         ->delimiter(',')

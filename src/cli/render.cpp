@@ -1,4 +1,5 @@
 // alpenglow render: scenes to pictures.
+#include "base/installation.h"
 #include "base/limits.h"
 #include "base/memory.h"
 #include "base/processors.h"
@@ -284,8 +285,8 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input) or models (.ply, .obj)");
     c->add_option("scenes", a->scenes,
                   "RIB files, ASCII, binary or gzipped; - is standard input. A model (.ply, .obj) is shown whole under a sky. "
-                  "Each is a scene of its own, which begins with the defaults; "
-                  "a file of options without a world holds for all that follow")
+                  "Each file starts from the default state; a file of options without a world holds for all that follow")
+        ->type_name("FILE")
         ->required();
 
     c->add_option(

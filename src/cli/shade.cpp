@@ -1,5 +1,6 @@
 // alpenglow shade: a shader on a lit ball, or over a unit patch without a scene; also the stopwatch of the kernels.
 #include "answers/withoutscene.h"
+#include "base/installation.h"
 #include "base/limits.h"
 #include "cli/ball.h"
 #include "cli/command.h"
@@ -344,7 +345,7 @@ int shade(const ShadeArguments& a) {
 void addShade(CLI::App& app, int* status) {
     auto a = std::make_shared<ShadeArguments>();
     CLI::App* c = app.add_subcommand("shade", "Show a shader on a lit ball, or over a unit patch");
-    c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->required();
+    c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->type_name("FILE")->required();
     c->add_option("-o", a->output,
                   std::string("The picture (") + display::kPictureExtensions +
                       "; - is standard output); of a patch Ci, Oi, or what --output names")

@@ -1,11 +1,12 @@
 #include "cli/version.h"
 #include "alpenglow_commit.h"
+#include "base/version.h"
 
 namespace alpenglow::cli {
 
 std::string softwareName() {
     const std::string commit = ALPENGLOW_COMMIT;
-    return "Alpenglow " ALPENGLOW_VERSION + (commit.empty() ? "" : " (" + commit + ")");
+    return std::string("Alpenglow ") + versionText() + (commit.empty() ? "" : " (" + commit + ")");
 }
 
 std::string commandText(int argc, const char* const* argv) {

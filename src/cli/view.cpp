@@ -1,5 +1,6 @@
 // alpenglow view: a scene in the browser while it renders.
 #include "view/view.h"
+#include "base/installation.h"
 #include "base/limits.h"
 #include "base/memory.h"
 #include "base/processors.h"
@@ -11,7 +12,10 @@
 #include "ri/models/model.h"
 #include "rsl/compiler.h"
 #include <CLI/CLI.hpp>
+#include <cstring>
+#include <fcntl.h>
 #include <memory>
+#include <spawn.h>
 #include <unistd.h>
 
 namespace alpenglow::cli {
@@ -22,7 +26,7 @@ struct ViewArguments {
     std::string scene, format, memory, folder, gamma;
     std::vector<std::string> searchPaths, rib;
     int port = 0, frame = 0;
-    bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false, framed = false;
+    bool noDirect = false, noIndirect = false, open = false, watch = false, quiet = false, verbose = false, framed = false;
 };
 
 void checkLate(ViewArguments& a) {
@@ -59,6 +63,24 @@ nlohmann::json aboutShader(const std::string& name, const std::vector<std::strin
     return shader ? nlohmann::json(descriptionJson(describe(compiler, shader, quiet))) : nlohmann::json();
 }
 
+/// Hands the address to the desktop's browser, by xdg-open. "" or why not.
+std::string openInBrowser(std::string address) {
+    std::string program = "xdg-open";
+    char* const words[] = {program.data(), address.data(), nullptr};
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files); // what browsers print does not belong between our lines
+    for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_RDWR, 0);
+    posix_spawnattr_t how;
+    posix_spawnattr_init(&how);
+    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP); // Ctrl-C is for us
+    pid_t child = 0;
+    const int fault = posix_spawnp(&child, words[0], &files, &how, words, environ);
+    posix_spawnattr_destroy(&how);
+    posix_spawn_file_actions_destroy(&files);
+    return fault ? std::strerror(fault) : "";
+}
+
 int runView(const ViewArguments& a) {
     const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
@@ -87,6 +109,10 @@ int runView(const ViewArguments& a) {
         [&](const std::string& address) {
             std::printf("%s\n", address.c_str());
             std::fflush(stdout);
+            if (a.open)
+                if (const std::string why = openInBrowser(address); !why.empty())
+                    print(
+                        {Severity::Warning, Rie::System, {}, "xdg-open cannot be run: " + why, "open the address yourself", {}});
             if (!a.quiet) std::fputs("alpenglow: open this address in a browser on this machine; Ctrl-C ends\n", stderr);
         },
         &fault);
@@ -105,10 +131,13 @@ void addView(CLI::App& app, int* status) {
     render::RenderSettings& s = a->settings;
     s.software = softwareName();
     CLI::App* c = app.add_subcommand("view", "Show a scene in the browser while it renders (docs/view.md)");
-    c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj)")->required();
+    c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj)")
+        ->type_name("FILE")
+        ->required();
     c->add_option("--port", a->port, "Port of 127.0.0.1; a free one when not given")
         ->check(wholeBetween(1, 65535))
         ->type_name("N");
+    c->add_flag("--open", a->open, "Open the page in the desktop's browser (xdg-open)");
     c->add_flag("--watch", a->watch, "Read the scene again whenever a file changes that it uses; the camera stays");
     CLI::Option* frame =
         c->add_option("--frame", a->frame, "Number of the frame; the first with a picture when not given")->type_name("N");

@@ -1,4 +1,5 @@
 #include "display/foreign.h"
+#include "base/installation.h"
 #include "base/limits.h"
 #include "display/grids.h"
 #include <algorithm>
@@ -142,31 +143,19 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
 
 const ForeignModule& pictureModule() {
     static const ForeignModule m{
-        "libalpenglow_pictures.so", "ALPENGLOW_PICTURES", ALPENGLOW_PICTURES_MODULE, "OpenImageIO (libopenimageio2.4)",
+        "libalpenglow_pictures.so", "ALPENGLOW_PICTURES", "OpenImageIO (libopenimageio2.4)",
         "it is in none of the formats that are read here (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, zfile, "
         "Pixar's native textures)"};
     return m;
 }
 
 const ForeignModule& gridModule() {
-    static const ForeignModule m{"libalpenglow_grids.so", "ALPENGLOW_GRIDS", ALPENGLOW_GRIDS_MODULE, "OpenVDB (libopenvdb10.0)",
+    static const ForeignModule m{"libalpenglow_grids.so", "ALPENGLOW_GRIDS", "OpenVDB (libopenvdb10.0)",
                                  "grids of OpenVDB are read by a module"};
     return m;
 }
 
-std::string fileOf(const ForeignModule& m) {
-    std::error_code e;
-    if (const char* p = std::getenv(m.variable)) return std::filesystem::is_regular_file(p, e) ? p : "";
-    std::vector<std::string> places;
-    if (auto exe = std::filesystem::read_symlink("/proc/self/exe", e); !e) {
-        places.push_back((exe.parent_path() / m.file).string());
-        places.push_back((exe.parent_path().parent_path() / "lib" / m.file).string());
-    }
-    places.push_back(m.built);
-    for (const auto& p : places)
-        if (std::filesystem::is_regular_file(p, e)) return p;
-    return {};
-}
+std::string fileOf(const ForeignModule& m) { return moduleFile(m.file, m.variable); }
 
 std::optional<Image> readForeign(const ForeignModule& of, const std::string& path, const DecodeContext& ctx) {
     const std::string module = fileOf(of);

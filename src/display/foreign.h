@@ -42,14 +42,14 @@ using ReadForeignPicture = int (*)(const char* path, int to, const ForeignLimits
 inline constexpr const char* kReadForeignPicture = "alpenglow_read_picture";
 
 struct ForeignModule {
-    const char *file, *variable, *built; ///< its name; the variable that names another; where the build puts it
-    const char* needs;                   ///< what has to be installed, for messages
-    const char* known;                   ///< what is read without it, for messages
+    const char *file, *variable; ///< its name; the environment variable that names another file
+    const char* needs;           ///< what has to be installed, for messages
+    const char* known;           ///< what is read without it, for messages
 };
 const ForeignModule& pictureModule();
 const ForeignModule& gridModule();
 
-/// Its file; "" where there is none: what the variable names, beside the program, in ../lib, where it was built.
+/// Its file (base/installation.h); "" when there is none.
 std::string fileOf(const ForeignModule&);
 /// What a module makes of a file; slices of grids lie one below the other, "depth" in the metadata says how many. Nothing: an
 /// error was reported, which says so when it is the module that is missing.

@@ -1,4 +1,5 @@
 #include "world/information.h"
+#include "base/version.h"
 #include "scene/scene.h"
 #include <algorithm>
 
@@ -159,8 +160,11 @@ std::optional<Information> optionOf(const WorldImpl& w, const std::string& name)
 
 std::optional<Information> rendererInfoOf(const std::string& name) {
     if (name == "renderer") return words("Alpenglow");
-    if (name == "versionstring") return words("0.1");
-    if (name == "version") return Information{{0, 1, 0, 0}, {}, false};
+    if (name == "versionstring") return words(versionText());
+    if (name == "version") {
+        const auto& n = versionNumbers();
+        return Information{{float(n[0]), float(n[1]), float(n[2]), 0}, {}, false};
+    }
     return std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 // From a frame's description to something that can be traced.
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/installation.h"
 #include "geometry/build.h"
 #include "geometry/placed.h"
 #include "rsl/front/headers.h"
@@ -18,15 +19,6 @@ namespace alpenglow::transport {
 namespace {
 
 double buildClock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-// The shaders that ship: beside the program's build tree, else where it was built from.
-std::string shippedShaders() {
-    std::error_code e;
-    std::filesystem::path exe = std::filesystem::read_symlink("/proc/self/exe", e);
-    for (std::filesystem::path p = exe.parent_path(); !p.empty() && p != p.root_path(); p = p.parent_path())
-        if (std::filesystem::exists(p / "shaders" / "matte.sl", e)) return (p / "shaders").string();
-    return ALPENGLOW_SHADER_DIR;
-}
 
 // REYES shades its grids once, when the shutter opens, and moves what came of it. The hidden hider does so too, unless some
 // surface or the hider asks for the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
@@ -192,7 +184,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& folder : splitSearchPath(e)) w->settings_.shaderPaths.push_back(folder);
-    w->settings_.shaderPaths.push_back(shippedShaders());
+    if (std::string s = shippedShaders(); !s.empty()) w->settings_.shaderPaths.push_back(std::move(s));
     w->photons_ = std::make_shared<PhotonStore>(MapFiles{settings.texturePaths, settings.read}, w->worldToCamera_, d);
     w->clouds_ = std::make_shared<CloudStore>(MapFiles{settings.texturePaths, settings.read}, d);
     w->shapes_ = geometry::buildShapes(*frame, d);

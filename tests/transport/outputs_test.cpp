@@ -150,9 +150,9 @@ TEST(Outputs, WhatTheRendererSaysOfItself) {
     float found = rendererinfo("renderer", name) + 2 * rendererinfo("version", v) + 4 * rendererinfo("versionstring", text);
     float wrong = rendererinfo("nothing", name) + rendererinfo("renderer", one) + rendererinfo("version", text)
         + rendererinfo("versionstring", v);
-    string joined = format("%d.%d", v[0], v[1]);
+    string joined = format("%d.%d.%d", v[0], v[1], v[2]);
     Oi = 1;
-    Ci = color(found, wrong + one, name == "Alpenglow" && text == joined ? v[2] + v[3] + 1 : -1);
+    Ci = color(found, wrong + one, name == "Alpenglow" && text == joined ? v[3] + 1 : -1);
 }
 )");
     for (Hider h : {Hider::Hidden, Hider::Path}) {

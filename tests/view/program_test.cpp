@@ -78,6 +78,21 @@ TEST_F(ViewProgram, ServesItsPageToWhoKnowsTheToken) {
     }
 }
 
+TEST_F(ViewProgram, OpensTheDesktopsBrowser) {
+    write("s.rib", kScene);
+    write("xdg-open", "#!/bin/sh\necho \"$1\" >opened.new && mv opened.new opened\n");
+    std::filesystem::permissions(dir / "xdg-open", std::filesystem::perms::owner_all);
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", (dir.string() + ":" + path).c_str(), 1);
+    begin("s.rib", {"--open"});
+    setenv("PATH", path.c_str(), 1);
+    for (int i = 0; i < 1000 && !std::filesystem::exists(dir / "opened"); ++i) usleep(10000);
+    std::ifstream in(dir / "opened");
+    std::string opened;
+    std::getline(in, opened);
+    EXPECT_EQ(opened, "http://127.0.0.1:" + std::to_string(port) + "/" + token + "/");
+}
+
 TEST_F(ViewProgram, ServesNoFileThatIsNotThePages) {
     write("s.rib", kScene);
     begin("s.rib");

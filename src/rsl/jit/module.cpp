@@ -1,9 +1,9 @@
 #include "rsl/jit/module.h"
+#include "base/installation.h"
 #include "rsl/jit/stamp.h"
 #include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
-#include <filesystem>
 #include <mutex>
 #include <new>
 
@@ -37,8 +37,11 @@ Isa isaFor(int lanes) {
 
 namespace {
 
+constexpr const char* kVariable = "ALPENGLOW_JIT";
+
 struct Module {
     ModuleCompileFn compile = nullptr;
+    const char* llvm = ""; ///< version of LLVM
     std::string error;
 };
 
@@ -52,7 +55,9 @@ Module* loadModule() {
         return m;
     };
     const std::string file = moduleFile();
-    if (file.empty()) return fail("it is not beside the program");
+    if (file.empty())
+        return fail(std::getenv(kVariable) ? std::string(kVariable) + " names no file"
+                                           : "it is neither beside the program nor in lib/alpenglow");
     void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         const char* why = dlerror();
@@ -68,32 +73,29 @@ Module* loadModule() {
     // Types of ours pass between the two: from other headers they would be other types.
     auto stamp = reinterpret_cast<ModuleStampFn>(dlsym(handle, "alpenglow_jit_stamp"));
     auto compile = reinterpret_cast<ModuleCompileFn>(dlsym(handle, "alpenglow_jit_compile"));
-    if (!stamp || !compile || std::strcmp(stamp(), kModuleStamp) != 0)
+    auto llvm = reinterpret_cast<ModuleVersionFn>(dlsym(handle, "alpenglow_jit_llvm_version"));
+    if (!stamp || !compile || !llvm || std::strcmp(stamp(), kModuleStamp) != 0)
         return fail(file + " was built from other sources than this program; build and install both together" +
-                    (std::getenv("ALPENGLOW_JIT") ? ", or unset ALPENGLOW_JIT" : ""));
+                    (std::getenv(kVariable) ? std::string(", or unset ") + kVariable : ""));
     m->compile = compile;
+    m->llvm = llvm();
     return m;
 }
 
 } // namespace
 
-std::string moduleFile() {
-    std::vector<std::string> places;
-    if (const char* p = std::getenv("ALPENGLOW_JIT")) places.push_back(p);
-    std::error_code e;
-    if (auto exe = std::filesystem::read_symlink("/proc/self/exe", e); !e) {
-        places.push_back((exe.parent_path() / "libalpenglow_jit.so").string());
-        places.push_back((exe.parent_path().parent_path() / "lib" / "libalpenglow_jit.so").string());
-    }
-    places.push_back(ALPENGLOW_JIT_MODULE);
-    for (const auto& p : places)
-        if (std::filesystem::is_regular_file(p, e)) return p;
-    return {};
-}
+std::string moduleFile() { return alpenglow::moduleFile("libalpenglow_jit.so", kVariable); }
 
 bool moduleLoaded() {
     std::lock_guard lock(mutex);
     return loaded && loaded->compile;
+}
+
+std::string llvmVersion(std::string& error) {
+    std::lock_guard lock(mutex);
+    if (!loaded) loaded = loadModule();
+    error = loaded->error;
+    return loaded->llvm;
 }
 
 void compileWithModule(const ModuleRequest& request, ModuleResult& result) {

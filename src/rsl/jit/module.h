@@ -53,14 +53,16 @@ inline constexpr const char* kResumeName = "alpenglow_resume";
 inline constexpr const char* kFinishedName = "alpenglow_finished";
 inline constexpr const char* kDestroyName = "alpenglow_destroy";
 
-/// What the module exports: alpenglow_jit_stamp, which gives the kModuleStamp that it was built with, and alpenglow_jit_compile.
-/// Thread safe; neither throws.
+/// What the module exports: alpenglow_jit_stamp, which gives the kModuleStamp that it was built with, alpenglow_jit_llvm_version,
+/// and alpenglow_jit_compile. Thread safe; none throws.
 using ModuleCompileFn = void (*)(const ModuleRequest*, ModuleResult*);
 using ModuleStampFn = const char* (*)();
+using ModuleVersionFn = const char* (*)();
 
-/// The file that is loaded: $ALPENGLOW_JIT, else libalpenglow_jit.so beside the program, in ../lib, or where it was built; ""
-/// when there is none.
+/// The file that is loaded (base/installation.h): $ALPENGLOW_JIT, else libalpenglow_jit.so; "" when there is none.
 std::string moduleFile();
+/// The version of LLVM, "19.1.7", for which the module is loaded; "" and the error when that fails.
+std::string llvmVersion(std::string& error);
 /// Compiles through the module, loading it when needed. The error says where it was looked for. Throws std::bad_alloc when memory
 /// is short.
 void compileWithModule(const ModuleRequest&, ModuleResult&);

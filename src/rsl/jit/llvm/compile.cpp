@@ -3,6 +3,7 @@
 #include "rsl/jit/llvm/emitter.h"
 #include "rsl/jit/llvm/masks.h"
 #include "rsl/jit/stamp.h"
+#include <llvm-c/Core.h>
 #include <llvm/Bitcode/BitcodeReader.h>
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/IR/Verifier.h>
@@ -199,6 +200,16 @@ void compile(const ModuleRequest& request, ModuleResult& result) {
 } // namespace alpenglow::rsl::jit
 
 extern "C" __attribute__((visibility("default"))) const char* alpenglow_jit_stamp() { return alpenglow::rsl::jit::kModuleStamp; }
+
+/// Of the library that is loaded, which may be newer than the headers.
+extern "C" __attribute__((visibility("default"))) const char* alpenglow_jit_llvm_version() {
+    static const std::string version = [] {
+        unsigned major = 0, minor = 0, patch = 0;
+        LLVMGetVersion(&major, &minor, &patch);
+        return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+    }();
+    return version.c_str();
+}
 
 extern "C" __attribute__((visibility("default"))) void alpenglow_jit_compile(const alpenglow::rsl::jit::ModuleRequest* request,
                                                                              alpenglow::rsl::jit::ModuleResult* result) {

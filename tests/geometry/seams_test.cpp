@@ -1,4 +1,5 @@
 // Displaced shapes that have an edge in common meet there without cracks, each of them cut as finely as it looks large.
+#include "../nightly.h"
 #include "accel/accel.h"
 #include "geometry/edge_curve.h"
 #include "geometry/placed.h"
@@ -273,7 +274,6 @@ TEST(Seams, BezierAndArcDerivatives) {
 TEST(Seams, NoRayLeavesThroughThem) {
     std::mt19937 random(5);
     const auto uniform = [&] { return double(random()) / 4294967296.0; };
-    const bool nightly = std::getenv("ALPENGLOW_NIGHTLY") != nullptr;
     size_t rays = 0;
     for (const Form& f : closedForms()) {
         const Vec3d centre(0.3, -0.2, 4);
@@ -287,7 +287,7 @@ TEST(Seams, NoRayLeavesThroughThem) {
         for (const ShapeRef& shape : s.shapes)
             for (uint32_t i = 0; i < shape->mesh().vertices; ++i) seam.push_back(shape->mesh().P[i]);
         size_t lost = 0;
-        for (int k = 0; k < (nightly ? 90000 : 4000); ++k, ++rays) {
+        for (int k = 0; k < (nightly() ? 90000 : 4000); ++k, ++rays) {
             accel::Ray r;
             r.org = Vec3(inside + Vec3d(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5) * 0.1);
             // At vertices, between two that may be neighbours, and anywhere.
@@ -302,7 +302,7 @@ TEST(Seams, NoRayLeavesThroughThem) {
         }
         EXPECT_EQ(lost, 0u) << f.name;
     }
-    if (nightly) EXPECT_GE(rays, 1000000u);
+    if (nightly()) EXPECT_GE(rays, 1000000u);
 }
 
 TEST(Seams, PatchesThatAreNotDisplacedMeetToo) {

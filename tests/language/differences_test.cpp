@@ -169,7 +169,7 @@ TEST(Differences, NeighboursGoTheirOwnWay) {
         types.insert(types.end(), 3, "float");
     }
     std::map<std::pair<int, int>, std::vector<std::vector<float>>> reference; // by how the code is made
-    for (KernelOptions o : configurations()) {
+    for (KernelOptions o : allConfigurations()) {
         if (o.lanes == 8 && o.optimize == 0) continue; // for the time it takes
         SCOPED_TRACE(describe(o));
         o.differences = true;

@@ -1,6 +1,6 @@
 // Random programs, the same for ever (fixed seeds): machine code against the tree-walking evaluator of tests/rslir, which runs
 // the IR as it was before any pass, one point at a time. The bits must agree at every point. Each program is compiled in two of
-// the twelve configurations; all twelve take their turns.
+// all configurations, which take their turns. Nightly there are twice as many programs.
 #include "../rslir/evaluator.h"
 #include "../sanitized.h"
 #include "points.h"
@@ -12,7 +12,10 @@
 namespace alpenglow::rsl::random_test {
 namespace {
 
-constexpr int kPrograms = kSanitized ? 50 : 200, kDerived = kSanitized ? 20 : 40, kPoints = 37;
+constexpr int kPoints = 37;
+
+int programs() { return kSanitized ? 50 : nightly() ? 200 : 100; }
+int derivedPrograms() { return nightly() && !kSanitized ? 40 : 20; }
 
 /// Well-typed statements over floats, colours, points and an array. Loops have at most eight turns; jumps leave one or two of
 /// them.
@@ -239,10 +242,10 @@ TEST(RandomPrograms, MachineCodeAndEvaluatorAgree) {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
     ShaderCompiler compiler(settings);
-    const std::vector<KernelOptions> all = configurations();
+    const std::vector<KernelOptions> all = allConfigurations();
     const std::vector<std::string> outputs = {"Ci", "Oi", "o", "q"};
     int compared = 0;
-    for (unsigned seed = 1; seed <= unsigned(kPrograms); seed++) {
+    for (unsigned seed = 1; seed <= unsigned(programs()); seed++) {
         const std::string source = Generator(seed).shader();
         SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + source);
         Diagnostics d([](const Diagnostic& m) {
@@ -284,7 +287,7 @@ TEST(RandomPrograms, MachineCodeAndEvaluatorAgree) {
                 }
         }
     }
-    EXPECT_EQ(compared, kPrograms * 2 * kPoints * 10); // Ci, Oi and q have three components, o one
+    EXPECT_EQ(compared, programs() * 2 * kPoints * 10); // Ci, Oi and q have three components, o one
 }
 
 // The evaluator knows no derivatives; here the configurations are compared with each other. Their values have closed forms in
@@ -293,9 +296,9 @@ TEST(RandomPrograms, DerivativesHaveTheSameBitsEverywhere) {
     ShaderCompiler::Settings settings;
     settings.useDefaultCache = false;
     ShaderCompiler compiler(settings);
-    const std::vector<KernelOptions> all = configurations();
+    const std::vector<KernelOptions> all = allConfigurations();
     int compared = 0;
-    for (unsigned seed = 1; seed <= unsigned(kDerived); seed++) {
+    for (unsigned seed = 1; seed <= unsigned(derivedPrograms()); seed++) {
         const std::string source = Generator(seed * 7919).shader(true);
         SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + source);
         Diagnostics d([](const Diagnostic& m) {
@@ -327,7 +330,7 @@ TEST(RandomPrograms, DerivativesHaveTheSameBitsEverywhere) {
                 }
         }
     }
-    EXPECT_EQ(compared, kDerived * 4 * kPoints * 10);
+    EXPECT_EQ(compared, derivedPrograms() * 4 * kPoints * 10);
 }
 
 // As differences: the passes leave sound code, lanes and builds S and V have the same bits; and where the value is no neighbour's
@@ -353,7 +356,7 @@ TEST(RandomPrograms, DifferencesAreThoseOfTheNextPlace) {
         return v;
     };
     int compared = 0, differ = 0;
-    for (unsigned seed = 1; seed <= unsigned(kDerived); seed++) {
+    for (unsigned seed = 1; seed <= unsigned(derivedPrograms()); seed++) {
         const std::string source = Generator(seed * 104729).shader(false, true);
         SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + source);
         Diagnostics d([](const Diagnostic& m) {
@@ -392,7 +395,7 @@ TEST(RandomPrograms, DifferencesAreThoseOfTheNextPlace) {
                 differ += !(std::fabs(got - (next - here) / h) <= 2e-3 * (1 + std::fabs(here) + std::fabs(next - here) / h));
             }
     }
-    EXPECT_GT(compared, 20 * kDerived);
+    EXPECT_GT(compared, 20 * derivedPrograms());
     EXPECT_LT(differ, compared / 25) << compared;
 }
 

@@ -11,15 +11,16 @@
 //   // error LINE:COLUMN: TEXT      each such error must be reported, and no other; LINE counts in the snippet file
 //   // warning LINE:COLUMN: TEXT
 // All expressions of a file go into one shader with one output each, which runs at 4, 8 and 16 lanes, with uniform inputs as
-// numbers (S) and in lanes (V), at O0 and O2: the bits must be the same everywhere. Because the passes compute with constants, a
-// second shader has every number of every expression behind a function whose value only the machine knows, and must give the same
-// values.
+// numbers (S) and in lanes (V), at O0 and O2, functions inlined and called (configurations() of points.h): the bits must be the
+// same everywhere. Because the passes compute with constants, a second shader has every number of every expression behind a
+// function whose value only the machine knows, and must give the same values.
 #include "points.h"
 #include "snippets.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <set>
 #include <sstream>
 
 namespace fs = std::filesystem;
@@ -81,12 +82,13 @@ std::unique_ptr<ShaderCompiler> makeCompiler() {
 }
 
 /// A shader in every configuration: outputs[k] has the value that cases[k] says, with the same bits everywhere.
-void runEverywhere(ShaderCompiler& compiler, const std::shared_ptr<const CompiledShader>& shader,
-                   const std::vector<std::string>& outputs, const std::vector<const Expectation*>& cases,
-                   const std::vector<std::string>& types, const std::string& file, Diagnostics& d) {
+void runEverywhere(const std::vector<KernelOptions>& everywhere, ShaderCompiler& compiler,
+                   const std::shared_ptr<const CompiledShader>& shader, const std::vector<std::string>& outputs,
+                   const std::vector<const Expectation*>& cases, const std::vector<std::string>& types, const std::string& file,
+                   Diagnostics& d) {
     const auto defaults = compiler.parameterValues(shader, d);
     std::vector<std::vector<float>> reference;
-    for (KernelOptions o : configurations()) {
+    for (KernelOptions o : everywhere) {
         SCOPED_TRACE(describe(o));
         o.outputs = outputs;
         const auto kernel = compiler.kernel(shader, o, d);
@@ -114,6 +116,13 @@ void runEverywhere(ShaderCompiler& compiler, const std::shared_ptr<const Compile
         }
         if (reference.empty()) reference = out;
     }
+}
+
+/// For expressions with their numbers as written: what the passes compute of these is the same in all configurations, and what
+/// they leave runs in all of them behind veils. Each width is here, both builds, optimised and not.
+std::vector<KernelOptions> some() {
+    const std::vector<KernelOptions> all = configurations();
+    return nightly() ? all : std::vector<KernelOptions>{all[0], all[3], all[5]};
 }
 
 /// Exactly the expected errors and warnings.
@@ -162,7 +171,7 @@ TEST_P(Language, Snippets) {
                 outputs.push_back(e.expression);
                 cases.push_back(&e);
             }
-            runEverywhere(*compiler, shader, outputs, cases, {}, file, d);
+            runEverywhere(configurations(), *compiler, shader, outputs, cases, {}, file, d);
         }
         checkProblems(program, d.all());
     }
@@ -215,7 +224,7 @@ TEST_P(Language, Snippets) {
         const auto shader =
             compiler->loadText("surface cases(" + parameters + ") {\n" + (veil ? kVeil + behind : plain) + "}\n", file, d);
         ASSERT_TRUE(shader);
-        runEverywhere(*compiler, shader, names, cases, types, file, d);
+        runEverywhere(veil ? configurations() : some(), *compiler, shader, names, cases, types, file, d);
     }
 }
 
@@ -226,6 +235,23 @@ std::vector<std::string> files() {
         if (e.path().extension() == ".rsl") all.push_back(fs::relative(e.path(), root).string());
     std::sort(all.begin(), all.end());
     return all;
+}
+
+// Of the configurations of every day: each value of each choice comes with each value of each other.
+TEST(Configurations, EveryTwoChoicesComeTogether) {
+    std::set<std::vector<int>> pairs, all;
+    const auto note = [](const std::vector<KernelOptions>& from, std::set<std::vector<int>>& to) {
+        for (const KernelOptions& o : from) {
+            const int choices[] = {o.lanes, o.mixed, o.optimize, o.outline == 0};
+            for (int a = 0; a < 4; a++)
+                for (int b = a + 1; b < 4; b++) to.insert({a, choices[a], b, choices[b]});
+        }
+    };
+    note(configurations(), pairs);
+    note(allConfigurations(), all);
+    EXPECT_EQ(all.size(), size_t(3 * 6 + 3 * 4)); // three widths with each of six, three pairs of two choices
+    EXPECT_EQ(pairs, all);
+    EXPECT_EQ(configurations().front().lanes, 16);
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, Language, testing::ValuesIn(files()), [](const auto& i) {

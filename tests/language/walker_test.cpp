@@ -18,8 +18,6 @@ namespace {
 constexpr int kBatch = 10, kPoints = 21, kMostShrinks = 3000;
 constexpr int kParts = 4; ///< one test each, so that they run side by side
 
-bool nightly() { return std::getenv("ALPENGLOW_NIGHTLY") != nullptr; }
-
 /// Which random programs: those that are kept, unless another set is asked for. Printed with what goes wrong.
 uint64_t firstProgram() {
     const char* given = std::getenv("ALPENGLOW_SEED");
@@ -27,7 +25,8 @@ uint64_t firstProgram() {
 }
 
 /// Programs in all the parts together. Nearly all the time goes into machine code for them, so those of every day are shorter.
-int wanted() { return kSanitized ? 80 : nightly() ? 10000 : 520; }
+int wanted(bool night) { return night ? 10000 : 260; }
+int wanted() { return kSanitized ? 80 : wanted(nightly()); }
 
 float input(const std::string& name, int component, int point) {
     float v = 0;
@@ -138,7 +137,7 @@ struct Turn {
 /// All take their turns in first place, and at night every pair of them comes. Code that is not optimised costs half: every day
 /// it is the second.
 Turn turnOf(int batch, bool night) {
-    const std::vector<KernelOptions> all = configurations();
+    const std::vector<KernelOptions> all = allConfigurations();
     const size_t n = all.size(), b = size_t(batch);
     Turn t;
     t.object = batch / kParts % 2 == 1;
@@ -153,10 +152,10 @@ Turn turnOf(int batch, bool night) {
 // Every width, build and level has its turn every day; at night with shaders and with classes, and every two have the same
 // program.
 TEST(RandomTurns, EveryConfigurationHasItsTurn) {
-    const size_t all = configurations().size();
+    const size_t all = allConfigurations().size();
     for (const bool night : {false, true}) {
         std::set<std::string> met, kinds, pairs;
-        for (int batch = 0; batch < (night ? 10000 : 520) / kBatch; batch++) {
+        for (int batch = 0; batch < wanted(night) / kBatch; batch++) {
             const Turn t = turnOf(batch, night);
             ASSERT_EQ(t.configurations.size(), 2u);
             const std::string a = describe(t.configurations[0]), b = describe(t.configurations[1]);

@@ -1,5 +1,6 @@
 // Sizes and seeds of statistical tests: small with fixed seeds on every change, large with fresh seeds under `./check --all`.
 #pragma once
+#include "../nightly.h"
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -7,7 +8,7 @@
 
 namespace alpenglow::teststat {
 
-inline bool nightly() { return std::getenv("ALPENGLOW_NIGHTLY") != nullptr; }
+using alpenglow::nightly;
 /// The first here, the second nightly.
 inline int samples(int fast, int night) { return nightly() ? night : fast; }
 /// Sixteen times as many nightly.

@@ -11,6 +11,14 @@
 
 namespace alpenglow::cli::testing {
 
+/// Shell commands that wait until a process has had so many seconds of processor time: however busy the machine is, it has come
+/// as far. They end too when it is gone, and after two minutes.
+inline std::string worked(const std::string& process, double seconds) {
+    return "t=0; while [ $t -lt 1200 ] && kill -0 " + process + " 2>/dev/null && [ $(awk '{ print $14 + $15 }' /proc/" + process +
+           "/stat 2>/dev/null || echo 999999) -lt $((" + std::to_string(int(seconds * 1000)) +
+           " * $(getconf CLK_TCK) / 1000)) ]; do sleep .1; t=$((t + 1)); done;";
+}
+
 class CommandFolder : public ::testing::Test {
 protected:
     std::filesystem::path dir;

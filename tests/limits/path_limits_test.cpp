@@ -42,9 +42,11 @@ TEST(PathLimits, TransparentLayers) {
 
 TEST(PathLimits, RaysOfALoopThatDoesNotWait) {
     // Requests of an affine kernel are kept until it is done: so many of them and no more. The frame is given up with a message.
+    // Both hiders nightly: RaysThatDoNotFitAtOnce comes to the same limit under both.
     writeShader("greedy", "surface greedy() { float i; color c = 0; for (i = 0; i < 1e7; i += 1) c += trace(P, reflect(I, N)); "
                           "Oi = 1; Ci = c; }\n");
     for (const Hider h : {Hider::Hidden, Hider::Path}) {
+        if (h == Hider::Hidden && !nightly()) continue;
         Settings s;
         s.hider = h;
         Scene scene("WorldBegin\nSurface \"greedy\"\nSphere 1 -1 1 360\nWorldEnd\n", s);

@@ -1,6 +1,7 @@
 // docs/tutorial.md as someone follows it: files are written as the page has them, commands run one after the other, and what a
-// block is said to make is there.
+// block is said to make is there. Only the pictures are a quarter as wide: no block says anything that depends on it.
 #include "command_folder.h"
+#include <cstring>
 #include <regex>
 #include <sstream>
 
@@ -52,6 +53,9 @@ TEST_F(Tutorial, EveryBlockWorks) {
             EXPECT_EQ(shell(block), 0) << block << text("out");
             ++commands;
         } else {
+            for (const auto& [is, smaller] :
+                 {std::pair{"Format 320 240 1", "Format 80 60 1"}, {"Format 160 120 1", "Format 40 30 1"}})
+                if (const size_t at = block.find(is); at != std::string::npos) block.replace(at, std::strlen(is), smaller);
             ASSERT_TRUE((kind == "rib" || kind == "sl") && !file.empty()) << "a block of the tutorial that nobody runs: " << line;
             write(file, block);
             ++files;

@@ -291,10 +291,10 @@ TEST(PhotonMaps, HollowFurnace) {
     const double a = .5, direct = 4 / 25., all = direct / (1 - a), other = all - direct;
     const std::string ball =
         "Attribute \"visibility\" \"integer diffuse\" 1 \"integer specular\" 1\nAttribute \"photon\" \"string globalmap\" "
-        "\"room.photons\" \"integer estimator\" 400\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" .5\nSphere 5 -5 5 360\n";
+        "\"room.photons\" \"integer estimator\" 200\nSurface \"matte\" \"float Ka\" 0 \"float Kd\" .5\nSphere 5 -5 5 360\n";
     const std::string lamp = "LightSource \"pointlight\" 1 \"float intensity\" 4 \"point from\" [0 0 0]\n";
-    showing("photonroom", "photonmap(\"room.photons\", P, n, \"estimator\", 1000)");
-    showing("photonroom1", "photonmap(\"room.photons\", P, n, \"estimator\", 1000, \"mindepth\", 1)");
+    showing("photonroom", "photonmap(\"room.photons\", P, n, \"estimator\", 500)");
+    showing("photonroom1", "photonmap(\"room.photons\", P, n, \"estimator\", 500, \"mindepth\", 1)");
     showing("photongather", "indirectdiffuse(P, n, 64)");
     // Small plates near the wall, in 14 directions, see what the wall sees, of which they take little away.
     std::vector<Vec3> ways;
@@ -320,7 +320,7 @@ TEST(PhotonMaps, HollowFurnace) {
     };
     // Photons do not meet the plate.
     Scene emitting(world(lamp + ball), path());
-    const auto stored = emitted(emitting, 400000);
+    const auto stored = emitted(emitting, 200000);
     const std::vector<std::string> names = {"room.photons"};
     struct Case {
         const char* shader;
@@ -336,7 +336,7 @@ TEST(PhotonMaps, HollowFurnace) {
                 const Vec3 beside = Basis(d).t * .003f;
                 mean += s.estimate(rayTo(d * 4.9f + beside, d * 4.99f), 4).mean() / double(ways.size());
             }
-            EXPECT_NEAR(mean, c.want, .04 * c.want) << c.shader << " " << int(h); // 1000 photons at each: 3.2 %, .85 % of all
+            EXPECT_NEAR(mean, c.want, .04 * c.want) << c.shader << " " << int(h); // 500 photons at each: 4.5 %, 1.2 % of all
         }
     }
     EXPECT_NEAR(other, a * all, 1e-9);

@@ -74,6 +74,38 @@ Engine knownEngine() {
             }};
 }
 
+/// What many renders of 64 samples a pixel on average show; the two tests below ask the same ones.
+struct Many {
+    int renders = 0, differ = 0, pixels = 0, windows = 0, of = 0;
+    std::vector<double> sum = std::vector<double>(kWidth * kHeight), square = sum;
+    double whole = 0, wholeSquare = 0, reported = 0, real = 0;
+
+    void add(const Film& f) {
+        ++renders;
+        differ += f.samples().least < f.samples().most;
+        double mean = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const double v = double(f.mean(x, y).y);
+                sum[size_t(y * kWidth + x)] += v;
+                square[size_t(y * kWidth + x)] += v * v;
+                mean += v / (kWidth * kHeight);
+                real += (v - 1) * (v - 1) / (kWidth * kHeight);
+            }
+        whole += mean;
+        wholeSquare += mean * mean;
+        for (const int x : {4, kWidth - 5}) { // in the middle of a band; of spikes, the mean of 64 is not near a normal one
+            const Interval i = confidenceInterval(pixelError(f, x, kHeight / 2, 3));
+            pixels += std::fabs(i.mean - 1) <= i.halfWidth;
+            ++of;
+        }
+        const Interval w = confidenceInterval(windowError(f, f.window()));
+        windows += std::fabs(w.mean - 1) <= w.halfWidth;
+        const double e = noiseFigures(f).imageError;
+        reported += e * e;
+    }
+};
+
 struct Adaptive : testing::Test {
     std::filesystem::path dir;
     void SetUp() override {
@@ -109,6 +141,15 @@ struct Adaptive : testing::Test {
         s.spp = spp;
         s.noise = 1e-9;
         return render(s);
+    }
+    const Many& many() {
+        static Many all;
+        for (const int renders = samples(200, 4800); all.renders < renders;) {
+            auto f = render(seedBase() + uint64_t(all.renders) + 1, 64);
+            if (!f || !f->spread()) throw std::runtime_error("a render without differing numbers of samples");
+            all.add(*f);
+        }
+        return all;
     }
 };
 
@@ -202,31 +243,14 @@ TEST(Spread, CountsAndFiles) {
 // band would be at .76 (by a simulation apart from this program). What a forty-ninth part of its own noise would do is too little
 // to be seen here: APixelsOwnSamplesHaveNoSay tells.
 TEST_F(Adaptive, EveryMeanIsUnbiased) {
-    const int renders = samples(150, 4800);
-    std::vector<double> sum(kWidth * kHeight), square(sum.size());
-    double whole = 0, wholeSquare = 0, differ = 0;
-    for (int r = 0; r < renders; ++r) {
-        auto f = render(seedBase() + uint64_t(r) + 1, 48);
-        ASSERT_TRUE(f && f->spread());
-        differ += f->samples().least < f->samples().most;
-        double mean = 0;
-        for (int y = 0; y < kHeight; ++y)
-            for (int x = 0; x < kWidth; ++x) {
-                const double v = double(f->mean(x, y).y);
-                sum[size_t(y * kWidth + x)] += v;
-                square[size_t(y * kWidth + x)] += v * v;
-                mean += v / (kWidth * kHeight);
-            }
-        whole += mean;
-        wholeSquare += mean * mean;
-    }
-    EXPECT_EQ(differ, renders);
-    const double n = renders, se = std::sqrt((wholeSquare / n - whole / n * (whole / n)) / (n - 1));
-    EXPECT_NEAR(whole / n, 1, kSigmas * se);
+    const Many& m = many();
+    EXPECT_EQ(m.differ, m.renders);
+    const double n = m.renders, mean = m.whole / n, se = std::sqrt((m.wholeSquare / n - mean * mean) / (n - 1));
+    EXPECT_NEAR(mean, 1, kSigmas * se);
     EXPECT_LT(se, .003) << "finds 2 %";
     double chi = 0;
-    for (size_t i = 0; i < sum.size(); ++i) {
-        const double m = sum[i] / n, z = (m - 1) / std::sqrt((square[i] / n - m * m) / (n - 1));
+    for (size_t i = 0; i < m.sum.size(); ++i) {
+        const double at = m.sum[i] / n, z = (at - 1) / std::sqrt((m.square[i] / n - at * at) / (n - 1));
         EXPECT_LT(std::fabs(z), kSigmas + 1) << i; // the largest of 384
         chi += z * z;
     }
@@ -235,29 +259,12 @@ TEST_F(Adaptive, EveryMeanIsUnbiased) {
 
 // Intervals of pixels, their variance from what is about them, and of windows, where numbers of samples differ.
 TEST_F(Adaptive, IntervalsCoverTheTruth) {
-    const int renders = samples(200, 4000);
-    int pixels = 0, windows = 0, of = 0;
-    double reported = 0, real = 0;
-    for (int r = 0; r < renders; ++r) {
-        auto f = render(seedBase() + 100000 + uint64_t(r), 64);
-        ASSERT_TRUE(f && f->spread());
-        for (const int x : {4, kWidth - 5}) { // in the middle of a band; of spikes, the mean of 64 is not near a normal one
-            const Interval i = confidenceInterval(pixelError(*f, x, kHeight / 2, 3));
-            pixels += std::fabs(i.mean - 1) <= i.halfWidth;
-            ++of;
-        }
-        const Interval w = confidenceInterval(windowError(*f, f->window()));
-        windows += std::fabs(w.mean - 1) <= w.halfWidth;
-        const double e = noiseFigures(*f).imageError;
-        reported += e * e;
-        for (int y = 0; y < kHeight; ++y)
-            for (int x = 0; x < kWidth; ++x) real += std::pow(double(f->mean(x, y).y) - 1, 2) / (kWidth * kHeight);
-    }
-    // Of a share of .95 the deviation is .22 / sqrt(n): the window's band is widened by three of them beyond that of the plan.
-    const double slack = 3 * .22 / std::sqrt(double(renders)) - .015;
-    EXPECT_NEAR(double(pixels) / of, .95, .015 + std::max(0., 3 * .22 / std::sqrt(double(of)) - .015));
-    EXPECT_NEAR(double(windows) / renders, .95, .015 + std::max(0., slack));
-    EXPECT_NEAR(std::sqrt(reported / real), 1, .1);
+    const Many& m = many();
+    // Of a share of .95 the deviation is .22 / sqrt(n): the band is widened by three of them beyond that of the plan.
+    const auto slack = [](int n) { return std::max(0., 3 * .22 / std::sqrt(double(n)) - .015); };
+    EXPECT_NEAR(double(m.pixels) / m.of, .95, .015 + slack(m.of));
+    EXPECT_NEAR(double(m.windows) / m.renders, .95, .015 + slack(m.renders));
+    EXPECT_NEAR(std::sqrt(m.reported / m.real), 1, .1);
 }
 
 // The same bits over threads, and when the render is broken off and taken up again anywhere.

@@ -49,13 +49,19 @@ TEST(FilterSampler, IntegralsAndDensity) {
     for (const PixelFilter& f : filters()) {
         FilterSampler s(f);
         EXPECT_FALSE(s.degenerate()) << name(f);
-        double total = sum(cells(f, [](double, double, double v) { return v; }));
-        double absolute = sum(cells(f, [](double, double, double v) { return std::fabs(v); }));
+        double total = 0, absolute = 0, density = 0; // sums over places, all of one area
+        const double area = sum(cells(f, [&](double x, double y, double v) {
+            total += v;
+            absolute += std::fabs(v);
+            density += s.density(x, y);
+            return 1.0;
+        }));
+        const double each = area / (double(kGrid) * kGrid * kFine * kFine);
         // the midpoint rule on the edge of a disk is good to about one part in a thousand
         double tolerance = f.kind == FilterKind::Disk ? 2e-3 : 2e-4;
-        EXPECT_NEAR(s.integral() / total, 1, tolerance) << name(f);
-        EXPECT_NEAR(s.absIntegral() / absolute, 1, tolerance) << name(f);
-        EXPECT_NEAR(sum(cells(f, [&](double x, double y, double) { return s.density(x, y); })), 1, tolerance) << name(f);
+        EXPECT_NEAR(s.integral() / (total * each), 1, tolerance) << name(f);
+        EXPECT_NEAR(s.absIntegral() / (absolute * each), 1, tolerance) << name(f);
+        EXPECT_NEAR(density * each, 1, tolerance) << name(f);
         EXPECT_EQ(s.density(f.xw, 0), 0);
     }
 }

@@ -158,7 +158,8 @@ TEST(Attributes, BoundsOfShaders) {
 }
 )");
     auto of = [&](const std::string& more) {
-        return Scene("WorldBegin\nSides 2\n" + more + "Surface \"asksbound\"\n" + kFloor + "WorldEnd\n", under(Hider::Raytrace))
+        return Scene("WorldBegin\nSides 2\nShadingRate 64\n" + more + "Surface \"asksbound\"\n" + kFloor + "WorldEnd\n",
+                     under(Hider::Raytrace))
             .one(kView);
     };
     EXPECT_EQ(of(""), Color(2, .25f, 2));

@@ -293,7 +293,7 @@ TEST(Bits, InstancesAreCopies) {
             Settings s;
             s.hider = h;
             s.seed = 5;
-            const auto rays = allRays(400, moving);
+            const auto rays = allRays(nightly() ? 400 : 120, moving);
             const Bits copies = bitsOf(Scene(all(moving), s).trace(rays)),
                        instances = bitsOf(Scene(all(moving, true), s).trace(rays));
             EXPECT_EQ(differences(copies, instances), 0u) << (moving ? "moving" : "still") << ", hider " << int(h);

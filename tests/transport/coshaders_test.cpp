@@ -51,9 +51,9 @@ TEST(CoShaders, AClassDisplacesWhatItShades) {
         "    public void displacement(output point P; output normal N) { P = transform(\"world\", \"current\", "
         "transform(\"world\", P) + vector(0, 0, -by)); N = calculatenormal(P); }\n"
         "    public void surface(output color Ci, Oi) { Oi = 1; Ci = color(zcomp(transform(\"world\", P)), 0, 0); }\n}\n");
-    Scene s(
-        std::string("WorldBegin\nAttribute \"displacementbound\" \"float sphere\" [1]\nSurface \"pushed\" \"float by\" [.5]\n") +
-        kSquare + "WorldEnd\n");
+    Scene s(std::string("WorldBegin\nShadingRate 64\nAttribute \"displacementbound\" \"float sphere\" [1]\nSurface \"pushed\" "
+                        "\"float by\" [.5]\n") +
+            kSquare + "WorldEnd\n");
     EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {.1f, .2f, 1.5f})).x, 1.5f, 1e-3);
 }
 

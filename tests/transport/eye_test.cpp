@@ -80,8 +80,9 @@ TEST(Eye, DepthAndLinesInDisplacementsAndLights) {
     // depth() goes from the near plane, 0, to the far one, 1. A displacement that pushes by it, along z away from the eye.
     writeShader("pushes", "displacement pushes() { P += depth(P) * vector \"camera\" (0, 0, 1); }\n");
     writeShader("tells", "surface tells() { Oi = 1; Ci = zcomp(transform(\"camera\", P)); }\n");
-    const std::string begin = "Projection \"perspective\" \"fov\" 90\nClipping 2 10\n",
-                      bound = "Attribute \"displacementbound\" \"float sphere\" 2 \"string coordinatesystem\" \"camera\" ";
+    const std::string
+        begin = "Projection \"perspective\" \"fov\" 90\nClipping 2 10\n",
+        bound = "ShadingRate 64 Attribute \"displacementbound\" \"float sphere\" 2 \"string coordinatesystem\" \"camera\" ";
     expectColor(middle(begin, wall(8, bound + "Displacement \"pushes\" Surface \"tells\"")), Color(8.75f),
                 "depth in a displacement", 1e-4f);
     writeShader("pushline", "displacement pushline() { P += min(1, ptlined(point \"camera\" (4, -50, 8), point \"camera\" (4, "

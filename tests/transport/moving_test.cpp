@@ -11,7 +11,7 @@ namespace {
 
 const char* kSquare = "Patch \"bilinear\" \"P\" [-1 -1 3  1 -1 3  -1 1 3  1 1 3]\n";
 std::string square(const std::string& shaders, const std::string& x = "0") {
-    return "AttributeBegin\nTranslate " + x + " 0 0\n" + shaders + "\n" + kSquare + "AttributeEnd\n";
+    return "AttributeBegin\nShadingRate 25\nTranslate " + x + " 0 0\n" + shaders + "\n" + kSquare + "AttributeEnd\n";
 }
 
 // The square z = 3 comes half a unit nearer, once: the depth of the sample and the P that later statements see.

@@ -158,9 +158,10 @@ TEST(Attributes, BoundsOfShaders) {
 }
 )");
     auto of = [&](const std::string& more) {
-        return Scene("WorldBegin\nSides 2\nShadingRate 64\n" + more + "Surface \"asksbound\"\n" + kFloor + "WorldEnd\n",
+        return Scene("WorldBegin\nSides 2\nShadingRate 64\n" + more + "Surface \"asksbound\"\n" +
+                         "Polygon \"P\" [-1 -1 9  1 -1 9  1 1 9  -1 1 9]\n" + "WorldEnd\n",
                      under(Hider::Raytrace))
-            .one(kView);
+            .one(rayTo({0, 0, 0}, {.1f, .2f, 9}));
     };
     EXPECT_EQ(of(""), Color(2, .25f, 2));
     EXPECT_EQ(of("Displacement \"moves\"\n"), Color(2, .75f, 1));

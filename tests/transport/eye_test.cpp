@@ -23,10 +23,10 @@ void expectColor(const Color& c, const Color& want, const std::string& what, flo
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], want[k], error) << what << ", channel " << k;
 }
 /// A wall at depth z.
-std::string wall(float z, const std::string& before) {
-    const std::string d = std::to_string(z);
-    return "AttributeBegin " + before + " Polygon \"P\" [-99 -99 " + d + "  -99 99 " + d + "  99 99 " + d + "  99 -99 " + d +
-           "] AttributeEnd\n";
+std::string wall(float z, const std::string& before, int half = 99) {
+    const std::string d = " " + std::to_string(z) + " ", to = std::to_string(half), from = "-" + to, space = " ";
+    return "AttributeBegin " + before + " Polygon \"P\" [" + from + space + from + d + from + space + to + d + to + space + to +
+           d + to + space + from + d + "] AttributeEnd\n";
 }
 
 TEST(Eye, IncidentVectorsOfCameras) {
@@ -83,12 +83,12 @@ TEST(Eye, DepthAndLinesInDisplacementsAndLights) {
     const std::string
         begin = "Projection \"perspective\" \"fov\" 90\nClipping 2 10\n",
         bound = "ShadingRate 64 Attribute \"displacementbound\" \"float sphere\" 2 \"string coordinatesystem\" \"camera\" ";
-    expectColor(middle(begin, wall(8, bound + "Displacement \"pushes\" Surface \"tells\"")), Color(8.75f),
+    expectColor(middle(begin, wall(8, bound + "Displacement \"pushes\" Surface \"tells\"", 9)), Color(8.75f),
                 "depth in a displacement", 1e-4f);
     writeShader("pushline", "displacement pushline() { P += min(1, ptlined(point \"camera\" (4, -50, 8), point \"camera\" (4, "
                             "50, 8), transform(\"current\", \"camera\", P)) / 2) * vector \"camera\" (0, 0, 1); }\n");
-    expectColor(middle("Projection \"orthographic\"\n", wall(8, bound + "Displacement \"pushline\" Surface \"tells\"")), Color(9),
-                "ptlined in a displacement", 1e-3f);
+    expectColor(middle("Projection \"orthographic\"\n", wall(8, bound + "Displacement \"pushline\" Surface \"tells\"", 9)),
+                Color(9), "ptlined in a displacement", 1e-3f);
     // A light whose colour is the depth of the lit point, and one that is a tube.
     writeShader("deep", "light deep() { illuminate(point \"camera\" (4, 0, 7)) Cl = depth(Ps); }\n");
     writeShader("tube", "light tube() { illuminate(point \"camera\" (4, 0, 7)) Cl = 1 / ptlined(point \"camera\" (0, -3, 8), "

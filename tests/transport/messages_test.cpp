@@ -178,9 +178,9 @@ TEST(Messages, OpacityHearsTheDisplacement) {
     const std::string card =
         "AttributeBegin\nShadingRate 64\nAttribute \"visibility\" \"transmission\" 1\nAttribute \"displacementbound\" "
         "\"float sphere\" [.1]\nDisplacement \"veil\"\nSurface \"veiled\"\n"
-        "Polygon \"P\" [-9 5 -9  -9 5 9  9 5 9  9 5 -9]\nAttributeEnd\n";
+        "Polygon \"P\" [-1 5 19  -1 5 21  1 5 21  1 5 19]\nAttributeEnd\n";
     Scene s(world("LightSource \"sun\" 1\n" + card + "Surface \"sums1\"\n" + kFloor), under(Hider::Raytrace));
-    expectNear(s.one(kView), Color(.25f), 1e-5f, "shadow");
+    expectNear(s.one(rayTo({.3f, .8f, 19.6f}, {0, 0, 20})), Color(.25f), 1e-5f, "shadow");
 }
 
 } // namespace

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <unordered_map>
 
@@ -239,9 +240,19 @@ Patterns& patterns() {
 } // namespace
 
 bool matchText(const std::string& pattern, const std::string& subject, std::string* error) {
+    struct Answer {
+        std::string pattern, subject;
+        bool found;
+    };
+    thread_local std::optional<Answer> last; // shaders ask the same at point after point
+    if (last && last->pattern == pattern && last->subject == subject) return last->found;
     const Patterns::Entry e = patterns().get(pattern);
-    if (!e.pattern && error) *error = e.error;
-    return e.pattern && e.pattern->occurs(subject);
+    if (!e.pattern) {
+        if (error) *error = e.error;
+        return false;
+    }
+    last = Answer{pattern, subject, e.pattern->occurs(subject)};
+    return last->found;
 }
 
 void hashText(const std::string& s, float out[3]) {

@@ -14,9 +14,9 @@
 
 namespace alpenglow::render {
 
-using Source = OutputVariable::Source;
-
 namespace {
+
+using Source = OutputVariable::Source;
 
 constexpr float kFarAway = 1e38f; // RI_INFINITY: depth where nothing was hit
 

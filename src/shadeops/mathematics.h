@@ -10,7 +10,7 @@ template <class T> AL_INLINE T opDegrees(const T& x) { return x * vf(180 / kPi);
 /// there is no such logarithm, in base 1 and in bases that are not positive, it is 0, as a division by 0 is.
 template <class T> AL_INLINE T opLogBase(const T& x, const T& base) {
     const vf a = value(x), b = value(base), infinite = vf(__builtin_inff());
-    const vm none = ~(b >= 0x1p-126f) | (b == 1), zero = ~(a >= 0x1p-126f); // what is no normal float counts as 0
+    const vm none = ((b >= 0x1p-126f) == 0) | (b == 1), zero = (a >= 0x1p-126f) == 0; // what is no normal float counts as 0
     const T inside = divide(logarithm2(select(zero, T(vf(1)), x)), logarithm2(select(none, T(vf(2)), base)));
     const T limit = T(select((a < 0) | (b >= 1), -infinite, infinite));
     return select(a < 0, limit, select(none, T(vf(0)), select(zero, limit, inside)));

@@ -3,7 +3,15 @@ room_tests(shadeops DEPS shadeops)
 
 # The runtime as bitcode, one file a lane width, from the same headers as the program's own copy (src/shadeops/sections.cpp).
 # clang 19 whatever compiles the rest: the JIT reads LLVM 19 bitcode. The target attributes only set what vector code is sensible.
-find_program(ALPENGLOW_CLANG NAMES clang++-19 REQUIRED)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^19[.]")
+  set(ALPENGLOW_CLANG ${CMAKE_CXX_COMPILER})
+else()
+  include(cmake/clang19.cmake)
+  find_clang19(ALPENGLOW_CLANG NAMES clang++-19 clang++)
+  if(NOT ALPENGLOW_CLANG)
+    message(FATAL_ERROR "no clang 19 found for the runtime's bitcode: install clang-19 or set ALPENGLOW_CLANG")
+  endif()
+endif()
 set(bitcode_dir ${CMAKE_BINARY_DIR}/bitcode)
 file(MAKE_DIRECTORY ${bitcode_dir})
 set(bitcode_source ${CMAKE_SOURCE_DIR}/src/shadeops/bitcode/runtime.inc)

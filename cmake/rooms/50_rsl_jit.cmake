@@ -9,7 +9,7 @@ set(jit_headers ${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.h ${CMAKE_SOURCE_DIR}/src/rsl/
     ${CMAKE_SOURCE_DIR}/src/shadeops/types.h ${CMAKE_SOURCE_DIR}/src/base/diagnostics.h)
 set(jit_stamp ${CMAKE_BINARY_DIR}/generated/rsl/jit/stamp.h)
 string(TOUPPER "${CMAKE_BUILD_TYPE}" jit_build_type)
-set(jit_compiler "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${jit_build_type}} ${ALPENGLOW_ASAN}")
+set(jit_compiler "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${jit_build_type}} ${instrument}")
 add_custom_command(OUTPUT ${jit_stamp} DEPENDS ${jit_headers} ${CMAKE_SOURCE_DIR}/cmake/stamp.cmake
   COMMAND ${CMAKE_COMMAND} -DOUT=${jit_stamp} "-DFILES=${jit_headers}" "-DEXTRA=${jit_compiler}" -P ${CMAKE_SOURCE_DIR}/cmake/stamp.cmake
   VERBATIM)

@@ -61,7 +61,7 @@ class Build:
 
     def relative(self, path):
         path = pathlib.Path(path)
-        ours = path.is_relative_to(self.root) and not path.is_relative_to(self.folder)
+        ours = path.is_relative_to(self.root) and not path.is_relative_to(self.folder) and path.is_file()
         return str(path.relative_to(self.root)) if ours else ""
 
     def units(self, files):

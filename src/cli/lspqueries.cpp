@@ -248,8 +248,8 @@ Json LanguageServer::hover(const Json& params) {
         text = manualMarkdown(*shadeop);
     } else if (const auto* g = globalNamed(name, kind())) {
         global(*g);
-    } else if (const auto m = d->macro(name)) {
-        text = fenced(std::string(d->line(m->first)));
+    } else if (const auto macro = d->macro(name)) {
+        text = fenced(std::string(d->line(macro->first)));
     }
     if (text.empty()) return nullptr;
     return {{"contents", markdown(text)}, {"range", range(*d, word->first, word->second)}};

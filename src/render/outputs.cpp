@@ -101,8 +101,8 @@ OutputSpec specOf(const scene::Display& d, const scene::Options& o, const Output
                 names.push_back(wanted);
                 plan.engineWidths.push_back(0);
             }
-            int& width = plan.engineWidths[size_t(out.engine)];
-            if (v.declared) width = std::max(width, int(v.channels.size()));
+            int& engineWidth = plan.engineWidths[size_t(out.engine)];
+            if (v.declared) engineWidth = std::max(engineWidth, int(v.channels.size()));
         }
         s.variables.push_back(std::move(out));
     }

@@ -1,4 +1,5 @@
 // occlusion(), indirectdiffuse() and subsurface() of point clouds, against rays and closed forms, through scenes.
+#include "../nightly.h"
 #include "cli/command_folder.h"
 #include "clouds/make.h"
 #include "display/imageio.h"
@@ -61,7 +62,7 @@ std::vector<std::pair<std::string, std::string>> scenes() {
 
 class PointScenes : public cli::testing::CommandFolder {
 protected:
-    static constexpr int kSide = 32;
+    const int kSide = nightly() ? 32 : 20;
     const std::string camera = "Projection \"perspective\" \"fov\" 40\nTranslate 0 -.1 6\nRotate -15 1 0 0\n";
     std::string header(const std::string& name, int side) const {
         const std::string n = std::to_string(side);

@@ -42,6 +42,7 @@ build() {
     fi
     if ninja -C "build/$preset" -n "$@" | grep -q 'no work to do'; then return 0; fi
     say "building $* in build/$preset (the first time takes a while)"
+    export GLIBC_TUNABLES=${GLIBC_TUNABLES:-glibc.malloc.hugetlb=1} # compilers take a tenth less time with large pages
     if [ -t 1 ]; then ninja -C "build/$preset" "$@" >&2
     else ninja -C "build/$preset" --quiet "$@" >&2; fi
 }

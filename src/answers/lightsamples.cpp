@@ -179,7 +179,7 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
                          : light.emitter->sample(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)))
             return false;
         if (world_->accel_->hasSolids() &&
-            !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.time))
+            !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter))
             return false; // what a solid leaves of a lamp
         p.shape = s.shape;
         p.P = meetsAt(p.surface);

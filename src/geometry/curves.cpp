@@ -284,7 +284,9 @@ SurfacePoint Curves::pointOf(uint32_t segment, double u, double f, const Vec3d& 
         CurveSegment g;
         load(segment, time, g);
         CurveFacing facing = facing_;
-        facing.at = toObject(from) - curveAt(g, f).f;
+        const Vec3d eye = toObject(from), middle = curveAt(g, f).f;
+        facing.at = eye - middle;
+        for (int k = 0; k < kTurnsToRay; ++k) facing.at = eye - (middle + sideAt(g, facing, f).f * (2 * u - 1));
         b1 += 2 * turnOf(g, f, sideAt(g, facing, f).f);
     }
     return pointAt(segment * parts_, b1, f, time);

@@ -36,6 +36,9 @@ struct CurveSegment {
     double widest() const;
 };
 
+/// What faces rays is turned to where its point is then so often, until it is turned to the ray that meets it there.
+inline constexpr int kTurnsToRay = 12;
+
 /// What the flat side looks to.
 struct CurveFacing {
     enum Kind {

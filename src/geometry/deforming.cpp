@@ -50,9 +50,8 @@ SurfacePoint Deforming::between(const SurfacePoint& a, const SurfacePoint& b, do
     p.Ng = dot(g, g) > 0 ? Vec3(g) : p.n;
     const Vec3d N = Vec3d(mix(a.N, b.N, w));
     p.N = own || !(dot(N, N) > 0) ? p.n : Vec3(normalize(N));
-    const Vec3d d = Vec3d(mix(a.displacedN, b.displacedN, w));
-    if (p.displaced) p.displacedN = dot(d, d) > 0 ? Vec3(normalize(d)) : a.displacedN;
     p.pError = std::max(a.pError, b.pError) + roundingError(p.P);
+    p.facetError = std::max(a.facetError, b.facetError) + roundingError(p.displacedP);
     return p;
 }
 
@@ -114,6 +113,12 @@ void Deforming::localPoints(std::span<const HitRef> hits, uint32_t needs) const 
             };
             constexpr uint32_t kOfFacet = kNeedPartials | kNeedSTSlopes; // facet() finds them
             read(facets ? needs & ~kOfFacet : needs | kNeedPartials);
+            if (!facets) {
+                Vec3d c[3];
+                corners(h.prim, h.time, c);
+                const Vec3d n = cross(c[1] - c[0], c[2] - c[0]) * double(keys_[0]->orientation());
+                if (dot(n, n) > 0) h.out->displacedN = Vec3(normalize(n));
+            }
             if (facets) facet(*h.out, h.prim, k, way, needs);
             if (facets && (needs & kOfFacet) && h.out->dPdu == Vec3(0.f) && h.out->dPdv == Vec3(0.f)) {
                 read(needs);

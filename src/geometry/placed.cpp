@@ -101,7 +101,7 @@ void Placed::place(SurfacePoint& p, const Pose& m, float time) const {
         slope(p.dNdu);
         slope(p.dNdv);
     }
-    if (p.displaced) {
+    if (p.facet != kNone) {
         p.displacedP = Vec3(m.out.point(Vec3d(p.displacedP)));
         p.displacedN = Vec3(normalize(normal(p.displacedN) * side_));
     }
@@ -109,6 +109,7 @@ void Placed::place(SurfacePoint& p, const Pose& m, float time) const {
     const double size = std::max({std::fabs(from.x), std::fabs(from.y), std::fabs(from.z)}) * m.out.stretch() +
                         std::max({std::fabs(m.out.o.x), std::fabs(m.out.o.y), std::fabs(m.out.o.z)});
     p.pError = float(double(p.pError) * stretch + roundingError(at) + 1e-14 * size);
+    if (p.facet != kNone) p.facetError = float(double(p.facetError) * stretch + roundingError(p.displacedP) + 1e-14 * size);
     p.time = time;
 }
 
@@ -185,6 +186,14 @@ double Placed::sampleDensity(const SurfacePoint& p) const {
     // An area across n grows by det times the length of its normal's image.
     const double grows = std::fabs(m.out.determinant()) * length(m.in.across(n));
     return grows > 0 ? geometry_->sampleDensity(q) / grows : 0;
+}
+
+double Placed::turnedDensity(const SurfacePoint& p, const Vec3& from) const {
+    if (!keyed_) return 1;
+    const Pose m = poseAt(p.time);
+    SurfacePoint q = p;
+    q.P = Vec3(m.in.point(Vec3d(p.P)));
+    return keyed_->turnedDensity(q, Vec3(m.in.point(Vec3d(from))));
 }
 
 void Placed::interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const {

@@ -44,6 +44,9 @@ Vec3d unpackDirection(double x, double y) {
     return normalize(Vec3d(a, b, z));
 }
 
+/// To a point within its radius a disc fills nearly all of half of the directions.
+constexpr double kWithin = 0.9999;
+
 enum class PointKind { Disc, Ball, Square };
 
 class Points final : public KeyedShape {
@@ -63,6 +66,7 @@ public:
     }
     SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const override;
     double sampleDensity(const SurfacePoint&) const override;
+    double turnedDensity(const SurfacePoint&, const Vec3& from) const override;
     Vec3 velocity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
@@ -102,6 +106,7 @@ private:
     LocalPoint place(const Now&, const Vec3d& n, double u, double v) const;
     void sides(const Vec3d& n, Vec3d& a, Vec3d& b) const;
     SurfacePoint pointFrom(uint32_t prim, double u, double v, const Vec3d& from, float time) const;
+    SurfacePoint discFrom(uint32_t prim, double radius, double angle, const Vec3d& from, float time) const;
     const std::vector<double>& areas() const;
     bool fromRay() const { return kind_ != PointKind::Ball && !normal_ && source_.facing == Facing::Ray; }
 
@@ -348,8 +353,44 @@ SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) co
 
 SurfacePoint Points::pointFrom(uint32_t prim, double u, double v, const Vec3d& from, float time) const {
     double x = 0, y = 0;
-    if (fromRay()) packDirection(transformPoint(toObject_, from) - nowAt(prim, time).centre, x, y);
+    if (fromRay()) {
+        const Now now = nowAt(prim, time);
+        const Vec3d eye = transformPoint(toObject_, from);
+        Vec3d to = eye - now.centre;
+        for (int k = 0; k < kTurnsToRay; ++k) to = eye - place(now, to, u, v).P;
+        packDirection(to, x, y);
+    }
     return pointAt(prim, 2 * x + u, 2 * y + v, time);
+}
+
+/// Of a disc that faces rays: the point where one from `from` meets it that passes its centre at this part of its radius. Seen
+/// from there all such points lie on the ball over the way to the centre (Thales).
+SurfacePoint Points::discFrom(uint32_t prim, double part, double angle, const Vec3d& from, float time) const {
+    const Now now = nowAt(prim, time);
+    const Vec3d eye = transformPoint(toObject_, from), to = now.centre - eye;
+    const double far = length(to);
+    if (!(far > 0) || !(now.radius > 0)) return pointFrom(prim, 0.5, 0.5, from, time);
+    const double sine = part * std::min(now.radius / far, kWithin), cosine = std::sqrt(1 - sine * sine);
+    Vec3d a, b;
+    acrossFrame(to, a, b);
+    const auto [s, c] = exact::sinCos(angle);
+    const Vec3d w = to / far * cosine + (a * c + b * s) * sine;
+    double x, y;
+    packDirection(-w, x, y);
+    sides(unpackDirection(x, y), a, b);
+    const Vec3d off = eye + w * (far * cosine) - now.centre;
+    const auto place = [&](const Vec3d& side) { return std::clamp(0.5 + 0.5 * dot(off, side) / now.radius, 0.0, 1.0); };
+    return pointAt(prim, 2 * x + place(a), 2 * y + place(b), time);
+}
+
+double Points::turnedDensity(const SurfacePoint& p, const Vec3& from) const {
+    if (!fromRay() || kind_ == PointKind::Ball) return 1;
+    const Now now = nowAt(p.prim, p.time);
+    const Vec3d eye = transformPoint(toObject_, Vec3d(from)), P = transformPoint(toObject_, Vec3d(p.P));
+    const double far = length(now.centre - eye), way = length(P - eye);
+    if (!(way > 0)) return 0;
+    const double least = kind_ == PointKind::Disc ? std::min(1.0, kWithin * far / now.radius) : 1; // of the radius, within it
+    return far / (way * least * least);
 }
 
 /// Of a disc that faces the ray that of its centre: who sees it from another place sees it turn otherwise.
@@ -391,6 +432,7 @@ SurfacePoint Points::sampleFromAt(const Vec3& whence, double xi1, double xi2, fl
     if (kind_ == PointKind::Square) return pointFrom(uint32_t(i), x, xi2, from, time);
     if (kind_ == PointKind::Ball)
         return pointFrom(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from, time);
+    if (fromRay()) return discFrom(uint32_t(i), std::sqrt(x), 2 * kPi * xi2, from, time);
     const auto [s, c] = exact::sinCos(2 * kPi * xi2);
     const double r = 0.5 * std::sqrt(x);
     return pointFrom(uint32_t(i), 0.5 + r * c, 0.5 + r * s, from, time);

@@ -167,14 +167,13 @@ void Shape::evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& p, ui
     evaluateLocal(local, b0 * p0.x + b1 * p1.x + b2 * p2.x, b0 * p0.y + b1 * p1.y + b2 * p2.y, p, needs);
     Facet f = facetAt(mesh_, prim, b1, b2);
     Vec3d fn = normalize(f.n) * double(orientation_);
-    if (displaced_) {
-        p.displaced = true;
-        p.displacedP = Vec3(f.P);
-        p.displacedN = Vec3(fn);
-        p.pError = roundingError(p.displacedP);
-    } else {
-        p.pError += float(1.01 * length(Vec3d(p.P) - f.P));
-    }
+    p.displaced = displaced_;
+    p.facet = prim;
+    p.displacedP = Vec3(f.P);
+    p.displacedN = Vec3(fn);
+    p.facetError = roundingError(p.displacedP);
+    if (displaced_) p.pError = p.facetError;
+    else p.pError += float(1.01 * length(Vec3d(p.P) - f.P));
 }
 
 void Shape::points(std::span<const HitRef> hits, uint32_t needs) const {

@@ -33,15 +33,17 @@ struct SurfacePoint {
     float pError = 0;            ///< bound on the distance from P to the surface that rays meet: rounding plus facets
     float orientation = 1;       ///< +1 or -1: the sign in Ng above
     int face = 0;                ///< index of the uniform value: patch of a mesh, polygon of a polyhedron
-    bool displaced = false;      ///< the surface was displaced when it was diced; then all above is the undisplaced surface and:
-    Vec3 displacedP, displacedN; ///< the facet that was hit: point, and unit normal on the side of n
+    bool displaced = false;      ///< the surface was displaced when it was diced; then all above is the undisplaced surface
+    uint32_t facet = kNone;      ///< of a hit on a surface that is diced: the triangle of the mesh; then:
+    Vec3 displacedP, displacedN; ///< where rays meet it: point, and unit normal on the side of n
+    float facetError = 0;        ///< bound on the distance from displacedP to the facet
     uint32_t prim = 0;           ///< with b1, b2: where interpolate() finds the point again. Triangle of the polygon; else 0
     float time = 0;              ///< of the shutter, 0 to 1: when the surface is there
     double b1 = 0, b2 = 0;       ///< barycentric weights of the triangle's 2nd and 3rd corner; parametric surfaces: u and v
 };
 
-/// What of a SurfacePoint is asked for, as bits. P, n, pError, face, prim, b1, b2, `displaced` and what it brings always come; of
-/// the rest what is not asked for may be zero. A shape may give more than it is asked for.
+/// What of a SurfacePoint is asked for, as bits. P, n, pError, face, prim, b1, b2, `displaced`, `facet` and what that brings
+/// always come; of the rest what is not asked for may be zero. A shape may give more than it is asked for.
 enum PointNeed : uint32_t {
     kNeedN = 1,            ///< N
     kNeedPartials = 2,     ///< dPdu, dPdv, Puu, Puv, Pvv, Ng, orientation
@@ -192,6 +194,9 @@ public:
     /// Density per unit area with which sampleArea gives this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons;
     /// 0 where the surface is degenerate.
     virtual double sampleDensity(const SurfacePoint&) const = 0;
+    /// What faces rays is no flat piece of surface to a point, for each ray meets it turned otherwise: the density with which
+    /// sampleFrom() gives this one over that of points of a flat one there.
+    virtual double turnedDensity(const SurfacePoint&, const Vec3& /*from*/) const { return 1; }
 
     // ---- primitive variables ------------------------------------------------------------------------------------------------
     /// All variables but P, Pz, Pw and N; points, vectors and normals in camera space.
@@ -254,13 +259,13 @@ inline float roundingError(const Vec3& p) {
     return 1.1920929e-7f * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z)) + 1e-37f;
 }
 
-/// Origin of a ray that leaves the surface at p along dir: off the surface by its own error bound, on dir's side.
-/// extra widens the bound (for example when the shader moved P).
-inline Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0) {
+/// Origin of a ray that leaves a surface at P along dir: off the surface, whose unit normal is n, by the bound on the distance
+/// from P to it, on dir's side.
+inline Vec3 offsetOrigin(const Vec3& P, const Vec3& n, float error, const Vec3& dir) {
     // The rounded origin itself is off by up to half a bound, hence twice the bound.
-    float d = 2 * (p.pError + extra);
-    Vec3 off = p.n * (dot(dir, p.n) >= 0 ? d : -d);
-    Vec3 o = p.P + off;
+    float d = 2 * error;
+    Vec3 off = n * (dot(dir, n) >= 0 ? d : -d);
+    Vec3 o = P + off;
     // Round away from the surface: one float up or down, as std::nextafter, whose call costs more than the rest. All signs are as
     // likely as their opposites here, so there is no branch.
     auto step = [](float x, float by) {
@@ -271,6 +276,10 @@ inline Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0
         return std::bit_cast<float>(goes ? moved : bits);
     };
     return {step(o.x, off.x), step(o.y, off.y), step(o.z, off.z)};
+}
+/// The same of a surface's own point. extra widens the bound (for example when the shader moved P).
+inline Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0) {
+    return offsetOrigin(p.P, p.n, p.pError + extra, dir);
 }
 
 } // namespace alpenglow::geometry

@@ -101,15 +101,7 @@ void Gather::send(const Reached& r) {
     const bool area = light.kind == LightKind::Area, sums = l.trace && l.trace->sums;
     const Vec3 from = origin(l, r.w);
     // The light's own surface must not block: stop short of it by both error bounds.
-    Vec3 end;
-    if (const geometry::SurfacePoint& on = queries_.at[k].surface; area && on.displaced) {
-        geometry::SurfacePoint facet = on;
-        facet.P = on.displacedP;
-        facet.n = on.displacedN;
-        end = geometry::offsetOrigin(facet, -r.w);
-    } else if (area) {
-        end = geometry::offsetOrigin(on, -r.w);
-    }
+    const Vec3 end = area ? leavesFrom(queries_.at[k].surface, -r.w) : Vec3();
     if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
     const Color given = contribution(r);
     const int32_t share = shareOf(l);

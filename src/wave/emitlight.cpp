@@ -34,19 +34,17 @@ void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionSta
     if (world.accel_->hasSolids() &&
         !world.accel_->keeps(world.numberOfShape_.at(s.shape), meetsAt(s.surface), meetsNormal(s.surface), s.drawn.time))
         return;
-    geometry::SurfacePoint facet = s.surface; // what rays meet
-    facet.P = meetsAt(s.surface);
-    facet.n = meetsNormal(s.surface);
+    const Vec3& n = meetsNormal(s.surface);
     s.front = s.drawn.side < l.front;
     if (l.light->mean) {
         s.dir = evenDirection(s.drawn.way);
         s.factor = 4 * kPiF * kPiF / (perArea * float(emitter.area()));
     } else {
         if (!s.front && s.shape->oneSided()) return;
-        s.dir = Basis(s.front ? facet.n : -facet.n).toWorld(sampleCosine(s.drawn.way));
+        s.dir = Basis(s.front ? n : -n).toWorld(sampleCosine(s.drawn.way));
         s.factor = kPiF / (perArea * (s.front ? l.front : 1 - l.front));
     }
-    s.origin = geometry::offsetOrigin(facet, s.dir);
+    s.origin = leavesFrom(s.surface, s.dir);
 }
 
 /// What a light's shader is asked about a photon that lights `at`.

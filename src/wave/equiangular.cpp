@@ -93,10 +93,10 @@ private:
         const Vec2 u = numbers.pair(vertex, use, 0);
         bool there = light_.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light_.pointNeeds);
         if (there && w.accel_->hasSolids())
-            there = w.accel_->keeps(w.numberOfShape_.at(s.shape), p.surface.P, p.surface.n, p.time);
-        if (!there || (s.shape->oneSided() && dot(p.surface.n, s.direction) >= 0)) s.pdf = 0; // or from behind
+            there = w.accel_->keeps(w.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter);
+        if (!there || (s.shape->oneSided() && dot(meetsNormal(p.surface), s.direction) >= 0)) s.pdf = 0; // or from behind
         p.shape = s.shape;
-        p.P = p.surface.P;
+        p.P = meetsAt(p.surface);
         p.N = p.surface.n;
     }
     void send(size_t i) {
@@ -107,7 +107,7 @@ private:
         const ShadePoint& p = query_[i];
         if (!v.lit || (area_ && !(drawn_[i].pdf > 0))) return;
         if (!isFinite(v.Cl)) return e_.notFinite(&r, "Cl", light_.instance.get());
-        const Vec3 way = area_ ? geometry::offsetOrigin(p.surface, -drawn_[i].direction) - p.Ps : -v.L;
+        const Vec3 way = area_ ? leavesFrom(p.surface, -drawn_[i].direction) - p.Ps : -v.L;
         const float far = length(way);
         if (!(far > 0)) return;
         const Vec3 to = area_ ? drawn_[i].direction : way / far;

@@ -170,7 +170,7 @@ bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundL
                          : light.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)))
             return false;
         if (world_.accel_->hasSolids() &&
-            !world_.accel_->keeps(world_.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.time))
+            !world_.accel_->keeps(world_.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter))
             return false; // what a solid leaves of a lamp
         p.shape = s.shape;
         p.P = meetsAt(p.surface);

@@ -128,7 +128,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             const PathRay& r = *met[end].point->ray;
             q.push_back(*met[end].point);
             ShadePoint& p = q.back();
-            p.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+            p.P = meetsAt(p.surface);
             p.N = p.surface.n;
             p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.volumeBegin();
             litBy_.push_back(extraOf(r).lit);

@@ -1,6 +1,5 @@
 #include "world/arealight.h"
 #include "base/limits.h"
-#include "geometry/placed.h"
 #include "lobes/sampling.h"
 #include "scene/solids.h"
 #include <algorithm>
@@ -37,75 +36,85 @@ double capOneMinusCos(double radius, double distance) {
 
 Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility) {
     for (size_t i = 0; i < shapes.size(); ++i) {
-        const geometry::Shape* s = shapes[i];
-        double a = s->area();
-        if (!(a > 0) || !std::isfinite(a)) continue;
-        Entry e{s, a, 0};
+        Entry e{shapes[i], 0, 0};
         if (i < visibility.size()) e.visibility = visibility[i];
-        e.sphere = wholeSphere(*s, e.centre, e.radius);
-        e.inner = e.sphere && scene::solidTakenAway(s->attributes());
         entries_.push_back(e);
-        area_ += a;
     }
+    takeDiced();
+}
+
+void Emitter::takeDiced(const std::function<bool(const geometry::Shape&)>& seenThrough) {
+    facets_.clear();
+    triangles_.clear();
+    for (Entry& e : entries_) {
+        e.facets = e.triangles = -1;
+        if (!EmitterFacets::has(*e.shape)) {
+            e.share = e.shape->area();
+        } else {
+            e.facets = int(facets_.size());
+            facets_.emplace_back(*e.shape);
+            e.share = facets_.back().area();
+        }
+        if (TriangleLamp::has(*e.shape)) {
+            e.triangles = int(triangles_.size());
+            triangles_.emplace_back(*e.shape);
+        }
+        e.sphere = wholeSphere(*e.shape, e.centre, e.radius);
+        e.inner = e.sphere && scene::solidTakenAway(e.shape->attributes());
+        e.through = e.sphere && seenThrough && seenThrough(*e.shape);
+    }
+    weigh();
+    shinesTo(Shines::Both);
+}
+
+/// Makes areas of the entries shares of the choice, and leaves out those that have none.
+void Emitter::weigh() {
+    std::erase_if(entries_, [](const Entry& e) { return !(e.share > 0) || !std::isfinite(e.share); });
+    area_ = 0;
+    for (const Entry& e : entries_) area_ += e.share;
+    entryOf_.clear();
     double sum = 0;
-    for (auto& e : entries_) {
+    for (Entry& e : entries_) {
         e.share /= area_;
         e.cumulative = sum += e.share;
         entryOf_[e.shape] = int(&e - entries_.data());
     }
-    if (entries_.size() <= size_t(limits::kLightsSampled)) return;
+}
+
+void Emitter::shinesTo(Shines to) {
+    for (Entry& e : entries_) {
+        e.front = {};
+        if (to == Shines::Both && !e.shape->oneSided()) continue;
+        e.front = normalsOf(*e.shape);
+        if (to == Shines::Back && !e.shape->oneSided()) e.front = e.front.opposite();
+    }
+    makeChooser();
+}
+
+Cone Emitter::front() const {
+    Cone all;
+    for (const Entry& e : entries_) all = &e == entries_.data() ? e.front : around(all, e.front);
+    return all;
+}
+
+void Emitter::makeChooser() {
+    chooser_ = {};
+    // A few shapes that all shine everywhere are chosen by area alone.
+    const bool faces = std::any_of(entries_.begin(), entries_.end(), [](const Entry& e) { return !e.front.all(); });
+    if (entries_.size() <= (faces ? 1 : size_t(limits::kLightsSampled))) return;
     std::vector<LightBound> bounds;
     for (const Entry& e : entries_) {
         const geometry::Bounds b = e.shape->bounds();
-        bounds.push_back({(b.lo + b.hi) * .5f, length(b.hi - b.lo) * .5f, float(e.share), false});
+        bounds.push_back({(b.lo + b.hi) * .5f, length(b.hi - b.lo) * .5f, float(e.share), false, e.front});
     }
     chooser_ = LightChooser(bounds, 1);
 }
 
-bool Emitter::findDisplaced() {
-    bool all = true;
-    for (Entry& e : entries_) {
-        const geometry::Shape& geometry = e.shape->placed() ? *e.shape->placed()->geometry() : *e.shape;
-        const geometry::TriMesh& m = geometry.mesh();
-        if (e.facets >= 0 || m.triangles() == 0 || !geometry.evaluateHit(0, 1 / 3., 1 / 3.).displaced) continue;
-        e.sphere = false;
-        if (e.shape->placed()) {
-            all = false;
-            continue;
-        }
-        Facets f;
-        double sum = 0;
-        for (uint32_t t = 0; t < m.triangles(); ++t) {
-            const Vec3d a(m.P[m.index[3 * t]]), b(m.P[m.index[3 * t + 1]]), c(m.P[m.index[3 * t + 2]]);
-            f.cumulative.push_back(sum += .5 * length(cross(b - a, c - a)));
-        }
-        if (!(sum > 0) || !std::isfinite(sum)) {
-            all = false;
-            continue;
-        }
-        e.facets = int(facets_.size());
-        facets_.push_back(std::move(f));
-    }
-    return all;
-}
-
-void Emitter::place(const Entry& e, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint& point, uint32_t needs) const {
-    if (e.facets < 0) {
-        if (const geometry::Placed* p = e.shape->placed()) p->sampleFromAt(from, u.x, u.y, time, point, needs);
-        else e.shape->sampleFrom(from, u.x, u.y, point, needs);
-        return;
-    }
-    const std::vector<double>& sums = facets_[size_t(e.facets)].cumulative;
-    const double at = double(u.x) * sums.back();
-    const size_t t = size_t(std::upper_bound(sums.begin(), sums.end() - 1, at) - sums.begin());
-    const double before = t ? sums[t - 1] : 0, width = sums[t] - before;
-    // What is left of the number says where on the facet: even over a triangle, as its corner is cut off by the root.
-    const double side = std::sqrt(width > 0 ? std::clamp((at - before) / width, 0.0, 1.0) : 0.5);
-    e.shape->evaluateHit(uint32_t(t), side * (1 - double(u.y)), side * double(u.y), point, needs);
-}
-
-double Emitter::density(const Entry& e, const geometry::SurfacePoint& p) const {
-    return e.facets < 0 ? e.shape->sampleDensity(p) : 1 / facets_[size_t(e.facets)].cumulative.back();
+bool Emitter::place(const Entry& e, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint& point, uint32_t needs) const {
+    if (e.facets >= 0) return facets_[size_t(e.facets)].place(u, time, point, needs);
+    if (const geometry::Placed* p = e.shape->placed()) p->sampleFromAt(from, u.x, u.y, time, point, needs);
+    else e.shape->sampleFrom(from, u.x, u.y, point, needs);
+    return true;
 }
 
 geometry::Bounds Emitter::bounds() const {
@@ -118,7 +127,7 @@ float Emitter::areaPdf(const Entry& e, double share, const geometry::SurfacePoin
     Vec3 d = meetsAt(p) - from;
     float d2 = dot(d, d), cosine = std::fabs(dot(d, meetsNormal(p))) / std::sqrt(d2);
     if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
-    return float(share * density(e, p) * d2 / cosine);
+    return float(share * density(e, p) * e.shape->turnedDensity(p, from) * d2 / cosine);
 }
 
 const Emitter::Entry& Emitter::entryAt(float choose) const {
@@ -138,40 +147,57 @@ const Emitter::Entry& Emitter::entryFrom(const Vec3& from, float choose, double&
     return entries_[size_t(i)];
 }
 
+bool Emitter::outside(const Entry& e, const Vec3& from, double& cap) {
+    const double distance = length(Vec3d(e.centre) - Vec3d(from));
+    if (!(distance > e.radius * 1.0001)) return false;
+    cap = capOneMinusCos(e.radius, distance);
+    return true;
+}
+
+bool Emitter::sampleSphere(const Entry& e, const Vec3& from, Vec2 u, double cap, double share, Sample& out,
+                           geometry::SurfacePoint& point, uint32_t needs) const {
+    bool far = e.inner;
+    if (e.through) { // each side with half of the chance
+        far = u.x >= .5f;
+        u.x = far ? 2 * u.x - 1 : 2 * u.x;
+        share *= .5;
+    }
+    const Vec3 w = Basis(normalize(e.centre - from)).toWorld(sampleCone(float(cap), u));
+    geometry::ExactHit hits[4];
+    const int n = e.shape->exactHits(Vec3d(from), Vec3d(w), hits);
+    // The line grazes the rim in rounding: then this draw is lost, with a probability of the order of float epsilon.
+    int k = 0;
+    while (k < n && !(hits[k].t > 0)) ++k;
+    if (k == n) return false;
+    if (far) k = n - 1;
+    e.shape->evaluateHit(0, hits[k].u, hits[k].v, point, needs);
+    out.pdf = float(share / (2 * kPi * cap));
+    out.direction = w;
+    out.distance = float(hits[k].t);
+    return true;
+}
+
 bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
                      uint32_t needs) const {
     if (entries_.empty()) return false;
-    double share;
+    double share, cap;
     const Entry& e = entryFrom(from, choose, share);
     out.shape = e.shape;
     out.visibility = e.visibility;
-    if (e.sphere) {
-        Vec3 axis = e.centre - from;
-        double dc = length(Vec3d(axis));
-        if (dc > e.radius * 1.0001) {
-            double cap = capOneMinusCos(e.radius, dc);
-            Vec3 w = Basis(normalize(axis)).toWorld(sampleCone(float(cap), u));
-            geometry::ExactHit hits[4];
-            Vec3d far = Vec3d(from);
-            int n = e.shape->exactHits(far, Vec3d(w), hits);
-            // The line grazes the rim in rounding: then this draw is lost, with a probability of the order of float epsilon.
-            int k = 0;
-            while (k < n && !(hits[k].t > 0)) ++k;
-            if (k == n) return false;
-            if (e.inner) k = n - 1;
-            e.shape->evaluateHit(0, hits[k].u, hits[k].v, point, needs);
-            out.pdf = float(share / (2 * kPi * cap));
-            out.direction = w;
-            out.distance = float(hits[k].t);
-            return true;
-        }
+    if (e.sphere && outside(e, from, cap)) return sampleSphere(e, from, u, cap, share, out, point, needs);
+    TriangleLamp::Seen seen;
+    const bool angle = e.triangles >= 0 && triangles_[size_t(e.triangles)].see(from, seen);
+    if (angle) {
+        const geometry::HitRef at = triangles_[size_t(e.triangles)].place(from, seen, u);
+        e.shape->evaluateHit(at.prim, at.b1, at.b2, point, needs);
+    } else if (!place(e, from, u, time, point, needs)) {
+        return false;
     }
-    place(e, from, u, time, point, needs);
     Vec3 d = meetsAt(point) - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
-    out.pdf = areaPdf(e, share, point, from);
+    out.pdf = angle ? float(share / seen.total) : areaPdf(e, share, point, from);
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
@@ -181,7 +207,7 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
     const Entry& e = entryAt(choose);
     out.shape = e.shape;
     out.visibility = e.visibility;
-    place(e, from, u, time, point, needs);
+    if (!place(e, from, u, time, point, needs)) return false;
     const Vec3 d = meetsAt(point) - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
@@ -193,10 +219,11 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
 const geometry::Shape* Emitter::samplePoint(Vec2 u, float choose, float time, geometry::SurfacePoint& point,
                                             float& perArea) const {
     const Entry& e = entryAt(choose);
-    if (e.facets >= 0) place(e, {}, u, time, point, geometry::kNeedAll);
+    bool there = true;
+    if (e.facets >= 0) there = place(e, {}, u, time, point, geometry::kNeedAll);
     else if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, geometry::kNeedAll);
     else e.shape->sampleArea(u.x, u.y, point, geometry::kNeedAll);
-    perArea = float(e.share * density(e, point));
+    perArea = there ? float(e.share * density(e, point)) : 0;
     return e.shape;
 }
 
@@ -205,10 +232,12 @@ float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& h
     if (i == entryOf_.end()) return 0;
     const Entry& e = entries_[size_t(i->second)];
     const double share = chooser_.empty() ? e.share : double(chooser_.pmf(i->second, from));
-    if (e.sphere) {
-        double dc = length(Vec3d(e.centre) - Vec3d(from));
-        if (dc > e.radius * 1.0001) return float(share / (2 * kPi * capOneMinusCos(e.radius, dc)));
+    if (double cap; e.sphere && outside(e, from, cap)) {
+        const bool far = dot(hit.P - e.centre, hit.P - from) > 0;
+        return e.through || far == e.inner ? float((e.through ? .5 : 1) * share / (2 * kPi * cap)) : 0;
     }
+    if (TriangleLamp::Seen seen; e.triangles >= 0 && triangles_[size_t(e.triangles)].see(from, seen))
+        return float(share / seen.total);
     return areaPdf(e, share, hit, from);
 }
 

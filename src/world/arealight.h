@@ -1,27 +1,27 @@
 // Where on an emitter a light sample lies, and with which density a given hit would have been chosen (design decision 4).
 #pragma once
-#include "geometry/shape.h"
-#include "world/lightchooser.h"
+#include "world/emitterfacets.h"
+#include "world/trianglelamp.h"
+#include <functional>
 #include <unordered_map>
 
 namespace alpenglow::transport {
 
-/// Where rays meet a point of an emitter, and the normal there: of a displaced surface on its facet.
-inline const Vec3& meetsAt(const geometry::SurfacePoint& p) { return p.displaced ? p.displacedP : p.P; }
-inline const Vec3& meetsNormal(const geometry::SurfacePoint& p) { return p.displaced ? p.displacedN : p.n; }
-
 /// The geometry of one area light: its shapes, chosen in proportion to area, of more than limits::kLightsSampled in proportion
-/// to area
-/// over squared distance (LightChooser). Full spheres that are still spheres in camera space
-/// are sampled by the solid angle they fill; what is displaced over the
-/// area of its facets; everything else over its area.
+/// to area over squared distance (LightChooser). Full spheres that are still spheres in camera space are sampled by the solid
+/// angle they fill, and so are a few triangles near by; what is diced over the area of its facets; everything else over its area.
 class Emitter {
 public:
     /// visibility: kinds of rays (accel::Visibility) that can meet each shape; empty: all.
     explicit Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_t> visibility = {});
-    /// When shapes are diced: notes which of them are displaced. False: a displaced one moves, and sample() does not know its
-    /// surface.
-    bool findDisplaced();
+    /// When shapes are diced: from now on samples lie where rays meet them, and areas are those of what rays meet.
+    /// seenThrough: whether a shape lets light through, so that what lies behind it on the same ray shines as well; null: none.
+    void takeDiced(const std::function<bool(const geometry::Shape&)>& seenThrough = {});
+    /// Says from which side light leaves: of the shapes with two sides, too.
+    enum class Shines { Both, Front, Back };
+    void shinesTo(Shines);
+    /// The directions about which light leaves.
+    Cone front() const;
     bool empty() const { return entries_.empty(); }
     double area() const { return area_; }
     geometry::Bounds bounds() const;
@@ -49,7 +49,8 @@ public:
     /// above.
     bool sampleSurface(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
                        uint32_t needs = geometry::kNeedAll) const;
-    /// A point of the light that nobody looks at, and its shape; perArea: its density, per unit of area. Only when not empty.
+    /// A point of the light that nobody looks at, and its shape; perArea: its density, per unit of area, 0 for a point that is
+    /// cut away. Only when not empty.
     const geometry::Shape* samplePoint(Vec2 u, float choose, float time, geometry::SurfacePoint& point, float& perArea) const;
     /// Density per steradian with which sample() gives this hit as seen from `from`; 0 for shapes of other lights.
     float pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const;
@@ -59,26 +60,35 @@ private:
         const geometry::Shape* shape;
         double share, cumulative; ///< probability, and its sum up to and with this shape
         bool sphere = false;
-        bool inner = false; ///< of a sphere: the wall of a hole in a solid, of which the far side is seen
+        bool inner = false;   ///< of a sphere: the wall of a hole in a solid, of which the far side is seen
+        bool through = false; ///< of a sphere: both its near and its far side are seen
         Vec3 centre;
         float radius = 0;
         uint32_t visibility = ~0u;
-        int facets = -1; ///< facets_, of one that is displaced
+        int facets = -1;    ///< facets_; -1: rays meet the surface itself
+        int triangles = -1; ///< triangles_; -1: never sampled by their solid angle
+        Cone front;         ///< the directions about which light leaves
     };
-    struct Facets {
-        std::vector<double> cumulative;
-    }; ///< areas
-    /// A point for a lit one.
-    void place(const Entry&, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint&, uint32_t needs) const;
+    /// A whole sphere as it is seen from outside: 1 - cos of half the angle that it fills. False: from within.
+    static bool outside(const Entry&, const Vec3& from, double& cap);
+    bool sampleSphere(const Entry&, const Vec3& from, Vec2 u, double cap, double share, Sample&, geometry::SurfacePoint&,
+                      uint32_t needs) const;
+    void weigh();
+    void makeChooser();
+    /// A point for a lit one. False: it is cut away.
+    bool place(const Entry&, const Vec3& from, Vec2 u, float time, geometry::SurfacePoint&, uint32_t needs) const;
     /// Density per area of place().
-    double density(const Entry&, const geometry::SurfacePoint&) const;
+    double density(const Entry& e, const geometry::SurfacePoint& p) const {
+        return e.facets < 0 ? e.shape->sampleDensity(p) : facets_[size_t(e.facets)].density(p);
+    }
     /// The shape that a number in [0, 1) chooses, by their shares of the area. There is at least one.
     const Entry& entryAt(float choose) const;
     /// That which it chooses as seen from a point, and with which probability.
     const Entry& entryFrom(const Vec3& from, float choose, double& share) const;
     float areaPdf(const Entry&, double share, const geometry::SurfacePoint&, const Vec3& from) const;
     std::vector<Entry> entries_;
-    std::vector<Facets> facets_;
+    std::vector<EmitterFacets> facets_;
+    std::vector<TriangleLamp> triangles_;
     std::unordered_map<const geometry::Shape*, int> entryOf_;
     double area_ = 0;
     LightChooser chooser_; ///< over entries_; empty where there are few

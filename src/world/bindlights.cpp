@@ -259,6 +259,18 @@ scene::LightSet WorldImpl::withParts(const scene::LightSet& lights) const {
     return all;
 }
 
+/// About which directions light leaves an emitter, by how bright it is before points of it and behind them. shared: by lights of
+/// other statements of the same shader.
+static void tellFront(BoundLight& l, std::span<const float> front, std::span<const float> back, bool shared) {
+    using Shines = Emitter::Shines;
+    const auto shines = [](std::span<const float> side) {
+        return std::any_of(side.begin(), side.end(), [](float b) { return b > 0; });
+    };
+    l.emitter->shinesTo(shines(front) == shines(back) ? Shines::Both : shines(front) ? Shines::Front : Shines::Back);
+    l.front = l.emitter->front();
+    if (shared) l.emitter->shinesTo(Shines::Both);
+}
+
 void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
     const bool many = std::any_of(lightLists_.begin(), lightLists_.end(),
                                   [&](const LightList& l) { return sampledOf(l).size() > size_t(limits::kLightsSampled); });
@@ -287,11 +299,12 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
             // divides by it itself: what it means is an intensity.
             float step = std::max(std::sqrt(float(l.emitter->area())), 1e-6f), mean = 0;
             int square = 0, seen = 0;
+            std::vector<float> front, back;
             for (int k = 0; k < 4; ++k) {
                 const geometry::Shape* shape = nullptr;
                 geometry::SurfacePoint p = l.emitter->point({0.3f + 0.2f * float(k & 1), 0.35f + 0.15f * float(k >> 1)}, shape);
                 std::vector<ShadePoint> q;
-                for (float t : {1.f, 2.f, 4.f}) {
+                for (float t : {1.f, 2.f, 4.f, -1.f}) {
                     ShadePoint s = towards(p.P, p.n, p.P + p.n * (step * t));
                     s.shape = shape;
                     s.surface = p;
@@ -299,6 +312,8 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
                 }
                 std::vector<float> b = brightness(q);
                 mean += b[0] / 4;
+                front.insert(front.end(), b.begin(), b.begin() + 3);
+                back.push_back(b[3]);
                 if (!(b[0] > 0)) continue;
                 ++seen;
                 square += std::fabs(b[1] * 4 / b[0] - 1) < 1e-3f && std::fabs(b[2] * 16 / b[0] - 1) < 1e-3f;
@@ -320,6 +335,7 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
                               {}});
             }
             l.power = mean * float(l.emitter->area()) / float(kPi);
+            tellFront(l, front, back, size_t(&l - lights_.data()) >= frame_->lights.size() || !l.parts.empty());
         } else if (many && (l.kind == LightKind::Point || l.kind == LightKind::Distant)) {
             l.centre = Vec3(transformPoint(l.instance->toCurrent, {0, 0, 0}));
             std::vector<ShadePoint> q;

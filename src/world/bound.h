@@ -72,6 +72,7 @@ struct BoundLight {
     float power = 0;
     Vec3 centre;
     float radius = 0;
+    Cone front;                                         ///< Area: the directions about which its light leaves
     int group = -1;                                     ///< WorldImpl::lightGroups_; -1: none
     std::shared_ptr<const shading::ParameterRows> rows; ///< for the kernel of its group
 };

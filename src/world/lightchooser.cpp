@@ -1,4 +1,5 @@
 #include "world/lightchooser.h"
+#include "base/exact.h"
 #include "geometry/bounds.h"
 #include <algorithm>
 #include <array>
@@ -27,7 +28,28 @@ geometry::Bounds boundsOf(const LightBound& l) {
     b.add(l.centre + Vec3(l.radius));
     return b;
 }
+/// How much of all directions light leaves to whose front is a cone, in units that do not matter (Conty Estevez and Kulla).
+double spreadOf(const Cone& c) {
+    const double angle = c.all() ? kPi : exact::acos(double(c.cosine)), end = std::min(angle + kPi / 2, kPi);
+    const auto [s, k] = exact::sinCos(angle);
+    return 2 * kPi * (1 - k) + kPi / 2 * (2 * end * s - exact::cos(angle - 2 * end) - 2 * angle * s + k);
+}
 } // namespace
+
+Cone around(const Cone& a, const Cone& b) {
+    if (a.all()) return a;
+    if (b.all()) return b;
+    const auto angle = [](double cosine) { return exact::acos(std::clamp(cosine, -1.0, 1.0)); };
+    const double wideA = angle(double(a.cosine)), wideB = angle(double(b.cosine)), apart = angle(double(dot(a.axis, b.axis)));
+    if (std::min(apart + wideB, kPi) <= wideA) return a;
+    if (std::min(apart + wideA, kPi) <= wideB) return b;
+    const double wide = .5 * (wideA + wideB + apart);
+    const Vec3d side = Vec3d(b.axis) - Vec3d(a.axis) * double(dot(a.axis, b.axis));
+    if (!(wide < kPi) || !(dot(side, side) > 0)) return {};
+    const auto [s, c] = exact::sinCos(wide - wideA);
+    // Rounded outwards: what lies within one of both lies within.
+    return {Vec3(normalize(Vec3d(a.axis) * c + normalize(side) * s)), float(std::max(exact::cos(wide) - 1e-6, -1.0))};
+}
 
 LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wanted_(std::clamp(wanted, 1, kMost)) {
     leafOf_.assign(lights.size(), -1);
@@ -63,30 +85,34 @@ size_t LightChooser::split(std::span<int> order, std::span<const LightBound> lig
         geometry::Bounds box;
         double power = 0;
         size_t count = 0;
+        Cone front;
+        void add(const geometry::Bounds& b, double p, size_t n, const Cone& c) {
+            box.add(b);
+            power += p;
+            front = count ? around(front, c) : c;
+            count += n;
+        }
     };
+    const bool face = std::any_of(order.begin(), order.end(), [&](int i) { return !lights[size_t(i)].front.all(); });
     std::array<Bin, kBins> bins;
     const auto binOf = [&](int i) {
         return std::clamp(int((lights[size_t(i)].centre[axis] - centres.lo[axis]) / extent[axis] * kBins), 0, kBins - 1);
     };
     for (int i : order) {
-        Bin& b = bins[size_t(binOf(i))];
-        b.box.add(boundsOf(lights[size_t(i)]));
-        b.power += lights[size_t(i)].power;
-        ++b.count;
+        const LightBound& l = lights[size_t(i)];
+        bins[size_t(binOf(i))].add(boundsOf(l), l.power, 1, face ? l.front : Cone());
     }
     double least = std::numeric_limits<double>::infinity();
     int at = -1;
     for (int cut = 1; cut < kBins; ++cut) {
         Bin side[2];
         for (int k = 0; k < kBins; ++k) {
-            Bin& s = side[k >= cut];
-            if (!bins[size_t(k)].count) continue;
-            s.box.add(bins[size_t(k)].box);
-            s.power += bins[size_t(k)].power;
-            s.count += bins[size_t(k)].count;
+            const Bin& b = bins[size_t(k)];
+            if (b.count) side[k >= cut].add(b.box, b.power, b.count, b.front);
         }
         if (!side[0].count || !side[1].count) continue;
-        const double cost = side[0].power * area(side[0].box) + side[1].power * area(side[1].box);
+        const auto costOf = [&](const Bin& b) { return b.power * area(b.box) * (face ? spreadOf(b.front) : 1); };
+        const double cost = costOf(side[0]) + costOf(side[1]);
         if (cost < least) least = cost, at = cut;
     }
     if (at < 0 || !(least > 0)) return middle();
@@ -111,6 +137,8 @@ void LightChooser::build(int node, std::span<int> order, std::span<const LightBo
         n.centre = lights[size_t(order[0])].centre;
         n.radius = lights[size_t(order[0])].radius;
         n.light = order[0];
+        n.front = lights[size_t(order[0])].front;
+        n.faces = !n.front.all();
         leafOf_[size_t(order[0])] = node;
         return;
     }
@@ -121,12 +149,31 @@ void LightChooser::build(int node, std::span<int> order, std::span<const LightBo
     nodes_[size_t(left)].parent = nodes_[size_t(left) + 1].parent = node;
     build(left, order.first(half), lights);
     build(left + 1, order.subspan(half), lights);
+    Node& both = nodes_[size_t(node)];
+    both.front = around(nodes_[size_t(left)].front, nodes_[size_t(left) + 1].front);
+    both.faces = !both.front.all();
+}
+
+double LightChooser::towards(const Node& n, const Vec3& at) {
+    const Vec3d to = Vec3d(at) - Vec3d(n.centre);
+    const double d2 = dot(to, to);
+    if (!(d2 > n.radius2)) return 1;
+    // The angle to the axis, less that of the cone and that under which the node is seen; none may become negative.
+    double cosine = dot(to, Vec3d(n.front.axis)) / std::sqrt(d2), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const auto less = [&](double c) {
+        const double s = std::sqrt(std::max(0.0, 1 - c * c)), before = cosine;
+        cosine = before > c ? 1 : before * c + sine * s;
+        sine = before > c ? 0 : sine * c - before * s;
+    };
+    less(double(n.front.cosine));
+    less(std::sqrt(1 - n.radius2 / d2));
+    return std::max(cosine, 0.0);
 }
 
 double LightChooser::importance(const Node& n, const Vec3& at) const {
     if (n.everywhere) return n.power;
     const double share = n.power / distance2(n.centre, n.radius2, at);
-    return std::isfinite(share) ? share : 0;
+    return !std::isfinite(share) ? 0 : n.faces ? share * towards(n, at) : share;
 }
 
 LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
@@ -152,8 +199,10 @@ double LightChooser::probability(double share, const Node& n) const { return wan
 inline std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
     // Of the children's importances only the ratio matters: each is taken times both squared distances, for one division.
     const Node &a = nodes_[size_t(n.left)], &b = nodes_[size_t(n.left) + 1];
-    const double l = n.everywhere ? a.power : a.power * distance2(b.centre, b.radius2, at);
-    const double r = n.everywhere ? b.power : b.power * distance2(a.centre, a.radius2, at);
+    double l = n.everywhere ? a.power : a.power * distance2(b.centre, b.radius2, at);
+    double r = n.everywhere ? b.power : b.power * distance2(a.centre, a.radius2, at);
+    if (a.faces) l *= towards(a, at);
+    if (b.faces) r *= towards(b, at);
     const double left = l + r > 0 && std::isfinite(l + r) ? l / (l + r) : nodes_[size_t(n.left)].count / double(n.count);
     return {left, 1 - left};
 }

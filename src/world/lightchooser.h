@@ -9,6 +9,17 @@
 
 namespace alpenglow::transport {
 
+/// Directions within an angle about an axis.
+struct Cone {
+    Vec3 axis;
+    float cosine = -1; ///< of the angle; -1: all directions
+    bool all() const { return !(cosine > -1); }
+    /// The same turned about.
+    Cone opposite() const { return {-axis, cosine}; }
+};
+/// One that holds both.
+Cone around(const Cone&, const Cone&);
+
 /// What the choice knows of a light. Power: luminance that it brings to a point at distance 1; of lights without a place
 /// (Distant), anywhere. Lengths in current space.
 struct LightBound {
@@ -16,11 +27,12 @@ struct LightBound {
     float radius = 0;
     float power = 0;
     bool everywhere = false; ///< its light does not fall off
+    Cone front = {};         ///< its light leaves at less than a right angle from one of these directions
 };
 
 /// A tree over the lights of one list. The probability of a light is about `wanted` times its share of power over squared
-/// distance; a part of it, kBlind, is the same for all lights, so that one whose power was not seen (a spot between the probes)
-/// is found too.
+/// distance, times the greatest cosine at which its light can leave towards the point: one that faces away takes nothing. A part
+/// of it, kBlind, is the same for all lights, so that one whose power was not seen (a spot between the probes) is found too.
 ///
 /// A point far from a node sees it as one light; near ones are opened first (the cut), and their shares are of all nodes of the
 /// cut. Below the cut a node's probability is split between its two children by the same measure. One random number chooses: a
@@ -60,7 +72,8 @@ private:
         int count = 1;  ///< lights below it
         int light = -1; ///< of a leaf
         int parent = -1;
-        bool everywhere = false;
+        bool everywhere = false, faces = false; ///< faces: `front` is not all directions
+        Cone front;
     };
     /// A node of the cut, and its share of importance in the whole.
     struct Part {
@@ -77,6 +90,8 @@ private:
     void build(int node, std::span<int> order, std::span<const LightBound> lights);
     size_t split(std::span<int> order, std::span<const LightBound> lights) const;
     double importance(const Node&, const Vec3& at) const;
+    /// The greatest cosine at which light of a node can leave towards a point, 0 to 1.
+    static double towards(const Node&, const Vec3& at);
     Cut cutAt(const Vec3& at) const;
     double probability(double share, const Node&) const;
     /// Shares of the children in that of their parent.

@@ -70,7 +70,8 @@ void WorldImpl::makeChoosers(Diagnostics& d) {
         for (int i : lights) {
             const BoundLight& l = lights_[size_t(i)];
             bounds.push_back({l.centre, l.radius, settings_.evenLights ? 0 : l.power,
-                              l.kind == LightKind::Distant || l.kind == LightKind::Environment});
+                              l.kind == LightKind::Distant || l.kind == LightKind::Environment,
+                              settings_.evenLights ? Cone() : l.front});
         }
         return LightChooser(bounds, limits::kLightsSampled);
     };

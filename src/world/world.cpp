@@ -156,6 +156,17 @@ static texture::TextureSettings mapSettings(const scene::Options& o, const Setti
     return t;
 }
 
+/// Tells emitters where rays meet their shapes.
+static void takeDiced(WorldImpl& w, const std::vector<uint32_t>& visibility) {
+    const auto seenThrough = [&](const geometry::Shape& s) { // what lies behind it shines as well
+        const size_t i = w.numberOfShape_.at(&s);
+        const bool blocks = (visibility[i] & accel::kTransmission) && w.bindings_[size_t(w.bindingOf_[i])].opacity.opaque();
+        return !blocks && !s.oneSided();
+    };
+    for (BoundLight& l : w.lights_)
+        if (l.emitter) l.emitter->takeDiced(seenThrough);
+}
+
 std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings,
                                           MakeEvaluator evaluators, Diagnostics& d) {
     double begin = buildClock();
@@ -207,10 +218,9 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->setPointNeeds();
     w->diceShapes(d); // with displacement, by the same kernels that shade
     if (stopped()) return nullptr;
-    for (BoundLight& l : w->lights_)
-        if (l.emitter && !l.emitter->findDisplaced()) l.importance = false; // rays find it
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
+    takeDiced(*w, visibility);
     w->bindPhotons(visibility);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
     if (!w->accel_->sound()) return nullptr;

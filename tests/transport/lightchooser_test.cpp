@@ -26,6 +26,9 @@ std::vector<LightBound> lightsOf(int n, unsigned seed, const char* kind) {
         l.radius = how == "spheres" ? one(rng) : 0;
         l.power = how == "dark" ? 0 : how == "uneven" ? std::exp(12 * one(rng) - 6) : 1;
         if (how == "one place") l.centre = Vec3(1, 2, 3);
+        if (how == "facing")
+            l.front = {normalize(Vec3(one(rng) - .5f, one(rng) - .5f, one(rng) - .5f)), i % 3 ? 1 : one(rng)},
+            l.radius = .3f * one(rng);
         if (how == "line") l.centre = Vec3(float(i), 0, 0);
         if (how == "some far") l.everywhere = i % 5 == 0;
         if (how == "broken") l.power = i % 3 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
@@ -38,7 +41,7 @@ std::vector<LightBound> lightsOf(int n, unsigned seed, const char* kind) {
 
 TEST(LightChooser, FrequenciesAreTheProbabilities) {
     const int turns = 4096;
-    for (const char* kind : {"plain", "spheres", "dark", "uneven", "one place", "line", "some far", "broken"})
+    for (const char* kind : {"plain", "spheres", "dark", "uneven", "one place", "line", "some far", "broken", "facing"})
         for (const int n : {9, 33, 1000}) {
             const auto lights = lightsOf(n, 5, kind);
             const LightChooser chooser(lights, kWanted);
@@ -86,6 +89,52 @@ TEST(LightChooser, SharesOfPower) {
     // One that outshines all others is always there.
     ring[17].power = 1e6f;
     EXPECT_EQ(LightChooser(ring, kWanted).pmf(17, {0, 0, 0}), 1);
+}
+
+// Of two lights alike that face along x the one that looks away has its blind part alone, one that is seen at 60 degrees half of
+// what one has that looks here; how wide its normals lie apart, and how large it is, counts for it.
+TEST(LightChooser, LightsThatFaceAway) {
+    const auto chance = [](const Vec3& axis, float cosine, float radius) {
+        std::vector<LightBound> two(2);
+        two[0].centre = Vec3(-3, 0, 0), two[1].centre = Vec3(3, 0, 0);
+        two[0].power = two[1].power = 1;
+        two[0].front = {Vec3(1, 0, 0), 1};
+        two[1].front = {axis, cosine};
+        two[1].radius = radius;
+        return double(LightChooser(two, 1).pmf(1, {0, 0, 0}));
+    };
+    const auto share = [](double part) { return .9 * part / (1 + part) + .05; };
+    const float half = std::sqrt(3.f) / 2; // of 60 degrees the sine
+    EXPECT_NEAR(chance({-1, 0, 0}, 1, 0), .5, 1e-6);
+    EXPECT_NEAR(chance({1, 0, 0}, 1, 0), .05, 1e-6);
+    EXPECT_NEAR(chance({0, 1, 0}, 1, 0), .05, 1e-6);
+    EXPECT_NEAR(chance({-.5f, half, 0}, 1, 0), share(.5), 1e-5);
+    EXPECT_NEAR(chance({0, 1, 0}, .5f, 0), share(half), 1e-5); // 60 degrees to all sides
+    EXPECT_NEAR(chance({0, 1, 0}, 1, 1.5f), share(.5), 1e-5);  // seen under 30
+    EXPECT_NEAR(chance({1, 0, 0}, -1, 0), .5, 1e-6);           // shines everywhere
+}
+
+// What holds two cones holds every direction in them, and is no wider than it must be.
+TEST(LightChooser, ConesAroundCones) {
+    using transport::Cone;
+    std::mt19937 rng(6);
+    std::normal_distribution<float> one;
+    const auto unit = [&] { return normalize(Vec3(one(rng), one(rng), one(rng))); };
+    for (int i = 0; i < 200; ++i) {
+        const Cone a{unit(), std::cos(.01f * float(i % 50))}, b{unit(), std::cos(.02f * float(i % 40))},
+            c = transport::around(a, b);
+        const double apart = std::acos(std::clamp(double(dot(a.axis, b.axis)), -1., 1.)), ra = std::acos(double(a.cosine)),
+                     rb = std::acos(double(b.cosine)), must = std::max({ra, rb, (ra + rb + apart) / 2});
+        if (must >= kPi) {
+            EXPECT_TRUE(c.all());
+            continue;
+        }
+        EXPECT_NEAR(std::acos(double(c.cosine)), must, 2e-3);
+        for (const Cone& k : {a, b})
+            EXPECT_LE(std::acos(std::clamp(double(dot(k.axis, c.axis)), -1., 1.)) + std::acos(double(k.cosine)),
+                      std::acos(double(c.cosine)) + 2e-3);
+    }
+    EXPECT_TRUE(transport::around({}, {Vec3(1, 0, 0), 1}).all());
 }
 
 TEST(LightChooser, NoLights) {

@@ -186,7 +186,7 @@ protected:
         return scene.world ? scene.estimate(kEye, GetParam().kind == Row::Delta ? 4 : samples(n * (stretched() ? 8 : 1)))
                            : Moments();
     }
-    void expect(const std::string& shader, Hider hider, double want, double precision = .008, int n = 20000) {
+    void expect(const std::string& shader, Hider hider, double want, double precision = .0083, int n = 20000) {
         std::string what = std::string(GetParam().name) + " by " + shader + (hider == Hider::Path ? ", path" : ", not path");
         Moments m = see(shader, hider, n);
         // The stretched sphere is 1e-4 off a sphere in one axis.

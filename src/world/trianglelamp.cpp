@@ -1,0 +1,89 @@
+// The map from the square to a spherical triangle is that of Arvo, Stratified Sampling of Spherical Triangles (1995); the solid
+// angle that of Van Oosterom and Strackee, The Solid Angle of a Plane Triangle (1983).
+#include "world/trianglelamp.h"
+#include "base/exact.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+namespace {
+/// Beyond so many of its radii a lamp is sampled by area: what is nearer and faces the point more differs little.
+constexpr double kNear = 4;
+/// Beyond, a triangle fills nearly all that a point on its plane can see (2 pi).
+constexpr double kMostAngle = 6.2;
+
+double solidAngle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    return 2 * exact::atan2(std::fabs(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
+}
+double root(double x) { return std::sqrt(std::max(0.0, x)); }
+
+/// A direction to a triangle between unit vectors that fills this solid angle.
+Vec3d direction(const Vec3d& a, const Vec3d& b, const Vec3d& c, double angle, double u, double v) {
+    // The part of the triangle at the side ab has u of the angle: c moves to `c1` along the side ac.
+    const Vec3d ab = cross(a, b), ac = cross(a, c);
+    const double lengths = length(ab) * length(ac), cosA = dot(ab, ac) / lengths, sinA = std::fabs(dot(a, cross(b, c))) / lengths;
+    const auto [sinS, cosS] = exact::sinCos(u * angle);
+    const double s = sinS * cosA - cosS * sinA, t = cosS * cosA + sinS * sinA; // of the angle less that at a
+    const double p = t - cosA, q = s + sinA * dot(a, b), divisor = (q * s + p * t) * sinA;
+    const double cosB1 = divisor != 0 ? std::clamp(((q * t - p * s) * cosA - q) / divisor, -1.0, 1.0) : 1;
+    const Vec3d c1 = a * cosB1 + normalize(c - a * dot(c, a)) * root(1 - cosB1 * cosB1);
+    // Then along the arc from b to there.
+    const double z = 1 - v * (1 - dot(c1, b));
+    const Vec3d aside = c1 - b * dot(c1, b);
+    return dot(aside, aside) > 0 ? b * z + normalize(aside) * root(1 - z * z) : b;
+}
+} // namespace
+
+bool TriangleLamp::has(const geometry::Shape& s) {
+    return !s.placed() && !s.exact() && !s.trimmed() && s.mesh().triangles() <= kMost;
+}
+
+TriangleLamp::TriangleLamp(const geometry::Shape& s) {
+    const geometry::TriMesh& m = s.mesh();
+    const geometry::Bounds box = s.bounds();
+    centre_ = (Vec3d(box.lo) + Vec3d(box.hi)) * .5;
+    for (uint32_t t = 0; t < m.triangles(); ++t) {
+        std::array<Vec3d, 3> c;
+        for (size_t i = 0; i < 3; ++i) {
+            c[i] = Vec3d(m.P[m.index[3 * size_t(t) + i]]);
+            radius2_ = std::max(radius2_, dot(c[i] - centre_, c[i] - centre_));
+        }
+        triangles_.push_back(c);
+    }
+}
+
+bool TriangleLamp::see(const Vec3& from, Seen& seen) const {
+    const Vec3d at(from), way = centre_ - at;
+    if (!(dot(way, way) < kNear * kNear * radius2_)) return false;
+    seen.total = 0;
+    for (size_t t = 0; t < triangles_.size(); ++t) {
+        Vec3d c[3];
+        for (size_t i = 0; i < 3; ++i) {
+            c[i] = triangles_[t][i] - at;
+            const double l2 = dot(c[i], c[i]);
+            if (!(l2 > 1e-12 * radius2_)) return false;
+            c[i] = c[i] / std::sqrt(l2);
+        }
+        seen.angle[t] = solidAngle(c[0], c[1], c[2]);
+        if (!(seen.angle[t] < kMostAngle)) return false;
+        seen.total += seen.angle[t];
+    }
+    return seen.total > 1e-4; // less of what is near is seen edge-on
+}
+
+geometry::HitRef TriangleLamp::place(const Vec3& from, const Seen& seen, Vec2 u) const {
+    double left = double(u.x) * seen.total;
+    size_t t = 0;
+    while (t + 1 < triangles_.size() && left >= seen.angle[t]) left -= seen.angle[t++];
+    while (t > 0 && !(seen.angle[t] > 0)) --t;
+    const Vec3d at(from), a = triangles_[t][0] - at, b = triangles_[t][1] - at, c = triangles_[t][2] - at;
+    const double part = std::clamp(left / seen.angle[t], 0.0, 1.0);
+    const Vec3d w = direction(normalize(a), normalize(b), normalize(c), seen.angle[t], part, double(u.y));
+    const Vec3d e1 = b - a, e2 = c - a, q = cross(a, w);
+    const double facing = dot(cross(e1, e2), w);
+    double b1 = 1 / 3., b2 = 1 / 3.;
+    if (facing != 0) b1 = std::clamp(dot(q, e2) / facing, 0.0, 1.0), b2 = std::clamp(-dot(q, e1) / facing, 0.0, 1.0 - b1);
+    return {uint32_t(t), b1, b2, nullptr, 0};
+}
+
+} // namespace alpenglow::transport

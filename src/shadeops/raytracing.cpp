@@ -18,7 +18,8 @@ std::vector<OptionalParameter> rayParameters() {
          "shader runs the shaders that are met, primitive takes Color and Opacity; default: attributes shade:specularhitmode, "
          "diffusehitmode, transmissionhitmode"},
         {kS, "hitsides", false, "",
-         "from where surfaces with Sides 1 are met: front, back, both, reversed (back); not given: front, for transmission both"},
+         "from where surfaces with Sides 1 are met: front, back, both, reversed (back); not given: front, seen from the shaded "
+         "point"},
         {kF, "maxdist", false, "1e38", "no intersections beyond this distance"},
         {kF, "samplecone", false, "0", "half angle of the cone of directions, radians"},
         {kF, "samples", false, "1", "number of samples"},

@@ -3,8 +3,6 @@
 
 namespace alpenglow::transport {
 
-namespace {} // namespace
-
 void Gather::choose() {
     indirectScale_.assign(c_->points.size(), 1.f);
     passes_.assign(c_->points.size(), 1.f);
@@ -30,7 +28,8 @@ void Gather::choosePoint(size_t point) {
     // Under path one ray goes on from a vertex: along one of the lobes, or behind the surface where that lets light through.
     // Those two may have quite different colours: what the way here has left of each decides, else a channel could grow without
     // end. A camera ray goes on besides.
-    const bool competes = rules_.pickOne && from.bounces > 0 && maxComponent(clear) > 0;
+    const Color on = c_->clear.empty() ? Color(0) : e_.goesOn(*c_, int(point));
+    const bool competes = rules_.pickOne && from.bounces > 0 && maxComponent(on) > 0;
     const Color left = absolute(from.weight);
     const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
     const auto list = lobesOf(point);
@@ -61,7 +60,7 @@ void Gather::choosePoint(size_t point) {
         e_.results[size_t(from.sample->path)]->albedo += from.weight * seen;
     const bool most = sum.x + clear.x > 1 || sum.y + clear.y > 1 || sum.z + clear.z > 1;
     const float scale = indirectScale_[point] = most ? energyScale(point, sum, clear) : 1;
-    const float behind = competes ? worth(clear) : 0;
+    const float behind = competes ? worth(on) : 0;
     if (list.size() == 1 && behind == 0) { // what most vertices are
         LobeVertex& l = e_.lobes[size_t(list[0])];
         l.chosen = l.ownsTarget || !rules_.pickOne ? l.followed : l.chosen > 0;

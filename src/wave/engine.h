@@ -248,6 +248,8 @@ public:
     void finishStrip(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
     /// The share of the light from behind a shaded point that comes through, 0 to 1.
     Color clearAt(const BatchContext&, int point) const;
+    /// Of a ray, what goes on behind its point: clearAt(), of some photons more.
+    Color goesOn(const BatchContext&, int point) const;
     Color leftBehind(const BatchContext&, int point) const; ///< of it, by what the volume before the point takes
     const WorldImpl& world() const { return *world_; }
     const Rules& rules() const { return rules_; }

@@ -97,9 +97,9 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
     }
     gather(c, sched);
     for (size_t i = 0; i < n; ++i)
-        if (maxComponent(c.clear[i]) > 0 && c.passes[i] > 0)
-            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], c.clear[i], c.passes[i],
-                        0, sched);
+        if (const Color clear = goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
+            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear, c.passes[i], 0,
+                        sched);
 }
 
 const photons::PhotonMap* Engine::globalMapOf(int binding) {

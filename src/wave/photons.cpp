@@ -38,6 +38,7 @@ std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t 
             ray.dir = s.dir;
             ray.time = world.shadesAtOpen_ ? 0 : s.drawn.time;
             ray.only = job.met;
+            ray.sides = accel::Sides::Both;
             if (world.fades_) ray.level = levelOf(job.numbers(first + of[l][k]));
             accel::Hit hit;
             s.length = e.meet(ray, hit) ? hit.t : 0;
@@ -66,7 +67,7 @@ bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vec
     t.job = &job;
     t.first = first;
     t.out = &out;
-    t.diffuse = {RayType::Diffuse, false, {job.met, accel::Sides::Front, shading::HitMode::Default}, 0};
+    t.diffuse = {RayType::Diffuse, false, {job.met, accel::Sides::Both, shading::HitMode::Default}, 0};
     t.specular = t.diffuse;
     t.specular.type = RayType::Specular;
     bool done = true;
@@ -90,6 +91,14 @@ bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vec
     };
     std::sort(out.begin() + long(before), out.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
     return done;
+}
+
+/// A surface with Sides 1 is not there for who comes from behind. Photons go the other way: what comes from the front is there
+/// and goes straight on as well, for those who look from behind; what comes from behind is there alone.
+Color Engine::goesOn(const BatchContext& c, int i) const {
+    const ShadePoint& p = c.points[size_t(i)];
+    if (photonTrace_ && p.shape->oneSided() && dot(c.rays[size_t(i)].dir, meetsNormal(p.surface)) < 0) return leftBehind(c, i);
+    return c.clear.empty() ? clearAt(c, i) : c.clear[size_t(i)];
 }
 
 /// The volumes in which a photon begins; null: none.

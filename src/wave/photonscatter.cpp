@@ -195,6 +195,7 @@ std::shared_ptr<BatchContext> Gather::shadeBack(std::span<Sent* const> turned, S
         way.dir = s->w;
         way.time = world_.shutterOf(from);
         way.only = e_.photonTrace()->job->met;
+        way.sides = accel::Sides::Both;
         way.level = from.sample->level;
         accel::Hit hit;
         ShadePoint& p = c->points[size_t(s->point)];

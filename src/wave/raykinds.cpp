@@ -25,10 +25,7 @@ RaySet Engine::raySetOf(const SiteInfo& s, const std::function<float(int)>& f, c
     type = r.rays;
     label = r.label >= 0 ? id(r.label) : s.label;
     if (r.type >= 0)
-        if (const std::string& t = word(r.type); !t.empty()) {
-            type = rayTypeOf(t);
-            set.sides = type == RayType::Transmission ? accel::Sides::Both : accel::Sides::Front;
-        }
+        if (const std::string& t = word(r.type); !t.empty()) type = rayTypeOf(t);
     if (r.sides >= 0)
         if (const auto sides = sidesOf(word(r.sides))) set.sides = *sides;
     if (r.mode >= 0)

@@ -17,7 +17,7 @@ using shading::TargetId;
 
 /// Rays that most vertices send.
 inline constexpr RayKind kDiffuseKind{RayType::Diffuse, false, {}, 0}, kSpecularKind{RayType::Specular, false, {}, 0};
-inline constexpr RayKind kShadowKind{RayType::Transmission, false, {nullptr, accel::Sides::Both, shading::HitMode::Default}, 0};
+inline constexpr RayKind kShadowKind{RayType::Transmission, false, {}, 0};
 
 /// A visibility question: adds contribution * transmittance to the target.
 struct ShadowRay {

@@ -165,6 +165,7 @@ void Gather::sendRay(const Sent& s, Sched& sched) {
     const PathRay& from = c_->rays[size_t(s.point)];
     Vec3 w = s.w;
     const PhotonTrace* photon = e_.photonTrace();
+    if (photon && p.shape->oneSided() && !(dot(w, meetsNormal(p.surface)) > 0)) return; // nobody sees it from there
     if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
     const float pdf = s.value.pdf;
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);

@@ -143,7 +143,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             }
         }
         const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
-        const Color clear = chance > 0 ? c.clear.empty() ? clearAt(c, i) : c.clear[size_t(i)] : Color(0);
+        const Color clear = chance > 0 ? goesOn(c, i) : Color(0);
         if (maxComponent(clear) > 0)
             passThrough(binding, ray, c.targets[i], c.points[i], clear, chance, asked.empty() ? 0 : asked[size_t(i - first)],
                         sched);

@@ -268,6 +268,8 @@ void Engine::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3
     ray.ray = p.ray;
     RayKind kind = kShadowKind;
     kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
+    // Surfaces are seen from the shaded point, at whichever end of the way it is.
+    if (!r.saysSides && length(b - at) < length(a - at)) kind.set.sides = accel::Sides::Back;
     ray.kind = kindOf(kind);
     const float bias = number(r.bias, -1), far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)),
                 cone = number(r.cone, 0);

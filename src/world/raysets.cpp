@@ -128,7 +128,6 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     r->rays = !type.empty()                                                                   ? rayTypeOf(type)
               : i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion || distance ? RayType::Transmission
                                                                                               : RayType::Specular;
-    r->set.sides = r->rays == RayType::Transmission ? accel::Sides::Both : accel::Sides::Front;
     if (const std::string word = text("hitsides"); !word.empty()) {
         if (const auto s = sidesOf(word)) r->set.sides = *s;
         else unknown("hitsides", word, "front, back, both, reversed");
@@ -139,6 +138,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     }
     world.hitModes_ |= r->set.mode != HitMode::Default || r->mode >= 0;
     r->set.only = world.subsets_.find(world, r->subsetText, r->excludeText);
+    r->saysSides = r->sides >= 0 || !text("hitsides").empty();
     r->fixed = r->subset < 0 && r->exclude < 0 && r->sides < 0 && r->mode < 0 && r->label < 0 && r->type < 0;
     return r;
 }

@@ -38,7 +38,8 @@ struct RaySite {
     int32_t subsetId = 0, excludeId = 0; ///< the same, interned
     shading::RaySet set;                 ///< what is known beforehand
     RayType rays = RayType::Specular;
-    bool fixed = false; ///< nothing of the set, the label and the type is known only when the shader runs
+    bool fixed = false;     ///< nothing of the set, the label and the type is known only when the shader runs
+    bool saysSides = false; ///< "hitsides" is given
 };
 
 /// "falloff" and "falloffmode" of a hemisphere: rows, or -1.

@@ -85,7 +85,7 @@ TEST(RaySets, SidesOfOneSidedSurfaces) {
     expectColor(shows("sides2", "Ci = trace(P, up, \"hitsides\", \"back\");", two), back, "back");
     expectColor(shows("sides3", "Ci = trace(P, up, \"hitsides\", \"reversed\");", two), back, "reversed");
     expectColor(shows("sides4", "Ci = trace(P, up, \"hitsides\", \"both\");", two), {1, 0, 0}, "both");
-    // Two-sided surfaces are met whatever is asked; shadow rays meet both sides unless they say otherwise.
+    // Two-sided surfaces are met whatever is asked; shadow rays, too, meet fronts unless they say otherwise.
     const std::string blue = pane(3, "Sides 2 Color 0 0 1"), one = pane(1, "Sides 1 Opacity .5 .5 .5");
     expectColor(shows("sides5", "Ci = trace(P, up, \"hitsides\", \"back\");", blue), {0, 0, 1}, "two sides");
     Color sum(0);
@@ -96,7 +96,9 @@ TEST(RaySets, SidesOfOneSidedSurfaces) {
         sum += t;
     }
     expectColor(sum, Color(1.5f), "one of both sides");
-    expectColor(shows("sidesb", "Ci = transmission(P, far);", one), Color(.5f), "transmission");
+    expectColor(shows("sidesb", "Ci = transmission(P, far, \"hitsides\", \"both\");", one), Color(.5f), "transmission");
+    expectColor(shows("sidesn", "Ci = transmission(P, far) - transmission(P, far, \"hitsides\", \"front\");", one), Color(0),
+                "none");
 }
 
 TEST(RaySets, HitModes) {

@@ -16,6 +16,13 @@ namespace {
 /// circle.
 constexpr double kTurns = 1 << 24;
 
+/// Hits on the discs that close a tube: ExactHit::v (b2 of points) is kFirst plus the part of the radius where it begins, kLast
+/// less that where it ends. Elsewhere it is the place in the segment, 0 to 1 and a little beyond.
+constexpr double kFirst = -3, kLast = 4;
+bool onDisc(double b2) { return b2 < kFirst + 1.5 || b2 > kLast - 1.5; }
+/// The part of the radius.
+double outOnDisc(double b2) { return b2 < 0 ? b2 - kFirst : kLast - b2; }
+
 class Curves final : public KeyedShape {
 public:
     Curves(ShapeSource s, CurveSet set, Diagnostics&);
@@ -63,6 +70,14 @@ private:
     LocalPoint local(const CurveSegment&, const CurveFacing&, double u, double f) const;
     double turnOf(const CurveSegment&, double f, const Vec3d& across) const;
     const std::vector<double>& areas() const;
+    bool tubes() const { return facing_.kind == CurveFacing::Round; }
+    /// Whether a disc closes a tube at the begin, or the end, of a segment.
+    bool closedAt(uint32_t segment, bool end) const {
+        const CurveSet::Place p = set_.place(segment);
+        return tubes() && !set_.periodic() && p.local == (end ? p.count - 1 : 0);
+    }
+    void meetDiscs(const CurveSegment&, uint32_t prim, const CurveRay&, CurveHit* hits, int& n) const;
+    double discArea(const SurfacePoint& onDisc) const;
 
     CurveSet set_;
     CurveFacing facing_;
@@ -72,7 +87,9 @@ private:
     double side_ = 1; ///< +1, -1: of Ng along dPdu ^ dPdv of object space
     double reach_[3]; ///< half the extent of a unit ball of object space along camera axes
     mutable std::once_flag made_;
-    mutable std::vector<double> areas_; ///< summed up by segment; of what moves, the mean of its keys
+    /// Summed up by segment, of each what is round the curve and the discs at its begin and end; of what moves, the mean of its
+    /// keys.
+    mutable std::vector<double> areas_;
 };
 
 Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : KeyedShape(std::move(s)), set_(std::move(set)) {
@@ -181,11 +198,12 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     const CurveRay ray(o, d, (g.p[1] + g.p[2]) * 0.5, lo, hi);
     CurveFacing facing = facing_;
     if (fromRay_) facing.at = -d;
-    CurveHit hits[4];
-    const bool round = facing_.kind == CurveFacing::Round;
+    CurveHit hits[6];
+    const bool round = tubes();
     int n = round ? meetTube(g, from, to, ray, hits) : meetRibbon(g, from, to, facing, fromRay_, ray, hits);
+    if (round) meetDiscs(g, prim, ray, hits, n);
     std::sort(hits, hits + n, [](const CurveHit& a, const CurveHit& b) { return a.t < b.t; });
-    if (wanted != Wanted::All) n = std::min(n, 1);
+    n = std::min(n, wanted != Wanted::All ? 1 : 4);
     for (int i = 0; i < n; ++i) {
         const CurveHit& h = hits[i];
         out[i] = {h.t, 0.5 + 0.5 * h.s, h.f};
@@ -194,18 +212,57 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
         if (!round) continue;
         Jet a, b;
         ScalarJet radius;
-        tubeFrame(g, h.f, a, b, radius);
-        const Vec3d w = o + d * h.t - curveAt(g, h.f).f;
+        const double f = onDisc(h.f) ? double(h.f > 0) : h.f;
+        tubeFrame(g, f, a, b, radius);
+        const Vec3d w = o + d * h.t - curveAt(g, f).f;
         const double u = exact::atan2(dot(w, b.f), dot(w, a.f)) / (2 * kPi);
         out[i].u = u < 0 ? u + 1 : u;
     }
     return n;
 }
 
+/// Adds where a ray meets the discs of a primitive.
+void Curves::meetDiscs(const CurveSegment& g, uint32_t prim, const CurveRay& ray, CurveHit* hits, int& n) const {
+    for (const bool end : {false, true}) {
+        if (prim % parts_ != (end ? parts_ - 1 : 0) || !closedAt(prim / parts_, end)) continue;
+        Jet a, b;
+        ScalarJet radius;
+        tubeFrame(g, end, a, b, radius);
+        const Vec3d axis = cross(a.f, b.f), c = curveAt(g, end).f - ray.org;
+        const double along = dot(ray.e3, axis);
+        if (!(radius.f > 0) || !(std::fabs(along) > 0)) continue;
+        const double z = dot(c, axis) / along, t = ray.t(z);
+        const Vec3d w = ray.e3 * z - c;
+        const double out = std::sqrt(dot(w, w)) / radius.f;
+        // Out to where the tube is met, by as much as that is rounded.
+        if (!(t > ray.lo && t <= ray.hi) || !(out <= 1 + 1e-9)) continue;
+        hits[n++] = {t, 0, end ? kLast - std::min(out, 1.0) : kFirst + std::min(out, 1.0), {}};
+    }
+}
+
 LocalPoint Curves::local(const CurveSegment& g, const CurveFacing& facing, double u, double f) const {
     LocalPoint p;
+    const bool disc = facing.kind == CurveFacing::Round && onDisc(f);
+    const double part = disc ? outOnDisc(f) : 1, outward = f < 0 ? 1 : -1; // along f
+    if (disc) f = f > 0;
     const Jet c = curveAt(g, f);
-    if (facing.kind == CurveFacing::Round) {
+    if (disc) {
+        Jet a, b;
+        ScalarJet r;
+        tubeFrame(g, f, a, b, r);
+        const auto [s, k] = exact::sinCos(2 * kPi * u);
+        const Vec3d out = (a.f * k + b.f * s) * r.f, round = (b.f * k - a.f * s) * (2 * kPi * r.f);
+        p = {c.f + out * part,
+             round * part,
+             out * outward,
+             out * (-4 * kPi * kPi * part),
+             round * outward,
+             Vec3d(0.0),
+             {},
+             {},
+             {}};
+        p.n = cross(a.f, b.f) * -outward;
+    } else if (facing.kind == CurveFacing::Round) {
         Jet a, b;
         ScalarJet r;
         tubeFrame(g, f, a, b, r);
@@ -297,9 +354,9 @@ const std::vector<double>& Curves::areas() const {
         // Gauss, four points a segment, eight around a tube.
         static constexpr double x[4] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
         static constexpr double w[4] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
-        const int around = facing_.kind == CurveFacing::Round ? 8 : 1;
+        const int around = tubes() ? 8 : 1;
         double sum = 0;
-        areas_.reserve(set_.segments());
+        areas_.reserve(3 * size_t(set_.segments()));
         for (uint32_t i = 0; i < set_.segments(); ++i) {
             const double n = set_.place(i).count * double(keys());
             for (size_t j = 0; j < keys(); ++j)
@@ -310,6 +367,13 @@ const std::vector<double>& Curves::areas() const {
                         sum += w[k] * length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / (n * around);
                     }
             areas_.push_back(sum);
+            for (const bool end : {false, true}) {
+                for (size_t j = 0; j < keys() && closedAt(i, end); ++j) {
+                    const auto& at = static_cast<const Curves&>(key(j));
+                    sum += at.discArea(at.pointOf(i, 0, end ? kLast - 1 : kFirst + 1, Vec3d(0.0), 0)) / double(keys());
+                }
+                areas_.push_back(sum);
+            }
         }
     });
     return areas_;
@@ -321,7 +385,15 @@ SurfacePoint Curves::sampleFromAt(const Vec3& from, double xi1, double xi2, floa
     const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
     // What is left of the first number is uniform again within the segment.
     const double lo = i ? sums[i - 1] : 0, size = sums[i] - lo;
-    return pointOf(uint32_t(i), xi2, size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, Vec3d(from), time);
+    const double left = size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, out = std::sqrt(left);
+    const double f = i % 3 == 0 ? left : i % 3 == 1 ? kFirst + out : kLast - out;
+    return pointOf(uint32_t(i / 3), xi2, f, Vec3d(from), time);
+}
+
+/// Of the disc that a point is on, as it is then.
+double Curves::discArea(const SurfacePoint& p) const {
+    const double out = outOnDisc(p.b2), l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
+    return out > 0 ? l / (2 * out * set_.place(p.prim / parts_).count) : 0;
 }
 
 /// Of a ribbon that faces the ray that of its middle: who sees it from another place sees it turn otherwise.
@@ -338,9 +410,11 @@ Vec3 Curves::velocity(const SurfacePoint& at) const {
 
 double Curves::sampleDensity(const SurfacePoint& p) const {
     const std::vector<double>& sums = areas();
-    const size_t i = p.prim / parts_;
+    const uint32_t segment = p.prim / parts_;
+    const bool disc = tubes() && onDisc(p.b2);
+    const size_t i = 3 * size_t(segment) + (!disc ? 0 : p.b2 < 0 ? 1 : 2);
     const double share = (sums[i] - (i ? sums[i - 1] : 0)) / sums.back();
-    const double l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / set_.place(uint32_t(i)).count;
+    const double l = disc ? discArea(p) : length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv))) / set_.place(segment).count;
     return l > 0 ? share / l : 0;
 }
 

@@ -78,8 +78,8 @@ struct CurveHit {
 /// Hits with lo < t <= hi of the part from..to of a segment, at most 4, in no order. fromRay: the ribbon faces the ray, facing.at
 /// is its direction reversed.
 int meetRibbon(const CurveSegment&, double from, double to, const CurveFacing&, bool fromRay, const CurveRay&, CurveHit out[4]);
-/// Tubes have no ends. Subdivided until a cone is within a fiftieth of its radius of the part (or 1/1024 of the segment is left),
-/// then Newton's iteration on the swept circle itself, to the last bits.
+/// Without the discs at the ends of tubes. Subdivided until a cone is within a fiftieth of its radius of the part (or 1/1024 of
+/// the segment is left), then Newton's iteration on the swept circle itself, to the last bits.
 int meetTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4]);
 
 /// How curves lie in the arrays of their request.
@@ -103,6 +103,7 @@ public:
     /// Weights at f of a segment; `dv` by v of the whole curve.
     int weights(scene::Class, uint32_t segment, double f, Weight w[16]) const;
     bool linear() const { return linear_; }
+    bool periodic() const { return periodic_; }
     /// Whether the same curves of both are drawn, cut into the same segments.
     bool alike(const CurveSet& o) const {
         const auto same = [](const Row& a, const Row& b) {

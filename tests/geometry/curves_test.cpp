@@ -340,14 +340,14 @@ TEST(Curves, TubesAreMetOnTheirCircles) {
             if (n.f < 0.1 || n.f > 0.9 || std::fabs(n.distance - radius) < 1e-3 * radius) continue;
             std::vector<std::pair<uint32_t, ExactHit>> hits;
             const int count = allHits(*s, o, d, hits);
+            ++(n.distance > radius ? passed : met);
             if (n.distance > radius) {
                 ASSERT_EQ(count, 0);
-                ++passed;
                 continue;
             }
-            ++met;
             ASSERT_GE(count, 1) << turn << " " << k << " " << n.distance / radius;
             for (const auto& [prim, h] : hits) {
+                if (h.v < -1 || h.v > 2) continue; // on a disc that closes it
                 const Vec3d x = o + d * h.t, c = casteljau(given, h.v);
                 EXPECT_NEAR(length(x - c), radius, 1e-9);
                 const SurfacePoint q = s->evaluateHit(prim, h.u, h.v);

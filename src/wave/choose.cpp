@@ -51,7 +51,9 @@ void Gather::choosePoint(size_t point) {
         }
         cut |= from.bounces + 1 - from.scattered - c_->between > world_.maxDepth_ && l.chosen > 0;
         const bool noIndirect = l.rays->type == RayType::Diffuse && !world_.settings_.indirect && !sampledByPaths(l);
-        const bool stays = l.directOnly || (l.below < 0 && (tooDeep(l, from, b) || noIndirect)); // walks end in light
+        const bool deep = l.below < 0 && tooDeep(l, from, b); // walks end in light
+        const bool stays = l.directOnly || deep || (l.below < 0 && noIndirect);
+        l.last = deep && !l.directOnly && !noIndirect && l.chosen > 0;
         if (stays) l.chosen = 0;
         l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
     }

@@ -12,6 +12,7 @@ void Gather::run(BatchContext& c, Sched& sched) {
     choose();
     besideLights();
     if (rules_.lightsAtRequests) light();
+    if (rules_.emissionCounts) lastSkies();
     if (e_.photonTrace()) restPhotons();
     else if (rules_.pickOne) takePhotons(sched);
     scatter(sched);

@@ -3,7 +3,9 @@
 //   beside   lights that rays of the lobes may pass in a medium (beside.cpp)
 //   light    points of lights for the points of the batch, and what the lights' kernels send from there (lightpoints.cpp)
 //   connect  lobes with those points: contributions, with one shadow ray for all lobes of a vertex that can share it
-//   (connect.cpp) scatter  directions of the lobes whose rays are followed, and the rays (scatter.cpp)
+//            (connect.cpp)
+//   skies    at the last vertex of a path: skies that only rays would find (lastskies.cpp)
+//   scatter  directions of the lobes whose rays are followed, and the rays (scatter.cpp)
 // A stage reads what the ones before it wrote and changes nothing else; none looks at two points at a time, so results do not
 // depend on who shares the batch.
 #pragma once
@@ -98,6 +100,10 @@ private:
     bool meets(const LobeVertex&, int query, const Vec3& w, const Vec3& from, const Vec3& end) const;
     void send(const Reached&);
     Color contribution(const Reached&);
+
+    // lastskies.cpp
+    void lastSkies();
+    void lastSky(int light);
 
     // scatter.cpp
     void scatter(Sched&);

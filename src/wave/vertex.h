@@ -62,6 +62,7 @@ struct LobeVertex {
     float indirect = 1;      ///< factor of its rays
     float albedo = 0;        ///< kind->albedo(params)
     float chosen = 1;        ///< probability that the indirect ray of this lobe is followed
+    bool last = false;       ///< its ray would go too deep: light that only rays find is looked for in its place
     Vec3 beside;             ///< unit, toward a light that its rays may pass in a medium
     float besideShare = 0;   ///< of its rays that are drawn evenly in the angle to it
 };

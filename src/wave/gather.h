@@ -101,6 +101,9 @@ private:
     void send(const Reached&);
     Color contribution(const Reached&);
 
+    // unshadowed.cpp
+    void unshadowed(const LobeVertex&, const Vec3& w, const Color& through, const Color& environment, TraceSums&);
+
     // lastskies.cpp
     void lastSkies();
     void lastSky(int light);

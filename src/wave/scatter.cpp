@@ -171,11 +171,9 @@ void Gather::sendRay(const Sent& s, Sched& sched) {
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
     const Color through = l.narrow && photon ? s.back : l.weight * (f * s.scale / float(s.count));
     RayExtra extra;
-    if (!photon && l.trace && l.trace->map) {
-        extra.environment = l.tint * e_.mapTowards(*l.trace, w, from.footprint.spread);
-        if (TraceSums* of = l.trace->sums ? e_.sumsOf(l.target) : nullptr)
-            of->add(TraceSums::UnshadowedEnvironment, through * extra.environment);
-    }
+    if (!photon && l.trace && l.trace->map) extra.environment = l.tint * e_.mapTowards(*l.trace, w, from.footprint.spread);
+    if (TraceSums* of = !photon && l.trace && l.trace->sums ? e_.sumsOf(l.target) : nullptr)
+        unshadowed(l, w, through, extra.environment, *of);
     Color weight = l.ownsTarget ? through : from.weight * through;
     if (photon) weight *= leftOfPhoton(*c_, size_t(s.point)) * photonWay(l, w);
     if (!isFinite(weight)) return e_.notFinite(*c_, from, l.site);

@@ -210,6 +210,16 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
     lightMessages_.erase(std::unique(lightMessages_.begin(), lightMessages_.end()), lightMessages_.end());
 }
 
+void WorldImpl::findShining() {
+    const auto found = [&](int l) { return lights_[size_t(l)].kind == LightKind::Area && !lights_[size_t(l)].mean; };
+    for (const auto& s : shapes_) {
+        const int l = s->attributes().areaLight;
+        const auto& parts = l >= 0 ? lights_[size_t(l)].parts : std::vector<int>();
+        shining_.push_back(l >= 0 && (found(l) || std::any_of(parts.begin(), parts.end(), found)));
+    }
+    shining_.push_back(0);
+}
+
 void WorldImpl::countLightTraces() {
     const auto sitesOf = [](const BoundKernel& k, auto test) {
         return double(std::count_if(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) { return test(s.kind); }));

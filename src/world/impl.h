@@ -164,6 +164,8 @@ public:
     void goOn(accel::Ray&, const accel::Hit&) const; ///< behind what it met
     int groups_ = 0;                                 ///< number of different SurfaceBinding::group
     std::vector<BoundLight> lights_;
+    std::vector<uint8_t> shining_; ///< by shape: rays find an area light there
+    void findShining();            ///< fills it; never empty
     std::unique_ptr<accel::Accel> accel_;
     Matrix worldToCamera_, cameraToWorld_;
     Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;

@@ -208,6 +208,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     const bool all = path || !saysVisibility(w->shapes_, *frame);
     w->findProcedurals();
     w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
+    w->findShining();
     w->evaluators_ = std::move(evaluators);
     const std::unique_ptr<Evaluator> evaluator = w->evaluators_(*w, d, settings.stop);
     if (path) w->tabulateSkies(*evaluator);

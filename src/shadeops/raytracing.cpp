@@ -5,8 +5,8 @@
 namespace alpenglow::rsl {
 namespace {
 
-/// Table 6.10.
-std::vector<OptionalParameter> rayParameters() {
+/// Table 6.10. type: the default of "type".
+std::vector<OptionalParameter> rayParameters(const char* type = "\"specular\"") {
     return {
         {kS, "label", false, "\"\"", "label of the rays, for rayinfo"},
         {kS, "subset", false, "\"\"",
@@ -23,14 +23,14 @@ std::vector<OptionalParameter> rayParameters() {
         {kF, "maxdist", false, "1e38", "no intersections beyond this distance"},
         {kF, "samplecone", false, "0", "half angle of the cone of directions, radians"},
         {kF, "samples", false, "1", "number of samples"},
-        {kS, "type", false, "\"specular\"", "specular, diffuse or transmission: which visibility counts"},
+        {kS, "type", false, type, "specular, diffuse or transmission: which visibility counts"},
         {kC, "weight", false, "1",
          "importance of the ray: rayinfo(\"weight\") where it arrives gives the product of those on its way; no ray is left out "
          "for it"},
         {kF, "minsamples", false, "samples", "accepted and ignored"},
         {kF, "samplebase", false, "0", "part of the footprint over which trace() starts its rays"},
         {kS, "excludesubset", false, "\"\"", "groups of objects left out"},
-        {kS, "raytype", false, "\"specular\"", "another name of type"},
+        {kS, "raytype", false, type, "another name of type"},
         {kS, "raylabel", false, "\"\"", "another name of label"},
         {kF, "maxhitdist", false, "1e38", "another name of maxdist"}};
 }
@@ -144,7 +144,7 @@ std::vector<Shadeop> raytracingShadeops() {
         op.derivative = DerivativeRule::ZeroWarn;
         op.pure = false; // each call draws its own random numbers
         op.doc = doc;
-        op.optional = rayParameters();
+        op.optional = rayParameters(std::string_view(name) == "transmission" ? "\"transmission\"" : "\"specular\"");
         list.push_back(std::move(op));
         return list.back();
     };

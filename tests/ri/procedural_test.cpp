@@ -5,6 +5,7 @@
 #include "scene/motion.h"
 #include "scene/scene.h"
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -299,6 +300,20 @@ TEST_F(Procedurals, OutsideThePictureAreNotExpandedWhereOnlyTheCameraCouldSeeThe
     EXPECT_EQ(drawn("", alone + "AreaLightSource \"arealight\" 1" + away), 1u);
     EXPECT_EQ(drawn("", alone + "MotionBegin [0 1] Translate 8 0 5 Translate 0 0 5 MotionEnd"), 1u);
     EXPECT_EQ(drawn("", alone + "SolidBegin \"primitive\"" + away), 1u);
+}
+
+TEST_F(Procedurals, EndWhenNobodyReadsThem) {
+    // We ignore SIGPIPE, as the program does, and what is ignored is inherited.
+    const auto before = std::signal(SIGPIPE, SIG_IGN);
+    program("maker", "read line; grep SigIgn /proc/self/status >'" + (dir / "signals").string() +
+                         "'; echo Sphere 1 -1 1 360; printf '\\377'");
+    auto c = readHere("WorldBegin Procedural \"RunProgram\" [\"maker\" \"\"]" + bound + "WorldEnd");
+    std::signal(SIGPIPE, before);
+    EXPECT_EQ(c->messages(), "");
+    std::ifstream in(dir / "signals");
+    std::string word, mask;
+    ASSERT_TRUE(in >> word >> mask);
+    EXPECT_EQ(std::stoull(mask, nullptr, 16) >> (SIGPIPE - 1) & 1, 0u) << mask;
 }
 
 } // namespace procedural_test

@@ -48,4 +48,14 @@ TEST(Projection, StereoIsAPairOfPerspectives) {
     EXPECT_EQ(scene::find(o.projectionParams, "eyeseparation")->numbers[0], 0.1f);
 }
 
+TEST(Format, PixelsHaveAnAspectThatPicturesCanState) {
+    for (const char* aspect : {"1e-6", "1e6", "2"}) EXPECT_TRUE(read("Format 16 12 " + std::string(aspect))->ok) << aspect;
+    for (const char* aspect : {"1e7", "9e-7"}) {
+        auto c = read("Format 16 12 " + std::string(aspect) + " WorldBegin Sphere 1 -1 1 360 WorldEnd");
+        EXPECT_EQ(c->only().code, Rie::Range) << aspect;
+        EXPECT_EQ(c->frame().options.xres, 16);
+        EXPECT_EQ(c->frame().options.pixelAspect, 1);
+    }
+}
+
 } // namespace projection_test

@@ -31,7 +31,10 @@ void format(Interpreter& in, const Call& c) {
     // Zero and negative numbers mean the default (wild.md).
     in.options.xres = x > 0 ? x : standard.xres;
     in.options.yres = y > 0 ? y : standard.yres;
-    in.options.pixelAspect = c.number(2) > 0 ? c.real(2) : 1;
+    constexpr double kMost = 1e6; // OpenEXR writes no others
+    const double aspect = c.number(2) > 0 ? c.number(2) : 1;
+    const bool written = within(in, c, aspect >= 1 / kMost && aspect <= kMost, "a pixel's aspect lies between 1e-6 and 1e6");
+    in.options.pixelAspect = written ? float(aspect) : 1;
     in.options.formatSet = true;
 }
 

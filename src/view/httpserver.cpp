@@ -108,6 +108,8 @@ std::optional<HttpResponse> refusalOf(const Parser& p) {
     const auto& m = p.get();
     if (m.target().empty() || m.target()[0] != '/') return refusal(400, "This is no request of HTTP/1.\n");
     if (m.method() != http::verb::get && m.method() != http::verb::post) return refusal(405, "Only GET and POST are known.\n");
+    for (const http::field f : {http::field::host, http::field::origin}) // which of them a proxy or a browser meant is not known
+        if (m.count(f) > 1) return refusal(400, "Host and Origin may be given once.\n");
     if (p.chunked()) return refusal(411, "A request needs Content-Length.\n");
     return {};
 }
@@ -126,6 +128,7 @@ struct Connection {
     HttpRequest request;
     bool close = false, known = false;
     double since = 0;   ///< when its state began, or its request
+    double taken = 0;   ///< when a part of the answer was last taken
     bool begun = false; ///< a byte of the request is there
     ~Connection() {
         if (fd >= 0) ::close(fd);
@@ -163,7 +166,7 @@ int HttpServer::Loop::patience(double t) const {
     double least = 60;
     for (const Connection& c : connections) {
         const double s = c.state == State::Waiting    ? limits.waitSeconds
-                         : c.state == State::Writing  ? limits.writeSeconds
+                         : c.state == State::Writing  ? std::min(limits.writeSeconds, c.taken - c.since + limits.stallSeconds)
                          : c.state == State::Draining ? kDrainSeconds
                          : c.begun                    ? limits.requestSeconds
                                                       : limits.idleSeconds;
@@ -250,7 +253,7 @@ void HttpServer::Loop::answer(Connection& c, HttpResponse r, bool close) {
     c.out = headOf(r, c.close) + std::move(r.body);
     c.written = 0;
     c.state = State::Writing;
-    c.since = secondsNow();
+    c.since = c.taken = secondsNow();
 }
 
 /// Takes a request out of what has come in, once it is whole.
@@ -308,6 +311,7 @@ bool HttpServer::Loop::write(Connection& c) {
         const ssize_t n = ::send(c.fd, c.out.data() + c.written, c.out.size() - c.written, MSG_NOSIGNAL);
         if (n < 0) return errno == EAGAIN || errno == EINTR;
         c.written += size_t(n);
+        c.taken = secondsNow();
     }
     std::string().swap(c.out);
     if (c.close) {
@@ -330,7 +334,7 @@ bool HttpServer::Loop::timeOut(Connection& c, double t) {
     case State::Waiting:
         return spent < limits.waitSeconds || ask(c, true);
     case State::Writing:
-        return spent < limits.writeSeconds;
+        return spent < limits.writeSeconds && t - c.taken < limits.stallSeconds;
     case State::Draining:
         return spent < kDrainSeconds;
     case State::Reading:

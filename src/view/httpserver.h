@@ -31,6 +31,7 @@ struct HttpLimits {
     size_t bodyBytes = 1 << 16; ///< of a request
     double requestSeconds = 10; ///< from a request's first byte to its last
     double idleSeconds = 120;   ///< between two requests
+    double stallSeconds = 5;    ///< in which a viewer takes nothing of its answer
     double writeSeconds = 60;   ///< for an answer to be taken
     double waitSeconds = 15;    ///< that an answer may be put off
 };

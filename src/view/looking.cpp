@@ -80,12 +80,6 @@ void Session::look(const render::Glance& g) {
     passRays_ = double(g.rays);
     if (g.film && g.grown && pass_.phase == Phase::Whole && g.film->samplesPerPixel() > 0)
         sampleSeconds_ = (kept_.seconds + g.seconds) / (double(g.film->samplesPerPixel()) * double(g.film->window().pixels()));
-    if (filesChanged()) {
-        std::lock_guard lock(mutex_);
-        reload_ = true;
-        interrupt();
-        stop_ = 1;
-    }
     if (!g.film) kept_.image.reset();
     if (g.whole() && pass_.phase == Phase::Whole)
         kept_.image = std::make_shared<render::Image>(g.pixels(plan_->pictures.front()));

@@ -59,7 +59,9 @@ Session::~Session() {
         stop_ = 1;
     }
     work_.notify_all();
+    watchEnds_.notify_all();
     if (thread_.joinable()) thread_.join();
+    if (watching_.joinable()) watching_.join();
 }
 
 bool Session::load() { return readScene(); }
@@ -67,6 +69,7 @@ bool Session::load() { return readScene(); }
 void Session::start() {
     begun_ = true;
     thread_ = std::thread([this] { run(); });
+    if (options_.watch) watching_ = std::thread([this] { watchFiles(); });
 }
 
 void Session::tell() {
@@ -118,6 +121,7 @@ bool Session::readScene() {
     const std::shared_ptr<const Loaded> before = [&] {
         std::lock_guard lock(mutex_);
         reload_ = false;
+        reads_ = std::make_shared<ReadLog>();
         messages_.clear();
         messageAt_.clear();
         messagesLost_ = 0;
@@ -132,7 +136,6 @@ bool Session::readScene() {
     worldKey_.clear();
     filmKey_.clear();
     diags_ = std::make_unique<Diagnostics>([this](const Diagnostic& d) { say(d); });
-    reads_ = std::make_shared<ReadLog>();
     // Before the thread is there, who waits for the scene may end it.
     const StopFlag* const stop = begun_ || !options_.settings.stop ? &end_ : options_.settings.stop;
     render::RenderSettings s = options_.settings;
@@ -227,21 +230,27 @@ void Session::giveUp(const std::string& why) {
     tell();
 }
 
-bool Session::filesChanged() {
-    const auto now = Clock::now();
-    if (!options_.watch || !reads_ || now - lastFileLook_ < kFilePatience) return false;
-    lastFileLook_ = now;
-    return reads_->changed();
+/// On a thread of its own, because a pass may take minutes.
+void Session::watchFiles() {
+    std::unique_lock lock(mutex_);
+    while (!end_) {
+        watchEnds_.wait_for(lock, kFilePatience);
+        const std::shared_ptr<ReadLog> reads = reads_;
+        if (end_ || reload_ || !reads) continue;
+        lock.unlock();
+        const bool changed = reads->changed();
+        if (changed) std::this_thread::sleep_for(std::chrono::milliseconds(50)); // let the editor finish
+        lock.lock();
+        if (!changed || reads != reads_) continue; // it was read again meanwhile
+        reload_ = true;
+        interrupt();
+        stop_ = 1;
+    }
 }
 
 /// Until there is something to render. False: the end.
 bool Session::waitForWork() {
     while (true) {
-        if (filesChanged()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(50)); // let the editor finish
-            std::lock_guard lock(mutex_);
-            reload_ = true;
-        }
         if (!end_) lookAtRest();
         std::unique_lock lock(mutex_);
         if (end_) return false;

@@ -137,18 +137,18 @@ private:
     std::string freeName(const std::string& type, const render::Film*) const;
 
     void setPhase(Phase);
-    bool filesChanged();
+    void watchFiles();
     std::set<std::string> wantedPlanes() const;
 
     const ViewOptions options_;
     const std::function<void()> changed_;
     StopFlag stop_{0}, end_{0};
     bool begun_ = false; ///< the thread is, or will be, there
-    std::thread thread_;
+    std::thread thread_, watching_;
 
     // Guarded by mutex_.
     mutable std::mutex mutex_;
-    std::condition_variable work_;
+    std::condition_variable work_, watchEnds_;
     Wishes wishes_;
     std::optional<Pose> pose_;
     bool dragging_ = false, reload_ = false;
@@ -156,6 +156,7 @@ private:
     Phase phase_ = Phase::Reading;
     Clock::time_point phaseSince_{};
     std::shared_ptr<const Picture> picture_;
+    std::shared_ptr<ReadLog> reads_; ///< of the scene as it was last read; set by the rendering thread
     std::vector<Message> messages_;
     std::map<std::string, size_t> messageAt_;
     size_t messagesLost_ = 0;
@@ -173,7 +174,6 @@ private:
 
     // The rendering thread's own.
     std::unique_ptr<Diagnostics> diags_;
-    std::shared_ptr<ReadLog> reads_;
     uint64_t done_ = 0; ///< the generation that was rendered to its end
     struct Round {      ///< what is being rendered
         Wishes wishes;
@@ -197,7 +197,7 @@ private:
     std::optional<std::array<double, 4>> cropOf_; ///< which part that is
     double shotSeconds_ = 0;                      ///< what the last shot cost
     uint64_t pictures_ = 0;                       ///< that were made
-    Clock::time_point lastShot_{}, lastFileLook_{};
+    Clock::time_point lastShot_{};
     bool stale_ = true;            ///< there is more than was shown
     bool grew_ = false;            ///< tiles of the pass under way are there
     std::optional<Phase> shownOf_; ///< what the last shot of this round was of

@@ -70,8 +70,16 @@ bool Engine::meet(const accel::Ray& ray, accel::Hit& hit) {
     return hit.valid();
 }
 
+/// Calls f(first, count) for parts of n rays that take little time even where a ray meets a hundred thousand shapes. Who stops
+/// throws the rest away, whatever it is.
+template <class F> static void inParts(size_t n, const StopFlag* stop, F f) {
+    constexpr size_t kPart = 512;
+    for (size_t at = 0; at < n && !(stop && *stop); at += kPart) f(at, std::min(kPart, n - at));
+}
+
 void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits) {
-    world_->accel_->intersect(rays, hits);
+    std::fill(hits.begin(), hits.end(), accel::Hit{});
+    inParts(rays.size(), stop, [&](size_t at, size_t n) { world_->accel_->intersect(rays.subspan(at, n), hits.subspan(at, n)); });
     if (!world_->unmade_) return;
     for (size_t i = 0; i < rays.size(); ++i) {
         if (!world_->unmade_->meets(rays[i], hits[i].valid() ? hits[i].distance : INFINITY)) continue;
@@ -81,7 +89,9 @@ void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits) 
 }
 
 void Engine::block(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
-    world_->accel_->occluded(rays, blocked);
+    std::fill(blocked.begin(), blocked.end(), uint8_t(0));
+    inParts(rays.size(), stop,
+            [&](size_t at, size_t n) { world_->accel_->occluded(rays.subspan(at, n), blocked.subspan(at, n)); });
     if (!world_->unmade_) return;
     for (size_t i = 0; i < rays.size(); ++i) {
         if (blocked[i] || !world_->unmade_->meets(rays[i], INFINITY)) continue;

@@ -28,7 +28,8 @@ protected:
         ASSERT_TRUE(server) << fault;
         server->start([this](const HttpRequest& r, bool last, bool* known) -> std::optional<HttpResponse> {
             ++asked;
-            *known = r.path == "/known" || r.path == "/wait";
+            *known = r.path == "/known" || r.path == "/wait" || r.path == "/huge";
+            if (r.path == "/huge") return HttpResponse{200, "text/plain", std::string(size_t(64) << 20, '.')};
             if (r.path == "/large") throw std::bad_alloc();
             if (r.path == "/wait" && !ready && !last) return {};
             std::string text = r.method + " " + r.path + " [" + r.body + "]";
@@ -54,6 +55,34 @@ TEST_F(Http, AnswersWhatItIsAsked) {
     EXPECT_EQ(bodyOf(ask(get(server->port(), "/a/b?x=1&y=%2Fc+d&z"))), "GET /a/b [] x=1 y=/c d z=");
     EXPECT_EQ(bodyOf(ask(post(server->port(), "/p", "hello"))), "POST /p [hello]");
     EXPECT_EQ(statusOf(ask(get(server->port(), "/none"))), 404);
+}
+
+TEST_F(Http, ViewersThatTakeNothingAreDropped) {
+    HttpLimits l;
+    l.connections = 1;
+    l.stallSeconds = .5;
+    begin(l);
+    Socket sleeper(server->port());
+    sleeper.send(get(server->port(), "/huge"));
+    for (int i = 0; i < 1000 && asked == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(statusOf(ask(get(server->port(), "/known"))), 503); // all places are taken
+    int status = 0;
+    for (int i = 0; i < 200 && status != 200; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        status = statusOf(ask(get(server->port(), "/known")));
+    }
+    EXPECT_EQ(status, 200);
+}
+
+TEST_F(Http, RefusesTwoHostsOrOrigins) {
+    begin();
+    const std::string host = "Host: 127.0.0.1:" + std::to_string(server->port()) + "\r\n";
+    for (const std::string& more :
+         {host, std::string("Host: evil\r\n"), std::string("Origin: http://a\r\nOrigin: http://b\r\n")}) {
+        EXPECT_EQ(statusOf(ask(get(server->port(), "/known", more))), 400) << more;
+        EXPECT_EQ(asked, 0);
+    }
+    EXPECT_EQ(statusOf(ask(get(server->port(), "/known", "Origin: http://a\r\n"))), 200);
 }
 
 TEST_F(Http, AnswersThatDoNotFitAreSaid) {

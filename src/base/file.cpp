@@ -1,5 +1,6 @@
 #include "base/file.h"
 #include "base/digest.h"
+#include "base/folder.h"
 #include "base/limits.h"
 #include <algorithm>
 #include <cctype>
@@ -118,18 +119,16 @@ std::string machineName() {
 /// ago.
 void removeAbandoned(const fs::path& dir) {
     constexpr auto kOld = std::chrono::hours(24);
-    std::error_code e;
     const std::string mine = kTemporary + machineName() + "-";
-    int left = limits::kFolderEntries;
-    for (fs::directory_iterator i(dir.empty() ? fs::path(".") : dir, e), end; !e && i != end && left-- > 0; i.increment(e)) {
-        const std::string name = i->path().filename().string();
+    for (const std::string& name : namesIn(dir.string(), limits::kFolderEntries)) {
         if (!name.starts_with(kTemporary) || !name.ends_with(".tmp")) continue;
         std::error_code unknown;
-        if (fs::symlink_status(i->path(), unknown).type() != fs::file_type::regular || unknown) continue;
+        const fs::path path = dir / name;
+        if (fs::symlink_status(path, unknown).type() != fs::file_type::regular || unknown) continue;
         const long process = name.starts_with(mine) ? std::strtol(name.c_str() + mine.size(), nullptr, 10) : 0;
         const bool gone = process > 0 && ::kill(pid_t(process), 0) != 0 && errno == ESRCH;
-        const auto written = fs::last_write_time(i->path(), unknown);
-        if (gone || (!unknown && fs::file_time_type::clock::now() - written > kOld)) fs::remove(i->path(), unknown);
+        const auto written = fs::last_write_time(path, unknown);
+        if (gone || (!unknown && fs::file_time_type::clock::now() - written > kOld)) fs::remove(path, unknown);
     }
 }
 
@@ -142,13 +141,10 @@ std::string lower(std::string s) {
 
 /// The entry of a directory whose name equals `name` but for case; of several the first in byte order.
 std::optional<std::string> entryIgnoringCase(const fs::path& dir, const std::string& name) {
-    std::error_code e;
     std::optional<std::string> best;
     std::string want = lower(name);
-    for (fs::directory_iterator i(dir.empty() ? fs::path(".") : dir, e), end; !e && i != end; i.increment(e)) {
-        std::string n = i->path().filename().string();
+    for (const std::string& n : namesIn(dir.string()))
         if (n.size() == want.size() && lower(n) == want && (!best || n < *best)) best = n;
-    }
     return best;
 }
 
@@ -447,38 +443,6 @@ std::vector<std::string> splitSearchPath(const std::string& path, const std::vec
     }
     flush();
     return out;
-}
-
-bool liesBelow(const std::string& path, const std::vector<std::string>& folders) {
-    std::error_code e;
-    const auto plain = [&](const std::string& p) { return fs::absolute(p.empty() ? "." : p, e).lexically_normal(); };
-    const fs::path file = plain(path);
-    for (const std::string& folder : folders) {
-        const fs::path root = plain(folder);
-        const auto m = std::mismatch(root.begin(), root.end(), file.begin(), file.end());
-        if (m.first == root.end() || m.first->empty()) return true; // a trailing slash leaves an empty component
-    }
-    return false;
-}
-
-ReadPolicy readPolicyOf(const std::string& sceneFolder, bool anywhere) {
-    ReadPolicy policy{anywhere, {sceneFolder, "."}};
-    std::error_code e;
-    fs::path folder = fs::absolute(sceneFolder.empty() ? "." : sceneFolder, e).lexically_normal();
-    if (!folder.has_filename()) folder = folder.parent_path();
-    if (const fs::path holder = folder.parent_path(); !e && holder != holder.root_path())
-        policy.folders.push_back(holder.string());
-    return policy;
-}
-
-Diagnostic outsideMessage(const std::string& what, const std::string& name, const std::string& path, const SourcePlace& place) {
-    Diagnostic d;
-    d.code = Rie::NoFile;
-    d.place = place;
-    d.message = what + " \"" + name + "\" is not read: it lies outside the folders that a scene may read";
-    d.hint =
-        "--searchpath " + fs::path(path).parent_path().lexically_normal().string() + " adds its folder, --allow-read permits any";
-    return d;
 }
 
 std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories) {

@@ -91,14 +91,14 @@ struct FoundFile {
 /// as slashes. Then again without regard to case, then the base name alone (absolute paths of other machines).
 std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories);
 
-/// Where names that a scene or a shader gives may lead. Links are followed: they are the user's.
+/// Where names that a scene or a shader gives may lead, once links are followed: a link may have come with the scene.
 struct ReadPolicy {
     bool anywhere = true;               ///< --allow-read; or the user gave the name
     std::vector<std::string> folders{}; ///< what is below them may be read, beside what is below the folders that are searched
 };
 /// The policy of a scene in this folder: below it, and below the folder that holds it ("../textures" is how old projects lie).
 ReadPolicy readPolicyOf(const std::string& sceneFolder, bool anywhere);
-/// Whether a path names something below one of the folders, by its letters.
+/// Whether a path leads to something below one of the folders, once the links in both are followed.
 bool liesBelow(const std::string& path, const std::vector<std::string>& folders);
 /// As above, but what lies elsewhere counts as missing; *outside is then its path, else "".
 std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories, const ReadPolicy&,

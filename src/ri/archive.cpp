@@ -1,6 +1,8 @@
 // ReadArchive and inline archives (ri.md 10.2).
 #include "base/file.h"
+#include "base/folder.h"
 #include "base/limits.h"
+#include "base/realpath.h"
 #include "ri/interpreter.h"
 #include "ri/parser.h"
 #include <algorithm>
@@ -82,12 +84,9 @@ std::string findFile(const std::string& name, const std::vector<std::string>& fo
     *fallback = "with other upper and lower case";
     for (const std::string& f : folders) {
         std::string best; // the first in order of name: folders list their files in any order
-        std::error_code ec;
-        for (fs::directory_iterator i(f, ec), e; !ec && i != e; i.increment(ec)) {
-            std::string n = i->path().filename().string();
-            if (sameButCase(n, base) && regular(i->path()) && may(i->path().string()) &&
-                (best.empty() || i->path().string() < best))
-                best = i->path().string();
+        for (const std::string& n : namesIn(f)) {
+            const std::string path = (fs::path(f) / n).string();
+            if (sameButCase(n, base) && regular(path) && may(path) && (best.empty() || path < best)) best = path;
         }
         if (!best.empty()) return best;
     }
@@ -119,6 +118,19 @@ bool Interpreter::mayReplay(const Call& call) {
     return false;
 }
 
+std::string Interpreter::depthMap(const std::string& name, const SourcePlace& place) {
+    std::vector<std::string> folders{""};
+    if (!sceneFolder_.empty()) folders.push_back(sceneFolder_);
+    folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
+    std::string outside;
+    const auto found = alpenglow::findFile(name, folders, readPolicyOf(sceneFolder_, settings.allowRead), &outside);
+    if (settings.reads && found) settings.reads->add(found->path);
+    if (found || outside.empty()) return found ? found->path : name;
+    const Diagnostic d = outsideMessage("depth map", name, outside, place);
+    reporter.error(d.code, d.place, d.message, d.hint);
+    return {};
+}
+
 std::string Interpreter::locate(const char* what, const std::string& name, const SourcePlace& place,
                                 bool (*named)(const std::string&)) {
     std::vector<std::string> folders;
@@ -140,7 +152,7 @@ std::string Interpreter::locate(const char* what, const std::string& name, const
     const ReadPolicy policy = readPolicyOf(sceneFolder_, settings.allowRead);
     const std::string file = findFile(name, folders, &fallback, [&](const std::string& path) {
         if (policy.anywhere || liesBelow(path, own)) return true;
-        if (named(path) && (liesBelow(path, folders) || liesBelow(path, policy.folders))) return true;
+        if (named(followedPath(path)) && (liesBelow(path, folders) || liesBelow(path, policy.folders))) return true;
         if (outside.empty()) outside = path;
         return false;
     });

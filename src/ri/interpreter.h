@@ -107,6 +107,9 @@ public:
     /// The polygons of a file as primitives of this place, with these constants beside the file's own variables.
     void drawModel(const std::string& name, const Call& call, const scene::ParamList& constants);
     void volume(const Call& call);
+    /// Where the depth map of a repelling plane lies; the name itself when it is not there, "" when it may not be read
+    /// (reported).
+    std::string depthMap(const std::string& name, const SourcePlace& place);
     void readArchive(const std::string& name, const SourcePlace& place);
     /// "DelayedReadArchive", "RunProgram" or "DynamicLoad". bound: six numbers, or none.
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,

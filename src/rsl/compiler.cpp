@@ -192,24 +192,22 @@ ShaderPtr ShaderCompiler::find(const std::string& name, const std::vector<std::s
     ShaderPtr result;
     const std::string stem = fs::path(name).filename().replace_extension().string();
     auto at = [&](const std::string& n) { return findFile(n, directories); };
+    constexpr const char* kCompiled[] = {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"};
     std::optional<FoundFile> found;
     if (name.size() > 3 && name.ends_with(".sl")) found = at(name);
     if (!found) found = at(name + ".sl");
-    for (const char* e : {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"})
+    for (const char* e : kCompiled)
         if (!found && name.ends_with(e)) found = at(name.substr(0, name.size() - std::strlen(e)) + ".sl");
     const auto ofOther = [&](const char* e) { return name.ends_with(e) || at(name + e); };
-    constexpr const char* kCompiled[] = {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"};
     if (!found && std::none_of(std::begin(kCompiled), std::end(kCompiled), ofOther))
         if (auto shared = fileWithShader(stem, directories)) found = FoundFile{*shared};
     const auto& reads = state_->settings.reads;
     if (reads) found ? reads->add(found->path) : reads->addMissing(stem + ".sl", directories);
+    if (found && leadsToNoSource(found->path, diagnostics)) return nullptr;
     if (found) {
         FrontOptions options = state_->front();
-        if (reads)
-            options.openText = [reads](const std::string& path) {
-                reads->add(path); // also where it would have been found
-                return std::nullopt;
-            };
+        const auto seen = [reads](const std::string& path) { return reads->add(path), std::nullopt; }; // also where there is none
+        if (reads) options.openText = seen;
         options.includePaths.push_back(fs::path(found->path).parent_path().string());
         for (const auto& d : directories) options.includePaths.push_back(d);
         auto program = compileFile(found->path, options, diagnostics);
@@ -217,7 +215,7 @@ ShaderPtr ShaderCompiler::find(const std::string& name, const std::vector<std::s
         result = finish(std::move(program), found->path, stem, {});
     } else {
         std::string compiled;
-        for (const char* e : {".slo", ".sdl", ".sdr", ".slx", ".slc", ".sdw"}) {
+        for (const char* e : kCompiled) {
             if (name.ends_with(e)) compiled = name;
             else if (auto f = at(name + e)) compiled = f->path;
         }

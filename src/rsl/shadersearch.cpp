@@ -1,6 +1,8 @@
 #include "rsl/shadersearch.h"
 #include "base/file.h"
+#include "base/folder.h"
 #include "base/limits.h"
+#include "base/realpath.h"
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -47,7 +49,22 @@ private:
 constexpr std::array<std::string_view, 7> kKinds{"surface", "displacement",   "light", "volume",
                                                  "imager",  "transformation", "class"};
 bool isKind(std::string_view word) { return std::find(kKinds.begin(), kKinds.end(), word) != kKinds.end(); }
+
+bool namedAsSource(const std::string& path) {
+    const std::string e = fs::path(path).extension().string();
+    return e == ".sl" || e == ".SL" || e == ".Sl" || e == ".sL";
+}
 } // namespace
+
+bool leadsToNoSource(const std::string& path, Diagnostics& d) {
+    const std::string real = followedPath(path);
+    if (namedAsSource(real)) return false;
+    d.report(Severity::Error, Rie::NoShader, {},
+             "shader \"" + path + "\" is not read: it leads by a link to \"" + real +
+                 "\", which is not named as a shader's source",
+             "the name of the target must end in .sl");
+    return true;
+}
 
 bool declaresShader(const std::string& text, const std::string& name) {
     Words words(text);
@@ -78,15 +95,14 @@ std::optional<std::string> fileWithShader(const std::string& name, const std::ve
     int left = limits::kShaderFilesLooked;
     for (const std::string& directory : directories) {
         std::vector<std::string> files;
-        std::error_code ignored;
-        for (fs::directory_iterator i(directory.empty() ? "." : directory, ignored), end; !ignored && i != end;
-             i.increment(ignored)) {
-            if (i->path().extension() == ".sl") files.push_back(i->path().string());
-        }
+        for (const std::string& f : namesIn(directory))
+            if (const fs::path path = fs::path(directory.empty() ? "." : directory) / f; namedAsSource(path.string()))
+                files.push_back(path.string());
         std::sort(files.begin(), files.end());
         for (const std::string& f : files) {
             if (left-- <= 0) return {};
             Diagnostics quiet; // a file that cannot be read holds no shader for us
+            if (!namedAsSource(followedPath(f))) continue;
             const auto bytes = readWholeFile(f, limits::kShaderFileLooked, quiet);
             if (bytes && declaresShader({bytes->begin(), bytes->end()}, name)) return f;
         }

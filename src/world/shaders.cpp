@@ -1,4 +1,5 @@
 // Shader calls of the scene made into programs with values, and those into kernels.
+#include "base/folder.h"
 #include "base/limits.h"
 #include "rsl/front/visit.h"
 #include "rsl/ir/build.h"
@@ -21,10 +22,10 @@ double compileClock() { return std::chrono::duration<double>(std::chrono::steady
 // "did you mean ..." among the shader sources on the search path; or empty.
 std::string nearShader(const std::string& name, const std::vector<std::string>& directories) {
     std::vector<std::string> names;
-    std::error_code e;
     for (const auto& directory : directories)
-        for (const auto& f : std::filesystem::directory_iterator(directory.empty() ? "." : directory, e))
-            if (f.path().extension() == ".sl" && names.size() < 10000) names.push_back(f.path().stem().string());
+        for (const std::string& file : namesIn(directory, limits::kFolderEntries))
+            if (const std::filesystem::path f = file; f.extension() == ".sl" && f.stem() != name && names.size() < 10000)
+                names.push_back(f.stem().string());
     std::string near = nearestName(name, names);
     return near.empty() ? "" : "did you mean \"" + near + "\"?";
 }

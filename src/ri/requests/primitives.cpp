@@ -112,6 +112,7 @@ void blobby(Interpreter& in, const Call& c) {
     p.ints2 = c.ints(1);
     p.numbers = c.reals(2);
     if (c.given(3)) p.strings = c.strings(3);
+    for (std::string& s : p.strings) s = in.depthMap(s, c.place);
     in.emit(std::move(p), c);
 }
 

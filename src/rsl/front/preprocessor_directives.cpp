@@ -1,5 +1,8 @@
 // The lines that begin with #.
+#include "base/file.h"
+#include "base/folder.h"
 #include "base/limits.h"
+#include "base/realpath.h"
 #include "rsl/front/preprocessor_machine.h"
 #include <algorithm>
 #include <cctype>
@@ -209,7 +212,7 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     if (!refused_.empty()) {
         sources_.error(place,
                        "'" + refused_ + "' is not read: it lies outside the shader's folder, and its name is none of a header",
-                       "headers end in .h, .sl or .inc");
+                       "headers end in .h, .sl or .inc; of a link the name of its target counts");
         refused_.clear();
         return;
     }
@@ -229,9 +232,11 @@ bool Preprocessor::includeFrom(const std::vector<std::string>& folders, const st
     const bool climbs = fs::path(wanted).is_absolute() || wanted.find("..") != wanted.npos;
     for (const auto& folder : folders) {
         const std::string path = (fs::path(folder) / wanted).string();
-        if ((climbs || &folder != &folders.front()) && !namedAsHeader(path)) {
-            std::error_code e;
-            if (fs::is_regular_file(path, e)) refused_ = path;
+        std::error_code e;
+        const bool there = fs::is_regular_file(path, e);
+        const bool elsewhere = climbs || &folder != &folders.front() || (there && !liesBelow(path, {folder}));
+        if (elsewhere && !namedAsHeader(there ? followedPath(path) : path)) {
+            if (there) refused_ = path;
             continue;
         }
         std::optional<std::string> text = options_.openText ? options_.openText(path) : std::nullopt;
@@ -254,15 +259,10 @@ bool Preprocessor::includeAnyCase(const std::vector<std::string>& folders, const
     const fs::path path(wanted);
     const std::string name = lower(path.filename().string());
     for (const auto& folder : folders) {
-        std::error_code failed;
         std::string found;
-        int entries = 0;
         const fs::path in = fs::path(folder.empty() ? "." : folder) / path.parent_path();
-        for (fs::directory_iterator it(in, failed), end; !failed && it != end && ++entries <= limits::kFolderEntries;
-             it.increment(failed)) {
-            const std::string own = it->path().filename().string();
+        for (const std::string& own : namesIn(in.string(), limits::kFolderEntries))
             if (lower(own) == name && (found.empty() || own < found)) found = own;
-        }
         if (!found.empty() && includeFrom({folder}, (path.parent_path() / found).string())) return true;
     }
     return false;

@@ -1,4 +1,5 @@
 #include "rsl/jit/cache.h"
+#include "base/folder.h"
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -99,6 +100,7 @@ void KernelCache::store(const std::string& key, const KernelFile& k) const {
 }
 
 void KernelCache::trim() const {
+    if (directory_.empty()) return; // it would be the working directory
     struct Entry {
         fs::path path;
         fs::file_time_type time;
@@ -107,15 +109,16 @@ void KernelCache::trim() const {
     std::vector<Entry> entries;
     uintmax_t total = 0;
     std::error_code e;
-    for (fs::directory_iterator it(directory_, e), end; !e && it != end; it.increment(e)) {
+    for (const std::string& name : namesIn(directory_)) {
         std::error_code f;
-        if (it->path().extension() == ".tmp") { // of a program that was killed while it wrote
-            const auto written = it->last_write_time(f);
-            if (!f && written < fs::file_time_type::clock::now() - kTemporaryAge) fs::remove(it->path(), f);
+        const fs::path file = fs::path(directory_) / name;
+        if (file.extension() == ".tmp") { // of a program that was killed while it wrote
+            const auto written = fs::last_write_time(file, f);
+            if (!f && written < fs::file_time_type::clock::now() - kTemporaryAge) fs::remove(file, f);
             continue;
         }
-        if (it->path().extension() != ".kernel") continue;
-        Entry x{it->path(), it->last_write_time(f), it->file_size(f)};
+        if (file.extension() != ".kernel") continue;
+        Entry x{file, fs::last_write_time(file, f), fs::file_size(file, f)};
         if (f) continue;
         total += x.size;
         entries.push_back(std::move(x));

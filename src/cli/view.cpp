@@ -90,6 +90,7 @@ int runView(const ViewArguments& a) {
     o.watch = a.watch;
     if (a.framed) o.frame = a.frame;
     o.reader.searchPaths = folders(a.searchPaths);
+    o.reader.regularFiles = true;
     o.reader.allowExec = a.settings.allowExec;
     o.reader.allowRead = a.settings.allowRead;
     o.read = [&a](ri::RibReader& reader) {

@@ -20,7 +20,7 @@ bool RibReader::readFile(const std::string& path) {
     if (path == "-") return in_->read(standardInput(), "standard input");
     if (const auto& reads = in_->interpreter.settings.reads) reads->add(path);
     std::string why;
-    auto source = fileSource(path, &why);
+    auto source = fileSource(path, &why, in_->interpreter.settings.regularFiles);
     if (!source) {
         in_->interpreter.reporter.error(Rie::NoFile, {path, 0, 0}, "the file cannot be read: " + why);
         return false;

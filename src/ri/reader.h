@@ -21,6 +21,7 @@ struct ReaderOptions {
     double programSeconds = limits::kProgramSeconds; ///< that a program may take for one answer
     const StopFlag* stop = nullptr;                  ///< set: the rest is not read; may be null
     bool allowRead = true;               ///< archives may lie anywhere; false: below the folders that archive.cpp names
+    bool regularFiles = false;           ///< readFile() refuses pipes and devices: the scene is read more than once
     size_t mostLights = limits::kLights; ///< of one frame; further ones are reported
     /// Procedurals that nothing need meet (ri/unmade.cpp says which) stand in their frame as primitives of the kind
     /// scene::kUnmade, until RibReader::make() is asked for what is in them. False: all are expanded where they stand.

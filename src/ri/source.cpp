@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 #include <zlib.h>
@@ -153,15 +154,21 @@ private:
 std::unique_ptr<ByteSource> memorySource(std::string_view text) { return std::make_unique<Memory>(text); }
 std::unique_ptr<ByteSource> streamSource(std::istream& in) { return std::make_unique<Stream>(in); }
 
-std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why) {
+std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular) {
     std::error_code ec;
     if (std::filesystem::is_directory(path, ec)) {
         if (why) *why = "it is a directory";
         return nullptr;
     }
-    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular ? O_NONBLOCK : 0));
     if (fd < 0) {
         if (why) *why = std::strerror(errno);
+        return nullptr;
+    }
+    struct stat st{};
+    if (regular && (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode))) {
+        if (why) *why = "it is not a regular file";
+        ::close(fd);
         return nullptr;
     }
     return std::make_unique<File>(fd, true);

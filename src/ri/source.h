@@ -29,8 +29,9 @@ protected:
 std::unique_ptr<ByteSource> memorySource(std::string_view text);
 /// The stream must outlive the source.
 std::unique_ptr<ByteSource> streamSource(std::istream& in);
-/// Null when the file cannot be opened or is a directory; *why says which.
-std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why);
+/// Null when the file cannot be opened or is a directory; *why says which. regular: nor anything else but a regular file, at
+/// once; opening a pipe waits for its writer.
+std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular = false);
 /// Descriptor 0, unbuffered.
 std::unique_ptr<ByteSource> standardInput();
 /// Inflates when the stream starts with 1f 8b (concatenated members too), else passes it through.

@@ -3,6 +3,7 @@
 #include "client.h"
 #include <csignal>
 #include <fcntl.h>
+#include <sys/stat.h>
 
 namespace program_test {
 
@@ -76,6 +77,14 @@ TEST_F(ViewProgram, ServesItsPageToWhoKnowsTheToken) {
         EXPECT_NE(bodyOf(a).find("token"), a.npos);
         EXPECT_EQ(a.find(token), a.npos); // nobody is told it
     }
+}
+
+TEST_F(ViewProgram, DoesNotWaitForAPipe) {
+    ASSERT_EQ(mkfifo((dir / "pipe.rib").c_str(), 0600), 0);
+    const std::string said =
+        run("view -q pipe.rib", "2>&1 & p=$!; (sleep 20; kill -9 $p) >/dev/null 2>&1 & k=$!; wait $p; s=$?; kill $k; exit $s");
+    EXPECT_EQ(status, 3) << said;
+    EXPECT_NE(said.find("not a regular file"), said.npos) << said;
 }
 
 TEST_F(ViewProgram, OpensTheDesktopsBrowser) {

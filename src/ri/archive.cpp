@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr size_t kUnkeptReading = 100; // requests that count as executed when an archive that is not kept is read again
+
 bool regular(const fs::path& p) {
     std::error_code ec;
     return fs::is_regular_file(p, ec); // no devices or pipes: an archive ends
@@ -174,6 +176,19 @@ std::string Interpreter::locate(const char* what, const std::string& name, const
     return file;
 }
 
+std::optional<ArchiveShelf::Found> Interpreter::locateArchive(const std::string& name, const SourcePlace& place) {
+    const auto searched = options.values.find("searchpath:archive");
+    const bool path = searched != options.values.end() && !searched->second.strings.empty();
+    const std::string question = name + '\0' + fs::path(place.file).parent_path().string() + '\0' + sceneFolder_ + '\0' +
+                                 (path ? searched->second.strings[0] : "");
+    if (const ArchiveShelf::Found* known = shelf_.found(question)) return *known;
+    const std::string file = locate("archive", name, place, namedAsRib);
+    if (file.empty()) return {};
+    ArchiveShelf::Found found{file, followedPath(file)};
+    shelf_.note(question, found);
+    return found;
+}
+
 void Interpreter::readArchive(const std::string& name, const SourcePlace& place) {
     if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
         reporter.error(Rie::Limit, place, fmt::format("archives are nested deeper than {}", limits::kArchiveDepth));
@@ -185,35 +200,35 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         return;
     }
     std::shared_ptr<std::vector<Call>> calls;
-    std::unique_ptr<ByteSource> source;
-    std::unique_ptr<ParsedArchive> parsed;
-    std::string key, file, why;
+    std::shared_ptr<const ParsedArchive> parsed;
+    std::string key, file;
     if (auto i = inlineArchives_.find(name); i != inlineArchives_.end()) {
         calls = i->second;
         key = "inline:" + name;
         file = place.file;
     } else {
-        file = locate("archive", name, place, namedAsRib);
-        if (file.empty()) return;
-        source = fileSource(file, &why);
-        if (!source) {
-            reporter.error(Rie::NoFile, place, fmt::format("archive \"{}\" cannot be read: {}", file, why));
-            return;
-        }
-        std::error_code ec;
-        key = fs::weakly_canonical(file, ec).string();
-        if (ec || key.empty()) key = file;
+        const auto found = locateArchive(name, place);
+        if (!found) return;
+        file = found->file;
+        key = found->key;
     }
     if (std::find(openArchives_.begin(), openArchives_.end(), key) != openArchives_.end()) {
         reporter.error(Rie::Nesting, place, fmt::format("archive \"{}\" reads itself", name));
         return;
     }
-    if (source && openArchives_.empty() && !settings.comments && !making_) {
+    if (!calls && openArchives_.empty() && !settings.comments && !making_) {
         if (!unscanned_.empty()) ahead_.scan(std::exchange(unscanned_, {}));
         parsed = ahead_.take(name, file);
     }
-    if (parsed) executeParsed(*parsed, key, file);
-    else readOpened(key, file, calls, std::move(source), place);
+    if (!calls && !parsed && !settings.comments && archivesRead_.count(key)) {
+        parsed = shelf_.take(file);
+        if (!parsed) replayedCalls_ += kUnkeptReading;
+    }
+    if (parsed) return executeParsed(*parsed, key, file);
+    std::string why;
+    auto source = calls ? nullptr : fileSource(file, &why, true);
+    if (calls || source) return readOpened(key, file, calls, std::move(source), place);
+    reporter.error(Rie::NoFile, place, fmt::format("archive \"{}\" cannot be read: {}", file, why));
 }
 
 void Interpreter::executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file) {

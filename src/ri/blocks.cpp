@@ -200,6 +200,7 @@ void Interpreter::worldBegin(const Call& call) {
 void Interpreter::worldEnd(Block& b) {
     nameWaiting(0);
     if (!waiting_.empty()) ahead_.forget();
+    shelf_.forgetPlaces();
     std::shared_ptr<scene::Frame> frame = std::move(frame_);
     frame_.reset();
     frame->options = std::move(options);

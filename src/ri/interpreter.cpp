@@ -29,6 +29,7 @@ void Interpreter::nextScene() {
     archiveReads_ = 0;
     objectCopies_ = replayedCalls_ = 0;
     archivesRead_.clear();
+    shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
 }
 
@@ -67,6 +68,7 @@ void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string&
     size_t slash = name.find_last_of('/');
     sceneFolder_ = slash == std::string::npos ? "" : name.substr(0, slash);
     ahead_ = ReadAhead();
+    shelf_.forgetPlaces();
     unscanned_ = name;
     {
         auto outer = reporter.lineText;

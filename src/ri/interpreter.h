@@ -10,6 +10,7 @@
 #include "ri/reader.h"
 #include "ri/reporter.h"
 #include "ri/requests/request.h"
+#include "ri/shelf.h"
 #include "ri/source.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
@@ -225,6 +226,8 @@ private:
     void runLibrary(const std::string& name, const std::string& data, const std::vector<float>& bound, const Call& call);
     Program* programOf(const std::string& command, const SourcePlace& place);
     void runProgram(const std::string& command, const std::string& data, const std::vector<float>& bound, const Call& call);
+    /// What locate() gives for an archive, from the shelf if that knows; nothing: reported.
+    std::optional<ArchiveShelf::Found> locateArchive(const std::string& name, const SourcePlace& place);
     /// Path of a file along the search paths of archives; "" when there is none or it may not be read: reported. named: whether a
     /// name says that it is of this kind, others are read from the scene's own folders only.
     std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
@@ -274,6 +277,7 @@ private:
     std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives_;
     std::string sceneFolder_; ///< of the stream that is read, or ""
     ReadAhead ahead_;         ///< of the archives that it names
+    ArchiveShelf shelf_;      ///< those that were read before
     std::string unscanned_;   ///< the stream, before it reads one
     std::vector<std::string> openArchives_;
     std::vector<size_t> barriers_; ///< block depth at each open archive's start

@@ -29,9 +29,11 @@ std::string nameAt(std::string_view text, size_t at) {
                                                              : std::string(text.substr(quote + 1, end - quote - 1));
 }
 
-std::unique_ptr<ParsedArchive> parse(const std::string& path) {
+} // namespace
+
+std::unique_ptr<ParsedArchive> parseArchive(const std::string& path) {
     std::string why;
-    auto source = fileSource(path, &why);
+    auto source = fileSource(path, &why, true);
     unsigned char magic[2] = {};
     std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(magic), 2);
     if (!source || (magic[0] == 0x1f && magic[1] == 0x8b)) return nullptr; // what is packed may be of any size
@@ -46,8 +48,6 @@ std::unique_ptr<ParsedArchive> parse(const std::string& path) {
     out->end = parser.here();
     return said.all().empty() ? std::move(out) : nullptr;
 }
-
-} // namespace
 
 void ReadAhead::scan(const std::string& sceneFile) {
     names_.clear();
@@ -90,7 +90,7 @@ void ReadAhead::parseFrom(size_t first, const std::string& folder) {
     if (which.size() < 2) return parsed_.clear(); // nothing is won
     parallelFor(size_t(0), which.size(), [&](size_t k) {
         Ahead& a = parsed_.find(which[k])->second;
-        a.archive = parse(a.path);
+        a.archive = parseArchive(a.path);
     });
 }
 

@@ -17,6 +17,9 @@ struct ParsedArchive {
     SourcePlace end;
 };
 
+/// The requests of a file. Null: packed, more than some thousand, or there is something to say about them.
+std::unique_ptr<ParsedArchive> parseArchive(const std::string& path);
+
 class ReadAhead {
 public:
     /// Notes the archives that a scene names, in order: those of ReadArchive and DelayedReadArchive in plain text. Forgets what

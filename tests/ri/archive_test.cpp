@@ -3,6 +3,7 @@
 #include "collect.h"
 #include "ri/interpreter.h"
 #include "scene/scene.h"
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -204,6 +205,61 @@ TEST_F(Archives, ParsedAheadAreTheSame) {
     const std::vector<Diagnostic> said = a->diagnostics.all(), alsoSaid = b->diagnostics.all();
     for (size_t i = 0; i < said.size(); ++i)
         if (said[i].place.file.find("main") == std::string::npos) EXPECT_EQ(toString(said[i]), toString(alsoSaid[i]));
+}
+
+TEST_F(Archives, AreParsedOnce) {
+    const std::string name = (dir / "part.rib").string();
+    write("part.rib", "Sphere 1 -1 1 360\n");
+    ArchiveShelf shelf;
+    const auto first = shelf.take(name);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->calls.size(), 1u);
+    EXPECT_EQ(shelf.take(name), first);
+    write("part.rib", "Sphere 1 -1 1 360 Sphere 2 -2 2 360\n"); // another file now
+    ASSERT_TRUE(shelf.take(name));
+    EXPECT_EQ(shelf.take(name)->calls.size(), 2u);
+    write("bad.rib", "Sphere 1 -1 1\n"); // each reading has its messages
+    EXPECT_FALSE(shelf.take((dir / "bad.rib").string()));
+    EXPECT_FALSE(shelf.take((dir / "none.rib").string()));
+    // Many files of the greatest size are not all kept.
+    const std::string large = "Sphere 3 -3 3 360\n" + std::string(ArchiveShelf::kArchive - 18, ' ');
+    size_t kept = 0, files = ArchiveShelf::kAll / ArchiveShelf::kArchive + 1;
+    for (size_t k = 0; k < files; ++k) {
+        write("large.rib" + std::to_string(k), large);
+        kept += shelf.take((dir / ("large.rib" + std::to_string(k))).string()) != nullptr;
+    }
+    EXPECT_EQ(kept, files - 2);
+    write("larger.rib", large + " ");
+    EXPECT_FALSE(ArchiveShelf().take((dir / "larger.rib").string()));
+}
+
+TEST_F(Archives, ThatReadTwoOthersTakeLittleTime) {
+    write("r0.rib", "");
+    constexpr int kDepth = 15;
+    for (int k = 1; k <= kDepth; ++k) {
+        const std::string one = "ReadArchive \"r" + std::to_string(k - 1) + ".rib\"\n";
+        write("r" + std::to_string(k) + ".rib", one + one);
+    }
+    write("r0.rib", "Attribute \"user\" \"float x\" [1]\n");
+    const auto begin = std::clock();
+    auto c = readHere("ReadArchive \"r" + std::to_string(kDepth) + ".rib\" WorldBegin Sphere 1 -1 1 360 WorldEnd");
+    EXPECT_EQ(c->messages(), "");
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    EXPECT_LT(double(std::clock() - begin) / CLOCKS_PER_SEC, 2.5); // 65,535 readings; it was 12 when each was parsed
+}
+
+TEST_F(Archives, ReadAgainDrawAndSayTheSame) {
+    write("part.rib", "Sphere 1 -1 1 360\nTranslate 1 0 0\n");
+    write("bad.rib", "Sphere 1 -1 1 360\nNoSuchRequest 1\n");
+    auto c = readHere("WorldBegin ReadArchive \"part.rib\" ReadArchive \"part.rib\" ReadArchive \"part.rib\" "
+                      "ReadArchive \"bad.rib\" ReadArchive \"bad.rib\" ReadArchive \"bad.rib\" WorldEnd");
+    ASSERT_EQ(c->frame().primitives.size(), 6u);
+    for (size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(c->primitive(k).toWorld.first().m[3][0], double(k));
+        EXPECT_EQ(c->primitive(k).place.file, (dir / "part.rib").string());
+        EXPECT_EQ(c->primitive(k).place.line, 1);
+    }
+    EXPECT_EQ(c->count(), 3u) << c->messages();
 }
 
 } // namespace archive_test

@@ -1,0 +1,43 @@
+// Archives that are read more than once: where they were found, and their requests, which need not be parsed again.
+#pragma once
+#include "ri/readahead.h"
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace alpenglow::ri {
+
+class ArchiveShelf {
+public:
+    static constexpr uint64_t kArchive = 1u << 20; ///< bytes of an archive that is kept, at most
+    static constexpr uint64_t kAll = 16u << 20;    ///< of all that are kept
+    struct Found {
+        std::string file, key; ///< as messages call it; without links, to tell it from others
+    };
+    /// What was found for a question, which is all that decides about it. Null: nothing yet, or it is no more.
+    const Found* found(const std::string& question) const;
+    void note(const std::string& question, Found answer) { found_.insert_or_assign(question, std::move(answer)); }
+
+    /// The requests of a file as it is now, parsed at most once. Null: it is to be read in the ordinary way, because it is too
+    /// large to keep, packed, or has something to say while it is parsed.
+    std::shared_ptr<const ParsedArchive> take(const std::string& file);
+
+    /// Files may have come where none were.
+    void forgetPlaces() { found_.clear(); }
+
+private:
+    struct Held {
+        uint64_t bytes = 0, inode = 0;
+        int64_t seconds = 0, nanoseconds = 0; ///< when it was last written
+        std::shared_ptr<const ParsedArchive> archive;
+        bool operator==(const Held& o) const {
+            return bytes == o.bytes && inode == o.inode && seconds == o.seconds && nanoseconds == o.nanoseconds;
+        }
+    };
+    std::map<std::string, Found> found_;
+    std::map<std::string, Held> held_;
+    uint64_t heldBytes_ = 0;
+};
+
+} // namespace alpenglow::ri

@@ -94,14 +94,15 @@ struct FreeFlight {
 /// What few rays carry. Where a ray has none, it is as here.
 struct RayExtra {
     Fade fade;
-    float way = 0;  ///< of what fades: how far the ray has come before, behind surfaces
-    float kept = 1; ///< and what its weight has of `whole`
-    Color whole{0};
+    float way = 0;        ///< of what fades: how far the ray has come before, behind surfaces
+    float kept = 1;       ///< and what its weight has of `whole`
+    Color whole{0};       ///< its weight without `kept` and `indirect`
     Color environment{0}; ///< of trace() with a map: the light where nothing is
     Color part{0};        ///< of a target with sums: the share of all rays that were asked for, of those and what goes on behind
     int32_t share = -1;   ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
     int32_t lit = -1;     ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
-    FreeFlight flown;     ///< on which it was scattered, where it begins
+    float indirect = 1; ///< factor of what surfaces send it, not of lights: of a lobe that would give back more than it receives
+    FreeFlight flown;   ///< on which it was scattered, where it begins
     bool operator==(const RayExtra&) const = default;
 };
 

@@ -3,6 +3,12 @@
 
 namespace alpenglow::transport {
 
+namespace {
+/// A lobe whose rays are to bring nothing of surfaces still brings the light of lights: it is followed with this part of its
+/// chance.
+constexpr float kLeastScale = 1 / 32.f;
+} // namespace
+
 void Gather::choose() {
     indirectScale_.assign(c_->points.size(), 1.f);
     passes_.assign(c_->points.size(), 1.f);
@@ -71,7 +77,7 @@ void Gather::choosePoint(size_t point) {
     double total = behind;
     for (int i : list)
         if (LobeVertex& l = e_.lobes[size_t(i)]; !l.ownsTarget) {
-            if (behind > 0 && l.lobeOfShader) l.chosen *= scale;
+            if (behind > 0 && l.lobeOfShader) l.chosen *= std::max(scale, kLeastScale);
             total += l.chosen;
         }
     for (int i : list) {

@@ -345,6 +345,7 @@ private:
     void shadeHits(size_t group, Sched&);
     void placePoints(HitQueue&, BatchContext&);
     void fade(PathRay&, float way);
+    void keepIndirect(BatchContext&);
     // flight.cpp: what happens on the way. Flights that are over leave the batch, or the list.
     void fly(BatchContext&, Sched&);
     void fly(std::vector<const Sched::Task*>& missed, Sched&);

@@ -161,6 +161,7 @@ void Engine::shadeHits(size_t group, Sched& sched) {
     fly(*c, sched);
     if (c->rays.empty()) return giveBack(std::move(c));
     shine(*c, sched);
+    keepIndirect(*c);
     if (world_->globalMaps_) takeGlobalMaps(*c, sched);
     if (c->rays.empty()) return giveBack(std::move(c));
     if (photonTrace_) tiltPhotons(*c);
@@ -223,6 +224,17 @@ void Engine::fade(PathRay& r, float way) {
     x.whole = r.weight;
     x.kept = x.fade.at(double(x.way) + way);
     r.weight *= x.kept;
+}
+
+/// From here on what a ray brings is of surfaces: the light of emitters is in its target.
+void Engine::keepIndirect(BatchContext& c) {
+    for (PathRay& r : c.rays) {
+        if (r.extra < 0) continue;
+        RayExtra& x = extras_[size_t(r.extra)];
+        if (x.indirect == 1) continue;
+        if (!x.fade.fades()) x.whole = r.weight;
+        r.weight *= x.indirect;
+    }
 }
 
 /// Light of the emitters among the points.

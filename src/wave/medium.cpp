@@ -50,7 +50,7 @@ std::optional<MediumFlights::Crossing> MediumFlights::cross(Engine& e, Flight& f
     f.left = left;
     if (!(maxComponent(h.scattering) > 0) || !(sum > 0) || !std::isfinite(sum) || !(f.length > 0)) return {};
     part = part / sum;
-    Crossing c{number, {}, before};
+    Crossing c{number, {}, before * e.extraOf(ray).indirect};
     c.way.origin = ray.origin;
     c.way.dir = ray.dir;
     c.way.length = f.length;

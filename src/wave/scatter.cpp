@@ -40,8 +40,7 @@ void Gather::pick(size_t point, float number) {
         const LobeVertex& l = e_.lobes[size_t(list[0])];
         if (!(l.chosen > 0) || !l.followed) return;
         const bool one = rules_.pickOne && !l.ownsTarget;
-        const float scale = (one ? 1 / l.chosen : 1) * (l.lobeOfShader && l.below < 0 ? indirectScale_[point] : 1) * l.indirect;
-        sent_.push_back({int(point), list[0], one ? 1 : l.samples, scale, true, Vec3(), {}});
+        sent_.push_back({int(point), list[0], one ? 1 : l.samples, one ? 1 / l.chosen : 1, true, Vec3(), {}});
         return;
     }
     float sum = 0;
@@ -59,8 +58,6 @@ void Gather::pick(size_t point, float number) {
             count = 1;
         }
         if (!l.followed) continue;
-        if (l.lobeOfShader && l.below < 0) scale *= indirectScale_[point];
-        scale *= l.indirect;
         sent_.push_back({int(point), i, count, scale, true, Vec3(), {}});
     }
     if (mayPass) c_->passes[point] = taken ? 0 : passes_[point];
@@ -169,8 +166,10 @@ void Gather::sendRay(const Sent& s, Sched& sched) {
     if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
     const float pdf = s.value.pdf;
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
-    const Color through = l.narrow && photon ? s.back : l.weight * (f * s.scale / float(s.count));
     RayExtra extra;
+    extra.indirect = (l.lobeOfShader && l.below < 0 ? indirectScale_[size_t(s.point)] : 1) * l.indirect;
+    const float scale = photon ? s.scale * std::exchange(extra.indirect, 1.f) : s.scale;
+    const Color through = l.narrow && photon ? s.back : l.weight * (f * scale / float(s.count));
     if (!photon && l.trace && l.trace->map) extra.environment = l.tint * e_.mapTowards(*l.trace, w, from.footprint.spread);
     if (TraceSums* of = !photon && l.trace && l.trace->sums ? e_.sumsOf(l.target) : nullptr)
         unshadowed(l, w, through, extra.environment, *of);

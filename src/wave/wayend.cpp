@@ -12,7 +12,7 @@ void Engine::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId t
     const Color t = transparency / chance;
     PathRay r = ray;
     const RayExtra& had = extraOf(ray);
-    r.weight = (had.fade.fades() ? had.whole : ray.weight) * t;
+    r.weight = (had.fade.fades() || had.indirect != 1 ? had.whole : ray.weight) * t;
     float chosen = 1;
     const Settings& set = world_->settings_;
     // What a camera ray shows behind a surface is always followed, so that opacity, depth and AOVs are exact.

@@ -167,6 +167,8 @@ KindDescription describeKind(rsl::ShaderCompiler& compiler, const rsl::CompiledS
     k.compiled = true;
     k.writes = kernel->facts.writes;
     for (const auto& lobe : kernel->facts.direct) k.direct.push_back(lobe.text());
+    for (const auto& site : kernel->sites)
+        k.indirectApart |= std::find(site.names.begin(), site.names.end(), rsl::kPairApart) != site.names.end();
     k.affine = kernel->facts.affine;
     k.suspends = kernel->facts.suspends;
     k.lightLoops = kernel->facts.lightLoops;
@@ -343,6 +345,7 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
         to["suspends"] = k.suspends;
         to["lightLoops"] = k.lightLoops;
         to["direct"] = k.direct;
+        to["indirectApart"] = k.indirectApart;
         if (k.kind == "light") to["ambient"] = k.ambient;
     };
     if (!d.kinds.empty()) facts(j, d.kinds[0]);
@@ -397,6 +400,8 @@ std::string descriptionText(const ShaderDescription& d) {
         if (k.suspends) t += head + "suspends: it waits for its rays as a coroutine\n";
         if (k.ambient) t += head + "light: ambient, without illuminate() and solar()\n";
         for (const std::string& direct : k.direct) t += head + "direct light only under path: " + direct + "\n";
+        if (k.indirectApart)
+            t += head + "under path diffuse() and loops bring the light of lights, indirectdiffuse() that of surfaces\n";
     }
     return t;
 }

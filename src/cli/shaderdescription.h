@@ -31,6 +31,7 @@ struct ParameterDescription {
 struct KindDescription {
     std::string kind; ///< "surface"
     std::vector<std::string> writes, direct;
+    bool indirectApart = false; ///< rsl::kPairApart
     bool compiled = false, affine = true, suspends = false, lightLoops = false, ambient = false;
     std::string whyNot;
 };

@@ -74,9 +74,12 @@ constexpr OptionDescription kAttributes[] = {
      "The label of a light in light path expressions, beside its handle (docs/lightpaths.md)."},
     {"light:nsamples", "", "1", "16", Used, "BMRT's name of light:samples."},
     {"light:samples", "int", "1", "16", Used, "Samples of an area light in an illuminance loop, 1 to 1024."},
-    {"light:samplingstrategy", "string", "\"illuminance\"", "\"trace\"", Used,
-     "Where an area light is seen: \"illuminance\" in light loops, \"trace\" in trace() with a distribution. Nothing is counted "
-     "twice."},
+    {"light:samplingstrategy", "string", "none", "\"trace\"", Used,
+     "Where an area light or a sky is seen: \"illuminance\" in light loops alone, \"trace\" in trace() alone. Unset: in both, so "
+     "that "
+     "a loop and a trace() with \"samplearealights\" over the same lobe count it twice. diffuse() and its like see all. "
+     "attribute() "
+     "gives \"illuminance\" when it is not set."},
     {"light:shadows", "", "\"off\"", "\"on\"", Used,
      "BMRT: \"on\": the light casts traced shadows under hidden and raytrace, too."},
     {"light:units", "string", "\"radiance\" under path, else by the shader", "\"samples\"", Used,

@@ -47,9 +47,12 @@ struct RayKind {
     RaySet set;
     int32_t label = 0;           ///< interned label of the trace() that sent it
     bool gathersPhotons = false; ///< of indirectdiffuse(): what it meets gives what its photon map says, where it has one
+    bool asksLights = false;     ///< its trace() samples area lights: it sees them under every hider
+    bool indirectOnly = false;   ///< of indirectdiffuse() beside direct light: what loops over lights find is counted there
     bool operator==(const RayKind& o) const {
-        return type == o.type && fromTrace == o.fromTrace && gathersPhotons == o.gathersPhotons && set.only == o.set.only &&
-               set.sides == o.set.sides && set.mode == o.set.mode && label == o.label;
+        return type == o.type && fromTrace == o.fromTrace && gathersPhotons == o.gathersPhotons && asksLights == o.asksLights &&
+               indirectOnly == o.indirectOnly && set.only == o.set.only && set.sides == o.set.sides && set.mode == o.set.mode &&
+               label == o.label;
     }
 };
 /// Of camera rays, and of rays that nothing is known of.

@@ -12,6 +12,9 @@ constexpr float kLeastScale = 1 / 32.f;
 void Gather::choose() {
     indirectScale_.assign(c_->points.size(), 1.f);
     passes_.assign(c_->points.size(), 1.f);
+    for (const int point : e_.apartAt_) // indirectdiffuse() brings what surfaces send
+        for (const int i : lobesOf(size_t(point)))
+            if (LobeVertex& l = e_.lobes[size_t(i)]; l.lobeOfShader && l.rays == &kDiffuseKind && !l.ownsTarget) l.indirect = 0;
     for (size_t point = 0; point < c_->points.size(); ++point)
         if (begin_[point] != begin_[point + 1]) choosePoint(point);
 }

@@ -204,6 +204,7 @@ public:
     /// ShapeSubsets::find() without a lock from the second time on; texts are interned. `from`: whose "tracesubset" holds.
     const uint8_t* shapesOf(int32_t subset, int32_t exclude, const scene::Attributes* from);
     std::map<std::tuple<int32_t, int32_t, const scene::Attributes*>, const uint8_t*> subsetsKnown_;
+    std::vector<int> apartAt_; ///< points of the batch that ask for indirect light beside direct light (rsl::kPairApart)
     Answers& answers() { return answers_; }
     // lightoutputs.cpp
     /// For the camera's points of a batch that is filled: runs for the outputs that light reaches.
@@ -234,6 +235,8 @@ public:
     void requestShadows(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, const Color& weight,
                         TargetId, bool owns, uint32_t occurrence);
     template <class Row> const RayKind* raysOfTrace(const SiteInfo&, const Row&, const ShadePoint&);
+    template <class Row>
+    void askOfTrace(const BatchContext&, const SiteInfo&, const ShadePoint&, const Row&, LobeVertex&, LobeParams&);
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
                  bool owns, uint32_t occurrence);
     void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,

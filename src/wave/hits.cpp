@@ -244,13 +244,13 @@ void Engine::shine(const BatchContext& c, Sched& sched) {
         const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
         const PathRay& r = c.rays[i];
         if (b.areaLight < 0 || (b.matte && r.camera())) continue;
-        if (!rules_.emissionCounts && r.lobePdf < 0) continue;
+        if (!rules_.emissionCounts && r.lobePdf < 0 && !r.kind->asksLights) continue;
         if (r.lobeBinding >=
             0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
             if (!world_->bindings_[size_t(r.lobeBinding)].lights.contains(b.areaLight)) continue;
         }
         const BoundLight& light = world_->lights_[size_t(b.areaLight)];
-        if (light.mean || (r.kind->fromTrace && light.strategy == LightStrategy::Illuminance)) continue;
+        if (light.mean || !light.seenBy(*r.kind)) continue;
         met.push_back({b.areaLight, c.targets[i], &c.points[i]});
         for (int part : light.parts)
             if (world_->lights_[size_t(part)].kind == LightKind::Area) met.push_back({part, c.targets[i], &c.points[i]});

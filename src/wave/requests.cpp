@@ -80,11 +80,44 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
 
 /// Which surfaces rays of a trace() meet.
 template <class Row> const RayKind* Engine::raysOfTrace(const SiteInfo& s, const Row& f, const ShadePoint& p) {
+    const bool lights = s.rowLights >= 0 && f(s.rowLights) != 0, indirectOnly = s.trace->apart;
     if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) // what most calls are, many times a sample
-        return kindOf({s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_->globalMaps_});
-    RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_->globalMaps_};
+        return kindOf(
+            {s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_->globalMaps_, lights, indirectOnly});
+    RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_->globalMaps_, lights, indirectOnly};
     kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
     return kindOf(kind);
+}
+
+/// What a trace() says of its lobe and its rays.
+template <class Row>
+void Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Row& f, LobeVertex& l,
+                        LobeParams& params) {
+    const auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
+    const auto vector = [&](int row, const Vec3& fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
+    params.axis = normalizeOr(vector(s.rows[1], Vec3()), p.surface.n);
+    params.wo = normalizeOr(vector(s.rowWo, params.wo), params.wo);
+    params.a = l.kind->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
+    l.trace = s.trace.get();
+    if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = normalizeOr(vector(s.rowHorizon, p.surface.n), p.surface.n);
+    l.rays = raysOfTrace(s, f, p);
+    l.lights = l.rays->asksLights;
+    l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);
+    if (s.trace->weight >= 0) l.importance = std::max(0.f, maxComponent(vector(s.trace->weight, Color(1))));
+    if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
+    // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
+    if (const Vec3 from = vector(s.rows[0], Vec3()), away = from - p.P;
+        !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
+        l.elsewhere = true;
+        l.from = from;
+    }
+    l.deltaLights = l.lobeOfShader = false;
+    l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
+    if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
+    if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)
+        l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
+    const float samples = s.trace->hemisphere ? number(s.rays->samples, 0) : std::max(1.f, number(s.rays->samples, 1));
+    l.samples = samplesOf(samples, p.shape, s, c);
 }
 
 void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
@@ -92,11 +125,10 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     const ShadePoint& p = c.points[point];
     const auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
-    auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
-    auto vector = [&](int row, Vec3 fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
     if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion)
         return requestShadows(c, s, point, f, weight, target, owns, occurrence);
     if (!s.lobe) return; // under path ambient light is what escaping diffuse rays see
+    if (s.kind == SiteKind::Trace && s.trace->apart && !owns) apartAt_.push_back(point);
     if (s.kind == SiteKind::Trace && s.trace->records.call) {
         if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
             settled_.push_back({target, weight * *light * (owns ? Color(1) : p.ray->weight), LightEvent::Sampled, p.ray,
@@ -128,6 +160,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     case SiteKind::Diffuse:
         params.axis = normalizeOr(v(0), p.surface.n);
         l.rays = &kDiffuseKind;
+        if (s.trace && s.trace->apart) l.indirect = 0; // indirectdiffuse() brings what surfaces send
         break;
     case SiteKind::Specular:
     case SiteKind::Phong:
@@ -138,29 +171,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.rays = &kSpecularKind;
         break;
     case SiteKind::Trace:
-        params.axis = normalizeOr(v(1), p.surface.n);
-        params.wo = normalizeOr(vector(s.rowWo, params.wo), params.wo);
-        params.a = s.lobe->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
-        l.trace = s.trace.get();
-        if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = normalizeOr(vector(s.rowHorizon, p.surface.n), p.surface.n);
-        l.rays = raysOfTrace(s, f, p);
-        l.lights = number(s.rowLights, 0) != 0;
-        l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);
-        if (s.trace->weight >= 0) l.importance = std::max(0.f, maxComponent(vector(s.trace->weight, Color(1))));
-        if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
-        // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
-        if (const Vec3 from = v(0), away = from - p.P;
-            !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
-            l.elsewhere = true;
-            l.from = from;
-        }
-        l.deltaLights = l.lobeOfShader = false;
-        l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
-        if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
-        if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)
-            l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
-        if (s.trace->hemisphere) l.samples = samplesOf(number(s.rays->samples, 0), p.shape, s, c);
-        else l.samples = samplesOf(std::max(1.f, number(s.rays->samples, 1)), p.shape, s, c);
+        askOfTrace(c, s, p, f, l, params);
         break;
     default:
         break;
@@ -183,6 +194,7 @@ void Engine::gather(BatchContext& c, Sched& sched) {
     std::unique_ptr<Gather> g = std::move(gather_); // taken, so that one inside of this has its own
     if (!g) g = std::make_unique<Gather>(*this);
     g->run(c, sched);
+    apartAt_.clear();
     gather_ = std::move(g);
     if (!below_.empty()) walk(c, sched);
 }

@@ -81,7 +81,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
         for (const Sched::Task* t : tasks) {
             const PathRay& r = t->payload;
             const bool ambient = l.kind == LightKind::Ambient;
-            if (ambient ? r.type() != RayType::Diffuse : r.kind->fromTrace && l.strategy == LightStrategy::Illuminance) continue;
+            if (ambient ? r.type() != RayType::Diffuse : !l.seenBy(*r.kind)) continue;
             // A lobe that samples lights: those that are off for its surface do not light it by chance either.
             if (r.lobeBinding >= 0 && !world_->bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
             if (bringsPhotons(r, number)) continue;

@@ -13,6 +13,11 @@ namespace alpenglow::transport {
 
 namespace {
 
+SourcePlace placeOf(const rsl::ir::Site& s, const rsl::CompiledKernel& k) {
+    const auto& files = k.files();
+    return {size_t(s.place.file) < files.size() ? files[size_t(s.place.file)] : "", s.place.line, s.place.column};
+}
+
 SiteKind kindOf(const std::string& op) {
     static const std::map<std::string, SiteKind> kinds = {{"ambient", SiteKind::Ambient},
                                                           {"diffuse", SiteKind::Diffuse},
@@ -90,8 +95,7 @@ RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& worl
 std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
                                            WorldImpl& world) {
     auto t = std::make_shared<TraceSite>();
-    const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
-                            s.place.column};
+    const SourcePlace place = placeOf(s, k);
     auto row = [&](const char* name) {
         auto f = i.named.find(name);
         return f == i.named.end() ? -1 : f->second;
@@ -137,6 +141,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
     t->hemisphere = i.text.count(rsl::kPairHemisphere) > 0;
     if (t->hemisphere) { // trace() itself has no such parameters: the compiler has said so
+        t->apart = i.text.count(rsl::kPairApart) > 0;
         t->fade = {row("falloff"), row("falloffmode")};
         t->records = recordSite(i, s, world);
     }
@@ -186,8 +191,7 @@ void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options
 std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
                                                      WorldImpl& world) {
     auto b = std::make_shared<SubsurfaceSite>();
-    const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
-                            s.place.column};
+    const SourcePlace place = placeOf(s, k);
     const auto row = [&](std::initializer_list<const char*> names) {
         for (const char* name : names)
             if (const auto f = i.named.find(name); f != i.named.end()) return f->second;
@@ -252,8 +256,7 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
         if (const auto known = texture::filterByName(f->second)) {
             t->options.filter = *known;
         } else {
-            const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
-                                    s.place.column};
+            const SourcePlace place = placeOf(s, k);
             world.diagnostics_->reportOnce("texturefilter:" + f->second, unknownFilter(f->second, s.op, place));
         }
     }
@@ -345,6 +348,18 @@ static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKe
     i.trace = traceSite(i, s, k, world);
 }
 
+/// The lobe of a lighting shadeop.
+static void bindLobe(SiteInfo& i) {
+    if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
+    if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
+    if (i.kind != SiteKind::Diffuse) return;
+    i.lobe = findLobe("diffuse");
+    if (!i.text.count(rsl::kPairApart)) return;
+    auto apart = std::make_shared<TraceSite>();
+    apart->apart = true;
+    i.trace = std::move(apart);
+}
+
 /// Where the arguments and results of a call lie.
 static void bindRows(SiteInfo& i, const rsl::ir::Site& s) {
     int row = 0;
@@ -418,9 +433,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (i.kind == SiteKind::Bake || i.kind == SiteKind::Bake3d || i.kind == SiteKind::Texture3d)
             i.cloud = cloudSite(i, *k, *world);
         if (i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere)) world->photons_->asksGlobal = true;
-        if (i.kind == SiteKind::Diffuse) i.lobe = findLobe("diffuse");
-        if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
-        if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
+        bindLobe(i);
         i.exponent = s.op == "specularstd" || world->rispecSpecular_ ? kRispecExponent : kSpecularExponent;
         auto rowOf = [&](const char* name) {
             auto f = i.named.find(name);

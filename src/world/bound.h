@@ -61,6 +61,10 @@ struct BoundLight {
     const scene::Light* source = nullptr;
     std::vector<int> parts; ///< lights of the further blocks of the same shader
     LightStrategy strategy = LightStrategy::Both;
+    /// Whether rays find it, as far as their call says.
+    bool seenBy(const shading::RayKind& k) const {
+        return k.indirectOnly ? strategy == LightStrategy::Trace : !k.fromTrace || strategy != LightStrategy::Illuminance;
+    }
     float intensityScale = 0; ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
     bool mean = false;        ///< Area: gives the mean of its Cl over its surface, with no other factor, and no ray finds it
     bool hazy = false;        ///< Area, path: some of its shapes lie in an atmosphere

@@ -8,7 +8,12 @@ namespace alpenglow::transport {
 namespace {
 
 /// What makes two sites ask for the same, wherever they are in the text. Arguments are compared by value when it runs.
-auto callOf(const rsl::ir::Site& s) { return std::tie(s.op, s.strings, s.names, s.pairStrings, s.argKinds); }
+auto callOf(const rsl::ir::Site& s) {
+    std::vector<std::pair<std::string_view, std::string_view>> pairs; // but what the compiler says of its kernel
+    for (size_t k = 0; k < s.names.size(); ++k)
+        if (s.names[k] != rsl::kPairApart) pairs.emplace_back(s.names[k], s.pairStrings[k]);
+    return std::tuple(s.op, s.strings, std::move(pairs), s.argKinds);
+}
 
 /// By site of `of`, the first site of `in` that is the same call; -1: none.
 std::vector<int> sameCalls(const BoundKernel& of, const BoundKernel& in) {

@@ -64,6 +64,7 @@ struct TraceSite {
     bool sums = false;             ///< it asks for transmission or for parts of the result
     bool onlyLights = false;       ///< for nothing but what area lights send
     bool hemisphere = false;       ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
+    bool apart = false;            ///< rsl::kPairApart: lights are not for it; of diffuse(): nothing but lights is
     FadeSite fade;
     RecordSite records;
 };
@@ -180,7 +181,7 @@ struct SiteInfo {
     const LobeKind* lobe = nullptr; ///< Trace: the distribution; the lobe of a lighting shadeop
     float exponent = 1;             ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
-    std::shared_ptr<const struct TraceSite> trace;                                   ///< Trace: what only some calls use
+    std::shared_ptr<const struct TraceSite> trace;    ///< Trace: what only some calls use; Diffuse: null, or `apart`
     std::shared_ptr<const OcclusionSite> occlusion;   ///< Occlusion, which has `trace` for its map, too
     std::shared_ptr<const SubsurfaceSite> subsurface; ///< Subsurface
     std::shared_ptr<const GatherSite> gather;         ///< Gather, GatherTurn

@@ -10,6 +10,8 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
+constexpr Hider kTracers[] = {Hider::Raytrace, Hider::Path};
+
 /// A surface of the floor: `up` is its normal; `value` a color.
 std::string shows(const std::string& value, const std::string& before = "") {
     static int number = 0;
@@ -47,7 +49,59 @@ Settings traced(Hider h, bool suspend = false) {
     return s;
 }
 
+const std::string kLoop = "illuminance (P, n, PI / 2) sum += Cl * (normalize(L) . n);";
+
 } // namespace
+
+// Half of direct and half of indirect light: a lamp counts as direct, a wall as indirect light, whatever finds them.
+TEST(IndirectApart, ALampInsideOfAShell) {
+    const double lamp = ofDisk(2, .7), wall = .8;
+    const std::string others = disk(2, .7, 5) + shell(wall);
+    const std::string apart[] = {shows(".5 * (diffuse(n) + indirectdiffuse(P, up, 16))"),
+                                 shows(".5 * (sum + indirectdiffuse(P, up, 16))", kLoop)};
+    for (const std::string& surface : apart)
+        for (const bool suspend : {false, true})
+            for (const Hider h : kTracers)
+                expectMean(of(surface, others, traced(h, suspend), samples(h == Hider::Path ? 20000 : 4000)),
+                           .5 * (5 * lamp + wall * (1 - lamp)), .01, surface + std::to_string(int(h)));
+}
+// The same under a sky, which light samples do not know: it is direct light.
+TEST(IndirectApart, ASky) {
+    const std::string sky = "LightSource \"envlight\" 1 \"intensity\" 1\n";
+    for (const bool suspend : {false, true}) {
+        const Settings s = traced(Hider::Path, suspend);
+        expectMean(of(shows(".5 * (diffuse(n) + indirectdiffuse(P, up, 16))"), sky, s, samples(5000)), .5, .02, "diffuse");
+        expectMean(of(shows(".5 * (sum + indirectdiffuse(P, up, 16))", kLoop), sky, s, samples(5000)), .5, .02, "loop");
+        // Alone it brings all, as highlights beside it do not ask for what it finds.
+        expectMean(of(shows(".5 * indirectdiffuse(P, up, 16)"), sky, s, samples(5000)), .5, .02, "alone");
+        expectMean(of(shows(".5 * indirectdiffuse(P, up, 16) + 0 * specular(n, up, .1)"), sky, s, samples(2000)), .5, .02,
+                   "beside a highlight");
+    }
+}
+// A parameter that switches indirectdiffuse() off leaves diffuse() all light.
+TEST(IndirectApart, SwitchedOff) {
+    writeShader("switched", "surface switched(float Ki = 0) { normal n = faceforward(normalize(N), I); Ci = .5 * diffuse(n); if "
+                            "(Ki > 0) Ci += Ki * indirectdiffuse(P, vector(n), 16); Oi = 1; }\n");
+    const Settings s = traced(Hider::Path);
+    expectMean(of("Surface \"switched\"\n", shell(.8), s, samples(2000)), .4, .02, "off");
+    expectMean(of("Surface \"switched\" \"Ki\" .25\n", shell(.8), s, samples(8000)), .2, .02, "on");
+}
+
+// trace() that samples area lights sees them where no light is sampled: along a mirrored ray, from another point than P.
+TEST(TraceSeesLights, WhereNoneAreSampled) {
+    const std::string lamp = disk(2, .7, 5), asks = ", \"samplearealights\", 1";
+    for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
+        for (const bool suspend : {false, true}) {
+            const Settings s = traced(h, suspend);
+            expectMean(of(shows("trace(P, up" + asks + ")"), lamp, s, 16), 5, 1e-6, "mirror");
+            expectMean(of(shows("trace(P + .5 * up, up" + asks + ")"), lamp, s, 16), 5, 1e-6, "mirror, elsewhere");
+            expectMean(of(shows("trace(P + up, up, \"distribution\", \"cosine\", \"samplecone\", PI / 2" + asks + ")"), lamp, s,
+                          samples(10000)),
+                       5 * ofDisk(1, .7), .02, "cosine, elsewhere");
+            EXPECT_EQ(of(shows("trace(P, aside" + asks + ")"), lamp, s, 4).mean(), 0);
+            if (h != Hider::Path) EXPECT_EQ(of(shows("trace(P, up)"), lamp, s, 4).mean(), 0);
+        }
+}
 
 // A surface that would give back twice what it receives gives all of the light of lights, and of what surfaces send it so much
 // that the sum is no more than it receives. The disks fill 1, 80 and 99 % of the hemisphere.

@@ -134,7 +134,11 @@ inline constexpr char kPairOnce[] = "__once";       ///< in construct(): once fo
 inline constexpr char kPairGather[] = "__gather"; ///< of the two sites of a gather, its rays and a turn: its number in the shader
 inline constexpr char kPairPoints[] = "__points"; ///< a call that is answered from point clouds
 inline constexpr char kPairHemisphere[] = "__hemisphere"; ///< a trace() that is an indirectdiffuse(): over the hemisphere
-inline constexpr char kPairUniform[] = "__uniform";       ///< the variable that takes the answer is uniform
+inline constexpr char kPairHighlight[] = "__highlight";   ///< a loop over lights that stands for specular() and its like
+/// An indirectdiffuse() beside diffuse() or loops over lights, and such a diffuse() of a kernel that waits: each brings its part
+/// of the light.
+inline constexpr char kPairApart[] = "__apart";
+inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes the answer is uniform
 
 /// ir::Site::resultNames of a query: its answer, and before that of an array of open length how long it is.
 std::string lengthResult(std::string_view name);

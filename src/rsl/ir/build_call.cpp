@@ -1,4 +1,5 @@
 // Calls: user functions inlined, shadeops by their Lowering.
+#include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include "shadeops/specular.h"
 #include <algorithm>
@@ -137,8 +138,11 @@ Inst* Builder::shadeopCall(const Expr& e) {
     if (e.function) { // what is said about its text is said where it is called
         const std::optional<Place> before = ownText_;
         if (!ownText_) ownText_ = e.place;
+        const size_t sites = k_.sites.size();
         Inst* value = functionCall(e);
         ownText_ = before;
+        for (size_t n = sites; n < k_.sites.size() && isLobe(e) && op.name != "diffuse"; ++n)
+            if (Site& s = k_.sites[n]; s.op == "illuminance") s.names.push_back(kPairHighlight), s.pairStrings.push_back("1");
         return value;
     }
     if (op.name == "shadername" && e.args.empty()) return leaves_.string(shader_.name);

@@ -73,6 +73,32 @@ void simplifyAll(Kernel& k, const KernelOptions& options) {
     }
 }
 
+/// Where direct light is asked for as well as indirectdiffuse(), none of both brings what is the other's: see kPairApart. A
+/// kernel that does not wait has all calls of a point before its light is gathered; one that waits must know beforehand.
+void tellApart(Kernel& k) {
+    std::vector<Site*> direct, indirect;
+    bool loops = false, always = false;
+    const auto has = [](const Site& s, const char* pair) {
+        return std::find(s.names.begin(), s.names.end(), pair) != s.names.end();
+    };
+    const auto hemisphere = [&](const Inst* i) {
+        if (i->op != Op::Request && i->op != Op::Emit) return false;
+        const Site& s = k.sites[static_cast<size_t>(i->site)];
+        return s.op == "trace" && has(s, kPairHemisphere);
+    };
+    forEach(k.body, [&](const Inst* i) {
+        if (i->op != Op::Request && i->op != Op::Emit && i->op != Op::LightLoop) return;
+        Site& s = k.sites[static_cast<size_t>(i->site)];
+        loops |= i->op == Op::LightLoop && !has(s, kPairHighlight);
+        if (s.op == "diffuse") direct.push_back(&s);
+        if (hemisphere(i)) indirect.push_back(&s);
+    });
+    if (indirect.empty() || (direct.empty() && !loops)) return;
+    for (const Inst* i : k.body.body) always |= hemisphere(i);
+    if (k.facts.suspends && always) indirect.insert(indirect.end(), direct.begin(), direct.end());
+    for (Site* s : indirect) s->names.push_back(kPairApart), s->pairStrings.push_back("1");
+}
+
 } // namespace
 
 std::vector<OutputLight> lightOfOutputs(Kernel& k, const KernelOptions& options) {
@@ -112,6 +138,7 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         check(k, "affine");
         if (options.optimize > 0) clean(k);
     }
+    tellApart(k);
     if (k.kind == ShaderKind::Surface)
         forEach(k.body, [&](const Inst* i) {
             if (i->op != Op::Output || k.outputs[static_cast<size_t>(i->index)].name != "Oi") return;

@@ -13,6 +13,7 @@ enum RandomUse : uint32_t {
     kSampleBase,
     kLevel,
     kFlight,
+    kDrawAgain,
     kLightPoint = 1u << 21
 };
 

@@ -40,6 +40,8 @@ private:
         float dice = 0;
         Color back{0};
         bool drawn = false;
+        bool again = false; ///< its draw brings nothing, and another is made
+        bool idle = false;  ///< its ray brings no light: it tells what is in the way
     };
     /// What lights are asked for at points of the batch, one kernel call; row by row a query.
     struct LightQueries {
@@ -113,11 +115,12 @@ private:
     bool picks(size_t point) const;
     void pick(size_t point, float number);
     void draw(int turn);
+    void drawAgain(int turn);
     void throwDice(int turn);
     void sendRay(const Sent&, Sched&);
     bool meetsEmitter(const LobeVertex&, const Vec3& w) const;
-    /// Divides the weight by the chance that the ray goes on; false: it does not.
-    bool roulette(const LobeVertex&, const Sent&, uint16_t& asked, Color& weight) const;
+    /// The chance with which the ray goes on; 0: it does not.
+    float roulette(const LobeVertex&, const Sent&, uint16_t& asked, const Color& weight) const;
 
     // photonscatter.cpp
     bool spreads(const LobeVertex&) const;

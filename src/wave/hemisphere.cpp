@@ -10,8 +10,6 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Directions beyond the plane of "axis" are drawn again so often; then the ray is left out.
-constexpr int kTries = 64;
 /// Rays that differ by less than this say the same.
 constexpr float kAgree = 1e-3f;
 
@@ -123,8 +121,8 @@ void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const Shad
                               : Vec2(0, 0);
         };
         do ray.dir = directions.at(pair());
-        while (o.axis >= 0 && !(dot(ray.dir, towards) > 0) && dot(towards, towards) > 0 && ++tries < kTries);
-        if (tries == kTries) ray.contribution = Color(0); // none is there, nearly
+        while (o.axis >= 0 && !(dot(ray.dir, towards) > 0) && dot(towards, towards) > 0 && ++tries < kDrawTries);
+        if (tries == kDrawTries) ray.contribution = Color(0); // none is there, nearly
         else ray.contribution = weight * h.share;
         ray.origin = bias >= 0 ? from + ray.dir * bias
                      : here    ? geometry::offsetOrigin(*surface, ray.dir, length(at - surface->P) + length(from - at))

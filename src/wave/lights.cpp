@@ -106,9 +106,15 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     for (int k = 0; k < l.samples; ++k) {
         const uint32_t nth = occurrence * 4096 + uint32_t(k), vertex = childVertex(from.vertex, kLightPoint + l.site, nth);
         Vec3 w;
-        lobeRows_.ask(place, random(from).draw(uint32_t(k), uint32_t(l.samples)).pair(drawn, l.site, occurrence));
-        lobeRows_.sample();
-        if (!lobeRows_.drawn(place, w)) continue;
+        const Random ofDraw = random(from).draw(uint32_t(k), uint32_t(l.samples));
+        int tries = 0;
+        const int most = l.trace->axis ? kDrawTries : 1;
+        do {
+            lobeRows_.ask(place, tries ? random(from).pair(vertex, kDrawAgain, uint32_t(tries))
+                                       : ofDraw.pair(drawn, l.site, occurrence));
+            lobeRows_.sample();
+        } while (!lobeRows_.drawn(place, w) && ++tries < most);
+        if (tries == most) continue;
         lobeRows_.ask(place, w);
         lobeRows_.evaluate();
         const LobeValue value = lobeRows_.value(place);
@@ -130,11 +136,9 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
         RayExtra extra;
         if (l.trace && l.trace->map) extra.environment = l.tint * mapTowards(*l.trace, w, from.footprint.spread);
         r.extra = newExtra(extra);
-        r.lobePdf = -1; // no light was sampled: all that shines counts
-        r.lobeBinding = -1;
-        r.first = true;
+        r.lobePdf = -1, r.lobeBinding = -1; // no light was sampled: all that shines counts
+        r.first = true, r.counts = false;
         r.footprint.spread = std::max(from.footprint.spread, spread * 0.5f);
-        r.counts = false;
         sched.spawn(r.bounces + r.layers, target, r);
     }
     lobeRows_.clear();

@@ -37,6 +37,9 @@ struct ShadowRay {
     int32_t hemisphere = -1; ///< Engine::hemispheres_: of an occlusion(), which takes the mean of the channels; -1: another
 };
 
+/// Directions that a call has no use for (beyond the plane of "axis") are drawn again so often; then the ray is left out.
+inline constexpr int kDrawTries = 64;
+
 /// Where light that reaches a target comes from: with the ray that brings it, what a path was at its end.
 enum class LightEvent : uint8_t {
     Surface, ///< what a shader gives by itself (Ci)

@@ -69,6 +69,7 @@ void Gather::draw(int turn) {
     numbers_.clear();
     for (Sent& s : sent_) {
         s.goes = turn < s.count;
+        s.again = s.idle = false;
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const PathRay& from = c_->rays[size_t(s.point)];
@@ -86,18 +87,45 @@ void Gather::draw(int turn) {
         else rows.ask(l.place, u);
     }
     rows.sample();
+    bool again = false;
     for (Sent& s : sent_) {
-        if (!s.goes) continue;
+        if (!s.goes || s.drawn) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
-        if (!s.drawn) s.goes = rows.drawn(l.place, s.w);
-        if (s.goes && !l.delta) rows.ask(l.place, s.w);
+        s.goes = rows.drawn(l.place, s.w);
+        again |= s.again = !s.goes && !l.delta && l.trace && (l.trace->axis || (l.trace->openness && l.ownsTarget));
+        s.idle = s.again && !l.trace->axis;
     }
+    if (again) drawAgain(turn);
+    for (const Sent& s : sent_)
+        if (const LobeVertex& l = e_.lobes[size_t(s.lobe)]; s.goes && !l.delta) rows.ask(l.place, s.w);
     rows.evaluate();
     for (Sent& s : sent_) {
         if (!s.goes) continue;
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         s.value = l.delta ? LobeValue{Color(l.albedo), l.albedo, 0} : rows.value(l.place);
         s.value.pdf = densityBeside(l, s.w, s.value.pdf);
+        if (s.idle) s.value.colour = Color(0);
+    }
+}
+
+void Gather::drawAgain(int turn) {
+    LobeColumns& rows = e_.lobeRows_;
+    for (int tries = 1; tries < kDrawTries; ++tries) {
+        numbers_.clear();
+        for (const Sent& s : sent_) {
+            if (!s.again) continue;
+            const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+            const uint32_t vertex = childVertex(rayOf(l).vertex, l.site, l.occurrence * 4096 + uint32_t(turn));
+            numbers_.askPair(e_.random(rayOf(l)).numbers(), vertex, kDrawAgain, uint32_t(tries));
+        }
+        if (numbers_.size() == 0) return;
+        numbers_.draw();
+        size_t number = 0;
+        for (const Sent& s : sent_)
+            if (s.again) rows.ask(e_.lobes[size_t(s.lobe)].place, numbers_.pair(number++));
+        rows.sample();
+        for (Sent& s : sent_)
+            if (s.again) s.again = !(s.goes = rows.drawn(e_.lobes[size_t(s.lobe)].place, s.w));
     }
 }
 
@@ -136,7 +164,7 @@ bool Gather::meetsEmitter(const LobeVertex& l, const Vec3& w) const {
     return false;
 }
 
-bool Gather::roulette(const LobeVertex& l, const Sent& s, uint16_t& asked, Color& weight) const {
+float Gather::roulette(const LobeVertex& l, const Sent& s, uint16_t& asked, const Color& weight) const {
     const PathRay& from = rayOf(l);
     const auto dice = [&] { return s.dice; };
     float q = 1;
@@ -151,9 +179,7 @@ bool Gather::roulette(const LobeVertex& l, const Sent& s, uint16_t& asked, Color
         const Color left(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z));
         q = world_.lightTraces_ > 0 ? rouletteLocal(from.bounces + 1, left, dice()) : rouletteOfPath(weight, dice);
     }
-    if (q <= 0) return false;
-    weight = weight / q;
-    return true;
+    return std::max(q, 0.f);
 }
 
 void Gather::sendRay(const Sent& s, Sched& sched) {
@@ -178,7 +204,9 @@ void Gather::sendRay(const Sent& s, Sched& sched) {
     if (!isFinite(weight)) return e_.notFinite(*c_, from, l.site);
     if (weight == Color(0) && !l.ownsTarget) return;
     uint16_t asked = from.asked;
-    if (rules_.roulette && !roulette(l, s, asked, weight)) return;
+    const float q = rules_.roulette ? roulette(l, s, asked, weight) : 1;
+    if (!(q > 0)) return;
+    weight = weight / q;
     if (l.below >= 0) {
         const float indirect = l.lobeOfShader ? indirectScale_[size_t(s.point)] : 1;
         e_.walks_.push_back({s.point, l.below, weight, l.target, s.vertex, shareOf(l), indirect});
@@ -214,7 +242,7 @@ void Gather::sendRay(const Sent& s, Sched& sched) {
     if (c_->between && world_.scatters_) extra.flown = c_->flown[size_t(l.point)];
     extra.share = shareOf(l);
     if (l.ownsTarget && l.trace && l.trace->sums) {
-        extra.part = Color(1.f / float(s.count));
+        extra.part = Color(1.f / (float(s.count) * q));
         if (TraceSums* of = e_.sumsOf(l.target)) of->add(TraceSums::Open, w * mean(extra.part));
     }
     r.extra = e_.newExtra(extra);

@@ -139,9 +139,11 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     t->onlyLights =
         !i.resultRows.empty() &&
         i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
+    t->openness = i.results.transmission >= 0 || i.results.open >= 0;
     t->hemisphere = i.text.count(rsl::kPairHemisphere) > 0;
     if (t->hemisphere) { // trace() itself has no such parameters: the compiler has said so
         t->apart = i.text.count(rsl::kPairApart) > 0;
+        t->axis = i.rowHorizon >= 0;
         t->fade = {row("falloff"), row("falloffmode")};
         t->records = recordSite(i, s, world);
     }

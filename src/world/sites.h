@@ -65,6 +65,8 @@ struct TraceSite {
     bool onlyLights = false;       ///< for nothing but what area lights send
     bool hemisphere = false;       ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
     bool apart = false;            ///< rsl::kPairApart: lights are not for it; of diffuse(): nothing but lights is
+    bool axis = false;             ///< of one with "axis": the mean over directions on its side alone
+    bool openness = false;         ///< it asks what is in the way of its rays: every draw sends one
     FadeSite fade;
     RecordSite records;
 };

@@ -132,4 +132,54 @@ TEST(EnergyRule, AHighlightOnWhatIsClear) {
                1e-5, "pane");
 }
 
+// In a closed shell everything is in the way, outside of it nothing, also of draws that bring no light.
+TEST(TraceTransmission, OfDrawsThatBringNothing) {
+    const std::string lobes[] = {"\"cook-torrance\", \"roughness\", .7", "\"ashikhmin-shirley\", \"roughness\", .7",
+                                 "\"blinn\", \"roughness\", .7", "\"ward\", \"roughness\", .6",
+                                 "\"cosine\", \"samplecone\", PI / 2, \"horizon\", aside"};
+    for (const std::string& lobe : lobes)
+        for (const Hider h : kTracers) {
+            const std::string wo = lobe[1] == 'c' && lobe[3] == 's' ? "" : ", \"wo\", normalize(up + 2 * aside)";
+            const std::string s = shows("t", "sum = trace(P, up, \"distribution\", " + lobe + wo + ", \"transmission\", t);");
+            EXPECT_NEAR(of(s, shell(.5), traced(h), 400).mean(), 0, 1e-6) << lobe;
+            EXPECT_EQ(of(s, "", traced(h), 400).mean(), 1) << lobe;
+        }
+    // Glass sends rays to both sides: the floor is not in its own way.
+    const std::string glass =
+        shows("t", "sum = trace(P, up, \"distribution\", \"glass-ggx\", \"roughness\", .5, \"wo\", normalize(up + 2 * aside), "
+                   "\"transmission\", t);");
+    EXPECT_NEAR(of(glass, shell(.5), traced(Hider::Raytrace), 400).mean(), 0, 1e-6);
+    // Half of the sky behind a wall, and of the directions above a tilted plane a part that is known: of those between the wall's
+    // foot and straight up, all are blocked.
+    const std::string wall = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nPolygon \"P\" [-.001 0 "
+                             "-9000  -.001 9000 -9000  -.001 9000 9000  -.001 0 9000]\nAttributeEnd\n";
+    const std::string half = "\"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samples\", 16, \"transmission\", t";
+    for (const auto& [horizon, want] : {std::pair<std::string, double>{"", .5}, {", \"horizon\", aside", 1}})
+        EXPECT_NEAR(of(shows("t", "sum = trace(P, up, " + half + horizon + ");"), wall, traced(Hider::Raytrace), 400).mean(),
+                    want, .01);
+    EXPECT_NEAR(
+        of(shows("t", "sum = trace(P, up, " + half + ", \"horizon\", -aside);"), wall, traced(Hider::Raytrace), 400).mean(), 0,
+        .01);
+}
+
+// "axis" of indirectdiffuse() as of occlusion(): the mean over the directions on its side.
+TEST(IndirectDiffuseAxis, IsTheMeanOfItsSide) {
+    const std::string wall = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor 1 1 1\nPolygon "
+                             "\"P\" [-.0004 0 -9000  -.0004 0 9000  -.0004 9000 9000  -.0004 9000 -9000]\nAttributeEnd\n";
+    for (const Hider h : kTracers) {
+        const Settings s = traced(h);
+        EXPECT_NEAR(of(shows("indirectdiffuse(P, up, 64, \"axis\", -aside)"), wall, s, 400).mean(), 1, 2e-3);
+        EXPECT_NEAR(of(shows("indirectdiffuse(P, up, 64, \"axis\", aside)"), wall, s, 400).mean(), 0, 2e-3);
+        EXPECT_NEAR(of(shows("indirectdiffuse(P, up, 64, \"axis\", up)"), wall, s, samples(4000)).mean(), .5, .03);
+        EXPECT_EQ(of(shows("indirectdiffuse(P, up, 4, \"axis\", -up)"), wall, s, 4).mean(), 0); // there are none
+        expectMean(of(shows("indirectdiffuse(P, up, 16, \"axis\", up + aside)"), shell(.5), s, 400), .5, 1e-5, "shell");
+    }
+}
+TEST(IndirectDiffuseAxis, InALight) {
+    writeShader("besideaxis", "light besideaxis() { vector up = vector \"world\" (0, 1, 0), aside = vector \"world\" (1, 0, 0); "
+                              "solar(-up, 0) { Cl = indirectdiffuse(Ps, up, 16, \"axis\", aside); } }\n");
+    Settings s = traced(Hider::Raytrace);
+    expectMean(of("Surface \"matte\" \"Ka\" 0\n", "LightSource \"besideaxis\" 1\n" + shell(.5), s, 16), .5, 1e-4, "light");
+}
+
 } // namespace estimators_test

@@ -13,7 +13,7 @@ void Gather::connect() {
     for (size_t k = 0; k < queries_.count; ++k) {
         const LightValue& v = queries_.value[k];
         if (v.lit && !isFinite(v.Cl)) e_.notFinite(&c_->rays[size_t(queries_.point[k])], "Cl", queries_.light[k]->instance.get());
-        else if (v.lit && maxComponent(v.Cl) > 0) reach(int(k));
+        else if (v.lit && v.Cl != Color(0)) reach(int(k));
     }
     evaluate();
     for (const Reached& r : reached_) send(r);

@@ -114,7 +114,7 @@ private:
         const float phase = OneLobe(*kind, {r.dir, -r.dir, {}, medium_.homogeneous->anisotropy}).value(to).fcos;
         Color c = *n.weight * medium_.homogeneous->scattering * medium_.homogeneous->left(n.t) * v.Cl;
         c *= phase * n.scale * v.kept(RayType::Diffuse) * (area_ ? 1 / drawn_[i].pdf : float(kPi)); // Cl is irradiance / pi
-        if (!(maxComponent(c) > 0)) return;
+        if (c == Color(0)) return;
         ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter, &r};
         if (v.ownShadow) shadow.distance = 0;
         shadow.media = r.media;

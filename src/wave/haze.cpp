@@ -150,7 +150,7 @@ void Engine::hazeOfEmitters(const BoundLight& light, std::span<const ShadePoint>
     for (size_t i = 0; i < queries.size(); ++i) {
         auto found = world_->hazyEmitters_.find(queries[i].shape);
         if (inMedium && (*inMedium)[i]) continue;
-        if (found == world_->hazyEmitters_.end() || !(maxComponent(values[i].Cl) > 0)) continue;
+        if (found == world_->hazyEmitters_.end() || values[i].Cl == Color(0)) continue;
         one[0] = queries[i];
         one[0].I = queries[i].P - queries[i].Ps;
         one[0].E = queries[i].Ps;

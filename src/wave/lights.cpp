@@ -333,7 +333,7 @@ void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first,
     std::vector<ShadowRay> rays;
     std::vector<size_t> of;
     for (size_t i = 0; i < q.size(); ++i) {
-        if (!v[i].lit || !(maxComponent(v[i].Cl) > 0)) continue;
+        if (!v[i].lit || v[i].Cl == Color(0)) continue;
         const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
         const Vec3 to = -v[i].L;
         const float far = length(to);

@@ -157,7 +157,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             const ShadePoint& p = *met[i].point;
             const PathRay& r = *p.ray;
             if (v.lit && !isFinite(v.Cl)) notFinite(&r, "Cl", light.instance.get());
-            if (!v.lit || !(maxComponent(v.Cl) > 0) || !isFinite(v.Cl) || bringsPhotons(r, met[i].light)) continue;
+            if (!v.lit || v.Cl == Color(0) || !isFinite(v.Cl) || bringsPhotons(r, met[i].light)) continue;
             float weight = 1;
             if (r.lobePdf >= 0 && light.emitter && light.importance) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);

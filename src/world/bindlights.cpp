@@ -290,7 +290,10 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
             std::vector<LightValue> v(q.size());
             evaluator.light(l, q, v);
             std::vector<float> b;
-            for (const LightValue& x : v) b.push_back(x.lit && std::isfinite(luminance(x.Cl)) ? luminance(x.Cl) : 0);
+            for (const LightValue& x : v) { // negative light is sampled, too
+                const float y = luminance(absolute(x.Cl));
+                b.push_back(x.lit && std::isfinite(y) ? y : 0);
+            }
             return b;
         };
         auto towards = [](const Vec3& p, const Vec3& n, const Vec3& lit) {

@@ -182,4 +182,30 @@ TEST(IndirectDiffuseAxis, InALight) {
     expectMean(of("Surface \"matte\" \"Ka\" 0\n", "LightSource \"besideaxis\" 1\n" + shell(.5), s, 16), .5, 1e-4, "light");
 }
 
+// Lights that take light away: an old way to keep places dark.
+TEST(NegativeLights, TakeLightAway) {
+    const std::string sun = "LightSource \"distantlight\" ", down = " \"from\" [0 1 0] \"to\" [0 0 0]\n";
+    const std::string two = sun + "1 \"intensity\" 1" + down + sun + "2 \"intensity\" -.4" + down;
+    const std::string lamps =
+        disk(2, .7, 5) + "LightSource \"distantlight\" 8 \"intensity\" -.25 \"from\" [.8 .6 0] \"to\" [0 0 0]\n";
+    for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
+        for (const std::string& surface : {shows("diffuse(n)"), shows("sum", kLoop)})
+            for (const bool suspend : {false, true}) {
+                expectMean(of(surface, two, traced(h, suspend), 16), .6, 1e-5, "suns");
+                if (h == Hider::Path)
+                    expectMean(of(surface, lamps, traced(h, suspend), samples(10000)), 5 * ofDisk(2, .7) - .25 * .6, .02, "lamp");
+            }
+    // As an emitter, by light samples and by rays that meet it; and one of many.
+    for (int mode = 0; mode < 3; ++mode) {
+        Settings s = traced(Hider::Path);
+        s.bsdfOnly = mode == 1;
+        s.lightOnly = mode == 2;
+        expectMean(of(shows("diffuse(n)"), disk(2, .7, -5), s, samples(20000)), -5 * ofDisk(2, .7), .03,
+                   "emitter, mode " + std::to_string(mode));
+    }
+    std::string many;
+    for (int i = 0; i < 20; ++i) many += sun + std::to_string(i + 1) + " \"intensity\" " + (i % 4 ? ".2" : "-.4") + down;
+    expectMean(of(shows("diffuse(n)"), many, traced(Hider::Path), samples(4000)), 15 * .2 - 5 * .4, .02, "many");
+}
+
 } // namespace estimators_test

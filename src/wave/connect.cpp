@@ -45,7 +45,7 @@ void Gather::reach(int query) {
     const Vec3 w = area || light.sky ? q.drawn[k].direction : normalizeOr(-q.value[k].L, Vec3(0, 0, 1));
     for (int i : lobesOf(size_t(q.point[k]))) {
         const LobeVertex& l = e_.lobes[size_t(i)];
-        if (!samples(l, light)) continue;
+        if (!samples(l, light) || q.draw[k].nth >= lightSamples(l)) continue;
         if (q.spread[k] >= 0 && q.spread[k] != spreadBehind(rayOf(l), e_.lobeRows_.spread(l.place))) continue;
         // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
         const accel::Sides sides = l.rays->set.sides;
@@ -79,7 +79,7 @@ Color Gather::contribution(const Reached& r) {
     const float fcos = r.value.fcos, drawn = queries_.drawn[k].pdf, chance = queries_.chance[k];
     const float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
     Color c = l.ownsTarget ? l.weight * v.Cl : l.weight * rayOf(l).weight * v.Cl;
-    c *= r.value.colour / fcos;
+    c *= r.value.colour / (fcos * float(lightSamples(l))); // as many rays go along the lobe: of its weight n is no matter
     if (area && l.trace && l.trace->sums)
         if (TraceSums* of = e_.sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, c * (fcos / (drawn * chance)));
     if (c_->between) c *= MediumFlights::shareOfDistance(e_, c_->flown[size_t(l.point)], light);

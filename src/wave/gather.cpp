@@ -11,7 +11,7 @@ void Gather::run(BatchContext& c, Sched& sched) {
     e_.lobeRows_.prepare();
     choose();
     besideLights();
-    if (rules_.lightsAtRequests) light();
+    if (rules_.lightsAtRequests) light(sched);
     if (rules_.emissionCounts) lastSkies();
     if (e_.photonTrace()) restPhotons();
     else if (rules_.pickOne) takePhotons(sched);

@@ -43,6 +43,10 @@ private:
         bool again = false; ///< its draw brings nothing, and another is made
         bool idle = false;  ///< its ray brings no light: it tells what is in the way
     };
+    /// Sample `nth` of `of` that a point takes of a light. Lobes that ask for fewer have the first ones.
+    struct Draw {
+        int nth = 0, of = 1;
+    };
     /// What lights are asked for at points of the batch, one kernel call; row by row a query.
     struct LightQueries {
         std::vector<ShadePoint> at; ///< the light's point; the first `count` are used
@@ -50,10 +54,12 @@ private:
         std::vector<const BoundLight*> light;
         std::vector<float> chance; ///< that the light is sampled there
         std::vector<float> spread; ///< of the lobes that it is for; < 0: for all of its point
+        std::vector<Draw> draw;
         std::vector<Emitter::Sample> drawn;
         std::vector<LightValue> value;
         size_t count = 0;
-        ShadePoint& add(int point, const BoundLight&, float chance);
+        ShadePoint& add(int point, const BoundLight&, float chance, Draw);
+        void dropLast();
         void clear();
     };
 
@@ -86,10 +92,12 @@ private:
     static std::optional<Vec3> drawBeside(const LobeVertex&, Vec2& u);
 
     // lightpoints.cpp
-    void light();
-    void chooseLights(const std::vector<int>& lights);
+    void light(Sched&);
+    void lightOf(const BoundLight&, std::span<const std::pair<int, float>> chosen, const BoundKernel* shared, Sched&);
+    void askWanted(const BoundKernel* shared, Sched&);
     bool samples(const LobeVertex&, const BoundLight&) const;
-    void want(const BoundLight&, std::span<const std::pair<int, float>> chosen);
+    int lightSamples(const LobeVertex&) const;
+    int want(const BoundLight&, std::span<const std::pair<int, float>> chosen, int first);
     void placeWanted();
     bool place(ShadePoint&, Emitter::Sample&, size_t point, const BoundLight&, size_t& number) const;
     void queriesByWidth(size_t point, const BoundLight&);
@@ -160,6 +168,7 @@ private:
         const BoundLight* light;
         int point;
         float chance;
+        Draw draw;
     };
     std::vector<Wanted> wanted_; ///< points that ask for a light, and the chance that it was chosen there
     std::vector<Reached> reached_;

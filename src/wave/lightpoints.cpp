@@ -10,16 +10,28 @@ namespace {
 /// Queries of lights that share a call are answered some at a time: those of all points of a batch do not fit into a core's
 /// cache.
 constexpr size_t kQueriesAtOnce = 512;
+constexpr int kSamplesAtOnce = 16; ///< of a light at a point: what a call asks for at all points does not fit into memory
 } // namespace
 
-ShadePoint& Gather::LightQueries::add(int of, const BoundLight& l, float c) {
+ShadePoint& Gather::LightQueries::add(int of, const BoundLight& l, float c, Draw which) {
     if (count == at.size()) at.emplace_back(); // else written again, not made anew
     point.push_back(of);
     light.push_back(&l);
     chance.push_back(c);
     spread.push_back(-1);
+    draw.push_back(which);
     drawn.emplace_back();
     return at[count++];
+}
+
+void Gather::LightQueries::dropLast() {
+    --count;
+    point.pop_back();
+    light.pop_back();
+    chance.pop_back();
+    spread.pop_back();
+    draw.pop_back();
+    drawn.pop_back();
 }
 
 void Gather::LightQueries::clear() {
@@ -28,6 +40,7 @@ void Gather::LightQueries::clear() {
     light.clear();
     chance.clear();
     spread.clear();
+    draw.clear();
     drawn.clear();
 }
 
@@ -39,7 +52,28 @@ bool Gather::samples(const LobeVertex& l, const BoundLight& light) const {
            (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
 }
 
-void Gather::light() {
+/// Of each light, where the lobe sends as many rays.
+int Gather::lightSamples(const LobeVertex& l) const { return l.trace && (l.ownsTarget || !rules_.pickOne) ? l.samples : 1; }
+
+/// Asks the lights of wanted_, of which all have the kernel `shared`, or there is one.
+void Gather::askWanted(const BoundKernel* shared, Sched& sched) {
+    queries_.clear();
+    placeWanted();
+    askLights(shared);
+    connect();
+    if (e_.shadows.size() > kShadowsAtOnce) e_.flushShadows(sched);
+}
+
+/// The samples of a light at all points that want it; with `shared` the last are left in wanted_.
+void Gather::lightOf(const BoundLight& light, std::span<const std::pair<int, float>> chosen, const BoundKernel* shared,
+                     Sched& sched) {
+    for (int first = 0, most = 1; first < most; first += kSamplesAtOnce) {
+        most = want(light, chosen, first);
+        if (!shared || wanted_.size() >= kQueriesAtOnce) askWanted(shared, sched);
+    }
+}
+
+void Gather::light(Sched& sched) {
     const SurfaceBinding& binding = world_.bindings_[size_t(c_->bindings[0])]; // the batch shares its list
     const WorldImpl::LightList& list = world_.lightLists_[size_t(binding.lightList)];
     const std::vector<int>& on = world_.sampledOf(list);
@@ -78,51 +112,43 @@ void Gather::light() {
             grouped[size_t(light.group)].push_back(k);
             continue;
         }
-        queries_.clear();
-        want(light, at);
-        placeWanted();
-        askLights(nullptr);
-        connect();
+        lightOf(light, at, nullptr, sched);
         if (many) chosenAt_[size_t(k)].clear();
     }
     for (size_t g = 0; many && g < grouped.size(); ++g) {
-        const auto ask = [&] {
-            queries_.clear();
-            placeWanted();
-            askLights(&world_.lightGroups_[g].kernel);
-            connect();
-        };
+        const BoundKernel* const kernel = &world_.lightGroups_[g].kernel;
         for (int k : grouped[g]) {
-            want(world_.lights_[size_t(on[size_t(k)])], chosenAt_[size_t(k)]);
+            lightOf(world_.lights_[size_t(on[size_t(k)])], chosenAt_[size_t(k)], kernel, sched);
             chosenAt_[size_t(k)].clear();
-            if (wanted_.size() >= kQueriesAtOnce) ask();
         }
-        ask();
+        askWanted(kernel, sched);
         grouped[g].clear();
     }
     if (!many) chosenAt_[0].clear();
 }
 
-/// Notes the points of a light that ask for it, and the numbers that its points are made of.
-void Gather::want(const BoundLight& light, std::span<const std::pair<int, float>> chosen) {
+/// Notes the points of a light that ask for it, and the numbers that its points are made of: of kSamplesAtOnce samples from
+/// `first` on. How many there are in all, at most.
+int Gather::want(const BoundLight& light, std::span<const std::pair<int, float>> chosen, int first) {
+    int most = 0;
     if (wanted_.empty()) numbers_.clear();
     const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
     for (const auto& [point, chance] : chosen) {
-        bool wanted = false;
-        for (int i : lobesOf(size_t(point))) wanted |= samples(e_.lobes[size_t(i)], light);
-        if (!wanted) continue;
-        wanted_.push_back({&light, point, chance});
+        int count = 0;
+        for (int i : lobesOf(size_t(point)))
+            if (const LobeVertex& l = e_.lobes[size_t(i)]; samples(l, light)) count = std::max(count, lightSamples(l));
+        most = std::max(most, count);
         const PathRay& ray = c_->rays[size_t(point)];
-        if (light.kind == LightKind::Area) {
-            const uint32_t vertex = lightVertex(size_t(point));
-            numbers_.askPair(e_.random(ray).numbers(), vertex, use, 0);
-            if (light.emitter->chooses()) numbers_.askOne(e_.random(ray).numbers(), vertex, use, 0);
-        } else if (light.sky) {
-            numbers_.askPair(e_.random(ray).numbers(), lightVertex(size_t(point)), use, 0);
-        } else if (light.cone && rules_.pickOne) {
-            numbers_.askPair(e_.random(ray).numbers(), ray.vertex, use, 0);
+        for (int k = first; k < std::min(count, first + kSamplesAtOnce); ++k) {
+            wanted_.push_back({&light, point, chance, {k, count}});
+            const Random random = e_.random(ray).draw(uint32_t(k), uint32_t(count));
+            const uint32_t vertex = light.kind == LightKind::Area || light.sky ? lightVertex(size_t(point)) : ray.vertex;
+            if (light.kind == LightKind::Area || light.sky || (light.cone && rules_.pickOne))
+                numbers_.askPair(random.numbers(), vertex, use, 0);
+            if (light.kind == LightKind::Area && light.emitter->chooses()) numbers_.askOne(random.numbers(), vertex, use, 0);
         }
     }
+    return most;
 }
 
 /// Makes queries of what is wanted.
@@ -132,11 +158,11 @@ void Gather::placeWanted() {
     const BoundLight* last = nullptr;
     bool wide =
         false; // a light that filters over its surface is asked once for every width of the lobes at a point, at the same sample
-    for (const auto& [of, point, chance] : wanted_) {
+    for (const auto& [of, point, chance, draw] : wanted_) {
         const BoundLight& light = *of;
         if (of != std::exchange(last, of)) wide = light.kind == LightKind::Area && usesFootprint(light);
         const ShadePoint& lit = c_->points[size_t(point)];
-        ShadePoint& p = queries_.add(point, light, chance);
+        ShadePoint& p = queries_.add(point, light, chance, draw);
         p.Ps = lit.P;
         p.lit = &lit.surface;
         p.Ns = lit.N;
@@ -148,12 +174,7 @@ void Gather::placeWanted() {
         p.shutter = lit.shutter;
         p.ray = lit.ray;
         if (!place(p, queries_.drawn.back(), size_t(point), light, number)) {
-            --queries_.count;
-            queries_.point.pop_back();
-            queries_.light.pop_back();
-            queries_.chance.pop_back();
-            queries_.spread.pop_back();
-            queries_.drawn.pop_back();
+            queries_.dropLast();
         } else if (wide) {
             queriesByWidth(size_t(point), light);
         }
@@ -211,7 +232,7 @@ void Gather::queriesByWidth(size_t point, const BoundLight& light) {
         if (std::exchange(used, true)) {
             const Emitter::Sample drawn = q.drawn.back();
             const ShadePoint same = q.at[q.count - 1];
-            q.add(int(point), light, q.chance.back()) = same;
+            q.add(int(point), light, q.chance.back(), q.draw.back()) = same;
             q.drawn.back() = drawn;
         }
         q.spread.back() = s;
@@ -255,7 +276,8 @@ void Gather::askLights(const BoundKernel* shared) {
     e_.evaluateLight(light, q.at, q.value, call);
     for (size_t k = 0; k < q.count && sends; ++k) {
         const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
-        const float u = e_.random(c_->rays[size_t(q.point[k])]).one(lightVertex(size_t(q.point[k])), use, 0);
+        const Random random = e_.random(c_->rays[size_t(q.point[k])]).draw(uint32_t(q.draw[k].nth), uint32_t(q.draw[k].of));
+        const float u = random.one(lightVertex(size_t(q.point[k])), use, 0);
         Answers::chooseSent(light, u, values.data() + k * width, q.value[k]);
     }
     for (size_t k = 0; k < q.count && light.channels; ++k)

@@ -208,4 +208,25 @@ TEST(NegativeLights, TakeLightAway) {
     expectMean(of(shows("diffuse(n)"), many, traced(Hider::Path), samples(4000)), 15 * .2 - 5 * .4, .02, "many");
 }
 
+// n samples of a light beside n rays: of a lamp that a half-plane hides to one half, in the middle of its shadow's edge, n
+// samples have an n-th of the variance at most, since each sees the lamp or does not.
+TEST(LightSamples, AsManyAsRays) {
+    const std::string half =
+        "AttributeBegin\nAttribute \"visibility\" \"trace\" 1 \"transmission\" 1\nSurface \"constant\"\nColor 0 0 "
+        "0\nPolygon \"P\" [0 1 -90  0 1 90  90 1 90  90 1 -90]\nAttributeEnd\n";
+    for (const Hider h : kTracers) {
+        double variance[2];
+        for (const int n : {1, 40}) {
+            const std::string floor =
+                shows("trace(P, up, \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samplearealights\", 1, "
+                      "\"samples\", " +
+                      std::to_string(n) + ")");
+            const Moments m = of(floor, disk(2, .7, 5) + half, traced(h, true), samples(n == 1 ? 6000 : 1000));
+            expectMean(m, .5 * 5 * ofDisk(2, .7), .02, "samples " + std::to_string(n));
+            variance[n > 1] = m.se() * m.se() * m.n;
+        }
+        EXPECT_LT(variance[1], variance[0] / 30) << int(h);
+    }
+}
+
 } // namespace estimators_test

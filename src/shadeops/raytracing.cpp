@@ -1,5 +1,6 @@
 // Ray tracing: rsl.md 12.1 and 12.2 (seed 6.4.5). Answered by rays; here are signatures and optional parameters.
 #include "shadeops/describe.h"
+#include "shadeops/distributions.h"
 #include <array>
 
 namespace alpenglow::rsl {
@@ -117,8 +118,7 @@ std::vector<OptionalParameter> subsurfaceParameters() {
 } // namespace
 
 std::vector<OptionalParameter> distributionParameters() {
-    return {{kS, "distribution", false, "\"uniform\"",
-             "uniform cosine oren-nayar blinn ashikhmin-shirley cook-torrance ward glass-ggx hair"},
+    return {{kS, "distribution", false, "\"uniform\"", distributionNames(" ")},
             {kS, "bsdf", false, "\"uniform\"", "another name of distribution"},
             {kV, "wo", false, "0", "toward the viewer"},
             {kV, "horizon", false, "0", "normal of a plane that cuts the distribution"},

@@ -81,7 +81,9 @@ std::vector<Case> surfaces() {
             {"blinn", model("al_bsdf_blinn", false, with({0.4f}, kFull))},
             {"ashikhmin-shirley", model("al_bsdf_ashikhminshirley", true, with({0.4f, 0.6f}, kFull))},
             {"cook-torrance", model("al_bsdf_cooktorrance", false, with({0.5f}, {0.2f, 2, 3, 3, 1, 4}))},
-            {"ward", model("al_bsdf_ward", true, {0.3f, 0.5f})}};
+            {"ward", model("al_bsdf_ward", true, {0.3f, 0.5f})},
+            {"ggx", model("al_bsdf_ggx", true, with({0.4f, 0.6f}, {0.2f, 2, 3, 3, 1, 4}))},
+            {"beckmann", model("al_bsdf_beckmann", true, with({0.3f, 0.6f}, kFull))}};
 }
 
 TEST(Bsdf, Reciprocity) {
@@ -175,6 +177,19 @@ TEST(Bsdf, FacetFormulas) {
     const double eu = std::pow(0.4, -3.5) - 1, ev = std::pow(0.8, -3.5) - 1;
     EXPECT_NEAR(model("al_bsdf_ashikhminshirley", true, with({0.4f, 0.8f}, kFull))(l, o),
                 nl * std::sqrt((eu + 1) * (ev + 1)) / (8 * kPi) * std::pow(nh, eu) / (oh * std::max(nl, no)), 1e-4);
+    // Smith's facets with both heights: G = 1 / (1 + A(l) + A(o)), of the roughness along udir.
+    const auto smith = [&](double a, const auto& lambda) {
+        return 1 / (1 + lambda(1 / (a * std::tan(tl))) + lambda(1 / (a * std::tan(to))));
+    };
+    const auto ggxLambda = [](double x) { return (std::sqrt(1 + 1 / (x * x)) - 1) / 2; };
+    const auto beckmannLambda = [](double x) { return (std::exp(-x * x) / (x * std::sqrt(kPi)) - std::erfc(x)) / 2; };
+    for (const double a : {0.05, 0.4, 1.5}) {
+        const double t = std::tan(th) / a, ggx = 1 / (kPi * a * 0.7 * std::pow(nh, 4) * std::pow(1 + t * t, 2)),
+                     gauss = std::exp(-t * t) / (kPi * a * 0.7 * std::pow(nh, 4));
+        const double first = ggx * smith(a, ggxLambda) / (4 * no), second = gauss * smith(a, beckmannLambda) / (4 * no);
+        EXPECT_NEAR(model("al_bsdf_ggx", true, with({float(a), 0.7f}, kFull))(l, o), first, 1e-5 * first);
+        EXPECT_NEAR(model("al_bsdf_beckmann", true, with({float(a), 0.7f}, kFull))(l, o), second, 4e-5 * second);
+    }
     // Fresnel's factor: glass at normal incidence 0.04, per channel; a conductor ((n-1)^2 + k^2) / ((n+1)^2 + k^2).
     std::vector<float> in;
     append(in, kUp), append(in, kUp), append(in, kUp);
@@ -285,6 +300,8 @@ TEST(Bsdf, BelowTheSurfaceAndOddInputs) {
     for (const float rough : {0.0f, 1e-6f, 3.0f}) {
         EXPECT_TRUE(std::isfinite(model("al_bsdf_blinn", false, with({rough}, kFull))(kUp, kUp)));
         EXPECT_TRUE(std::isfinite(model("al_bsdf_ward", true, {rough, rough})(kUp, kUp)));
+        EXPECT_TRUE(std::isfinite(model("al_bsdf_ggx", true, with({rough, rough}, kFull))(kUp, kUp)));
+        EXPECT_TRUE(std::isfinite(model("al_bsdf_beckmann", true, with({rough, rough}, kFull))(kUp, kUp)));
         EXPECT_TRUE(std::isfinite(glass({rough, rough, 1.0f}, 1)(direction(kPi, 0), kUp)));
     }
 }

@@ -88,10 +88,13 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"ashikhmin-shirley", .7f, .5f, Color(1.5f, 1.3f, 2), .9f, -1},
                       Case{"cook-torrance", .3f, .3f, Color(0), .5f, -1},
                       Case{"cook-torrance", .5f, .5f, Color(1.5f, 1.3f, 2), .9f, -1}, Case{"ward", .2f, .4f, Color(0), .5f, -1},
-                      Case{"ward", .4f, .3f, Color(0), .9f, -1}, Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, -1},
-                      Case{"glass-ggx", .3f, .3f, Color(1.5f), 2.5f, -1}, Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 0},
-                      Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 1}, Case{"hair", 0, 0, Color(1.55f), .5f, -1},
-                      Case{"hair", 0, 0, Color(1.55f), 1.2f, 0}, Case{"hair", 0, 0, Color(1.55f), 1.2f, 1}));
+                      Case{"ward", .4f, .3f, Color(0), .9f, -1}, Case{"ggx", .3f, .3f, Color(0), .5f, -1},
+                      Case{"ggx", .7f, .2f, Color(1.5f, 1.3f, 2), 1.2f, -1}, Case{"beckmann", .3f, .3f, Color(0), .5f, -1},
+                      Case{"beckmann", .7f, .2f, Color(1.5f, 1.3f, 2), 1.2f, -1},
+                      Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, -1}, Case{"glass-ggx", .3f, .3f, Color(1.5f), 2.5f, -1},
+                      Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 0}, Case{"glass-ggx", .3f, .4f, Color(1.5f), .5f, 1},
+                      Case{"hair", 0, 0, Color(1.55f), .5f, -1}, Case{"hair", 0, 0, Color(1.55f), 1.2f, 0},
+                      Case{"hair", 0, 0, Color(1.55f), 1.2f, 1}));
 
 Settings under(Hider h, int mode = 0) {
     Settings s;
@@ -122,10 +125,14 @@ TEST(TraceDistributions, ADisk) {
     disk.replace(disk.find("\"arealight\" 7 \"intensity\" 5"), 27, "\"shine\" 7");
     tracer("tron", "\"distribution\", \"oren-nayar\"");
     tracer("trct", "\"distribution\", \"cook-torrance\", \"roughness\", .4, \"eta\", color(1.5, 1.4, 2)");
+    tracer("trggx",
+           "\"distribution\", \"ggx\", \"roughness\", .4, \"roughnessv\", .2, \"eta\", {color(.2, .9, 1.5), color(3.9, 2.4, "
+           "1.9)}");
+    tracer("trbeckmann", "\"distribution\", \"beckmann\", \"roughness\", .4");
     tracer("trward", "\"distribution\", \"ward\", \"roughness\", .3, \"roughnessv\", .5, \"udir\", vector(1, 0, 0)");
     tracer("trglass", "\"distribution\", \"glass-ggx\", \"roughness\", .4");
     tracer("trhair", "\"distribution\", \"hair\"", "vector(.6, 0, .8)");
-    for (const char* name : {"tron", "trct", "trward", "trglass", "trhair"}) {
+    for (const char* name : {"tron", "trct", "trggx", "trbeckmann", "trward", "trglass", "trhair"}) {
         Moments of[3];
         for (int mode : {0, 1, 2}) {
             Scene s(scene(disk, name), under(Hider::Path, mode));

@@ -9,12 +9,26 @@
 #include "lobes/kinds/phase.h"
 #include "lobes/kinds/phong.h"
 #include "lobes/kinds/phonglobe.h"
+#include "lobes/kinds/smith.h"
 #include "lobes/kinds/specular.h"
 
 namespace alpenglow::transport::AL_NAMESPACE {
 // static: files of one width and different processors must not share it.
-static constexpr LobeLanes kLobes[] = {
-    lanesOf<Diffuse>(),    lanesOf<Specular>(),  lanesOf<Phong>(), lanesOf<UniformCone>(),      lanesOf<CosineCone>(),
-    lanesOf<PhongTrace>(), lanesOf<OrenNayar>(), lanesOf<Blinn>(), lanesOf<AshikhminShirley>(), lanesOf<CookTorrance>(),
-    lanesOf<Ward>(),       lanesOf<Glass>(),     lanesOf<Hair>(),  lanesOf<HenyeyGreenstein>(), lanesOf<PhaseBesideLight>()};
+static constexpr LobeLanes kLobes[] = {lanesOf<Diffuse>(),
+                                       lanesOf<Specular>(),
+                                       lanesOf<Phong>(),
+                                       lanesOf<UniformCone>(),
+                                       lanesOf<CosineCone>(),
+                                       lanesOf<PhongTrace>(),
+                                       lanesOf<OrenNayar>(),
+                                       lanesOf<Blinn>(),
+                                       lanesOf<AshikhminShirley>(),
+                                       lanesOf<CookTorrance>(),
+                                       lanesOf<Ward>(),
+                                       lanesOf<Glass>(),
+                                       lanesOf<Hair>(),
+                                       lanesOf<HenyeyGreenstein>(),
+                                       lanesOf<PhaseBesideLight>(),
+                                       lanesOf<GgxReflection>(),
+                                       lanesOf<BeckmannReflection>()};
 } // namespace alpenglow::transport::AL_NAMESPACE

@@ -1,5 +1,5 @@
-// trace()'s reflections by small facets: "blinn", "ashikhmin-shirley", "cook-torrance", "ward". axis = normal. A facet is drawn
-// by its slope, and the light it mirrors to wo is asked for; what lies below the surface is lost.
+// trace()'s reflections by small facets: "blinn", "ashikhmin-shirley", "cook-torrance", "ward". axis = normal. A facet is drawn,
+// and the light it mirrors to wo is asked for; what lies below the surface is lost.
 #pragma once
 #include "lobes/kinds/lobe.h"
 #include "shadeops/bsdf/ashikhmin_shirley.h"
@@ -27,7 +27,17 @@ struct FacetValue {
     vf density;
 };
 
-/// Facets draws half vectors about +z, x along udir, in rows of its own from 6 on; 0 to 5 are the tangents.
+/// Number k of a draw in which many places on a circle stand for one: its place within one of them, which is as good as a number
+/// of its own where what depends on the circle changes little from one to the next.
+AL_INLINE vf withinTurn(vf u) {
+    const vf x = u * vf(4093);
+    return x - floorLanes(x);
+}
+/// The facet that is turned by half a turn about the normal, z.
+AL_INLINE Direction turnedAbout(const Direction& h) { return {-h.x, -h.y, h.z}; }
+
+/// Facets draws half vectors about +z, x along udir, in rows of its own from 6 on; 0 to 5 are the tangents. `o`: wo in these
+/// axes.
 template <class Facets> struct FacetLobe {
     static constexpr const char* name = Facets::name;
     static constexpr const char* doc = Facets::doc;
@@ -43,30 +53,44 @@ template <class Facets> struct FacetLobe {
     static AL_MEMBER Value evaluate(const Given& p, const Direction& w) {
         const Facet<vf> f = facetOfUnit(w, p.axis(), p.wo());
         const FacetValue v = Facets::evaluate(p, f, tangentsOf(p));
-        const vm drawn = (f.nl > 0) & (f.oh > 1e-6f) & (f.nh > 1e-6f);
+        const vm drawn = (f.nl > 0) & (f.no > 0) & (f.oh > 1e-6f) & (f.nh > 1e-6f);
         return {select3(aboveHorizon(p, w), v.colour, none3<vf>()), where(drawn, divide(v.density, f.oh * vf(4)))};
     }
     static AL_MEMBER vm sample(const Given& p, const Pair<vf>& u, Direction& w) {
-        const Direction a = Facets::draw(p, u);
-        const Direction h = toWorld(Basis{p.ownTriple(0), p.ownTriple(3), p.axis()}, a);
+        const Basis axes{p.ownTriple(0), p.ownTriple(3), p.axis()};
+        const Direction o{dot(axes.t, p.wo()), dot(axes.u, p.wo()), dot(axes.n, p.wo())};
+        const Direction h = toWorld(axes, Facets::draw(p, u, o));
         const vf oh = dot(p.wo(), h);
         w = normalize(mad3(h, oh * vf(2), -p.wo()));
-        return (oh > 1e-6f) & (dot(p.axis(), w) > 0) & aboveHorizon(p, w);
+        return (o.z > 0) & (oh > 1e-6f) & (dot(p.axis(), w) > 0) & aboveHorizon(p, w);
     }
 };
+
+/// The side of a V-shaped groove that the viewer sees: one of a facet and its turned one, by what is seen of each (Heitz and
+/// d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014). Values are then no more
+/// than their densities. dn: the density of facets times n . h, with which they are drawn.
+AL_INLINE Direction visibleInGroove(const Direction& h, const Direction& o, vf u) {
+    const Direction other = turnedAbout(h);
+    const vf seen = maxLanes(dot(h, o), vf(0)), both = seen + maxLanes(dot(other, o), vf(0));
+    return select3(withinTurn(u) * both < seen, h, other);
+}
+AL_INLINE vf visibleInGroove(const Facet<vf>& f, vf dn) { return minLanes(divide(dn * f.oh, f.nh * f.no), dn * vf(2)); }
 
 struct BlinnFacets {
     static constexpr const char* name = "blinn";
     static constexpr const char* doc = "Facets whose slopes follow a power of the cosine.";
     static AL_MEMBER void prepare(const Rows& p) {
         const vf e = exponentOf(p.number(kRowRoughness));
-        p.own(6, e), p.own(7, vf(1) / (e + vf(1)));
+        p.own(6, e), p.own(7, vf(1) / (e + vf(2)));
     }
     static AL_MEMBER FacetValue evaluate(const Given& p, const Facet<vf>& f, const Pair<Direction>&) {
         const vf e = p.own(6), lobe = blinnLobe(f, e);
-        return {blinn(f, e, lobe, p.triple(kRowEta), p.triple(kRowK)), (e + vf(1)) * vf(0.5f / kPi) * lobe};
+        return {blinn(f, e, lobe, p.triple(kRowEta), p.triple(kRowK)),
+                visibleInGroove(f, (e + vf(2)) * vf(0.5f / kPi) * lobe * f.nh)};
     }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u) { return samplePhong(p.own(7), u); }
+    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
+        return visibleInGroove(samplePhong(p.own(7), u), o, u.b);
+    }
 };
 struct AshikhminFacets {
     static constexpr const char* name = "ashikhmin-shirley";
@@ -76,15 +100,18 @@ struct AshikhminFacets {
         p.own(6, eu), p.own(7, ev), p.own(8, (eu + vf(1)) * (ev + vf(1)));
     }
     static AL_MEMBER FacetValue evaluate(const Given& p, const Facet<vf>& f, const Pair<Direction>& t) {
-        const vf lobe = ashikhminLobe(f, t, p.own(6), p.own(7));
+        const vf lobe = ashikhminLobe(f, t, p.own(6), p.own(7)), density = rootLanes(p.own(8)) * vf(0.5f / kPi) * lobe;
         return {ashikhminShirley(f, p.own(8), lobe, p.triple(kRowEta), p.triple(kRowK)),
-                rootLanes(p.own(8)) * vf(0.5f / kPi) * lobe};
+                select(useful(f.nh * f.no * vf(2) - f.oh, f.nh, f.no), density, density * vf(2))};
     }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u) {
+    /// Whether a facet mirrors light from above to the viewer. Where the one that is drawn does not, its turned one is taken.
+    static AL_MEMBER vm useful(vf oh, vf nh, vf no) { return (oh > 1e-6f) & (oh * nh * vf(2) > no); }
+    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
         const vf eu = p.own(6), ev = p.own(7);
         const Pair<vf> d = elliptic(u.b, rootLanes(ev + vf(1)), rootLanes(eu + vf(1)));
         const vf e = mad(eu * d.a, d.a, mad(ev * d.b, d.b, vf(1)));
-        return withCosine(powLanes(vf(1) - u.a, vf(1) / e), d);
+        const Direction h = withCosine(powLanes(vf(1) - u.a, vf(1) / e), d);
+        return select3(useful(dot(h, o), h.z, o.z), h, turnedAbout(h));
     }
 };
 struct BeckmannFacets {
@@ -96,10 +123,10 @@ struct BeckmannFacets {
     }
     static AL_MEMBER FacetValue evaluate(const Given& p, const Facet<vf>& f, const Pair<Direction>&) {
         const vf d = beckmann(f, p.own(6));
-        return {cookTorrance(f, d, p.triple(kRowEta), p.triple(kRowK)), d * f.nh};
+        return {cookTorrance(f, d, p.triple(kRowEta), p.triple(kRowK)), visibleInGroove(f, d * f.nh)};
     }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u) {
-        return fromSlope(-p.own(6) * logOfRest(u.a), unitCircle(u.b));
+    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
+        return visibleInGroove(fromSlope(-p.own(6) * logOfRest(u.a), unitCircle(u.b)), o, u.b);
     }
 };
 struct WardFacets {
@@ -112,7 +139,7 @@ struct WardFacets {
         const vf a = p.own(6), b = p.own(7), lobe = wardLobe(f, t, a, b), v = ward(f, lobe, a, b);
         return {{v, v, v}, divide(lobe * vf(1 / kPi), a * b * f.nh * f.nh * f.nh)};
     }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u) {
+    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction&) {
         const vf a = p.own(6), b = p.own(7);
         const Pair<vf> d = elliptic(u.b, a, b);
         const vf x = d.a / a, y = d.b / b;

@@ -1,14 +1,13 @@
 // bsdf(): the distribution is chosen by its name, when the shader is compiled if that is known then. The distributions themselves
 // are runtime code (shadeops/bsdf/).
 #include "rsl/ir/builder.h"
+#include "shadeops/distributions.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::ir {
 
 namespace {
 
-constexpr const char* kDistributions[] = {"uniform",       "cosine", "oren-nayar", "blinn", "ashikhmin-shirley",
-                                          "cook-torrance", "ward",   "glass-ggx",  "hair"};
 constexpr int kHairLobes = 4, kHairParameters = 4; // seed: "up to 4 lobes", 4 numbers each
 
 } // namespace
@@ -44,6 +43,8 @@ std::vector<Inst*> Builder::distribution(const std::string& name, const Distribu
     if (name == "ashikhmin-shirley")
         return {runtime1("al_bsdf_ashikhminshirley", {d.l, d.n, wo, udir, roughness, roughnessv, index(0, 0), index(1, 0)},
                          Kind::Triple)};
+    if (name == "ggx" || name == "beckmann")
+        return {runtime1("al_bsdf_" + name, {d.l, d.n, wo, udir, roughness, roughnessv, index(0, 0), index(1, 0)}, Kind::Triple)};
     if (name == "ward") return {triple(runtime1("al_bsdf_ward", {d.l, d.n, wo, udir, roughness, roughnessv}, Kind::Float))};
     const auto first = [&](Inst* v) { return emit(Op::Extract, Kind::Float, {v}, 0); };
     if (name == "glass-ggx") {

@@ -1,9 +1,11 @@
-// The nine distributions of bsdf() (rsl.md 12.4), one file each, and their descriptors.
+// The distributions of bsdf() (rsl.md 12.4), one file each, and their descriptors.
 #pragma once
 #include "shadeops/bsdf/ashikhmin_shirley.h"
+#include "shadeops/bsdf/beckmann.h"
 #include "shadeops/bsdf/blinn.h"
 #include "shadeops/bsdf/cook_torrance.h"
 #include "shadeops/bsdf/cosine.h"
+#include "shadeops/bsdf/ggx.h"
 #include "shadeops/bsdf/glass_ggx.h"
 #include "shadeops/bsdf/hair.h"
 #include "shadeops/bsdf/oren_nayar.h"
@@ -13,8 +15,8 @@
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
 std::vector<Shadeop> bsdfShadeops() {
-    return {bsdfUniform(),      bsdfCosine(), bsdfOrenNayar(), bsdfBlinn(), bsdfAshikhminShirley(),
-            bsdfCookTorrance(), bsdfWard(),   bsdfGlass(),     bsdfHair()};
+    return {bsdfUniform(), bsdfCosine(),   bsdfOrenNayar(), bsdfBlinn(), bsdfAshikhminShirley(), bsdfCookTorrance(), bsdfWard(),
+            bsdfGgx(),     bsdfBeckmann(), bsdfGlass(),     bsdfHair()};
 }
 } // namespace alpenglow::rsl
 #endif

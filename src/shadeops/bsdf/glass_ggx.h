@@ -30,9 +30,10 @@ AL_INLINE GlassSide<T> glassSide(const Triple<T>& front, const Triple<T>& o, con
     const T here = select(inside, index, one), there = select(inside, one, index);
     return {o, n, tangents(n, udir), here, there, sane(roughness), sane(roughnessv)};
 }
-/// The values, and with what density by solid angle of l a facet is met, as far as the choice between the two leaves it.
+/// The values; the density by solid angle of l of the facets that the viewer sees, as far as the choice between the two leaves
+/// it; and what such a facet reflects.
 template <class T> struct GlassValue {
-    T reflected, refracted, density;
+    T reflected, refracted, density, fresnel;
     vm reflects;
 };
 /// First the part reflected, then the part refracted. The viewer may be on either side of n. l is unit.
@@ -55,15 +56,16 @@ template <class T> AL_INLINE GlassValue<T> glassValue(const GlassSide<T>& side, 
     const T d = divide(T(vf(1 / kPi)), a * b * q * q);
     // A facet seen from behind neither reflects nor refracts.
     const vm met = (value(oh) > 0) & (select(reflects, value(lh), -value(lh)) > 0), facing = met & (value(no) > 0);
-    const T g = smithGgx(slopes(o), no) * smithGgx(slopes(l), nl);
+    const T masked = smithGgx(slopes(o), no), g = masked * smithGgx(slopes(l), nl);
     const T f = dielectricReflectance(smaller(oh, one), divide(here, there));
     const T reflected = divide(f * d * g, no * vf(4));
     const T s = mad(here, oh, there * lh);
     const T refracted = divide((vf(1) - f) * d * g * oh * -lh * there * there, no * s * s);
     const T zero = T(vf(0));
-    const T density = select(reflects, divide(d * nh, oh * vf(4)), divide(d * nh * -lh * there * there, s * s));
+    const T visible = divide(d * masked, no);
+    const T density = select(reflects, visible * vf(0.25f), divide(visible * oh * -lh * there * there, s * s));
     return {select(facing & reflects, reflected, zero), select(facing & ~reflects & (value(nl) < 0), refracted, zero),
-            select(met, density, zero), reflects};
+            select(facing, density, zero), f, reflects};
 }
 template <class T>
 AL_INLINE void opBsdfGlassParts(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir,

@@ -268,6 +268,13 @@ void hashText(const std::string& s, float out[3]) {
     }
 }
 
+static void complain(Arguments a, const SourcePlace& place, Diagnostics& diagnostics) {
+    std::string text;
+    while (a.more(true)) text += a.string();
+    diagnostics.reportOnce("complaint:" + place.file + std::to_string(place.line) + ":" + std::to_string(place.column) + text,
+                           {Severity::Error, Rie::Consistency, place, text, {}, {}});
+}
+
 bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics,
                   const PrintFn& print, const std::vector<std::string>* files) {
     const std::string file =
@@ -309,10 +316,7 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             put(0, l, inCategory(wanted, s.strings[1]) ? 1 : 0);
         });
     } else if (s.op == "complaint") { // what the builder could only say about a way through the shader
-        if (mask)
-            diagnostics.reportOnce(
-                "complaint:" + file + std::to_string(s.place.line) + ":" + std::to_string(s.place.column) + s.strings[0],
-                {Severity::Error, Rie::Consistency, {file, s.place.line, s.place.column}, s.strings[0], {}, {}});
+        if (mask) complain(Arguments(s, lanes, in, std::countr_zero(mask)), {file, s.place.line, s.place.column}, diagnostics);
     } else if (s.op == "arraylimit") {
         Diagnostic d;
         d.severity = Severity::Error;

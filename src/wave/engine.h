@@ -205,6 +205,7 @@ public:
     const uint8_t* shapesOf(int32_t subset, int32_t exclude, const scene::Attributes* from);
     std::map<std::tuple<int32_t, int32_t, const scene::Attributes*>, const uint8_t*> subsetsKnown_;
     std::vector<int> apartAt_; ///< points of the batch that ask for indirect light beside direct light (rsl::kPairApart)
+    std::map<std::pair<const rsl::ir::Site*, int32_t>, const LobeKind*> lobesNamed_; ///< of names that calls have made
     Answers& answers() { return answers_; }
     // lightoutputs.cpp
     /// For the camera's points of a batch that is filled: runs for the outputs that light reaches.
@@ -234,6 +235,7 @@ public:
     // requests.cpp
     void requestShadows(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, const Color& weight,
                         TargetId, bool owns, uint32_t occurrence);
+    template <class Row> const LobeKind* lobeOf(const BatchContext&, const SiteInfo&, const Row&);
     template <class Row> const RayKind* raysOfTrace(const SiteInfo&, const Row&, const ShadePoint&);
     template <class Row>
     void askOfTrace(const BatchContext&, const SiteInfo&, const ShadePoint&, const Row&, LobeVertex&, LobeParams&);

@@ -1,14 +1,16 @@
 // Requests of kernels: what a call asks for at a point (design decisions 2 and 3). What becomes of lobes is in gather.h.
 #include "lobes/sampling.h"
+#include "shadeops/distributions.h"
 #include "texture/lookup.h"
 #include "wave/gather.h"
 #include "world/raysets.h"
+#include <bit>
 
 namespace alpenglow::transport {
 
 namespace {
 /// Parameters of the distributions of bsdf(), as given or as they are when not (rsl.md 12.4).
-template <class Row> DistributionParams distributionOf(const SiteInfo& s, const Row& f) {
+template <class Row> DistributionParams distributionOf(const SiteInfo& s, const LobeKind& kind, const Row& f) {
     const TraceSite& t = *s.trace;
     DistributionParams m;
     auto triple = [&](int row) { return Color(f(row), f(row + 1), f(row + 2)); };
@@ -16,7 +18,7 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
     m.roughnessv = t.roughnessv >= 0 ? f(t.roughnessv) : m.roughness;
     if (t.udir >= 0) m.udir = triple(t.udir);
     if (t.absorption >= 0) m.absorption = triple(t.absorption);
-    m.eta = Color(s.lobe->name == "glass-ggx" ? 1.5f : s.lobe->name == "hair" ? 1.55f : 0.f);
+    m.eta = Color(kind.name == "glass-ggx" ? 1.5f : kind.name == "hair" ? 1.55f : 0.f);
     for (size_t k = 0; k < t.eta.size() && k < 2; ++k)
         (k ? m.k : m.eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
     for (int row : t.lobes) m.lobes.push_back(f(row));
@@ -89,6 +91,28 @@ template <class Row> const RayKind* Engine::raysOfTrace(const SiteInfo& s, const
     return kindOf(kind);
 }
 
+/// The lobe that a call asks for; null: none, or a distribution that there is not.
+template <class Row> const LobeKind* Engine::lobeOf(const BatchContext& c, const SiteInfo& s, const Row& f) {
+    if (!s.trace || s.trace->distribution < 0) return s.lobe;
+    const auto id = std::bit_cast<int32_t>(f(s.trace->distribution));
+    const auto [known, fresh] = lobesNamed_.try_emplace({s.site, id}, s.lobe);
+    if (!fresh) return known->second;
+    const std::string& name = rsl::internedString(id);
+    if (name.empty()) return s.lobe;
+    if (rsl::isDistribution(name, true)) return known->second = findLobe(name);
+    const auto& files = c.bound->kernel->files();
+    const auto& at = s.site->place;
+    const SourcePlace place{size_t(at.file) < files.size() ? files[size_t(at.file)] : "", at.line, at.column};
+    diagnostics_.reportOnce("distribution:" + name + place.file + std::to_string(place.line),
+                            {Severity::Error,
+                             Rie::BadToken,
+                             place,
+                             rsl::noDistribution(s.site->op, name) + "; the call brings no light",
+                             rsl::knownDistributions(),
+                             {}});
+    return known->second = nullptr;
+}
+
 /// What a trace() says of its lobe and its rays.
 template <class Row>
 void Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Row& f, LobeVertex& l,
@@ -127,7 +151,8 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
     if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion)
         return requestShadows(c, s, point, f, weight, target, owns, occurrence);
-    if (!s.lobe) return; // under path ambient light is what escaping diffuse rays see
+    const LobeKind* const kind = lobeOf(c, s, f);
+    if (!kind) return; // under path ambient light is what escaping diffuse rays see
     if (s.kind == SiteKind::Trace && s.trace->apart && !owns) apartAt_.push_back(point);
     if (s.kind == SiteKind::Trace && s.trace->records.call) {
         if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
@@ -138,7 +163,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         }
     }
     LobeVertex& l = lobes.emplace_back();
-    l.kind = s.lobe;
+    l.kind = kind;
     LobeParams params;
     l.point = point;
     l.weight = weight;
@@ -176,7 +201,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     default:
         break;
     }
-    const DistributionParams more = l.kind->distribution ? distributionOf(s, f) : DistributionParams();
+    const DistributionParams more = l.kind->distribution ? distributionOf(s, *kind, f) : DistributionParams();
     l.place = lobeRows_.add(*l.kind, params, l.kind->distribution ? &more : nullptr);
 }
 

@@ -1,5 +1,6 @@
 // What the call sites of a kernel mean to the engine, worked out once per kernel.
 #include "scene/scene.h"
+#include "shadeops/distributions.h"
 #include "shadeops/specular.h"
 #include "world/cloudsite.h"
 #include "world/gathersite.h"
@@ -126,7 +127,8 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         if (const int r = row(name); r >= 0) t->eta.push_back({r, std::min(3, ends[r] - r)});
     for (int n = 0; row(("lobeparameters[" + std::to_string(n) + "]").c_str()) >= 0; ++n)
         t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
-    for (const char* name : {"distribution", "bsdf", "environmentmap", "environmentspace"})
+    t->distribution = row("distribution") >= 0 ? row("distribution") : row("bsdf");
+    for (const char* name : {"environmentmap", "environmentspace"})
         if (row(name) >= 0)
             said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
     if (const std::string map = text("environmentmap"); !map.empty()) {
@@ -336,16 +338,15 @@ static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKe
     };
     std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
     i.lobe = findLobe(distribution);
-    if (!i.lobe) {
+    if (!i.lobe) { // of a kernel that the compiler has refused, else
         i.lobe = findLobe("uniform");
-        world.diagnostics_->reportOnce(
-            "distribution:" + distribution,
-            {Severity::Warning,
-             Rie::Unimplement,
-             {k.files().empty() ? "" : k.files()[s.place.file], s.place.line, s.place.column},
-             "trace(): distribution \"" + distribution + "\" is not yet available; one ray along R is traced",
-             {},
-             {}});
+        world.diagnostics_->reportOnce("distribution:" + distribution,
+                                       {Severity::Error,
+                                        Rie::BadToken,
+                                        placeOf(s, k),
+                                        rsl::noDistribution(s.op, distribution) + "; one ray along R is traced",
+                                        rsl::knownDistributions(),
+                                        {}});
     }
     i.trace = traceSite(i, s, k, world);
 }

@@ -56,17 +56,18 @@ struct RecordSite {
 /// Where the rarer parameters of a trace() lie.
 struct TraceSite {
     int udir = -1, roughness = -1, roughnessv = -1, absorption = -1, tint = -1, weight = -1; ///< rows, or -1
-    std::vector<std::pair<int, int>> eta;                                                    ///< row, components
-    std::vector<int> lobes;        ///< rows of the elements of "lobeparameters"
-    int part = -1;                 ///< of the form that gives an array
-    texture::Handle map = nullptr; ///< "environmentmap"
-    Matrix toMap;                  ///< current to "environmentspace"
-    bool sums = false;             ///< it asks for transmission or for parts of the result
-    bool onlyLights = false;       ///< for nothing but what area lights send
-    bool hemisphere = false;       ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
-    bool apart = false;            ///< rsl::kPairApart: lights are not for it; of diffuse(): nothing but lights is
-    bool axis = false;             ///< of one with "axis": the mean over directions on its side alone
-    bool openness = false;         ///< it asks what is in the way of its rays: every draw sends one
+    int distribution = -1;                ///< the row of a name that is known only when the shader runs
+    std::vector<std::pair<int, int>> eta; ///< row, components
+    std::vector<int> lobes;               ///< rows of the elements of "lobeparameters"
+    int part = -1;                        ///< of the form that gives an array
+    texture::Handle map = nullptr;        ///< "environmentmap"
+    Matrix toMap;                         ///< current to "environmentspace"
+    bool sums = false;                    ///< it asks for transmission or for parts of the result
+    bool onlyLights = false;              ///< for nothing but what area lights send
+    bool hemisphere = false;              ///< of indirectdiffuse(): no "samples" is Attribute "irradiance" "nsamples"
+    bool apart = false;                   ///< rsl::kPairApart: lights are not for it; of diffuse(): nothing but lights is
+    bool axis = false;                    ///< of one with "axis": the mean over directions on its side alone
+    bool openness = false;                ///< it asks what is in the way of its rays: every draw sends one
     FadeSite fade;
     RecordSite records;
 };

@@ -266,6 +266,44 @@ TEST(TraceDistributions, WhereRaysBegin) {
     EXPECT_GT(of("\"vector off\" [20 .5 0]"), 1e17); // what no sum holds
     EXPECT_NEAR(of("\"float by\" .25"), 2.75, 1e-4);
 }
+// Names that are known only when the shader runs: of each point its own, and an error where there is none of that name.
+TEST(TraceDistributions, NamesThatAreKnownLate) {
+    writeShader("late", R"(surface late(string other = "cosine"; float reflects = 0;) {
+    normal Nf = faceforward(normalize(N), I);
+    string name = (u < .5) ? "ward" : other;
+    Oi = 1;
+    if (reflects > 0)
+        Ci = bsdf(vector(Nf), Nf, "distribution", name, "roughness", .5, "wo", vector(Nf));
+    else
+        Ci = trace(P, vector(Nf), "distribution", name, "samplecone", PI / 2, "type", "diffuse", "samples", 4);
+}
+)");
+    const std::string shell =
+        "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"constant\"\nColor .5 .5 .5\nSphere "
+        "40 -40 40 360\nAttributeEnd\n";
+    const CameraRay second = rayTo({10.3f, .8f, -.4f}, {10, 0, 0}), first = rayTo({-10.3f, .8f, -.4f}, {-10, 0, 0});
+    for (const Hider h : {Hider::Raytrace, Hider::Path})
+        for (const bool known : {true, false}) {
+            std::string rib = scene(shell, "late");
+            if (!known) rib.replace(rib.find("Surface \"late\""), 14, "Surface \"late\" \"other\" \"shiny\"");
+            Scene s(rib, under(h));
+            const double a = s.one(first).x, b = s.one(second).x;
+            EXPECT_GT(std::min(a, b) + std::max(a, b), .1); // one half of the floor has "ward"
+            if (known) EXPECT_NEAR(std::max(a, b), .5, 1e-5);
+            const bool said = s.messages().find("trace(): there is no distribution \"shiny\"") != std::string::npos;
+            EXPECT_EQ(said, !known) << s.messages();
+            EXPECT_EQ(s.diagnostics.errors(), known ? 0 : 1);
+            if (!known) EXPECT_EQ(std::min(a, b), 0);
+            if (!known) EXPECT_NE(s.messages().find("ggx, beckmann, glass-ggx"), std::string::npos) << s.messages();
+        }
+    std::string rib = scene("", "late");
+    rib.replace(rib.find("Surface \"late\""), 14, "Surface \"late\" \"other\" \"shiny\" \"reflects\" 1");
+    Scene s(rib, under(Hider::Raytrace));
+    const double a = s.one(first).x, b = s.one(second).x;
+    EXPECT_NEAR(std::max(a, b), 1 / kPi, 1e-5);
+    EXPECT_EQ(std::min(a, b), 0);
+    EXPECT_NE(s.messages().find("bsdf(): there is no distribution \"shiny\""), std::string::npos) << s.messages();
+}
 // What is not followed is said.
 TEST(TraceDistributions, WordsThatAreNotKnown) {
     writeShader("words", "surface words() { Oi = 1; Ci = trace(P, vector(0, 1, 0), \"type\", \"ghost\", \"hitsides\", \"top\", "

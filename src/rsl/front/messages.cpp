@@ -227,7 +227,7 @@ constexpr MessageKind kKinds[] = {
     {"not-constant", "* that is known when the shader is compiled; *"},
     {"not-constant", "* must be known when the shader is compiled; *"},
     {"not-constant", "\"*\" sends a string that is not known when the shader is compiled; *"},
-    {"no-such-distribution", "bsdf(): there is no distribution \"*\"*"},
+    {"no-such-distribution", "*(): there is no distribution \"*\"*"},
     {"bsdf-parts", "bsdf(): \"*\" has no parts; *"},
     {"trace-parts", "trace(): \"*\" has no parts; *"},
     {"light-category", "the category \"*\" cannot be read: *"},

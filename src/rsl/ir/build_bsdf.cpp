@@ -78,6 +78,33 @@ std::vector<Inst*> Builder::distribution(const std::string& name, const Distribu
     return parts;
 }
 
+/// A name that is known when the shader runs is none: said then, and 0.
+Inst* Builder::noSuchDistribution(Inst* name, const Expr& e) {
+    Site s;
+    s.op = "complaint";
+    const std::string text = noDistribution(e.shadeop->name, "");
+    s.strings = {text.substr(0, text.size() - 1), "", "\"; its value is 0; " + knownDistributions()};
+    std::vector<Inst*> args;
+    addArgument(s, args, name, {Base::String, 0});
+    place_ = e.place;
+    call(Op::Service, std::move(s), std::move(args));
+    return zero(Kind::Triple);
+}
+
+/// Of a call that sends rays: an error where it names a distribution that there is not.
+void Builder::checkDistribution(const Expr& e) {
+    const bool hemisphere = e.shadeop->name == "occlusion" || e.shadeop->name == "indirectdiffuse";
+    for (const NamedArg& p : e.pairs) {
+        if (!p.value || p.output || (p.name != "distribution" && p.name != "bsdf") || p.value->type.base != Base::String)
+            continue;
+        const Inst* name = expr(*p.value, Kind::String);
+        if (name->op != Op::ConstString || name->text.empty()) continue;
+        if (hemisphere ? name->text == "uniform" || name->text == "cosine" : isDistribution(name->text, true)) continue;
+        error(p.place, noDistribution(e.shadeop->name, name->text) + "; " +
+                           (hemisphere ? std::string("it is uniform or cosine") : knownDistributions()));
+    }
+}
+
 /// The value of a call of bsdf() that gives one colour, or the parts of one that gives an array.
 std::vector<Inst*> Builder::bsdf(const Expr& e) {
     Distribution d;
@@ -114,15 +141,15 @@ std::vector<Inst*> Builder::bsdf(const Expr& e) {
             warn(e.place,
                  "bsdf() with parts needs a distribution that is known when the shader is compiled; all is in the first");
         const std::function<Inst*(size_t)> from = [&](size_t i) -> Inst* {
-            if (i == std::size(kDistributions)) return zero(Kind::Triple);
+            if (i == std::size(kDistributions)) return noSuchDistribution(name, e);
             Inst* is = emit(Op::Equal, Kind::Bool, {name, leaves_.string(kDistributions[i])});
             return branch(
                 is, [&] { return std::vector<Inst*>{sum(distribution(kDistributions[i], d))}; },
                 [&] { return std::vector<Inst*>{from(i + 1)}; })[0];
         };
         result = {from(0)};
-    } else if (std::find(std::begin(kDistributions), std::end(kDistributions), known) == std::end(kDistributions)) {
-        warn(e.place, "bsdf(): there is no distribution \"" + known + "\"; its value is 0");
+    } else if (!isDistribution(known, false)) {
+        error(e.place, noDistribution("bsdf", known) + "; " + knownDistributions());
         result = {zero(Kind::Triple)};
     } else {
         result = distribution(known, d);

@@ -146,6 +146,8 @@ Inst* Builder::shadeopCall(const Expr& e) {
         return value;
     }
     if (op.name == "shadername" && e.args.empty()) return leaves_.string(shader_.name);
+    if (op.name == "trace" || op.name == "occlusion" || op.name == "indirectdiffuse" || op.name == "environment")
+        checkDistribution(e);
     if (Inst* traced = tracedMap(e)) return traced;
     if (Inst* light = hemisphere(e)) return light;
     switch (op.lowering) {

@@ -291,6 +291,8 @@ private:
     struct Distribution;
     std::vector<Inst*> bsdf(const Expr&);
     std::vector<Inst*> distribution(const std::string& name, const Distribution&);
+    Inst* noSuchDistribution(Inst* name, const Expr&);
+    void checkDistribution(const Expr&);
 
     Inst* shadeopCall(const Expr&);
     Inst* pluginCall(const Expr&); // build_plugin.cpp

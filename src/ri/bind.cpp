@@ -46,8 +46,13 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
                        "class type[n] name, for example \"varying color Cs\"");
         return p;
     }
-    if (use == Use::Option || use == Use::Attribute) sayUnknown(use == Use::Option, category, p);
-    if (use == Use::Hider || use == Use::Display) sayUnknownParameter(use == Use::Hider, p);
+    bool effect = true; // a bad value of what does nothing is no failure
+    if (use == Use::Option || use == Use::Attribute) effect = sayUnknown(use == Use::Option, category, p);
+    if (use == Use::Hider || use == Use::Display) effect = sayUnknownParameter(use == Use::Hider, p);
+    const auto refuse = [&](Rie code, std::string message) {
+        reporter.report(effect ? Severity::Error : Severity::Warning, code, p.place, std::move(message));
+        return p;
+    };
     bool text = v.kind == Value::Kind::Strings;
     bool guessed = !r.declaration;
     if (r.declaration) {
@@ -58,12 +63,10 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         if (wantsText != text && v.kind != Value::Kind::Empty) {
             // A shader may well declare a standard name otherwise ("background" as a file name): its own declaration decides.
             guessed = use == Use::Shader && !r.inlineForm;
-            if (!guessed) {
-                reporter.error(Rie::Consistency, p.place,
-                               fmt::format("{}: \"{}\" is {}, not {}", request, p.name, wantsText ? "a string" : toString(p.type),
-                                           text ? "a string" : "numbers"));
-                return p;
-            }
+            if (!guessed)
+                return refuse(Rie::Consistency,
+                              fmt::format("{}: \"{}\" is {}, not {}", request, p.name, wantsText ? "a string" : toString(p.type),
+                                          text ? "a string" : "numbers"));
         }
     } else if (use == Use::Primitive) {
         reporter.once(fmt::format("ri:undeclared:{}", p.name), Severity::Warning, Rie::BadToken, p.place,
@@ -82,16 +85,12 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         // x - x is 0 for finite x and NaN otherwise, in every order of summing.
         float sum = 0;
         for (float f : p.numbers) sum += f - f;
-        if (sum != 0 || std::isnan(sum)) {
-            reporter.error(Rie::Range, p.place, fmt::format("{}: \"{}\" has a value that is not finite", request, p.name));
-            return p;
-        }
+        if (sum != 0 || std::isnan(sum))
+            return refuse(Rie::Range, fmt::format("{}: \"{}\" has a value that is not finite", request, p.name));
         if (p.type == scene::Type::Integer && use != Use::Shader)
             for (float f : p.numbers)
-                if (f != std::floor(f)) {
-                    reporter.error(Rie::Syntax, p.place, fmt::format("{}: \"{}\" is an integer, not {}", request, p.name, f));
-                    return p;
-                }
+                if (f != std::floor(f))
+                    return refuse(Rie::Syntax, fmt::format("{}: \"{}\" is an integer, not {}", request, p.name, f));
     }
     *keep = true;
     if (guessed || use == Use::Primitive) return p; // fitVariables counts those
@@ -104,11 +103,9 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         p.arrayLength = int(have / per);
         return p;
     }
-    reporter.error(Rie::Consistency, p.place,
-                   fmt::format("{}: \"{}\" needs {} {}, not {}", request, p.name, want,
-                               std::string(text ? "string" : "number") + (want == 1 ? "" : "s"), have));
     *keep = false;
-    return p;
+    return refuse(Rie::Consistency, fmt::format("{}: \"{}\" needs {} {}, not {}", request, p.name, want,
+                                                std::string(text ? "string" : "number") + (want == 1 ? "" : "s"), have));
 }
 
 scene::ParamList Interpreter::bind(const Call& call, Use use, const std::string& category) {

@@ -77,10 +77,10 @@ public:
     scene::Attributes& attributes();
     scene::AttributesRef snapshot();
     scene::ParamList bind(const Call& call, Use use, const std::string& category = {});
-    /// A name of Option or Attribute that nobody knows: a warning, once. Of other renderers: a note.
-    void sayUnknown(bool option, const std::string& category, const scene::Param& p);
+    /// A name of Option or Attribute that nobody knows: a warning, once. Of other renderers: a note. True: it has an effect.
+    bool sayUnknown(bool option, const std::string& category, const scene::Param& p);
     /// The same for a parameter of Hider (true) or Display.
-    void sayUnknownParameter(bool hider, const scene::Param& p);
+    bool sayUnknownParameter(bool hider, const scene::Param& p);
     /// n numbers of ColorSamples (or 3) to RGB; `numbers` may hold several colours.
     std::vector<float> toRgb(const std::vector<double>& numbers) const;
     scene::ShaderRef shader(const Call& call);

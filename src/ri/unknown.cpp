@@ -38,17 +38,17 @@ std::string didYouMean(const std::string& word, const std::vector<std::string>& 
 
 } // namespace
 
-void Interpreter::sayUnknown(bool option, const std::string& category, const scene::Param& p) {
-    if (category == "user") return;
+bool Interpreter::sayUnknown(bool option, const std::string& category, const scene::Param& p) {
+    if (category == "user") return true;
     const auto table = option ? scene::knownOptions() : scene::knownAttributes();
     const char* what = option ? "Option" : "Attribute";
     const std::string key = category + ":" + p.name;
     const scene::OptionDescription* known = scene::findKnown(table, key);
-    if (known && known->effect != scene::Effect::Ignored) return;
+    if (known && known->effect != scene::Effect::Ignored) return true;
     const std::string head = fmt::format("{} \"{}\" \"{}\"", what, category, p.name);
     if (known || otherClasses(option).count(category)) {
         reporter.once("ri:" + head, Severity::Info, Rie::BadToken, p.place, head + " does nothing here");
-        return;
+        return false;
     }
     std::string hint;
     const std::vector<std::string> names = scene::knownNames(table, category);
@@ -62,22 +62,24 @@ void Interpreter::sayUnknown(bool option, const std::string& category, const sce
     }
     reporter.once("ri:" + head, Severity::Warning, Rie::BadToken, p.place,
                   head + " is not known: it does nothing, unless a shader asks for it", hint);
+    return false;
 }
 
-void Interpreter::sayUnknownParameter(bool hider, const scene::Param& p) {
+bool Interpreter::sayUnknownParameter(bool hider, const scene::Param& p) {
     const auto table = hider ? scene::knownHiderParameters() : scene::knownDisplayParameters();
     const scene::OptionDescription* known = scene::findKnown(table, p.name);
-    if (known && known->effect != scene::Effect::Ignored) return;
+    if (known && known->effect != scene::Effect::Ignored) return true;
     const std::string head = fmt::format("{} parameter \"{}\"", hider ? "Hider" : "Display", p.name);
     if (known) {
         reporter.once("ri:" + head, Severity::Info, Rie::BadToken, p.place, head + " does nothing here");
-        return;
+        return false;
     }
     std::vector<std::string> names;
     for (const scene::OptionDescription& d : table)
         if (d.effect != scene::Effect::Ignored) names.emplace_back(d.name);
     reporter.once("ri:" + head, Severity::Warning, Rie::BadToken, p.place, head + " is not known: it does nothing",
                   didYouMean(p.name, names));
+    return false;
 }
 
 } // namespace alpenglow::ri

@@ -64,6 +64,23 @@ TEST(KnownOptions, EverySampleIsReadWithoutAMessage) {
                 << d.name;
 }
 
+// What has no effect is no failure, whatever its value is: the program's status stays 0.
+TEST(KnownOptions, BadValuesOfWhatHasNoEffectAreWarnings) {
+    for (const char* idle :
+         {"Option \"limits\" \"int bucketsize\" [16 16]\n", "Option \"limits\" \"gridsize\" [\"a\"]\n",
+          "Attribute \"trimcurve\" \"int nosuchname\" [1.5]\n", "Option \"nosuchclass\" \"int[2] x\" [1 2 3]\n",
+          "Hider \"hidden\" \"int nosuchname\" [1 2]\n", "GeometricApproximation \"tesselation\" 32\n"}) {
+        auto c = read(std::string(idle) + "WorldBegin\nWorldEnd\n");
+        EXPECT_EQ(c->diagnostics.errors(), 0) << c->messages();
+        EXPECT_GE(c->diagnostics.warnings(), 1) << idle;
+    }
+    auto c = read("GeometricApproximation \"tesselation\" 32\n");
+    EXPECT_EQ(c->only().hint, "did you mean tessellation?");
+    for (const char* used : {"Option \"limits\" \"int texturememory\" [16 16]\n", "Attribute \"dice\" \"int roundcurve\" [.5]\n",
+                             "Option \"user\" \"int mine\" [1 2]\n"})
+        EXPECT_EQ(read(used)->diagnostics.errors(), 1) << used;
+}
+
 TEST(KnownOptions, WhatTheCodeLooksUpIsInATable) {
     const std::string text = sources();
     const std::regex lookup(

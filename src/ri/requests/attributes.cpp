@@ -185,8 +185,9 @@ void approximation(Interpreter& in, const Call& c) {
                                                     "normaldeviation", "pointdeviation", "tessellation"};
     if (std::find(kTypes.begin(), kTypes.end(), c.text(0)) == kTypes.end()) {
         std::string near = nearestName(c.text(0), kTypes);
-        in.reporter.error(Rie::BadToken, c.place, fmt::format("GeometricApproximation: \"{}\" is not known", c.text(0)),
-                          near.empty() ? "" : "did you mean " + near + "?");
+        in.reporter.report(Severity::Warning, Rie::BadToken, c.place,
+                           fmt::format("GeometricApproximation: \"{}\" is not known: it does nothing", c.text(0)),
+                           near.empty() ? "" : "did you mean " + near + "?");
         return;
     }
     scene::Param p;

@@ -275,6 +275,7 @@ void Interpreter::inPart(const std::string& key, const std::function<SourcePlace
     }
     unwind(barriers_.back(), end, true);
     barriers_.pop_back();
+    endInnerOptions();
     openArchives_.pop_back();
     replaying_ = wasReplaying;
 }

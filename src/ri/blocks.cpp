@@ -95,7 +95,7 @@ void Interpreter::end(BlockKind kind, const Call& call) {
 void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld) {
     while (blocks_.size() > depth) {
         Block& b = blocks_.back();
-        if (keepWorld && (b.kind == BlockKind::World || b.kind == BlockKind::Frame)) {
+        if (keepWorld && !b.inner && (b.kind == BlockKind::World || b.kind == BlockKind::Frame)) {
             reporter.once("ri:openarchive", Severity::Warning, Rie::Nesting, b.place,
                           fmt::format("{} is left open by an archive", beginName(b.kind)));
             return;
@@ -122,7 +122,7 @@ void Interpreter::pop() {
     case BlockKind::Edit:
         return;
     case BlockKind::World:
-        worldEnd(b);
+        if (!b.inner) worldEnd(b);
         break;
     case BlockKind::Object:
         if (b.object) objects_[b.object->object.handle] = b.object;
@@ -161,6 +161,7 @@ void Interpreter::rebase(scene::Attributes& a, const scene::Transform& cameraToW
 void Interpreter::worldBegin(const Call& call) {
     if (inWorld()) {
         if (making_) return reporter.error(Rie::Nesting, call.place, "WorldBegin inside a procedural: it is ignored");
+        if (innerWorld(call)) return;
         reporter.error(Rie::Nesting, call.place, "WorldBegin inside a world: the open one ends here");
         end(BlockKind::World, call);
     }

@@ -119,19 +119,24 @@ unsigned Interpreter::scope() const {
 void Interpreter::checkScope(const Call& call) {
     const Request& r = *call.request;
     unsigned s = scope();
-    if (r.scopes & s) return;
+    if (r.scopes & s || (s == kWorld && waitsForInnerWorld(call))) return;
+    if (r.name == "WorldBegin" && inWorld()) return;                    // which says what is done
+    if (r.kind == Kind::Primitive && !(s & (kWorld | kObject))) return; // emit() refuses it with an error
+    sayOutOfScope(r, s, call.place);
+}
+
+void Interpreter::sayOutOfScope(const Request& r, unsigned s, const SourcePlace& place) {
     Rie code = Rie::IllState;
     if (r.kind == Kind::Option) code = Rie::NotOptions;
     else if (r.kind == Kind::Primitive) code = Rie::NotPrims;
     else if (r.kind == Kind::Attribute || r.kind == Kind::Shader || r.kind == Kind::Light || r.kind == Kind::Transform)
         code = Rie::NotAttribs;
     else if (r.kind == Kind::Structure) code = Rie::Nesting;
-    if (r.kind == Kind::Primitive && !(s & (kWorld | kObject))) return; // emit() refuses it with an error
     const char* where = s == kBase    ? "outside frame and world"
                         : s == kFrame ? "before WorldBegin"
                         : s == kWorld ? "inside the world"
                                       : "inside an object";
-    reporter.once(fmt::format("ri:scope:{}:{}", r.name, s), Severity::Warning, code, call.place,
+    reporter.once(fmt::format("ri:scope:{}:{}", r.name, s), Severity::Warning, code, place,
                   fmt::format("{} does not belong {}: it is done as if it were in its place", r.name, where));
 }
 

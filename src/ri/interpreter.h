@@ -148,6 +148,13 @@ private:
         NamedSystems systems;                           ///< Frame, World
         std::map<std::string, GraphicsState> resources; ///< Resource
         ObjectRef object;                               ///< Object
+        bool inner = false;                             ///< World: in another one
+    };
+    /// Options that an archive gives in a world: until it is known whether it has a world of its own, they are obeyed.
+    struct InnerOptions {
+        size_t archive = 0; ///< index into barriers_
+        scene::Options before;
+        std::vector<std::pair<const Request*, SourcePlace>> calls;
     };
     /// What outlives a stream.
     struct Lasting {
@@ -236,6 +243,15 @@ private:
     bool conditional(const Call& call);
     bool record(const Call& call);
     void checkScope(const Call& call);
+    void sayOutOfScope(const Request& request, unsigned scope, const SourcePlace& place);
+    // innerworld.cpp
+    std::optional<size_t> archiveInWorld() const;
+    /// Whether it is said later, or never, that a request is out of scope: an option of an archive that is read in a world.
+    bool waitsForInnerWorld(const Call& call);
+    /// To be called when an archive has ended.
+    void endInnerOptions();
+    /// WorldBegin in an archive that is read in a world. False: it is not.
+    bool innerWorld(const Call& call);
     unsigned scope() const;
     void pop();
     void unwind(size_t depth, const SourcePlace& where, bool keepWorld);
@@ -281,6 +297,7 @@ private:
     std::string unscanned_;   ///< the stream, before it reads one
     std::vector<std::string> openArchives_;
     std::vector<size_t> barriers_; ///< block depth at each open archive's start
+    std::optional<InnerOptions> inner_;
     int archiveReads_ = 0;
     size_t objectCopies_ = 0, replayedCalls_ = 0;
     uint32_t solidSerial_ = 0; ///< of solid blocks

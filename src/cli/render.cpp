@@ -293,8 +293,8 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
          "-o", s.output,
          std::string("Write one picture FILE instead of the scene's displays; the extension chooses the format (") +
              display::kPictureExtensions +
-             "). Depth and shadow maps stay. # or %04d in the name becomes the number of the frame; in a scene of frames a "
-             "name without it gets the number before the extension. - is standard output: PNG, or the format of the "
+             "). Depth and shadow maps stay. # or %04d in the name becomes the number of the frame; in a scene of several "
+             "frames a name without it gets the number before the extension. - is standard output: PNG, or the format of the "
              "scene's first display (openexr, tiff, jpeg), frames one after the other")
         ->type_name("FILE")
         ->group("Pictures");

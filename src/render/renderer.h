@@ -8,6 +8,7 @@
 #include "render/stats.h"
 #include "scene/frameconsumer.h"
 #include <functional>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -83,6 +84,10 @@ private:
     /// Says of each display whether a Make request reads it.
     void markRead(scene::Options&) const;
     std::string fileFor(const scene::Options&, uint32_t spp);
+    /// A frame with a picture for -o comes: the first has the name as it is, until a second comes. True: this one has its number.
+    bool numbersFrame();
+    /// Gives the picture of the first frame, and its part file, the number of the frame.
+    void numberFirstPicture();
     std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own,
                                          bool shaders) const;
     /// Says that samples were left out, and how to make the first of them again. `sample` < 0: it is not known.
@@ -115,6 +120,13 @@ private:
     int pictures_ = 0, maps_ = 0; ///< frames of either kind
     int checkpoints_ = 0;         ///< worlds outside of frames that had one
     int saved_ = 0;               ///< pictures of worlds outside of frames that were made for -o, or of the save pattern
+    int framesForOutput_ = 0;     ///< frames with a number and a picture for -o so far, rendered or passed over
+    /// Of the only one of these, where it is rendered: its file, once that is known.
+    struct FirstPicture {
+        int frame;
+        std::string file;
+    };
+    std::optional<FirstPicture> firstPicture_;
 };
 
 } // namespace alpenglow::render

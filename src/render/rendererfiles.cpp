@@ -6,13 +6,19 @@
 #include "render/renderer.h"
 #include "scene/scene.h"
 #include <filesystem>
+#include <utility>
 
 namespace alpenglow::render {
 
 std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
     if (settings_.output == "-") return "-"; // frame after frame
     if (!settings_.output.empty()) {
-        if (isNumbered(o)) return numberedName(settings_.output, o.frameNumber);
+        if (isNumbered(o)) {
+            if (numbersFrame()) return numberedName(settings_.output, o.frameNumber);
+            firstPicture_ = {o.frameNumber, ""};
+            return settings_.output;
+        }
+        numberFirstPicture();
         const bool numbered = saved_++ > 0 || hasFrameNumber(settings_.output);
         return numbered ? numberedName(settings_.output, saved_) : settings_.output;
     }
@@ -26,6 +32,37 @@ std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
     return name;
 }
 
+bool Renderer::numbersFrame() {
+    if (++framesForOutput_ == 1 && saved_ == 0 && !hasFrameNumber(settings_.output)) return false;
+    numberFirstPicture();
+    return true;
+}
+
+void Renderer::numberFirstPicture() {
+    if (!firstPicture_) return;
+    const FirstPicture first = *std::exchange(firstPicture_, {});
+    std::error_code e;
+    // What could not be written is not there; a name may also lead to a device.
+    if (first.file.empty() || !std::filesystem::is_regular_file(first.file, e)) return;
+    names_.release(first.file);
+    scene::Options o;
+    o.frameNumber = first.frame;
+    o.inFrame = true;
+    const std::string name = names_.take("display", numberedName(first.file, first.frame), false, o, {}, &diagnostics_);
+    for (const auto& [from, to] : {std::pair{first.file, name}, {sidecarName(first.file), sidecarName(name)}}) {
+        if (!std::filesystem::exists(from, e)) continue;
+        std::filesystem::rename(from, to, e);
+        if (!e) continue;
+        outcome_.outputFailed = true;
+        diagnostics_.report(Severity::Error, Rie::System, {from}, "cannot be renamed to " + to + ": " + e.message());
+        return;
+    }
+    for (FrameStats& f : frames_)
+        for (FrameStats::Picture& p : f.pictures)
+            if (p.file == first.file) p.file = name;
+    diagnostics_.report(Severity::Info, Rie::NoError, {first.file}, "is now " + name + ", as another frame follows");
+}
+
 std::string Renderer::checkpointFile(const scene::Options& o) {
     const std::string& name = settings_.checkpoint;
     if (name.empty()) return name;
@@ -37,7 +74,9 @@ std::string Renderer::checkpointFile(const scene::Options& o) {
 void Renderer::nameOutputs(OutputPlan& plan, const scene::Options& o) {
     for (OutputSpec& s : plan.pictures) {
         const display::DriverDescriptor* driver = display::findDriver(s.type);
+        const bool first = firstPicture_ && firstPicture_->file.empty() && s.name == settings_.output;
         if (!driver || driver->writes) s.name = names_.take("display", s.name, s.map, o, s.place, &diagnostics_);
+        if (first) firstPicture_->file = s.name;
     }
 }
 
@@ -46,6 +85,7 @@ void Renderer::passOver(const scene::Options& given) {
     if (!read_.empty()) markRead(o);
     names_.nextWorld();
     const bool one = !settings_.output.empty() && !isMapPass(o);
+    if (one && settings_.output != "-") numbersFrame();
     if (one) names_.take("display", numberedName(settings_.output, o.frameNumber), false, o, {}, nullptr);
     for (const NamedDisplay& d : displaysOf(o, isMapPass(o) ? settingsOfMaps(settings_) : settings_, !one))
         names_.take("display", d.display.name, isMap(d.display), o, d.display.place, nullptr);

@@ -102,6 +102,43 @@ TEST_F(Outputs, FramesCarryTheirNumbers) {
     EXPECT_TRUE(has("plain.png"));
 }
 
+// Exporters write FrameBegin 1 around a single picture: it has the name that was asked for.
+TEST_F(Outputs, ASingleFrameHasThePlainName) {
+    const std::string shadow = "Display \"l.z\" \"zfile\" \"z\"\nWorldBegin Translate 0 0 5 Sphere 1 -1 1 360 WorldEnd\n";
+    write("one.rib", "Format 16 12 1\nFrameBegin 1\n" + shadow + "FrameEnd\nFrameBegin 2\n" + kWorld + "FrameEnd\n");
+    EXPECT_EQ(render("-o one.png one.rib"), 0) << err; // a shadow pass is no picture
+    EXPECT_TRUE(has("one.png") && !has("one.0002.png"));
+    EXPECT_EQ(render("-o f7.png --frames 2 one.rib"), 0) << err;
+    EXPECT_TRUE(has("f7.png"));
+    // A second frame gives both their numbers; the files are those of a render by frames.
+    const std::string frame = std::string("FrameBegin 4\n") + kWorld + "FrameEnd\n";
+    write("two.rib", "Format 16 12 1\nHider \"path\"\nPixelSamples 2 1\n" + frame +
+                         "FrameBegin 9\nProjection \"orthographic\"\n" + kWorld + "FrameEnd\n");
+    EXPECT_EQ(render("-o two.exr --samples 0:2 --stats two.json two.rib"), 0) << err;
+    EXPECT_FALSE(has("two.exr") || has("two.exr.part"));
+    ASSERT_TRUE(has("two.0004.exr") && has("two.0009.exr") && has("two.0004.exr.part"));
+    EXPECT_NE(read("two.json").find("\"two.0004.exr\""), std::string::npos);
+    EXPECT_EQ(read("two.json").find("\"two.exr\""), std::string::npos);
+    EXPECT_EQ(render("-o 'by.####.exr' --samples 0:2 two.rib"), 0) << err;
+    EXPECT_TRUE(read("two.0004.exr") == read("by.0004.exr"));
+    EXPECT_TRUE(read("two.0009.exr") == read("by.0009.exr"));
+    for (const char* k : {"4", "9"}) EXPECT_EQ(render(std::string("-o list.exr --frames ") + k + " two.rib"), 0) << err;
+    EXPECT_TRUE(has("list.0004.exr") && has("list.0009.exr") && !has("list.exr")); // whatever is listed
+    // The frame of another file is a second one, too; of the same number it is told apart.
+    write("a.rib", "Format 16 12 1\n" + frame);
+    EXPECT_EQ(render("-o files.png a.rib a.rib"), 0) << err;
+    EXPECT_TRUE(has("files.0004.png") && has("files.0004.0004.png") && !has("files.png"));
+    // Started again behind an interruption: the first frame is found done, and numbered again.
+    const std::string job = "--checkpoint c.ckp --resume -o job.exr ";
+    EXPECT_EQ(render(job + "a.rib"), 0) << err; // as far as it had come
+    ASSERT_TRUE(has("job.exr"));
+    EXPECT_EQ(render("--hider path --spp 2 " + job + "two.rib"), 0) << err;
+    EXPECT_TRUE(has("job.0004.exr") && has("job.0009.exr") && !has("job.exr"));
+    const std::string first = read("job.0004.exr");
+    EXPECT_EQ(render("--hider path --spp 2 " + job + "two.rib"), 0) << err;
+    EXPECT_TRUE(read("job.0004.exr") == first && !has("job.exr"));
+}
+
 TEST_F(Outputs, ShadowPassesKeepTheirFiles) {
     write("v.rib", std::string("Format 16 16 1\nDisplay \"l.z\" \"zfile\" \"z\"\nWorldBegin Translate 0 0 5 Sphere 1 -1 1 360 "
                                "WorldEnd\nMakeShadow \"l.z\" \"l.shd\"\nDisplay \"v.tif\" \"file\" \"rgb\"\n") +

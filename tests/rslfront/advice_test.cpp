@@ -96,6 +96,7 @@ TEST(Hints, SayWhatWasMeant) {
         {"surface s(color c = {1, 0, 0};) { Ci = c; }", "a triple is written (1, 2, 3)"},
         {"displacement s() { Ci = 1; }", "surface, volume, imager"},
         {"color c = 1;\nsurface s() { Ci = c; }", "inside of shaders and functions"},
+        {"surface s() { rayserver(1); }", "--dialect bmrt"},
         {"float f(float x) { return x; }\nshader t() { }", ""},
         {"surface s() { Ci = (1, 2, 3) + foo(1); }", ""},
     };

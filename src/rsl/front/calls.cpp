@@ -1,10 +1,22 @@
 // Calls: which functions and shadeops fit, which fits best, and what the call then means.
 #include "base/limits.h"
 #include "rsl/front/checker.h"
+#include "rsl/front/headers.h"
 #include <algorithm>
 #include <utility>
 
 namespace alpenglow::rsl::front {
+
+namespace {
+
+std::string unknownFunctionHint(const std::string& name, const std::vector<std::string>& known) {
+    if (const std::string_view dialect = dialectOfFunction(name); !dialect.empty())
+        return "--dialect " + std::string(dialect) + " reads shaders that call it";
+    const std::string near = nearestName(name, known);
+    return near.empty() ? "" : "did you mean '" + near + "'?";
+}
+
+} // namespace
 
 /// What the renderer's own functions take for handles stands in their texts; arrays and what is put out can be either.
 std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Shadeop& op) {
@@ -180,8 +192,7 @@ void Checker::surveyCall(Expr& e, Info& info) {
         std::sort(names.begin(), names.end());
         for (const Shadeop& s : shadeops())
             if (s.name.rfind("__", 0) != 0) names.push_back(s.name);
-        const std::string near = nearestName(e.text, names);
-        sources_.error(e.place, "there is no function '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
+        sources_.error(e.place, "there is no function '" + e.text + "'", unknownFunctionHint(e.text, names));
         return;
     }
     bestByArguments(info.choices);

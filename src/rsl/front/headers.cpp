@@ -79,5 +79,10 @@ std::string_view dialectPrelude(std::string_view dialect) {
 }
 
 bool dialectRispecSpecular(std::string_view dialect) { return lower(dialect) == "rispec"; }
+// Shaders for PRMan and BMRT ask rayserver(), a program beside PRMan, by macros that BMRT's compiler does not take.
+std::string_view dialectOfFunction(std::string_view function) {
+    return function == "rayserver" || function == "rayservercall" ? "bmrt" : "";
+}
+
 
 } // namespace alpenglow::rsl::front

@@ -21,6 +21,8 @@ std::span<const std::string_view> dialects();
 std::span<const std::string_view> dialectMacros(std::string_view dialect);
 /// Text that stands before every file of this dialect: an #include of what its compiler has built in and ours calls otherwise.
 std::string_view dialectPrelude(std::string_view dialect);
+/// The dialect whose shaders call a function that no other has, and that its macros put another in place of; "" for others.
+std::string_view dialectOfFunction(std::string_view function);
 /// Whether specular() and specularbrdf() have RISpec's exponent in this dialect (shadeops/specular.h).
 bool dialectRispecSpecular(std::string_view dialect);
 

@@ -139,6 +139,15 @@ TEST_F(Tools, TheDialectRispec) {
     EXPECT_EQ(errors().find("--dialect"), std::string::npos) << errors();
 }
 
+// Aqsis's calculatenormal() is of unit length: Du(P) ^ Dv(P) of 3 P is 9 long.
+TEST_F(Tools, TheDialectAqsis) {
+    EXPECT_EQ(run("eval 'calculatenormal(3 * P)'"), "0 0 9\n");
+    EXPECT_EQ(run("eval --dialect aqsis 'calculatenormal(3 * P)'"), "0 0 1\n");
+    write("n.sl", "displacement n() { P += 0.02 * noise(8 * P) * normalize(N); N = calculatenormal (P); }\n");
+    run("compile --dialect aqsis n.sl");
+    EXPECT_EQ(status, 0) << errors();
+}
+
 // eval and shade have maps, what a camera ray knows, and the name of the renderer.
 TEST_F(Tools, MapsAndRaysWithoutAScene) {
     write("grey.sl", "surface grey() { Ci = color(.25, .5, .75); Oi = 1; }\n");

@@ -75,6 +75,7 @@ std::span<const std::string_view> dialectMacros(std::string_view dialect) {
 
 std::string_view dialectPrelude(std::string_view dialect) {
     const std::string d = lower(dialect);
+    if (d == "aqsis") return "#define calculatenormal(p) (normal normalize(calculatenormal(p)))\n"; // its own is of unit length
     return d == "bmrt" || d == "entropy" ? "#include \"rayserver.h\"\n" : "";
 }
 

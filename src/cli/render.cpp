@@ -318,10 +318,10 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     c->add_option("--crop", a->crop, "Render only this part, in fractions of the picture from its upper left")
         ->type_name("X0,X1,Y0,Y1")
         ->group("Pictures");
-    c->add_option(
-         "--gamma", a->gamma,
-         "Curve of the pictures instead of Exposure's or sRGB: a display gamma, 1 for none, or srgb (PNG, JPEG and TIFF of 8 "
-         "bits; docs/colour.md)")
+    c->add_option("--gamma", a->gamma,
+                  "Curve of the pictures instead of Exposure's, or that of path: a display gamma, 1 for none, or srgb (PNG, JPEG "
+                  "and TIFF of 8 "
+                  "bits; docs/colour.md)")
         ->type_name("G|srgb")
         ->group("Pictures");
     c->add_option("--frames", a->frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");

@@ -49,7 +49,7 @@ void chooseCurve(OutputSpec& s, const OutputBasis& b) {
     else if (s.ownExposure) s.curve = powerText(s) + ", by the display's exposure";
     else if (b.exposureGiven) s.curve = powerText(s) + ", by Exposure";
     else if (s.quantizeAsked || b.rgba.set) s.curve = "none, by Quantize";
-    else if (b.ownNumbers) s.curve = "none: an old scene keeps its numbers (--gamma srgb changes that)";
+    else if (!b.path) s.curve = "none: numbers are as shaders compute them (--gamma srgb changes that)";
     else {
         s.srgb = true;
         s.curve = "sRGB";

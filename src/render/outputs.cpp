@@ -6,7 +6,6 @@
 #include "render/curve.h"
 #include "render/imaging.h"
 #include "render/outputnames.h"
-#include "scene/numbers.h"
 #include "scene/scene.h"
 #include <algorithm>
 #include <cmath>
@@ -223,7 +222,6 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
     b.gammaGiven = settings.gamma.has_value();
     b.srgbAsked = settings.srgb;
     b.exposureGiven = o.exposureSet || o.gain != 1 || o.gamma != 1;
-    b.ownNumbers = scene::keepsOwnNumbers(o, path);
     if (!(b.gamma > 0) || !std::isfinite(b.gamma)) {
         diags.report(Severity::Error, Rie::Range, {}, "Exposure: gamma must be positive; 1 is used");
         b.gamma = 1;

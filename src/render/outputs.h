@@ -58,7 +58,6 @@ struct OutputBasis {
     float gain = 1, gamma = 1;
     bool gammaGiven = false, srgbAsked = false; ///< by --gamma
     bool exposureGiven = false;                 ///< by Exposure
-    bool ownNumbers = false;                    ///< scene::keepsOwnNumbers()
     bool path = false;
     scene::Quantize rgba{255, 0, 255, 0.5f, false}, z{0, 0, 0, 0, false};
     PixelFilter filter;

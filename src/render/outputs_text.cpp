@@ -64,7 +64,6 @@ std::string planToText(const OutputPlan& plan, const PictureFacts& facts) {
                   {"gammaGiven", b.gammaGiven},
                   {"srgbAsked", b.srgbAsked},
                   {"exposureGiven", b.exposureGiven},
-                  {"ownNumbers", b.ownNumbers},
                   {"path", b.path},
                   {"rgba", quantize(b.rgba)},
                   {"z", quantize(b.z)},
@@ -131,7 +130,6 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
         plan.basis.gammaGiven = b.at("gammaGiven").get<bool>();
         plan.basis.srgbAsked = b.at("srgbAsked").get<bool>();
         plan.basis.exposureGiven = b.at("exposureGiven").get<bool>();
-        plan.basis.ownNumbers = b.at("ownNumbers").get<bool>();
         plan.basis.path = b.at("path").get<bool>();
         plan.basis.rgba = quantize(b.at("rgba"));
         plan.basis.z = quantize(b.at("z"));

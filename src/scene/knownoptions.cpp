@@ -118,9 +118,9 @@ constexpr OptionDescription kOptions[] = {
     {"statistics:stylesheet", "", "", "", Ignored, kPrman},
     {"statistics:xmlfilename", "", "", "", Ignored, "PRMan; --stats is the way here"},
     {"texture:colorspace", "string", "\"auto\"", "\"linear\"", Used,
-     "What colours of 8-bit maps are that declare nothing: srgb, linear, or auto: srgb under path and in scenes that do not keep "
-     "their own numbers "
-     "(colour.md)."},
+     "What colours of 8-bit maps are: srgb or linear for maps that declare nothing; or auto: as srgb under path, and under "
+     "hidden "
+     "and raytrace the numbers of the file (colour.md)."},
     {"texture:enable_gaussian", "", "", "", Ignored, kPrman},
     {"texture:enable_lerp", "", "", "", Ignored, kPrman},
     {"texture:missing", "color", "", "[1 0 1]", Used,

@@ -2,7 +2,6 @@
 #include "base/limits.h"
 #include "render/camera.h"
 #include "render/levels.h"
-#include "scene/numbers.h"
 #include "scene/scene.h"
 #include "view/session.h"
 #include <algorithm>
@@ -43,13 +42,11 @@ bool Session::overtaken() const {
 
 /// The picture, and what else is asked for, as displays that are never written.
 void Session::addOutputs(scene::Options& o) const {
-    // An old scene is told by its displays, and its maps are read by that.
-    const char* type = scene::keepsOwnNumbers(o, o.hider == "path") ? "file" : "openexr";
     o.displays.clear();
     const auto add = [&](const std::string& name, const std::string& mode) {
         scene::Display d;
         d.name = name;
-        d.type = type;
+        d.type = "openexr";
         d.mode = mode;
         o.displays.push_back(std::move(d));
     };

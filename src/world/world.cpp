@@ -142,8 +142,11 @@ static void findLevels(WorldImpl& w) {
 
 /// What the frame says of its maps.
 static texture::TextureSettings mapSettings(const scene::Options& o, const Settings& settings, Diagnostics& d) {
-    texture::TextureSettings t{
-        .light = scene::readsMapsAsLight(o, settings.hider == Hider::Path, d), .read = settings.read, .reads = settings.reads};
+    const scene::MapColours colours = scene::mapColours(o, settings.hider == Hider::Path, d);
+    texture::TextureSettings t{.linearise = colours == scene::MapColours::Light,
+                               .light = colours == scene::MapColours::Srgb,
+                               .read = settings.read,
+                               .reads = settings.reads};
     if (const auto i = o.values.find("texture:missing"); i != o.values.end() && i->second.numbers.size() >= 3)
         t.missing = Color(i->second.numbers[0], i->second.numbers[1], i->second.numbers[2]);
     if (const auto i = o.values.find("limits:texturememory"); i != o.values.end() && !i->second.numbers.empty()) {

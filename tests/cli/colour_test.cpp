@@ -62,40 +62,46 @@ void expectNear(const std::array<int, 3>& a, const std::array<int, 3>& b, const 
 
 constexpr const char* kNew = "Display \"d.png\" \"png\" \"rgb\"";
 constexpr const char* kOld = "Display \"d.tiff\" \"file\" \"rgb\"";
+constexpr const char* kUnsaid = "";
 constexpr std::array<int, 3> kLight{188, 118, 255}; // .5 .18 1 by the curve of sRGB
 constexpr std::array<int, 3> kNumbers{128, 46, 255};
 
 } // namespace
 
-TEST_F(Colour, OneCurveUnderEveryHider) {
+TEST_F(Colour, ACurveUnderPathAlone) {
     write("w.rib", wall(kNew, ""));
-    for (const char* hider : {"hidden", "raytrace", "path"}) {
+    for (const std::string hider : {"hidden", "raytrace", "path"}) {
+        const bool path = hider == "path";
+        const std::array<int, 3>& expected = path ? kLight : kNumbers;
         run(std::string("render --progress none --hider ") + hider + " --display tiff:t.tif --display jpeg:j.jpg w.rib", "2>err");
         ASSERT_EQ(status, 0) << errors();
-        EXPECT_NE(errors().find("  curve        sRGB\n"), std::string::npos) << errors();
-        expectNear(middle("d.png"), kLight, std::string("png ") + hider);
-        expectNear(middle("t.tif"), kLight, std::string("tiff ") + hider);
-        for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(middle("j.jpg")[c], kLight[c], 4) << hider; // coded with loss
-        EXPECT_EQ(picture("d.png").metadata["colorspace"], "sRGB");
-        run(std::string("render -q -o o.png --hider ") + hider + " w.rib", "2>err");
-        expectNear(middle("o.png"), kLight, std::string("-o ") + hider);
+        EXPECT_NE(errors().find(path ? "  curve        sRGB\n" : "  curve        none: numbers are as shaders compute them"),
+                  std::string::npos)
+            << errors();
+        expectNear(middle("d.png"), expected, "png " + hider);
+        expectNear(middle("t.tif"), expected, "tiff " + hider);
+        for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(middle("j.jpg")[c], expected[c], 4) << hider; // coded with loss
+        EXPECT_EQ(picture("d.png").metadata.contains("colorspace"), path);
     }
 }
 
-TEST_F(Colour, OldScenesKeepTheirNumbersUnderHidden) {
-    write("w.rib", wall(kOld, ""));
-    for (const char* hider : {"", "--hider hidden", "--hider raytrace"}) {
-        run(std::string("render --progress none ") + hider + " w.rib", "2>err");
-        EXPECT_NE(errors().find("an old scene keeps its numbers"), std::string::npos) << errors();
-        expectNear(middle("d.tiff"), kNumbers, hider);
-        run(std::string("render -q -o o.png ") + hider + " w.rib", "2>err");
-        expectNear(middle("o.png"), kNumbers, hider);
-        EXPECT_FALSE(picture("o.png").metadata.contains("colorspace"));
+// Whatever the scene's own displays are.
+TEST_F(Colour, NumbersOfScenesUnderHidden) {
+    for (const char* display : {kNew, kOld, kUnsaid}) {
+        write("w.rib", wall(display, ""));
+        for (const char* hider : {"", "--hider raytrace"}) {
+            run(std::string("render -q -o o.png ") + hider + " w.rib", "2>err");
+            expectNear(middle("o.png"), kNumbers, std::string(display) + hider);
+            EXPECT_FALSE(picture("o.png").metadata.contains("colorspace"));
+        }
+        run("render -q --hider path -o o.png w.rib", "2>err");
+        expectNear(middle("o.png"), kLight, std::string(display) + "path");
+        run("render -q --gamma srgb -o o.png w.rib", "2>err");
+        expectNear(middle("o.png"), kLight, std::string(display) + "--gamma srgb");
     }
-    run("render -q --hider path -o o.png w.rib", "2>err");
-    expectNear(middle("o.png"), kLight, "path");
-    run("render -q --gamma srgb -o o.png w.rib", "2>err");
-    expectNear(middle("o.png"), kLight, "--gamma srgb");
+    write("w.rib", wall(kUnsaid, ""));
+    run("render -q w.rib", "2>err");
+    expectNear(middle("ri.pic"), kNumbers, "ri.pic");
 }
 
 TEST_F(Colour, ExposureQuantizeAndGammaSayOtherwise) {
@@ -119,12 +125,21 @@ TEST_F(Colour, ExposureQuantizeAndGammaSayOtherwise) {
     EXPECT_NE(errors().find("or srgb"), std::string::npos) << errors();
 }
 
-// What is in the file is on the picture: old or new, by any hider, made into a map or not.
+// What is in the file is on the picture: by any hider, made into a map or not, whether it declares its colours or not.
 TEST_F(Colour, TexelsComeOutAsTheyAre) {
+    display::Image declared = picture("pic.png");
+    declared.metadata["colorspace"] = "sRGB";
+    display::WriteOptions o;
+    o.format = display::Format::Png;
+    o.sample = display::Sample::UInt8;
+    o.policy = {dir, true};
+    Diagnostics d;
+    ASSERT_TRUE(display::writeImage("said.png", declared, o, d));
+    ASSERT_EQ(picture("said.png").metadata["colorspace"], "sRGB");
     run("maketx pic.png auto.tx", "2>err");
     ASSERT_EQ(status, 0) << errors();
     for (const char* display : {kNew, kOld})
-        for (const char* map : {"pic.png", "auto.tx"}) {
+        for (const char* map : {"pic.png", "said.png", "auto.tx"}) {
             write("w.rib", wall(display, std::string("\"string map\" \"") + map + "\""));
             for (const char* hider : {"hidden", "path"}) {
                 run(std::string("render -q -o o.png --hider ") + hider + " w.rib", "2>err");
@@ -150,6 +165,8 @@ TEST_F(Colour, MapsThatAreToldAndNumbers) {
     };
     shows(kNew, "\"string map\" \"lin.tx\"", asLight);
     shows(kNew, "\"string map\" \"srgb.tx\"", kTexel);
+    run("render -q --gamma srgb --rib 'Option \"texture\" \"string colorspace\" \"srgb\"' -o h.png w.rib", "2>err");
+    expectNear(middle("h.png"), kTexel, "hidden, in light");
     shows("Option \"texture\" \"string colorspace\" \"linear\"", "\"string map\" \"pic.png\"", asLight);
     shows(kNew, "\"string map\" \"pic.png\" \"float number\" 1", {asLight[0], asLight[0], asLight[0]}); // a float is data
 }

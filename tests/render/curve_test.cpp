@@ -1,4 +1,4 @@
-// Which pictures go through the display curve, and which frames keep their own numbers (docs/colour.md).
+// Which pictures go through the display curve, and how maps of 8 bits are read (docs/colour.md).
 #include "render/curve.h"
 #include "scene/numbers.h"
 #include "scene/scene.h"
@@ -24,15 +24,20 @@ OutputSpec planned(const scene::Options& o, bool path, const RenderSettings& s =
 
 } // namespace
 
-TEST(Curve, PicturesThatAreLookedAtUnderEveryHider) {
+TEST(Curve, PicturesThatAreLookedAtUnderPathAlone) {
     for (bool path : {false, true}) {
-        for (const auto& [name, type] :
-             {std::pair{"a.png", "png"}, {"a.jpg", "jpeg"}, {"a.tif", "tiff"}, {"a.png", "file"}, {"a.png", "framebuffer"}}) {
-            EXPECT_TRUE(planned(withDisplay(name, type), path).srgb) << type;
-            EXPECT_EQ(planned(withDisplay(name, type), path).curve, "sRGB");
+        const std::string said = path ? "sRGB" : "none: numbers are as shaders compute them (--gamma srgb changes that)";
+        for (const auto& [name, type] : {std::pair{"a.png", "png"},
+                                         {"a.jpg", "jpeg"},
+                                         {"a.tif", "tiff"},
+                                         {"a.tif", "file"},
+                                         {"a.png", "file"},
+                                         {"a.png", "framebuffer"}}) {
+            EXPECT_EQ(planned(withDisplay(name, type), path).srgb, path) << type;
+            EXPECT_EQ(planned(withDisplay(name, type), path).curve, said);
         }
-        for (const char* file : {"a.png", "a.jpg", "a.tif"}) EXPECT_TRUE(planned({}, path, {}, file).srgb) << file;
-        EXPECT_TRUE(planned({}, path).srgb); // ri.pic
+        for (const char* file : {"a.png", "a.jpg", "a.tif"}) EXPECT_EQ(planned({}, path, {}, file).srgb, path) << file;
+        EXPECT_EQ(planned({}, path).srgb, path); // ri.pic
         EXPECT_FALSE(planned(withDisplay("a.exr", "openexr"), path).srgb);
         EXPECT_EQ(planned(withDisplay("a.exr", "openexr"), path).curve, "");
         EXPECT_FALSE(planned(withDisplay("a.png", "png", "z"), path).srgb);
@@ -72,40 +77,23 @@ TEST(Curve, WhatIsAskedForGoesFirst) {
     }
 }
 
-TEST(Curve, OldScenesKeepTheirNumbersUnderHiddenAlone) {
-    const scene::Options old = withDisplay("teapot.tiff", "file"), shown = withDisplay("x", "framebuffer");
-    for (const scene::Options& o : {old, shown}) {
-        EXPECT_TRUE(scene::keepsOwnNumbers(o, false));
-        EXPECT_FALSE(scene::keepsOwnNumbers(o, true));
-        EXPECT_FALSE(planned(o, false).srgb);
-        EXPECT_TRUE(planned(o, true).srgb);
-        // The scene decides, not the picture of the command line.
-        EXPECT_FALSE(planned(o, false, {}, "a.png").srgb);
-        EXPECT_TRUE(planned(o, true, {}, "a.png").srgb);
-    }
-    EXPECT_FALSE(scene::keepsOwnNumbers({}, false));
-    EXPECT_FALSE(scene::keepsOwnNumbers(withDisplay("a.tif", "tiff"), false));
-    EXPECT_FALSE(scene::keepsOwnNumbers(withDisplay("a.PNG", "file"), false));
-    scene::Options exposed = withDisplay("a.png", "png");
-    exposed.exposureSet = true;
-    EXPECT_TRUE(scene::keepsOwnNumbers(exposed, false));
-}
-
-TEST(Curve, MapsFollowTheSceneUnlessTold) {
+TEST(Curve, MapsFollowTheHiderUnlessTold) {
+    using enum scene::MapColours;
     Diagnostics d;
-    scene::Options o = withDisplay("teapot.tiff", "file");
-    EXPECT_FALSE(scene::readsMapsAsLight(o, false, d));
-    EXPECT_TRUE(scene::readsMapsAsLight(o, true, d));
-    EXPECT_TRUE(scene::readsMapsAsLight({}, false, d));
-    for (const auto& [word, light] : {std::pair{"srgb", true}, {"linear", false}}) {
+    scene::Options o = withDisplay("a.png", "png");
+    EXPECT_EQ(scene::mapColours(o, false, d), AsTheyAre);
+    EXPECT_EQ(scene::mapColours(o, true, d), Srgb);
+    o.exposureSet = true;
+    EXPECT_EQ(scene::mapColours(o, true, d), Srgb);
+    for (const auto& [word, expected] : {std::pair{"srgb", Srgb}, {"linear", Light}}) {
         scene::Param p;
         p.strings = {word};
         o.values["texture:colorspace"] = p;
-        for (bool path : {false, true}) EXPECT_EQ(scene::readsMapsAsLight(o, path, d), light);
+        for (bool path : {false, true}) EXPECT_EQ(scene::mapColours(o, path, d), expected);
     }
     EXPECT_EQ(d.errors(), 0);
     o.values["texture:colorspace"].strings = {"liner"};
-    EXPECT_TRUE(scene::readsMapsAsLight(o, true, d));
+    EXPECT_EQ(scene::mapColours(o, true, d), Srgb);
     EXPECT_EQ(d.errors(), 1);
     EXPECT_NE(d.all().back().hint.find("linear"), std::string::npos);
 }

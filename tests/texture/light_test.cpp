@@ -56,7 +56,7 @@ TEST(Light, ColoursOf8BitsAreSrgbAndNumbersStay) {
     EXPECT_FLOAT_EQ(c[2], srgbDecode(kCode));
     EXPECT_FLOAT_EQ(c[3], 51 / 255.f);                               // alpha is a number
     EXPECT_FLOAT_EQ(n[0], kCode);                                    // a float lookup: a height, a mask
-    EXPECT_FLOAT_EQ(at(plain.open(s / "a.png"), 4, true)[0], kCode); // an old scene
+    EXPECT_FLOAT_EQ(at(plain.open(s / "a.png"), 4, true)[0], kCode); // under hidden
 }
 
 // Half black, half white, seen from afar: half the light, not the light of half the code; and slopes are those of light.

@@ -281,6 +281,16 @@ static void tellFront(BoundLight& l, std::span<const float> front, std::span<con
     if (shared) l.emitter->shinesTo(Shines::Both);
 }
 
+/// A point of a light with normal n, asked for its light at `lit`, which faces it.
+static ShadePoint askedAt(const Vec3& p, const Vec3& n, const Vec3& lit) {
+    ShadePoint q;
+    q.P = p;
+    q.N = n;
+    q.Ps = lit;
+    q.Ns = normalize(p - lit);
+    return q;
+}
+
 void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
     const bool many = std::any_of(lightLists_.begin(), lightLists_.end(),
                                   [&](const LightList& l) { return sampledOf(l).size() > size_t(limits::kLightsSampled); });
@@ -296,14 +306,6 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
             }
             return b;
         };
-        auto towards = [](const Vec3& p, const Vec3& n, const Vec3& lit) {
-            ShadePoint q;
-            q.P = p;
-            q.N = n;
-            q.Ps = lit;
-            q.Ns = normalize(p - lit);
-            return q;
-        };
         if (l.kind == LightKind::Area) {
             geometry::Bounds box = l.emitter->bounds();
             l.centre = (box.lo + box.hi) * 0.5f;
@@ -318,7 +320,7 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
                 geometry::SurfacePoint p = l.emitter->point({0.3f + 0.2f * float(k & 1), 0.35f + 0.15f * float(k >> 1)}, shape);
                 std::vector<ShadePoint> q;
                 for (float t : {1.f, 2.f, 4.f, -1.f}) {
-                    ShadePoint s = towards(p.P, p.n, p.P + p.n * (step * t));
+                    ShadePoint s = askedAt(p.P, p.n, p.P + p.n * (step * t));
                     s.shape = shape;
                     s.surface = p;
                     q.push_back(s);
@@ -355,7 +357,7 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
             for (int k = 0; k < kProbes; ++k) {
                 int c = k < 13 ? k : k + 1; // the 26 neighbours in a cube of 27
                 Vec3 dir = normalize(Vec3(float(c % 3 - 1), float(c / 3 % 3 - 1), float(c / 9 - 1)));
-                q.push_back(towards(l.centre, dir, l.centre + dir));
+                q.push_back(askedAt(l.centre, dir, l.centre + dir));
             }
             std::vector<float> b = brightness(q);
             l.power = *std::max_element(b.begin(), b.end());

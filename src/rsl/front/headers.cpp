@@ -85,5 +85,4 @@ std::string_view dialectOfFunction(std::string_view function) {
     return function == "rayserver" || function == "rayservercall" ? "bmrt" : "";
 }
 
-
 } // namespace alpenglow::rsl::front

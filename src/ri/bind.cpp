@@ -33,6 +33,11 @@ std::vector<float> Interpreter::toRgb(const std::vector<double>& c) const {
     return out;
 }
 
+void Interpreter::sayDouble(const SourcePlace& place) {
+    reporter.once("ri:double", Severity::Warning, Rie::BadToken, place, "there is no type \"double\"; it is read as float",
+                  "declare the variable as float");
+}
+
 scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use, const std::string& category, bool* keep) {
     scene::Param p;
     p.place = call.at(raw);
@@ -46,6 +51,7 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
                        "class type[n] name, for example \"varying color Cs\"");
         return p;
     }
+    if (r.inlineForm && r.name != "double" && saysDouble(raw.token)) sayDouble(p.place);
     bool effect = true; // a bad value of what does nothing is no failure
     if (use == Use::Option || use == Use::Attribute) effect = sayUnknown(use == Use::Option, category, p);
     if (use == Use::Hider || use == Use::Display) effect = sayUnknownParameter(use == Use::Hider, p);

@@ -1,5 +1,6 @@
 #include "ri/declare.h"
 #include "scene/knownoptions.h"
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <vector>
@@ -124,7 +125,7 @@ std::optional<Class> classNamed(std::string_view s) {
 }
 
 std::optional<Type> typeNamed(std::string_view s) {
-    if (s == "float") return Type::Float;
+    if (s == "float" || s == "double") return Type::Float; // the latter of exporters that name the numbers of their program
     if (s == "integer" || s == "int") return Type::Integer;
     if (s == "string") return Type::String;
     if (s == "color") return Type::Color;
@@ -170,6 +171,11 @@ std::optional<Declaration> fromWords(const std::vector<std::string_view>& w) {
 } // namespace
 
 std::optional<Declaration> parseDeclaration(std::string_view text) { return fromWords(words(text)); }
+
+bool saysDouble(std::string_view text) {
+    const std::vector<std::string_view> all = words(text);
+    return std::find(all.begin(), all.end(), "double") != all.end();
+}
 
 Resolved Declarations::resolve(std::string_view token, std::string_view category) const {
     static const Table standard = makeTable(kStandard);

@@ -17,6 +17,9 @@ struct Declaration {
 /// "[class] type [[n]]"; empty when it is not one.
 std::optional<Declaration> parseDeclaration(std::string_view text);
 
+/// Whether the type of a declaration is "double", which there is not: it is read as float.
+bool saysDouble(std::string_view text);
+
 /// A token of a parameter list, taken apart.
 struct Resolved {
     std::string name;

@@ -136,6 +136,7 @@ public:
     }
     /// Reports once per request that it is read but has no effect.
     void incapable(const Call& call, const std::string& what);
+    void sayDouble(const SourcePlace&); ///< once: a declaration says "double"
 
 private:
     struct Block {

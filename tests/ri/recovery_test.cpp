@@ -257,7 +257,7 @@ TEST(Foreign, LaterNamesOfTheSameThings) {
 TEST(Foreign, ShadersWithoutALanguageAreOneSentence) {
     auto c = world(
         "Bxdf \"PxrSurface\" \"a\" \"color diffuseColor\" [1 0 0]\nPattern \"PxrTexture\" \"b\" \"string filename\" [\"x\"]\n"
-        "Integrator \"PxrPathTracer\" \"c\"\nSphere 1 -1 1 360");
+        "Integrator \"PxrPathTracer\" \"c\"\nDisplace \"PxrDisplace\" \"d\" \"float dispAmount\" [.1]\nSphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::Incapable);
     EXPECT_EQ(c->only().severity, Severity::Warning);
     EXPECT_EQ(c->frame().primitives.size(), 1u);

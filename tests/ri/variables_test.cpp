@@ -28,6 +28,16 @@ TEST(Declarations, Parse) {
                             "color varying", "float x y"})
         EXPECT_FALSE(parseDeclaration(bad)) << bad;
     EXPECT_EQ(read("Declare \"x\" \"colour\"")->only().code, Rie::Syntax);
+    // VTK's exporter declares all its arrays so.
+    for (const char* given : {"Declare \"e\" \"varying double\" Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"e\" [1 2 3]",
+                              "Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"varying double e\" [1 2 3]"}) {
+        const auto c = world(given);
+        EXPECT_EQ(c->only().severity, Severity::Warning) << c->messages();
+        const scene::Param* e = scene::find(c->primitive().params, "e");
+        ASSERT_NE(e, nullptr);
+        EXPECT_EQ(e->type, scene::Type::Float);
+        EXPECT_EQ(e->numbers, (std::vector<float>{1, 2, 3}));
+    }
     EXPECT_EQ(world("Surface \"a\" \"uniform flaot x\" 1")->only().code, Rie::Syntax);
 }
 

@@ -10,9 +10,9 @@ void notDone(Interpreter& in, const Call& c) { in.incapable(c, fmt::format("{} i
 
 /// Shading of the later kind is no RSL: one sentence for all of its requests.
 void ris(Interpreter& in, const Call& c) {
-    in.incapable(
-        c, "Bxdf, Pattern, Integrator and their like belong to renderers without shading language and are left out; Surface, "
-           "Shader, LightSource and Hider say the same here");
+    in.incapable(c, "Bxdf, Pattern, Displace, Integrator and their like belong to renderers without shading language and are "
+                    "left out; Surface, "
+                    "Shader, LightSource and Hider say the same here");
 }
 
 /// A volume primitive shader: the volume shader of the primitive.
@@ -78,6 +78,7 @@ std::vector<Request> foreignRequests() {
          "data\").",
          "\"RunProgram2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1]", procedural2},
         {"Bxdf", named, Kind::Shader, any, false, risDoc, "\"PxrSurface\" \"s\"", ris},
+        {"Displace", named, Kind::Shader, any, false, risDoc, "\"PxrDisplace\" \"d\" \"float dispAmount\" .1", ris},
         {"Pattern", named, Kind::Shader, any, false, risDoc, "\"PxrTexture\" \"t\"", ris},
         {"Light", named, Kind::Light, any, false, risDoc, "\"PxrRectLight\" \"l\" \"float intensity\" 2", ris},
         {"LightFilter", named, Kind::Light, any, false, risDoc, "\"PxrBarn\" \"f\"", ris},

@@ -23,6 +23,7 @@ void declare(Interpreter& in, const Call& c) {
         in.reporter.error(Rie::Syntax, c.place, fmt::format("Declare \"{}\": \"{}\" is not a declaration", name, c.text(1)),
                           "[class] type [[n]], for example \"varying color\"");
     else in.declarations.declare(name, *d);
+    if (saysDouble(c.text(1))) in.sayDouble(c.place);
 }
 
 void frameBegin(Interpreter& in, const Call& c) {

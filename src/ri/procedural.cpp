@@ -225,10 +225,12 @@ void Interpreter::runProgram(const std::string& command, const std::string& data
     if (!whole) {
         programs_[command] = nullptr;
         reporter.error(Rie::System, call.place,
-                       fmt::format("program \"{}\": {}; it is not asked again, and what it said is drawn", command, why));
+                       fmt::format("program \"{}\": {}; it is not asked again, and what it said is drawn", command, why),
+                       why == kEndsAsText ? "write it as a byte; in Python: sys.stdout.buffer.write(b'\\xff')" : "");
     }
     if (!begin(BlockKind::Attribute, call)) return;
-    readOpened(fmt::format("program:{}", ++programSerial_), commandWords(command)[0], nullptr, memorySource(answer), call.place);
+    readOpened(fmt::format("program:{}", ++programSerial_), "output of " + commandWords(command)[0], nullptr,
+               memorySource(answer), call.place);
     end(BlockKind::Attribute, call);
 }
 
@@ -236,8 +238,9 @@ void Interpreter::procedural(const std::string& kind, const std::vector<std::str
                              const Call& call) {
     const bool archive = kind == "DelayedReadArchive";
     if (!archive && !settings.allowExec)
-        return incapable(
-            call, fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
+        return reporter.once(
+            "ri:foreign:" + kind, Severity::Error, Rie::Incapable, call.place,
+            fmt::format("{} \"{}\" runs foreign code: it needs --allow-exec and is left out", call.request->name, kind));
     if (archive ? arguments.empty() : arguments.empty() || arguments[0].empty()) {
         const char* what = archive ? "archive" : kind == "DynamicLoad" ? "library" : "program";
         return reporter.error(Rie::MissingData, call.place, fmt::format("{}: the {} has no name", call.request->name, what));

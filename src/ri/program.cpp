@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <string_view>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,6 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr char kEnd = char(0377);
+constexpr std::string_view kEndAsText = "\303\277"; ///< the same as UTF-8 has it
+constexpr std::chrono::milliseconds kSilence(500);
 
 /// Until the descriptor is ready, the time is over (false) or the user has stopped (false).
 bool waitFor(int fd, short events, Clock::time_point end, const StopFlag* stop) {
@@ -146,6 +149,15 @@ bool Program::ask(const std::string& line, double seconds, const StopFlag* stop,
     }
     answer = std::move(rest_);
     rest_.clear();
+    // A text stream writes 0377 as two bytes. Where these come last, and nothing after them, the program waits for its next line.
+    const auto endsAsText = [&] {
+        size_t n = answer.size();
+        while (n > 0 && (answer[n - 1] == '\n' || answer[n - 1] == '\r')) --n;
+        if (n < kEndAsText.size() || answer.compare(n - kEndAsText.size(), kEndAsText.size(), kEndAsText) != 0) return false;
+        if (waitFor(from_, POLLIN, std::min(end, Clock::now() + kSilence), stop)) return false;
+        answer.resize(n - kEndAsText.size());
+        return true;
+    };
     for (size_t looked = 0;;) {
         if (const size_t at = answer.find(kEnd, looked); at != answer.npos) {
             rest_ = answer.substr(at + 1);
@@ -154,6 +166,7 @@ bool Program::ask(const std::string& line, double seconds, const StopFlag* stop,
         }
         looked = answer.size();
         if (looked > most) return fail("its answer is too long");
+        if (endsAsText()) return fail(kEndsAsText);
         if (!waitFor(from_, POLLIN, end, stop)) return fail(stop && *stop ? "the render was stopped" : "it took too long");
         char buffer[65536];
         const ssize_t n = ::read(from_, buffer, sizeof buffer);

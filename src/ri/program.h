@@ -32,6 +32,9 @@ private:
     std::string rest_; ///< read beyond the last answer
 };
 
+/// What ask() says of an answer that ends with the character 0377, not with the byte.
+inline constexpr const char* kEndsAsText = "its answer ends with the bytes C3 BF, not with the byte FF (0377) alone";
+
 /// The words of a command: blanks separate, quotes join. No variables, no patterns.
 std::vector<std::string> commandWords(const std::string& command);
 

@@ -67,6 +67,7 @@ TEST_F(Procedurals, NeedToBeAllowed) {
     program("maker", "touch " + (dir / "ran").string());
     auto c = readHere("WorldBegin Procedural \"RunProgram\" [\"maker\" \"\"]" + bound + "WorldEnd", false);
     EXPECT_NE(c->only().message.find("--allow-exec"), std::string::npos);
+    EXPECT_EQ(c->only().severity, Severity::Error); // a request that was not done
     EXPECT_FALSE(fs::exists(dir / "ran"));
 }
 
@@ -111,6 +112,20 @@ TEST_F(Procedurals, ThatHangOrFailAreToldAndNotAskedAgain) {
     for (const char* what : {"\"hangs\": it took too long", "\"ends\": it ended before the end of its answer",
                              "\"none\" was not found", "\"deaf\": it took too long", "the program has no name"})
         EXPECT_NE(said.find(what), std::string::npos) << what << "\n" << said;
+}
+
+// As a text stream of Python writes '\377'. The program waits for its next line, so that nothing more comes.
+TEST_F(Procedurals, ThatEndAnAnswerAsTextAreTold) {
+    program("text", "# Surface\nwhile read line; do printf 'Sphere 1 -1 1 360\\nNone\\n\\303\\277'; done");
+    const auto begun = std::chrono::steady_clock::now();
+    auto c = readHere("WorldBegin Procedural \"RunProgram\" [\"text\" \"\"]" + bound + "WorldEnd");
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count(), 10); // of 20 that it has
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    const std::string said = c->messages();
+    EXPECT_EQ(c->count(), 2u) << said;
+    EXPECT_NE(said.find("ends with the bytes C3 BF"), std::string::npos) << said;
+    EXPECT_NE(said.find("sys.stdout.buffer.write(b'\\xff')"), std::string::npos) << said;
+    EXPECT_NE(said.find("output of text:2:1"), std::string::npos) << said; // a fault in what it said, not in its text
 }
 
 TEST_F(Procedurals, NestToALimit) {

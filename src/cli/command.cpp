@@ -73,6 +73,11 @@ std::span<const StatusText> statusTexts() {
     return all;
 }
 
+bool standardInputHasData() {
+    struct stat s;
+    return fstat(STDIN_FILENO, &s) == 0 && (S_ISREG(s.st_mode) || S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode));
+}
+
 const StopFlag* watchInterrupts() {
     struct sigaction a;
     std::memset(&a, 0, sizeof a);

@@ -54,6 +54,9 @@ Diagnostics::Handler printer(Severity least = Severity::Warning);
 /// Flags of the process that a signal sets: 0, then 1 after the first Ctrl-C. A second ends the process at once with status 130.
 const StopFlag* watchInterrupts();
 
+/// Whether standard input is a file or a pipe: what a program reads that is given no names.
+bool standardInputHasData();
+
 /// Folders of ALPENGLOW_SHADERS.
 std::vector<std::string> environmentShaders();
 /// --searchpath: ':' separated.

@@ -77,8 +77,11 @@ void takeOldFlags(CommandLine& line) {
     args.insert(args.end(), t.arguments.begin(), t.arguments.end());
     const auto has = [&](const char* flag) { return std::find(args.begin(), args.end(), flag) != args.end(); };
     if (has("--version")) args = {"--version"};
-    if (has("-v") || has("--verbose"))
-        for (const std::string& n : t.notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
+    const auto say = [](const std::vector<std::string>& notes) {
+        for (const std::string& n : notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
+    };
+    if (has("-v") || has("--verbose")) say(t.notes);
+    if (!has("-q") && !has("--quiet")) say(t.told);
 }
 
 /// Finds the command, and makes old tools' spellings what the parser takes: prman's -res, maketx's -envlatl, numbers like -.5.
@@ -86,6 +89,7 @@ CommandLine normalise(int argc, char** argv, const CLI::App& app) {
     CommandLine line{{argv + 1, argv + argc}, "", ""};
     std::vector<std::string>& args = line.arguments;
     const std::vector<std::string> commands = commandNames(app);
+    if (args.empty() && standardInputHasData()) args = {"render"}; // prman < scene.rib
     if (!args.empty()) {
         if (args[0] == "help") return helpFor(args, app);
         const bool known = std::find(commands.begin(), commands.end(), args[0]) != commands.end();
@@ -192,6 +196,10 @@ int runProgram(int argc, char** argv) {
         app.parse(args);
     } catch (const CLI::ExtrasError&) {
         return wrongUse(unknownOptions(app), "alpenglow help " + app.get_subcommands().front()->get_name());
+    } catch (const CLI::RequiredError& e) {
+        const auto used = app.get_subcommands();
+        if (used.empty()) return wrongUse(e.what(), "alpenglow --help");
+        return wrongUse(used.front()->get_name() + ": " + e.what(), "alpenglow help " + used.front()->get_name());
     } catch (const CLI::ParseError& e) {
         std::ostringstream out, err; // they name what was given
         const int code = app.exit(e, out, err);

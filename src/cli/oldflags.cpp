@@ -2,20 +2,22 @@
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace alpenglow::cli {
 namespace {
 
 using Use = OldFlag::Use;
 
-constexpr std::string_view kDisplay = "name a display: --display TYPE:NAME:MODE, for example --display png:view.png:rgba",
-                           kPaths = "--searchpath $1", kNoRib = "RIB is not written by this program",
-                           kNetwork = "there is no network render here";
+constexpr std::string_view
+    kDisplay = "the scene's displays are written as files; --display TYPE:NAME:MODE adds one, `alpenglow view` shows "
+               "the picture as it grows",
+    kPaths = "--searchpath $1", kNoRib = "RIB is not written by this program", kNetwork = "there is no network render here";
 
 constexpr OldFlag kFlags[] = {
     {"-Progress", 0, "prman, aqsis", Use::Accepted, "--progress plain"},
     {"-P", 1, "renderdl", Use::Accepted, "--threads $1"},
-    {"-addtype", 1, "aqsis", Use::Answered, kDisplay},
+    {"-addtype", 1, "aqsis", Use::Noted, kDisplay},
     {"-archives", 1, "aqsis", Use::Accepted, kPaths},
     {"-base", 1, "aqsis", Use::Accepted, "--cwd $1"},
     {"-beep", 0, "renderdl", Use::Dropped, "nothing beeps"},
@@ -24,25 +26,28 @@ constexpr OldFlag kFlags[] = {
     {"-capture", 1, "prman", Use::Answered, kNoRib},
     {"-cat", 0, "renderdl", Use::Answered, kNoRib},
     {"-catrib", 1, "prman, renderdl", Use::Answered, kNoRib},
-    {"-checkpoint", 1, "prman", Use::Answered, "name a file: --checkpoint FILE; it is written every half minute"},
+    {"-checkpoint", 1, "prman", Use::Noted, "name a file: --checkpoint FILE; it is written every half minute"},
     {"-crop", 4, "prman, renderdl, aqsis", Use::Accepted, "--crop $1,$2,$3,$4"},
     {"-cwd", 1, "prman", Use::Accepted, "--cwd $1"},
-    {"-d", 0, "prman, renderdl", Use::Answered, kDisplay},
-    {"-D", 0, "renderdl", Use::Answered, kDisplay},
+    {"-d", 1, "prman, renderdl, rendrib", Use::Noted, kDisplay},
+    {"-D", 0, "renderdl", Use::Noted, kDisplay},
     {"-displays", 1, "aqsis", Use::Dropped, "there are no display plug-ins"},
+    {"-dspyframe", 1, "prman", Use::Dropped, kNetwork},
+    {"-dspyserver", 1, "prman", Use::Dropped, kNetwork},
     {"-endofframe", 1, "aqsis", Use::Dropped, "a table is printed after each run; --stats FILE.json has more"},
     {"-f", 1, "prman", Use::Accepted, "--frames $1"},
-    {"-fb", 0, "aqsis", Use::Answered, kDisplay},
+    {"-fb", 0, "aqsis", Use::Noted, kDisplay},
     {"-frames", 1, "renderdl, aqsis", Use::Accepted, "--frames $1"},
     {"-frameslist", 1, "aqsis", Use::Accepted, "--frames $1"},
     {"-help", 0, "all", Use::Accepted, "--help"},
-    {"-i", 0, "renderdl", Use::Answered, kDisplay},
-    {"-id", 0, "renderdl", Use::Answered, kDisplay},
+    {"-i", 0, "renderdl", Use::Noted, kDisplay},
+    {"-id", 0, "renderdl", Use::Noted, kDisplay},
     {"-info", 0, "aqsis", Use::Accepted, "--verbose"},
     {"-jobid", 1, "renderdl", Use::Dropped, kNetwork},
     {"-loglevel", 1, "prman", Use::Dropped, "-q and -v choose the messages"},
     {"-maxsamples", 1, "prman", Use::Accepted, "--spp $1"},
-    {"-mode", 1, "aqsis", Use::Answered, kDisplay},
+    {"-mode", 1, "aqsis", Use::Noted, kDisplay},
+    {"-nd", 0, "renderdl", Use::Dropped, "no window is opened"},
     {"-nobake", 0, "prman", Use::Dropped, "nothing is baked"},
     {"-nocolor", 0, "aqsis", Use::Dropped, "messages have no colours"},
     {"-noinit", 0, "renderdl", Use::Dropped, "there is no file of settings"},
@@ -50,15 +55,19 @@ constexpr OldFlag kFlags[] = {
     {"-p", 1, "prman", Use::Accepted, "--threads $1"},
     {"-pause", 0, "aqsis", Use::Dropped, "there is no window to wait for"},
     {"-plugins", 1, "aqsis", Use::Dropped, "shaders find plug-ins along --searchpath"},
-    {"-priority", 1, "aqsis", Use::Answered, "start the program with nice"},
+    {"-priority", 1, "aqsis", Use::Noted, "start the program with nice"},
     {"-procedurals", 1, "aqsis", Use::Accepted, kPaths},
     {"-progress", 0, "prman, renderdl, aqsis", Use::Accepted, "--progress plain"},
     {"-rc", 1, "aqsis", Use::Dropped, "there is no file of settings"},
-    {"-recover", 1, "prman", Use::Answered,
+    {"-recover", 1, "prman", Use::Noted,
      "keep the samples with --checkpoint FILE, and begin with them by --checkpoint FILE --resume"},
     {"-res", 2, "prman, renderdl, aqsis", Use::Accepted, "--format $1x$2"},
     {"-shaders", 1, "aqsis", Use::Accepted, kPaths},
+    {"-silent", 0, "rendrib", Use::Accepted, "--quiet"},
     {"-stats", 0, "renderdl", Use::Dropped, "a table is printed after each run; --stats FILE.json has more"},
+    {"-stats1", 0, "renderdl", Use::Dropped, "a table is printed after each run; --stats FILE.json has more"},
+    {"-stats2", 0, "renderdl", Use::Dropped, "a table is printed after each run; --stats FILE.json has more"},
+    {"-stats3", 0, "renderdl", Use::Dropped, "a table is printed after each run; --stats FILE.json has more"},
     {"-statsfile", 1, "prman, renderdl", Use::Accepted, "--stats $1"},
     {"-statslevel", 1, "prman", Use::Dropped, "--stats FILE.json has everything"},
     {"-syslog", 0, "aqsis", Use::Dropped, "messages go to standard error"},
@@ -66,7 +75,7 @@ constexpr OldFlag kFlags[] = {
     {"-textures", 1, "aqsis", Use::Accepted, kPaths},
     {"-threads", 1, "aqsis", Use::Accepted, "--threads $1"},
     {"-timestamp", 0, "aqsis", Use::Dropped, "messages have no time"},
-    {"-type", 1, "aqsis", Use::Answered, kDisplay},
+    {"-type", 1, "aqsis", Use::Noted, kDisplay},
     {"-verbose", 1, "aqsis", Use::Accepted, "--verbose"},
     {"-version", 0, "all", Use::Accepted, "--version"},
     {"-warning", 0, "aqsis", Use::Dropped, "warnings are always printed; -q leaves them out"},
@@ -119,14 +128,20 @@ void adjust(const OldFlag& f, const std::vector<std::string>& all, size_t* i, st
     if (f.name == "-f" && wholeNumber(v) && *i + 1 < all.size() && wholeNumber(all[*i + 1])) v += "-" + all[++*i];
 }
 
-/// -recover and -verbose have a number behind them, or none.
-bool mayHaveNoValue(const OldFlag& f) { return f.name == "-recover" || f.name == "-verbose" || f.name == "-endofframe"; }
+/// Whether a flag whose value may be missing has none: -recover and -verbose have a number behind them, prman's -d the name of a
+/// display driver, which is no file.
+bool hasNoValue(const OldFlag& f, const std::vector<std::string>& all, size_t i) {
+    const std::string next = i + 1 < all.size() ? all[i + 1] : "";
+    if (f.name == "-recover" || f.name == "-verbose" || f.name == "-endofframe") return !wholeNumber(next);
+    const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    return f.name == "-d" && (next.empty() || !std::all_of(next.begin(), next.end(), plain) || access(next.c_str(), F_OK) == 0);
+}
 
 void takeFlag(const OldFlag& f, const std::string& inlineValue, const std::vector<std::string>& all, size_t* i,
               TranslatedFlags* out) {
     std::vector<std::string> values;
     const std::string written = all[*i];
-    if (mayHaveNoValue(f) && inlineValue.empty() && (*i + 1 >= all.size() || !wholeNumber(all[*i + 1]))) {
+    if (inlineValue.empty() && hasNoValue(f, all, *i)) {
         values.push_back("1");
     } else if (!valuesOf(f, inlineValue, all, i, &values)) {
         out->error = fmt::format("{} takes {} value{}", f.name, f.values, f.values == 1 ? "" : "s");
@@ -147,8 +162,9 @@ void takeFlag(const OldFlag& f, const std::string& inlineValue, const std::vecto
         out->error = fmt::format("{} of {}: {}", f.name, f.renderers, f.here);
         return;
     }
-    if (f.use == Use::Dropped) {
-        out->notes.push_back(fmt::format("{} of {} has no effect: {}", f.name, f.renderers, f.here));
+    if (f.use == Use::Dropped || f.use == Use::Noted) {
+        (f.use == Use::Noted ? out->told : out->notes)
+            .push_back(fmt::format("{} of {} has no effect: {}", f.name, f.renderers, f.here));
         return;
     }
     std::string said = written + " is";
@@ -188,6 +204,7 @@ std::string oldFlagsPage() {
     for (const OldFlag* f : sorted) {
         const std::string text = f->use == Use::Accepted  ? "`" + std::string(f->here) + "`"
                                  : f->use == Use::Dropped ? "ignored: " + std::string(f->here)
+                                 : f->use == Use::Noted   ? "ignored, with a note: " + std::string(f->here)
                                                           : "refused: " + std::string(f->here);
         std::string values;
         for (int k = 1; k <= f->values; ++k) values += " $" + std::to_string(k);

@@ -12,6 +12,7 @@ struct OldFlag {
     enum class Use {
         Accepted, ///< becomes `here`
         Dropped,  ///< ignored: nothing here needs it; `here` says why
+        Noted,    ///< the same, and users are told, for something else happens than they asked for
         Answered, ///< ends with status 2 and the text `here`, which says what to write instead
     };
     std::string_view name;      ///< "-res"
@@ -27,6 +28,7 @@ std::span<const OldFlag> oldFlags();
 struct TranslatedFlags {
     std::vector<std::string> arguments;
     std::vector<std::string> notes; ///< what was replaced or ignored, a line each
+    std::vector<std::string> told;  ///< the same of flags that ask for what is not done
     std::string error;              ///< not "": a flag that cannot be taken, and what to write instead
 };
 

@@ -133,6 +133,12 @@ void checkLate(RenderArguments& a, const CLI::App& app) {
     s.shippedShaders = shippedShaders();
 }
 
+/// Without a name RIB comes from standard input, as other renderers have it.
+void takeScenes(RenderArguments& a) {
+    if (a.scenes.empty() && standardInputHasData()) a.scenes = {"-"};
+    if (a.scenes.empty()) throw CLI::RequiredError("scenes: a FILE, or RIB on standard input,");
+}
+
 /// "1-24", "3,5-6".
 std::string listOf(std::vector<int> frames) {
     std::sort(frames.begin(), frames.end());
@@ -284,10 +290,10 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     s.command = command;
     CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input) or models (.ply, .obj)");
     c->add_option("scenes", a->scenes,
-                  "RIB files, ASCII, binary or gzipped; - is standard input. A model (.ply, .obj) is shown whole under a sky. "
-                  "Each file starts from the default state; a file of options without a world holds for all that follow")
-        ->type_name("FILE")
-        ->required();
+                  "RIB files, ASCII, binary or gzipped; - is standard input, which is also read where no file is named. A model "
+                  "(.ply, .obj) is shown whole under a sky. Each file starts from the default state; a file of options without "
+                  "a world holds for all that follow")
+        ->type_name("FILE");
 
     c->add_option(
          "-o", s.output,
@@ -447,6 +453,7 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     for (CLI::Option* o : c->get_options())
         if (o->get_items_expected_max() == 1) o->take_last(); // a script's option gives way to the user's behind it
     c->callback([a, c, status] {
+        takeScenes(*a);
         checkLate(*a, *c);
         *status = renderAll(*a);
     });

@@ -59,17 +59,36 @@ TEST_F(Flags, ThoseOfOtherRenderersAreTaken) {
 }
 
 TEST_F(Flags, ThoseThatCannotBeTakenAreAnswered) {
-    for (const auto& [flag, answer] : {std::pair{"-d", "--display TYPE:NAME:MODE"},
-                                       {"-d it", "--display TYPE:NAME:MODE"},
-                                       {"-recover 1", "--checkpoint FILE --resume"},
-                                       {"-type=file", "--display TYPE:NAME:MODE"},
-                                       {"-capture x.rib", "RIB is not written"},
-                                       {"-res 100", "-res takes 2 values"}}) {
+    for (const auto& [flag, answer] : {std::pair{"-capture x.rib", "RIB is not written"}, {"-res 100", "-res takes 2 values"}}) {
         run(std::string("render s.rib ") + flag);
         EXPECT_EQ(status, 2) << flag;
         EXPECT_TRUE(says(answer)) << flag << ": " << errors();
     }
     EXPECT_FALSE(std::filesystem::exists(dir / "ri.pic"));
+}
+
+TEST_F(Flags, ThoseThatAskForWhatIsNotDoneAreNoted) {
+    for (const auto& [flag, answer] : {std::pair{"-d", "--display TYPE:NAME:MODE"},
+                                       {"-d it", "--display TYPE:NAME:MODE"},
+                                       {"-d 4", "--display TYPE:NAME:MODE"},
+                                       {"-id", "--display TYPE:NAME:MODE"},
+                                       {"-fb", "--display TYPE:NAME:MODE"},
+                                       {"-type=file", "--display TYPE:NAME:MODE"},
+                                       {"-checkpoint 5m", "--checkpoint FILE"},
+                                       {"-recover 1", "--checkpoint FILE --resume"}}) {
+        for (const char* quiet : {"", " -q"}) {
+            std::filesystem::remove(dir / "ri.pic");
+            run(std::string(flag) + " s.rib" + quiet);
+            EXPECT_EQ(status, 0) << flag << ": " << errors();
+            EXPECT_EQ(says(answer), !*quiet) << flag << ": " << errors();
+            EXPECT_TRUE(std::filesystem::exists(dir / "ri.pic")) << flag;
+        }
+    }
+    run("-dspyserver host:1 -dspyframe 2 -stats1 -nd -silent -o a.png s.rib");
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_EQ(errors(), "");
+    run("render -d s.rib -o b.png"); // the scene is no display driver
+    EXPECT_EQ(status, 0) << errors();
 }
 
 TEST_F(Flags, MisspeltOptionsAndCommands) {

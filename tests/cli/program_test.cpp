@@ -100,8 +100,10 @@ TEST_F(Program, HelpVersionAndWrongUse) {
         EXPECT_GT(r.out.size(), 200u) << c;
     }
     EXPECT_EQ(run("--version").out.rfind("alpenglow ", 0), 0u);
-    EXPECT_EQ(run("").status, 2);
-    EXPECT_EQ(run("render").status, 2);
+    EXPECT_EQ(run("</dev/null").status, 2);
+    EXPECT_EQ(run("render </dev/null").status, 2);
+    EXPECT_EQ(run("probe s.rib 0,0,0").status, 2);
+    EXPECT_NE(read("err").find("probe: normal is required\nalpenglow help probe tells more."), std::string::npos) << read("err");
     EXPECT_EQ(run("render --no-such-option a.rib").status, 2);
     for (const char* bad : {"--format 64", "--format 0x4", "--crop 1,0,0,1", "--samples 4:2", "--pixel a,b", "--frames 3-1",
                             "--spp 0", "--lanes 5", "--hider zebra", "--display foo", "--resume", "--progress loud"}) {
@@ -125,6 +127,14 @@ TEST_F(Program, ExtensionsAndStandardInput) {
     EXPECT_EQ(run("render -q -o a.png -", kSphere).status, 0) << read("err");
     EXPECT_EQ(read("a.png").substr(1, 3), "PNG");
     EXPECT_EQ(read("err"), "");
+    // Other renderers read it where no file is named: prman < a.rib, renderdl -t 1 < a.rib.
+    std::filesystem::create_symlink(ALPENGLOW_PROGRAM, dir / "prman");
+    for (const char* options : {"", " -t:1", " --threads 1"}) {
+        write("in.rib", std::string("Display \"b.png\" \"png\" \"rgb\"\n") + kSphere);
+        std::filesystem::remove(dir / "b.png");
+        ASSERT_EQ(std::system(("cd '" + dir.string() + "' && ./prman" + options + " < in.rib 2>err").c_str()), 0) << read("err");
+        EXPECT_TRUE(has("b.png")) << options;
+    }
     write("s.rib", kSphere);
     EXPECT_EQ(run("render -q -o sub/a.exr --format 8x6 s.rib").status, 0);
     EXPECT_EQ(read("sub/a.exr").substr(0, 4), "\x76\x2f\x31\x01");

@@ -1,16 +1,20 @@
 #include "cli/command.h"
 #include "base/file.h"
 #include "base/limits.h"
+#include "base/printable.h"
 #include "display/imageio.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,10 +42,46 @@ std::string lineOf(const SourcePlace& p) {
 
 } // namespace
 
+namespace {
+
+/// Warnings that say the same of one thing after another: the first few are printed, the others counted. What was counted is
+/// printed when the last printer of a run is gone.
+class Repeats {
+public:
+    ~Repeats() {
+        for (const auto& [kind, c] : kinds_)
+            if (c.times > kShown)
+                std::fprintf(stderr, "warning: %d more like this were not shown (-v shows all): %s\n", c.times - kShown,
+                             printable(c.first).c_str());
+    }
+    bool shows(const Diagnostic& d) {
+        std::string kind;
+        for (const char c : d.message)
+            if (!std::isdigit(static_cast<unsigned char>(c)) || kind.empty() || kind.back() != '0')
+                kind += std::isdigit(static_cast<unsigned char>(c)) ? '0' : c;
+        if (kinds_.size() >= kMostKinds && !kinds_.count(kind)) return true;
+        Kind& k = kinds_[kind];
+        if (k.times == 0) k.first = d.message;
+        return ++k.times <= kShown;
+    }
+
+private:
+    static constexpr int kShown = 3;
+    static constexpr size_t kMostKinds = 4096;
+    struct Kind {
+        int times = 0;
+        std::string first;
+    };
+    std::map<std::string, Kind> kinds_; ///< by message, its numbers left out
+};
+
+} // namespace
+
 Diagnostics::Handler printer(Severity least) {
     bool terminal = isatty(STDERR_FILENO) != 0;
-    return [least, terminal, lines = limits::kSourceLines](Diagnostic d) mutable {
+    return [least, terminal, lines = limits::kSourceLines, repeats = std::make_shared<Repeats>()](Diagnostic d) mutable {
         if (d.severity < least && !(d.always && least <= Severity::Warning)) return;
+        if (d.severity == Severity::Warning && least == Severity::Warning && !repeats->shows(d)) return;
         // Who reports when the scene has been read has its places, and no more its text.
         if (d.sourceLine.empty() && lines > 0 && !(d.sourceLine = lineOf(d.place)).empty()) --lines;
         std::string text = toString(d);

@@ -91,6 +91,25 @@ TEST_F(Flags, ThoseThatAskForWhatIsNotDoneAreNoted) {
     EXPECT_EQ(status, 0) << errors();
 }
 
+// A file of glyphs of size 0 has a warning for each: the first three, and how many more there were.
+TEST_F(Flags, WarningsThatRepeatAreSummedUp) {
+    std::string rib = "Format 8 8 1\nWorldBegin\nTranslate 0 0 5\nSphere 1 -1 1 360\n";
+    for (int i = 0; i < 40; ++i) rib += "Polygon \"P\" [0 0 0 0 0 0 0 0 0]\n";
+    write("many.rib", rib + "WorldEnd\n");
+    const auto count = [&](const std::string& part) {
+        const std::string all = errors();
+        int n = 0;
+        for (size_t at = 0; (at = all.find(part, at)) != all.npos; ++at) ++n;
+        return n;
+    };
+    run("render -o a.png many.rib");
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_EQ(count("many.rib:"), 3) << errors();
+    EXPECT_EQ(count("warning: 37 more like this were not shown (-v shows all): "), 1) << errors();
+    run("render -v -o a.png many.rib");
+    EXPECT_EQ(count("warning: "), 40) << errors();
+}
+
 TEST_F(Flags, MisspeltOptionsAndCommands) {
     run("render --hidr path s.rib");
     EXPECT_EQ(status, 2);

@@ -32,6 +32,28 @@ std::vector<std::string> words(const std::string& s, const char* separators) {
     return out;
 }
 
+constexpr const char* kLightPath = "lpe:"; ///< an output by light path (docs/lightpaths.md)
+
+/// The parts of a mode. Commas of a light path expression ("{2,4}", "'a,b'") do not end one.
+std::vector<std::string> partsOf(const std::string& mode) {
+    std::vector<std::string> out(1);
+    bool quoted = false;
+    int braces = 0;
+    for (const char c : mode) {
+        const size_t begin = out.back().find_first_not_of(" \t\r\n");
+        const bool path = begin != std::string::npos && out.back().compare(begin, 4, kLightPath) == 0;
+        if (path) quoted ^= c == '\'', braces += (c == '{') - (c == '}');
+        if (c != ',' || (path && (quoted || braces > 0))) {
+            out.back() += c;
+        } else {
+            out.emplace_back();
+            quoted = false;
+            braces = 0;
+        }
+    }
+    return out;
+}
+
 bool isIdentifier(const std::string& s) {
     if (s.empty() || s.size() > 255) return false;
     for (char c : s)
@@ -118,10 +140,19 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
             }
         out.push_back(std::move(v));
     };
-    for (const std::string& part : words(mode, ",")) {
+    for (const std::string& part : partsOf(mode)) {
         std::vector<std::string> w = words(part, " \t\r\n");
         if (w.empty()) continue;
         ModeVariable v;
+        if (w[0].starts_with(kLightPath)) {
+            v.name = part.substr(part.find(kLightPath));
+            v.name.resize(v.name.find_last_not_of(" \t\r\n") + 1);
+            v.type = Type::Color;
+            v.declared = true;
+            nameChannels(v);
+            add(v);
+            continue;
+        }
         std::vector<ModeVariable> standard;
         if (parseDeclaration(part, v)) {
             add(v);
@@ -138,9 +169,10 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
             const bool element = base != name;
             const bool type = std::any_of(std::begin(typeNames), std::end(typeNames), [&](auto& t) { return base == t.first; });
             if (!isIdentifier(base) || (element && (type || !isElement(name.substr(base.size()))))) {
-                diags.report(Severity::Error, Rie::BadToken, place,
-                             "display mode \"" + mode + "\": \"" + part + "\" is not understood",
-                             "modes are rgb rgba rgbz rgbaz a z az, names of output variables, or \"varying color name\"");
+                diags.report(
+                    Severity::Error, Rie::BadToken, place, "display mode \"" + mode + "\": \"" + part + "\" is not understood",
+                    "modes are rgb rgba rgbz rgbaz a z az, names of output variables, \"varying color name\", or a light "
+                    "path \"lpe:...\"");
                 break;
             }
             v.name = name;

@@ -54,7 +54,7 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
         if (widthOf(s) == 3) v.channels = {v.name + ".r", v.name + ".g", v.name + ".b"};
         return true;
     };
-    if (const auto expression = scene::lightPathIn(source)) {
+    if (const auto expression = scene::lightPathIn(source.empty() ? v.name : source)) {
         v.source = Source::Light;
         const auto word = scene::lightPathOfWord(*expression);
         v.light = lightOf(plan, word.value_or(*expression), place);

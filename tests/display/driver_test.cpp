@@ -50,6 +50,12 @@ TEST(Mode, StandardModes) {
     EXPECT_EQ(namesOf(""), (V{"r", "g", "b", "a"}));
 }
 
+TEST(Mode, LightPaths) {
+    EXPECT_EQ(namesOf("a,lpe:C<RD>L"), (V{"a", "lpe:C<RD>L.r", "lpe:C<RD>L.g", "lpe:C<RD>L.b"}));
+    EXPECT_EQ(namesOf(" lpe:C<RD>{2,4}<L.['a,b' 'c']> ,z"),
+              (V{"lpe:C<RD>{2,4}<L.['a,b' 'c']>.r", "lpe:C<RD>{2,4}<L.['a,b' 'c']>.g", "lpe:C<RD>{2,4}<L.['a,b' 'c']>.b", "z"}));
+}
+
 TEST(Mode, OutputVariables) {
     EXPECT_EQ(namesOf("N"), (V{"N.x", "N.y", "N.z"}));
     EXPECT_EQ(namesOf("varying color mycolor"), (V{"mycolor.r", "mycolor.g", "mycolor.b"}));

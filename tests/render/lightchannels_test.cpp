@@ -49,6 +49,18 @@ TEST(LightChannels, NamesAndSources) {
     EXPECT_EQ(back->first.lightParts, plan.lightParts);
 }
 
+TEST(LightChannels, ExpressionsInAMode) {
+    Diagnostics d;
+    const OutputPlan plan = planOutputs(asking("a,lpe:C<RD>L,lpe:C<L.'key light'>", {}), {}, true, "", d);
+    const auto& v = plan.pictures[0].variables;
+    ASSERT_EQ(v.size(), 3u);
+    EXPECT_EQ(v[1].source, Source::Light);
+    EXPECT_EQ(v[2].channels[0], "lpe:C<L.'key light'>.r");
+    ASSERT_EQ(plan.lights.size(), 2u);
+    EXPECT_EQ(plan.lights[0].expression, "C<RD>L");
+    EXPECT_EQ(d.all().size(), 0u);
+}
+
 TEST(LightChannels, AnotherNameForAnOutputOfAShader) {
     Diagnostics d;
     const OutputPlan plan = planOutputs(asking("mine", {{"mine", "color Kdiffuse"}}), {}, true, "", d);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
@@ -169,10 +170,13 @@ bool BakeLog::writeFlat(const std::string& name, const File& f, const OutputPoli
     const BakeLayout& first = *f.rows.front().layout;
     Baked b;
     b.type = first.channels.front().type;
+    std::set<const BakeLayout*> leftOut;
     for (const Row& r : f.rows) {
-        if (sizeOf(r.layout->channels.front().type) != sizeOf(b.type)) {
-            d.report(Severity::Error, Rie::Consistency, r.layout->place,
-                     "bake(): \"" + name + "\" has values of type " + nameOf(b.type) + " already; these are left out");
+        if (!r.layout->flat || sizeOf(r.layout->channels.front().type) != sizeOf(b.type)) {
+            const std::string has = r.layout->flat ? "bake(): \"" + name + "\" has values of type " + nameOf(b.type) + " already"
+                                                   : "bake3d(): \"" + name + "\" has points of bake() as well";
+            if (leftOut.insert(r.layout).second)
+                d.report(Severity::Error, Rie::Consistency, r.layout->place, has + "; these are left out");
             continue;
         }
         b.rows.insert(b.rows.end(), f.settled.begin() + long(r.at), f.settled.begin() + long(r.at + rowOf(*r.layout)));
@@ -223,7 +227,7 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
     return saveCloud(name, cloud, policy, d, f.rows.front().layout->place);
 }
 
-bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d) {
+bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d, FileOwners owners) {
     settle();
     bool all = true;
     for (const auto& [name, f] : files_) {
@@ -232,6 +236,18 @@ bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d) {
                      "\"" + name + "\": " + std::to_string(f.notFinite) +
                          " baked points have numbers that are not finite; they are left out");
         if (f.rows.empty()) continue;
+        const BakeLayout& first = *f.rows.front().layout;
+        const std::string call = first.flat ? "bake()" : "bake3d()";
+        bool binary = false;
+        const std::string file = bakeFileName(name, &binary);
+        const auto [owner, mine] = owners.try_emplace(fileIdentity(file), call + " of \"" + name + "\"");
+        if (!mine) {
+            d.report(Severity::Error, Rie::Consistency, first.place,
+                     call + ": \"" + name + "\" is not written: " + owner->second + " writes that file",
+                     "give each a name of its own");
+            all = false;
+            continue;
+        }
         const bool written = f.rows.front().layout->flat ? writeFlat(name, f, policy, d) : writeCloud(name, f, policy, d);
         all &= written;
         if (written)

@@ -30,6 +30,9 @@ struct BakeKey {
     uint32_t sample = 0;
 };
 
+/// Who writes a file, by fileIdentity().
+using FileOwners = std::map<std::string, std::string>;
+
 class BakeLog {
 public:
     /// The numbers of one call: s, t and the value; or P (3), N (3), radius and the channels, in the space of the file. Layouts
@@ -40,8 +43,9 @@ public:
     void settle();
     /// Forgets what was added since the last settle(): the samples were void.
     void discard();
-    /// Settles, and writes all files; then the log is empty. False: an error was reported for each that was not written.
-    bool write(const OutputPolicy&, Diagnostics&);
+    /// Settles, and writes all files but those that somebody else writes; then the log is empty. False: an error was reported for
+    /// each that was not written.
+    bool write(const OutputPolicy&, Diagnostics&, FileOwners = {});
     bool empty() const { return files_.empty(); }
     /// Of what is kept, in memory.
     size_t bytes() const { return bytes_; }

@@ -1,6 +1,7 @@
 // One frame on its way through the renderer: what it needs, its rays, its pictures and its figures.
 #include "base/limits.h"
 #include "base/processors.h"
+#include "display/driver.h"
 #include "render/bakepass.h"
 #include "render/curve.h"
 #include "render/deeppass.h"
@@ -11,6 +12,7 @@
 #include "render/imaging.h"
 #include "render/lacks.h"
 #include "render/levels.h"
+#include "render/outputnames.h"
 #include "render/partfile.h"
 #include "render/provenance.h"
 #include "render/rendering.h"
@@ -379,7 +381,14 @@ void Renderer::writeBaked(FrameWork& f, const Job& job) {
     if (!transport::bakes(*f.world)) return;
     if (job.interrupted)
         return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what shaders bake is not written");
-    outcome_.outputFailed |= !transport::writeBakes(*f.world, settings_.allowWrite, diagnostics_);
+    clouds::FileOwners others;
+    for (const OutputSpec& s : f.plan.pictures) {
+        const display::DriverDescriptor* driver = display::findDriver(s.type);
+        if (driver && !driver->writes) continue;
+        others[fileIdentity(s.name)] =
+            s.place.line > 0 ? "the Display of " + s.place.file + ":" + std::to_string(s.place.line) : "the picture";
+    }
+    outcome_.outputFailed |= !transport::writeBakes(*f.world, settings_.allowWrite, others, diagnostics_);
 }
 
 void Renderer::takeFigures(const FrameWork& f, Job& job) {

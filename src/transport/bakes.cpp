@@ -81,8 +81,8 @@ void settleBakes(const World& world, bool keep) {
     keep ? log.settle() : log.discard();
 }
 
-bool writeBakes(const World& world, bool allowWrite, Diagnostics& d) {
-    return implOf(world).clouds_->baked.write({".", allowWrite}, d);
+bool writeBakes(const World& world, bool allowWrite, const clouds::FileOwners& others, Diagnostics& d) {
+    return implOf(world).clouds_->baked.write({".", allowWrite}, d, others);
 }
 
 } // namespace alpenglow::transport

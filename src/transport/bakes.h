@@ -1,6 +1,7 @@
 // Baking: the points of grids over primitives whose shaders bake, as rays that find them, and the files that come of it.
 #pragma once
 #include "base/diagnostics.h"
+#include "clouds/bakelog.h"
 #include "shading/gridpoint.h"
 #include "wave/samples.h"
 #include "world/world.h"
@@ -19,7 +20,7 @@ void bakedPoints(const World&, uint32_t shape, std::vector<shading::GridPoint>&)
 CameraRay rayTo(const World&, shading::GridPoint&, int number, const CameraRay& pixel);
 /// What was baked since the last time goes behind what was baked before, or is forgotten. Nobody traces meanwhile.
 void settleBakes(const World&, bool keep);
-/// Writes what was baked. False: an error was reported.
-bool writeBakes(const World&, bool allowWrite, Diagnostics&);
+/// Writes what was baked, but over no file of the others. False: an error was reported.
+bool writeBakes(const World&, bool allowWrite, const clouds::FileOwners& others, Diagnostics&);
 
 } // namespace alpenglow::transport

@@ -335,6 +335,32 @@ TEST(BakeLogs, LoopsThatBake) {
     EXPECT_EQ(log.bytes(), one + one * kTurns / 2 + 2 * one * kTurns);
 }
 
+// Outputs of one frame that would be one file: one is written, the others are errors that name both.
+TEST_F(Bake, TwoOutputsOfOneName) {
+    write("b.sl", "surface b(string to = \"\"; string flat = \"\") {\n"
+                  "  normal n = normalize(N);\n"
+                  "  if (to != \"\") bake3d(to, \"\", P, n, \"interpolate\", 1, \"light\", color 1);\n"
+                  "  if (flat != \"\") bake(flat, s, t, color 1);\n  Ci = 1; Oi = 1;\n}\n");
+    const auto scene = [&](const std::string& names) {
+        write("two.rib", "Format 8 8 1\nDisplay \"x.png\" \"png\" \"rgb\"\nWorldBegin\nSurface \"b\" " + names +
+                             "\nTranslate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n");
+        return run("render -q two.rib", "2>&1");
+    };
+    std::string said = scene("\"to\" \"x.png\"");
+    EXPECT_EQ(status, 5) << said;
+    EXPECT_NE(said.find("\"x.png\" is not written: the Display of two.rib:2 writes that file"), said.npos) << said;
+    std::ifstream picture(dir / "x.png");
+    EXPECT_EQ(picture.get(), 0x89); // of PNG
+    said = scene("\"to\" \"a.ptc\" \"flat\" \"./a.ptc\"");
+    EXPECT_EQ(status, 5) << said;
+    EXPECT_NE(said.find("bake3d(): \"a.ptc\" is not written: bake() of \"./a.ptc\" writes that file"), said.npos) << said;
+    said = scene("\"to\" \"a.ptc\" \"flat\" \"a.ptc\"");
+    EXPECT_EQ(status, 1) << said;
+    EXPECT_NE(said.find("\"a.ptc\" has points of"), said.npos) << said;
+    said = scene("\"to\" \"a.ptc\" \"flat\" \"a.txt\"");
+    EXPECT_EQ(status, 0) << said;
+}
+
 } // namespace
 
 } // namespace bake_test

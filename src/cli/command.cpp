@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "base/limits.h"
 #include "base/printable.h"
+#include "base/realpath.h"
 #include "display/imageio.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -163,6 +164,12 @@ void readFormat(const std::string& s, int* width, int* height) {
     if (w > limits::kImageSide || h > limits::kImageSide) throw CLI::ValidationError("--format", "a side is too long");
     *width = w;
     *height = h;
+}
+
+void refuseOwnInput(const std::vector<std::string>& files) {
+    for (size_t i = 0; i + 1 < files.size(); ++i)
+        if (sameFile(files[i], files.back()))
+            throw CLI::ValidationError("files", "\"" + files.back() + "\" would replace the file that it is made of");
 }
 
 std::optional<std::vector<double>> parseNumbers(const std::string& s, size_t count) {

@@ -72,6 +72,8 @@ std::string faultOfPictureName(const std::string& name, bool output);
 
 /// What --format says, "640x480"; a side may have limits::kImageSide pixels. Throws CLI::ValidationError.
 void readFormat(const std::string&, int* width, int* height);
+/// The last of these files is made of the others, and is none of them. Throws CLI::ValidationError.
+void refuseOwnInput(const std::vector<std::string>& files);
 /// Numbers separated by commas; nothing unless there are exactly `count` (0 = any number) and all are finite.
 std::optional<std::vector<double>> parseNumbers(const std::string&, size_t count = 0);
 /// "1,4-6" gives 1 4 5 6; nothing when it is not such a list, or longer than 100000.

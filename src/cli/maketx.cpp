@@ -75,6 +75,7 @@ void addMaketx(CLI::App& app, int* status) {
         if (a->files.size() != wanted)
             throw CLI::ValidationError("files",
                                        a->cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
+        refuseOwnInput(a->files);
         std::string s = !a->smode.empty() ? a->smode : a->mode, t = !a->tmode.empty() ? a->tmode : a->mode;
         if (!s.empty()) o.swrap = s;
         if (!t.empty()) o.twrap = t;

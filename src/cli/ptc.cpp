@@ -163,8 +163,9 @@ int runPtc(const PtcArguments& a, Diagnostics& d) {
     }
     if (a.action == "brick") {
         if (clouds::brickMapOfFiles(std::span(&a.files[0], 1), a.files[1], kAnywhere, d)) return kDone;
-        const auto unread = [](const Diagnostic& m) { return m.code == Rie::NoFile || m.code == Rie::BadFile; };
-        return std::any_of(d.all().begin(), d.all().end(), unread) ? kNothingRendered : kOutputFailed;
+        const auto unwritten = [](const Diagnostic& m) { return m.code == Rie::System || m.code == Rie::DiskFull; };
+        const std::vector<Diagnostic> said = d.all();
+        return std::any_of(said.begin(), said.end(), unwritten) ? kOutputFailed : kNothingRendered;
     }
     std::vector<clouds::PointCloud> from;
     for (size_t i = 0; i + 1 < a.files.size(); ++i) {
@@ -248,6 +249,7 @@ void addPtc(CLI::App& app, int* status) {
                                        a->action + (a->action == "merge" ? " takes clouds and the name of what they become"
                                                     : least == 1         ? " takes files"
                                                                          : " takes a file and the name of what is written"));
+        if (least == 2) refuseOwnInput(a->files);
         if (!a->box.empty()) {
             const auto corners = parseNumbers(a->box, 6);
             if (!corners) throw CLI::ValidationError("--box", "takes six numbers, not " + a->box);

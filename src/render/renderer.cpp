@@ -225,8 +225,13 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
     for (const scene::Param& p : args)
         if (p.strings.empty()) numbers.insert(numbers.end(), p.numbers.begin(), p.numbers.end());
     int before = diagnostics_.errors();
-    if (texture::runMakeRequest(kind, files, numbers, m, diagnostics_)) ++outcome_.textures;
-    else if (diagnostics_.errors() == before) diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
+    const size_t said = diagnostics_.all().size();
+    const auto unwritten = [](const Diagnostic& d) { return d.code == Rie::DiskFull || d.code == Rie::System; };
+    const bool made = texture::runMakeRequest(kind, files, numbers, m, diagnostics_);
+    if (made) ++outcome_.textures;
+    const auto all = diagnostics_.all();
+    outcome_.outputFailed |= !made && std::any_of(all.begin() + long(said), all.end(), unwritten);
+    if (!made && diagnostics_.errors() == before) diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
     parseMark_ = clockSeconds();
 }
 

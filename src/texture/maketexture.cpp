@@ -1,5 +1,6 @@
 #include "texture/maketexture.h"
 #include "base/exact.h"
+#include "base/realpath.h"
 #include "clouds/bakefile.h"
 #include "clouds/brickstream.h"
 #include "display/imageio.h"
@@ -26,7 +27,18 @@ std::optional<display::Image> readBaked(const std::string& path, const MakeOptio
     return image;
 }
 
-std::optional<display::Image> readPicture(const std::string& given, const MakeOptions& o, Diagnostics& diags) {
+/// Whether a map would take the place of what it is made of. That is an error, which is reported.
+bool replacesIts(const char* source, const std::string& path, const std::string& map, const MakeOptions& o, Diagnostics& diags) {
+    if (!sameFile(path, map)) return false;
+    diags.report(Severity::Error, Rie::Consistency, o.place,
+                 "\"" + map + "\" is not made: it would replace the " + source + " \"" + path + "\", of which it is made",
+                 "give it another name");
+    return true;
+}
+
+/// The picture of which `map` is made.
+std::optional<display::Image> readPicture(const std::string& given, const std::string& map, const MakeOptions& o,
+                                          Diagnostics& diags) {
     bool binary = false;
     const std::string name = clouds::bakeFileName(given, &binary);
     std::string outside;
@@ -42,6 +54,7 @@ std::optional<display::Image> readPicture(const std::string& given, const MakeOp
     if (found->otherCase || found->baseNameOnly)
         diags.report(Severity::Warning, Rie::NoError, o.place,
                      "picture \"" + name + "\" was not found as named; \"" + found->path + "\" is used");
+    if (replacesIts("picture", found->path, map, o, diags)) return {};
     if (clouds::isBaked(found->path)) return readBaked(found->path, o, diags);
     display::ReadOptions r;
     r.place = o.place;
@@ -96,7 +109,7 @@ Reduction reductionOf(const MakeOptions& o, Diagnostics& diags) {
 
 bool makeMap(const std::string& picture, const std::string& texture, const MakeOptions& o, Wrap swrap, Wrap twrap,
              const char* format, Diagnostics& diags) {
-    auto image = readPicture(picture, o, diags);
+    auto image = readPicture(picture, texture, o, diags);
     if (!image) return false;
     image->metadata["wrapmodes"] = std::string(nameOf(swrap)) + "," + nameOf(twrap);
     image->metadata["textureformat"] = format;
@@ -122,7 +135,7 @@ bool makeLatLongEnvironment(const std::string& picture, const std::string& textu
 }
 
 bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeOptions& o, Diagnostics& diags) {
-    auto image = readPicture(zfile, o, diags);
+    auto image = readPicture(zfile, shadow, o, diags);
     if (!image) return false;
     display::Image z = display::selectChannels(*image, {image->channel("z") >= 0 ? "z" : image->channels[0]});
     z.channels = {"z"};
@@ -147,7 +160,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
     display::Image all;
     int height = 0; // of one face
     for (const std::string& name : pictures) {
-        auto face = readPicture(name, o, diags);
+        auto face = readPicture(name, texture, o, diags);
         if (!face) return false;
         if (all.channels.empty()) {
             all = *face;
@@ -187,6 +200,7 @@ bool makeBrickMap(const std::vector<std::string>& names, const std::string& bric
             else diags.report(outsideMessage("point cloud", name, outside, o.place));
             return false;
         }
+        if (replacesIts("point cloud", found->path, bricks, o, diags)) return false;
         paths.push_back(found->path);
     }
     return clouds::brickMapOfFiles(paths, bricks, o.policy, diags, o.place);

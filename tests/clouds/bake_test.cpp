@@ -361,6 +361,39 @@ TEST_F(Bake, TwoOutputsOfOneName) {
     EXPECT_EQ(status, 0) << said;
 }
 
+// What is made of a file does not take its place.
+TEST_F(Bake, NothingReplacesWhatItIsMadeOf) {
+    clouds::PointCloud cloud;
+    cloud.add({0, 0, 0}, {0, 0, 1}, 1, {});
+    Diagnostics d;
+    ASSERT_TRUE(clouds::saveCloud((dir / "a.ptc").string(), cloud, {".", true}, d));
+    std::filesystem::create_symlink("a.ptc", dir / "link.ptc");
+    for (const char* what : {"brick a.ptc a.ptc", "brick a.ptc ./a.ptc", "brick link.ptc a.ptc", "merge a.ptc link.ptc a.ptc",
+                             "toply a.ptc a.ptc"}) {
+        const std::string said = run("ptc " + std::string(what), "2>&1");
+        EXPECT_EQ(status, 2) << what << said;
+        EXPECT_NE(said.find("would replace the file that it is made of"), said.npos) << said;
+    }
+    EXPECT_NE(run("ptc info a.ptc", "2>&1").find("kind point cloud"), std::string::npos);
+    run("ptc brick link.ptc b.bkm", "2>&1");
+    EXPECT_EQ(status, 0);
+    // The same for requests.
+    write("make.rib", "Format 8 8 1\nDisplay \"z.z\" \"zfile\" \"z\"\nWorldBegin\nTranslate 0 0 3\nSphere 1 -1 1 360\n"
+                      "WorldEnd\nMakeShadow \"z.z\" \"z.z\"\nMakeTexture \"z.z\" \"./z.z\" \"black\" \"black\" \"box\" 1 1\n"
+                      "MakeBrickMap [\"a.ptc\"] \"a.ptc\"\n");
+    const std::string said = run("render -q make.rib", "2>&1");
+    EXPECT_EQ(status, 1) << said;
+    size_t refused = 0;
+    for (size_t at = 0; (at = said.find("it would replace the", at)) != said.npos; ++at) ++refused;
+    EXPECT_EQ(refused, 3u) << said;
+    EXPECT_NE(run("ptc info a.ptc", "2>&1").find("kind point cloud"), std::string::npos);
+    // A file that is no point cloud could not be read, which is another status than one that could not be written.
+    run("ptc brick make.rib c.bkm", "2>&1");
+    EXPECT_EQ(status, 3);
+    const std::string full = run("ptc brick a.ptc /dev/full", "2>&1");
+    EXPECT_EQ(status, 5) << full;
+}
+
 } // namespace
 
 } // namespace bake_test

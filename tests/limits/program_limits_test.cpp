@@ -368,6 +368,11 @@ TEST_F(ProgramLimits, StandardOutputThatIsFull) {
     shell("ulimit -f 8; '" ALPENGLOW_PROGRAM "' render -q --format 400x300 -o large.exr s.rib");
     EXPECT_EQ(status, 5) << err;
     EXPECT_FALSE(fs::exists(dir / "large.exr"));
+    // So is a map.
+    render("--format 400x300 -o large.png s.rib");
+    write("make.rib", "MakeTexture \"large.png\" \"large.tx\" \"black\" \"black\" \"box\" 1 1\n");
+    shell("ulimit -f 8; '" ALPENGLOW_PROGRAM "' render -q make.rib");
+    EXPECT_EQ(status, 5) << err;
     for (const auto& e : fs::directory_iterator(dir)) EXPECT_NE(e.path().extension(), ".tmp") << e.path();
 }
 

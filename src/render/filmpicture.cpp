@@ -1,8 +1,10 @@
 #include "render/filmpicture.h"
 #include "base/limits.h"
+#include "base/realpath.h"
 #include "render/imagertext.h"
 #include "render/noise.h"
 #include "render/partfile.h"
+#include <algorithm>
 
 namespace alpenglow::render {
 namespace {
@@ -141,8 +143,11 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
     bool written = writeFilm(*film, plan->first, plan->second, imager, settings.allowWrite, diags);
     // What is not the beginning of a sequence may be merged further.
     const auto& r = film->ranges();
-    if (written && (gaps || r.size() != 1 || r.front().begin != 0) && !plan->first.pictures.empty())
-        written = savePart(*film, sidecarName(plan->first.pictures.front().name), {".", true}, diags);
+    const std::string part = plan->first.pictures.empty() ? "" : sidecarName(plan->first.pictures.front().name);
+    const bool whole = !gaps && r.size() == 1 && r.front().begin == 0;
+    if (written && !whole && !part.empty()) written = savePart(*film, part, {".", true}, diags);
+    else if (written && std::none_of(files.begin(), files.end(), [&](const std::string& f) { return sameFile(f, part); }))
+        removePart(part); // of an older picture
     return written ? MergeResult::Done : MergeResult::NoOutput;
 }
 

@@ -2,6 +2,8 @@
 #include "base/limits.h"
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <zlib.h>
 
 namespace alpenglow::render {
@@ -365,6 +367,13 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
 std::unique_ptr<Film> loadPart(const std::string& path, Diagnostics& diag) {
     auto bytes = readWholeFile(path, limits::kPartFileBytes, diag);
     return bytes ? parsePart(*bytes, path, diag) : nullptr;
+}
+
+void removePart(const std::string& path) {
+    char magic[sizeof kMagic];
+    std::ifstream in(path, std::ios::binary);
+    std::error_code e;
+    if (in.read(magic, sizeof magic) && std::memcmp(magic, kMagic, sizeof kMagic) == 0) std::filesystem::remove(path, e);
 }
 
 std::unique_ptr<Film> mergeParts(const std::vector<std::string>& paths, Diagnostics& diag) {

@@ -21,6 +21,9 @@ std::unique_ptr<Film> loadPart(const std::string& path, Diagnostics&);
 /// The same from bytes; `name` is for messages.
 std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::string& name, Diagnostics&);
 
+/// Removes a part file that belonged to an older picture. Nothing happens where there is none, or another kind of file.
+void removePart(const std::string& path);
+
 /// Loads all parts and adds them. Null with an error when one cannot be read or does not fit the others. Any order of the
 /// parts gives the same bits.
 std::unique_ptr<Film> mergeParts(const std::vector<std::string>& paths, Diagnostics&);

@@ -1,6 +1,7 @@
 // One frame on its way through the renderer: what it needs, its rays, its pictures and its figures.
 #include "base/limits.h"
 #include "base/processors.h"
+#include "base/realpath.h"
 #include "display/driver.h"
 #include "render/bakepass.h"
 #include "render/curve.h"
@@ -236,6 +237,10 @@ void Renderer::writtenPictures(FrameWork& f, bool fine) {
     outcome_.outputFailed |= !fine;
     for (const OutputSpec& s : f.plan.pictures)
         if (fine) f.told.pictures.push_back({s.name, s.type, s.channels()});
+    if (!fine) return;
+    for (const OutputSpec& s : f.plan.pictures) // of an older picture: merge would take it for this one's
+        if (!extensionOf(s.name).empty() && (f.checkpoint.empty() || !sameFile(sidecarName(s.name), f.checkpoint)))
+            removePart(sidecarName(s.name));
 }
 
 FilmDescription Renderer::filmOf(const FrameWork& f) const {
@@ -282,7 +287,16 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
         outcome_.outputFailed |= !savePart(kept, f.checkpoint, anywhere, diagnostics_);
         saved = clockSeconds();
     };
+    const bool goesOn = film->samplesPerPixel() > 0;
+    if (goesOn) job.met = job.shone = true; // who began has said what is missing
+    const uint64_t raysBefore = job.rayTotal;
     bool any = renderPath(job, *film, f.wanted, settings_.seed, keep);
+    if (any && goesOn && !settings_.watcher && job.rayTotal == raysBefore) {
+        Diagnostic done{
+            Severity::Info, Rie::NoError, {f.checkpoint}, "the checkpoint has all samples: there is nothing to do", {}, {}};
+        done.always = true;
+        diagnostics_.report(std::move(done));
+    }
     double renderSec = job.elapsed();
     stats_.renderSec += renderSec;
     outcome_.interrupted |= job.interrupted;

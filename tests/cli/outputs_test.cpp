@@ -177,6 +177,39 @@ TEST_F(Outputs, Checkpoints) {
     EXPECT_TRUE(read("c.ckp") == four);
     EXPECT_EQ(render("--restart s.rib"), 2);
     EXPECT_EQ(render(how + "--restart --resume s.rib"), 2);
+    EXPECT_EQ(render(how + "--spp 4 --resume s.rib"), 0) << err; // it has them all
+    EXPECT_TRUE(says("nothing to do") && !says("empty")) << err;
+    EXPECT_TRUE(read("c.ckp") == four);
+}
+
+// merge takes the part file beside a picture for that picture's.
+TEST_F(Outputs, PartsOfOlderPicturesGo) {
+    scene("s.rib", "");
+    const std::string how = "--hider path --seed 7 ";
+    const auto parts = [&] {
+        EXPECT_EQ(render(how + "--spp 4 --samples 0:2 -o a.exr s.rib"), 0) << err;
+        EXPECT_EQ(render(how + "--spp 4 --samples 2:4 -o b.exr s.rib"), 0) << err;
+    };
+    parts();
+    EXPECT_EQ(render(how + "--spp 2 -o a.exr s.rib"), 0) << err; // another picture
+    EXPECT_FALSE(has("a.exr.part"));
+    EXPECT_EQ(go("merge -o m.exr a.exr b.exr"), 3) << err;
+    parts();
+    EXPECT_EQ(render("--hider hidden -o a.exr s.rib"), 0) << err;
+    EXPECT_FALSE(has("a.exr.part"));
+    // What is whole has no part, and parts that were given stay.
+    parts();
+    EXPECT_EQ(go("merge -o m.exr b.exr"), 0) << err;
+    EXPECT_TRUE(has("m.exr.part"));
+    EXPECT_EQ(go("merge -o m.exr a.exr b.exr"), 0) << err;
+    EXPECT_FALSE(has("m.exr.part"));
+    EXPECT_TRUE(has("a.exr.part") && has("b.exr.part"));
+    // A checkpoint may have that name, and what is no part file is not ours.
+    EXPECT_EQ(render(how + "--spp 2 --checkpoint c.exr.part -o c.exr s.rib"), 0) << err;
+    EXPECT_TRUE(has("c.exr.part"));
+    write("d.exr.part", "mine");
+    EXPECT_EQ(render(how + "--spp 2 -o d.exr s.rib"), 0) << err;
+    EXPECT_TRUE(has("d.exr.part"));
 }
 
 TEST_F(Outputs, PartsAndGaps) {

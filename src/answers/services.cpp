@@ -192,6 +192,7 @@ void Answers::print(const ServiceCall& call, int lane, const std::string& text) 
                                         std::to_string(d.place.column),
                                     key.program, text);
     key.place = {p.P.x, p.P.y, p.P.z};
+    key.call = {d.place.file, d.place.line, d.place.column};
     world_->prints_.add(key, text);
 }
 

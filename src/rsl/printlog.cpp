@@ -16,6 +16,14 @@ auto order(const PrintKey& k) {
 
 } // namespace
 
+/// The bits of a key.
+std::string PrintLog::nameOf(const PrintKey& k) {
+    std::string name;
+    const auto add = [&](const auto& v) { name.append(reinterpret_cast<const char*>(&v), sizeof v); };
+    add(k.sample), add(k.y), add(k.x), add(k.bounces), add(k.vertex), add(k.place), add(k.call);
+    return name + k.program;
+}
+
 void PrintLog::keep(Message m) {
     const size_t bytes = sizeof(Message) + m.text.size() + m.key.program.size();
     if (bytes_ + bytes > most_ && !spill()) write();
@@ -25,6 +33,11 @@ void PrintLog::keep(Message m) {
 
 void PrintLog::add(const PrintKey& key, const std::string& text) {
     const std::lock_guard lock(mutex_);
+    const std::string name = nameOf(key);
+    if (size_t& n = kept_[name]; ++n > kOfOneCall) {
+        ++lost_[name];
+        return;
+    }
     keep({key, text});
 }
 
@@ -48,6 +61,8 @@ void PrintLog::discard() {
     runs_.clear();
     std::erase_if(messages_, [](const Message& m) { return !m.lasting; });
     bytes_ = 0;
+    kept_.clear();
+    lost_.clear();
 }
 
 bool PrintLog::pending() {
@@ -60,8 +75,11 @@ void PrintLog::goOn(PrintLog& from) {
     std::erase_if(messages_, [&](const Message& m) { return m.lasting; });
     for (Message& m : from.messages_) keep(std::move(m));
     for (Run& r : from.runs_) runs_.push_back(std::move(r));
+    for (const auto& [name, n] : from.lost_) lost_[name] += n;
     from.messages_.clear();
     from.runs_.clear();
+    from.kept_.clear();
+    from.lost_.clear();
     from.bytes_ = 0;
 }
 
@@ -75,7 +93,8 @@ bool PrintLog::put(std::FILE* f, const Message& m) {
     const auto all = [f](const void* p, size_t n) { return std::fwrite(p, 1, n, f) == n; };
     return all(&k.sample, sizeof k.sample) && all(&k.y, sizeof k.y) && all(&k.x, sizeof k.x) &&
            all(&k.bounces, sizeof k.bounces) && all(&k.vertex, sizeof k.vertex) && all(k.place.data(), sizeof k.place) &&
-           all(lengths, sizeof lengths) && all(k.program.data(), k.program.size()) && all(m.text.data(), m.text.size());
+           all(k.call.data(), sizeof k.call) && all(lengths, sizeof lengths) && all(k.program.data(), k.program.size()) &&
+           all(m.text.data(), m.text.size());
 }
 
 bool PrintLog::get(std::FILE* f, Message& m) {
@@ -84,7 +103,7 @@ bool PrintLog::get(std::FILE* f, Message& m) {
     const auto all = [f](void* p, size_t n) { return std::fread(p, 1, n, f) == n; };
     if (!all(&k.sample, sizeof k.sample) || !all(&k.y, sizeof k.y) || !all(&k.x, sizeof k.x) ||
         !all(&k.bounces, sizeof k.bounces) || !all(&k.vertex, sizeof k.vertex) || !all(k.place.data(), sizeof k.place) ||
-        !all(lengths, sizeof lengths))
+        !all(k.call.data(), sizeof k.call) || !all(lengths, sizeof lengths))
         return false;
     k.program.resize(lengths[0]);
     m.text.resize(lengths[1]);
@@ -104,7 +123,20 @@ bool PrintLog::spill() {
     runs_.push_back(std::move(run));
     std::erase_if(messages_, [](const Message& m) { return !m.lasting; });
     bytes_ = 0;
+    kept_.clear();
     return true;
+}
+
+/// What was too much of calls at a point.
+void PrintLog::writeRest(const Calls& written, PrintKey point) {
+    for (const auto& [call, n] : written) {
+        point.call = call;
+        const auto lost = lost_.find(nameOf(point));
+        const size_t rest = n - std::min(n, kOfOneCall) + (lost == lost_.end() ? 0 : lost->second);
+        if (rest == 0) continue;
+        std::fprintf(to_, "(%zu more messages of %s:%d at this point are left out)\n", rest, printable(point.program).c_str(),
+                     call[1]);
+    }
 }
 
 void PrintLog::write() {
@@ -126,16 +158,29 @@ void PrintLog::write() {
     };
     for (const Run& r : runs_) add(r.get());
     add(nullptr);
+    Calls written;
+    PrintKey point;
     while (!sources.empty()) {
         const auto first = std::min_element(sources.begin(), sources.end(),
                                             [](const Source& a, const Source& b) { return before(a.head, b.head); });
-        const std::string text = printable(first->head.text);
-        std::fwrite(text.data(), 1, text.size(), to_);
+        const PrintKey& key = first->head.key;
+        if (order(key) != order(point)) {
+            writeRest(written, point);
+            written.clear();
+            point = key;
+        }
+        if (first->head.lasting || ++written[key.call] <= kOfOneCall) {
+            const std::string text = printable(first->head.text);
+            std::fwrite(text.data(), 1, text.size(), to_);
+        }
         if (!advance(*first)) sources.erase(first);
     }
+    writeRest(written, point);
     runs_.clear();
     messages_.clear();
     bytes_ = 0;
+    kept_.clear();
+    lost_.clear();
 }
 
 } // namespace alpenglow::rsl

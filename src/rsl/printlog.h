@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -22,11 +24,15 @@ struct PrintKey {
     uint32_t vertex = 0;          ///< hash of the way to the point
     std::string program;          ///< file of the shader
     std::array<float, 3> place{}; ///< the point: shaders of lights run for several of one vertex
+    /// Of the call in the shader: file, line and column. It orders nothing: messages of one run stay in their order.
+    std::array<int32_t, 3> call{};
 };
 
 /// Collects messages until flush(). Thread safe. Messages with equal keys come from one run of a shader and stay in their order.
 class PrintLog {
 public:
+    /// Messages of one call at one point: a loop that prints would fill the disk. The others are counted.
+    static constexpr size_t kOfOneCall = 10'000;
     explicit PrintLog(std::FILE* to = stdout, size_t most = limits::kPrintBytes) : most_(most), to_(to) {}
     ~PrintLog() { flush(); }
     PrintLog(const PrintLog&) = delete;
@@ -57,18 +63,24 @@ private:
     struct CloseFile {
         void operator()(std::FILE* f) const { std::fclose(f); }
     };
-    using Run = std::unique_ptr<std::FILE, CloseFile>; ///< sorted messages in a file without a name
+    using Run = std::unique_ptr<std::FILE, CloseFile>;      ///< sorted messages in a file without a name
+    using Counts = std::unordered_map<std::string, size_t>; ///< of one call at one point
+    using Calls = std::map<std::array<int32_t, 3>, size_t>; ///< at one point
+    static std::string nameOf(const PrintKey&);
     static bool before(const Message&, const Message&);
     static bool put(std::FILE*, const Message&);
     static bool get(std::FILE*, Message&);
     void sort();
     bool spill();
     void write();
+    void writeRest(const Calls& written, PrintKey point);
     void keep(Message);
     std::vector<Run> runs_;
     size_t most_;
     std::mutex mutex_;
     std::vector<Message> messages_;
+    Counts kept_;                                        ///< since the last run
+    Counts lost_;                                        ///< that were too many to be kept
     std::set<std::pair<std::string, std::string>> said_; ///< by once()
     size_t saidBytes_ = 0;
     size_t bytes_ = 0;

@@ -1,5 +1,6 @@
 // Messages come out by their keys, whatever order they came in.
 #include "rsl/printlog.h"
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <thread>
 #include <vector>
@@ -63,6 +64,35 @@ TEST(PrintLog, OrderHoldsBeyondItsMemory) {
     }
     EXPECT_EQ(textOf(f), expected);
     std::fclose(f);
+}
+
+TEST(PrintLog, LoopsThatPrintAreCut) {
+    const size_t most = PrintLog::kOfOneCall;
+    for (const size_t memory : {size_t(1) << 20, size_t(256) << 20}) { // goes to files in between, or not
+        std::FILE* f = std::tmpfile();
+        ASSERT_NE(f, nullptr);
+        {
+            PrintLog log(f, memory);
+            PrintKey k;
+            k.program = "loop.sl";
+            k.call = {0, 7, 3};
+            PrintKey other = k;
+            other.call = {0, 8, 3};
+            PrintKey next = k;
+            next.sample = 1;
+            for (size_t i = 0; i < 3 * most + 5; ++i) {
+                log.add(k, "a");
+                if (i < most) log.add(other, "b"); // as many as may be
+                if (i < 2) log.add(next, "c");
+            }
+        }
+        const std::string text = textOf(f),
+                          rest = "(" + std::to_string(2 * most + 5) + " more messages of loop.sl:7 at this point are left out)\n";
+        EXPECT_EQ(size_t(std::count(text.begin(), text.end(), 'b')), most);
+        EXPECT_EQ(text.size(), 2 * most + rest.size() + 2);
+        EXPECT_EQ(text.substr(2 * most), rest + "cc");
+        std::fclose(f);
+    }
 }
 
 TEST(PrintLog, WhatConstructPrintsComesOnceAndFirst) {

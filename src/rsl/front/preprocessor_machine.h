@@ -107,7 +107,8 @@ private:
         if (f.lexer) {
             --files_;
             while (ifs_.size() > f.conditions) {
-                sources_.error(ifs_.back().place, "this #if has no #endif");
+                sources_.warning(ifs_.back().place, "this #if has no #endif",
+                                 ifs_.back().taking ? "it ends with its file" : "all that stands behind it in its file is left out");
                 ifs_.pop_back();
             }
         }

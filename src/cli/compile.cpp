@@ -1,5 +1,6 @@
 // alpenglow compile: checks shaders, compiles them to machine code, shows what became of them.
 #include "base/installation.h"
+#include "base/limits.h"
 #include "base/printable.h"
 #include "cli/command.h"
 #include "rsl/compiler.h"
@@ -108,10 +109,10 @@ void addCompile(CLI::App& app, int* status) {
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
         std::string current, input; // the shader that is looked at, and what came by standard input
         std::set<std::tuple<std::string, int, int, std::string>> told; // what the shaders of a file share is said once
-        Diagnostics diags([&, print](Diagnostic d) {
+        Diagnostics diags([&, print, lines = limits::kSourceLines](Diagnostic d) mutable {
             if (d.place.line > 0 && !told.emplace(d.place.file, d.place.line, d.place.column, d.message).second) return;
             if (d.place.file.empty() && a->json) d.place.file = current;
-            if (d.sourceLine.empty() && d.place.line > 0) d.sourceLine = lineOf(d.place, input);
+            if (d.sourceLine.empty() && d.place.line > 0 && lines-- > 0) d.sourceLine = lineOf(d.place, input);
             rsl::complete(d);
             if (d.id == "null-handle") return; // which co-shaders there are, only a scene knows
             if (!a->json) print(d);

@@ -200,6 +200,18 @@ TEST(FrontErrors, LineAndCaret) {
               "folder/s.sl:3:7: error: 'Kqqq' is not declared [undeclared]\n  \tCi = Kqqq;\n  \t     ^~~~\n");
 }
 
+TEST(FrontErrors, WhatALineRepeatsIsCounted) {
+    std::string body;
+    for (int i = 0; i < 100; ++i) body += "f++; ";
+    const Compiled c = compileBody(body + "\nf++;");
+    const std::string text = c.text(), what = "'++' is not of this language";
+    size_t told = 0;
+    for (size_t at = 0; (at = text.find(what, at)) != text.npos; ++at) ++told;
+    EXPECT_EQ(told, 21u) << text; // twenty of the first line, one of the second
+    ASSERT_EQ(c.messages.size(), 21u);
+    EXPECT_EQ(c.messages[19].notes, std::vector<std::string>{"there are 80 more of these in this line"});
+}
+
 TEST(FrontErrors, MissingFile) {
     Diagnostics d;
     EXPECT_FALSE(compileFile("no/such/file.sl", {}, d));

@@ -2,6 +2,8 @@
 #include "base/limits.h"
 #include "rsl/front/messages.h"
 #include <algorithm>
+#include <map>
+#include <string>
 #include <tuple>
 
 namespace alpenglow::rsl::front {
@@ -89,8 +91,15 @@ void SourceSet::flush(Diagnostics& d) {
         return std::tie(a.place.file, a.place.line, a.place.column, a.order) <
                std::tie(b.place.file, b.place.line, b.place.column, b.order);
     });
+    constexpr int kAlike = 20; // in a line; what a program wrote in one line may say the same ten thousand times
+    std::map<std::tuple<int, int, std::string>, std::pair<int, int>> alike; // how many there are, and were told
+    for (const Message& m : messages_) ++alike[{m.place.file, m.place.line, m.text}].first;
     size_t kept = 0; // bytes of source lines: thousands of messages about one long line must not keep it thousands of times
     for (auto& m : messages_) {
+        auto& [all, told] = alike[{m.place.file, m.place.line, m.text}];
+        if (++told > kAlike) continue;
+        if (told == kAlike && all > kAlike)
+            m.notes.push_back("there are " + std::to_string(all - kAlike) + " more of these in this line");
         Diagnostic out;
         out.severity = m.severity;
         out.code = Rie::Syntax;

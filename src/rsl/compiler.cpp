@@ -313,14 +313,14 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
         if (auto file = state_->cache->load(key)) {
             result = jit::load(*file, true, error, state_->outside);
             fromDisk = result != nullptr;
-            for (const auto& m : file->messages) diagnostics.report(m);
+            for (const auto& m : file->messages) diagnostics.reportOnce(toString(m), m);
         }
         if (!result) {
             Diagnostics local;
             auto k = analyse(*shader, options, local);
             jit::KernelFile file;
             file.messages = local.all();
-            for (const auto& m : file.messages) diagnostics.report(m);
+            for (const auto& m : file.messages) diagnostics.reportOnce(toString(m), m);
             error.clear();
             if (k) ir::limitLoops(*k);
             if (k && local.errors() == 0 && jit::generate(*k, options, file, error)) {

@@ -2,6 +2,7 @@
 #include "base/exact.h"
 #include "base/limits.h"
 #include "base/parallel.h"
+#include "geometry/dicecost.h"
 #include "geometry/edge_corners.h"
 #include "geometry/parametric.h"
 #include "geometry/placed.h"
@@ -243,6 +244,7 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
     corners.finish();
     // Messages are kept by shape and passed on in order, so that they do not depend on threads.
     std::vector<std::vector<Diagnostic>> said(shapes.size());
+    std::vector<DiceCost> costs(shapes.size());
     parallelFor(size_t(0), shapes.size(), [&](size_t i) {
         if (opt.stop && *opt.stop) return;
         Diagnostics own;
@@ -250,12 +252,15 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
         mine.seamOrder = uint32_t(i);
         if (stitched(*shapes[i])) mine.seams = &seams, mine.seamWith = with[i];
         if (stitched(*shapes[i]) && !places[i]) mine.corners = &corners;
+        const double before = threadSeconds();
         shapes[i]->dice(mine, own);
+        costs[i] = costOf(*shapes[i], threadSeconds() - before);
         said[i] = own.all();
     });
     if (!(opt.stop && *opt.stop)) seams.close();
     for (auto& list : said)
         for (auto& d : list) diag.report(std::move(d));
+    noteCosts(shapes, costs, opt, diag);
 }
 
 } // namespace alpenglow::geometry

@@ -50,6 +50,9 @@ struct DiceOptions {
     uint32_t seamOrder = 0;               ///< of this shape among all, one apart for each key
     std::vector<double> seamWith;         ///< borders are closed among those for which this is the same: how they move
     const EdgeCorners* corners = nullptr; ///< of all displaced shapes that stand still; null: only a shape's own edges cut it
+    /// A primitive that costs more is named in a note.
+    double noteSeconds = 1;
+    size_t noteBytes = size_t(256) << 20;
     /// From a named space to camera space; null, or false: the space is not known.
     std::function<bool(const Shape&, const std::string& space, Matrix& out)> spaceOf;
 };

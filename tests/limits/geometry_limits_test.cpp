@@ -48,6 +48,30 @@ TEST(GeometryLimits, StepsAlongOneEdge) {
     EXPECT_EQ(s->mesh().triangles(), 2u * unsigned(limits::kDiceEdge));
 }
 
+TEST(GeometryLimits, WhatIsDearToDiceIsNamed) {
+    scene::Attributes a;
+    a.displacement = std::make_shared<scene::ShaderCall>();
+    a.shadingRate = 4;
+    Diagnostics d;
+    const ShapeRef small = build(patch("bilinear", square(10, 10)), Matrix(), d, a),
+                   large = build(patch("bilinear", square(200, 200)), Matrix(), d, a);
+    DiceOptions o;
+    o.camera.pixelsPerUnit = 1;
+    o.displace = [](const Shape&, DiceGrid&) {};
+    diceShapes({small, large}, o, d);
+    EXPECT_TRUE(d.all().empty());
+    // About 100 by 100 micropolygons: 10,000 points of 20 bytes, 20,000 triangles of 12 bytes.
+    o.noteBytes = 400'000;
+    diceShapes({small, large}, o, d);
+    ASSERT_EQ(d.all().size(), 1u);
+    EXPECT_EQ(d.all()[0].severity, Severity::Info);
+    EXPECT_NE(d.all()[0].message.find("facets at ShadingRate 4"), std::string::npos) << d.all()[0].message;
+    EXPECT_NE(d.all()[0].hint.find("ShadingRate"), std::string::npos);
+    o.noteBytes = 500'000;
+    diceShapes({small, large}, o, d);
+    EXPECT_EQ(d.all().size(), 1u);
+}
+
 TEST(GeometryLimits, MicropolygonsOfOnePrimitive) {
     // 2100 pixels squared are 4.4 million micropolygons.
     static_assert(limits::kDiceQuads < 2100u * 2100u);

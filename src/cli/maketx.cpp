@@ -21,6 +21,12 @@ struct MaketxArguments {
     bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false;
 };
 
+void checkFiles(const MaketxArguments& a) {
+    if (a.files.size() != (a.cube ? 7u : 2u))
+        throw CLI::ValidationError("files", a.cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
+    refuseOwnInput(a.files);
+}
+
 } // namespace
 
 void addMaketx(CLI::App& app, int* status) {
@@ -71,11 +77,7 @@ void addMaketx(CLI::App& app, int* status) {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
         if (!a->output.empty()) a->files.push_back(a->output);
-        size_t wanted = a->cube ? 7 : 2;
-        if (a->files.size() != wanted)
-            throw CLI::ValidationError("files",
-                                       a->cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
-        refuseOwnInput(a->files);
+        checkFiles(*a);
         std::string s = !a->smode.empty() ? a->smode : a->mode, t = !a->tmode.empty() ? a->tmode : a->mode;
         if (!s.empty()) o.swrap = s;
         if (!t.empty()) o.twrap = t;

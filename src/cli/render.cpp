@@ -326,8 +326,7 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
         ->group("Pictures");
     c->add_option("--gamma", a->gamma,
                   "Curve of the pictures instead of Exposure's, or that of path: a display gamma, 1 for none, or srgb (PNG, JPEG "
-                  "and TIFF of 8 "
-                  "bits; docs/colour.md)")
+                  "and TIFF of 8 bits; docs/colour.md)")
         ->type_name("G|srgb")
         ->group("Pictures");
     c->add_option("--frames", a->frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");

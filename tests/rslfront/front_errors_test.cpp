@@ -137,7 +137,7 @@ const Case kFiles[] = {
     {"class c(float a = 1;) { public void surface(output color Ci, Oi) { Ci = a; x = 1; } }", "1:76: error: 'x' is not declared"},
     {"#include \"nowhere.h\"\nsurface s() { Ci = helper(name); }", "1:10: error: cannot find the included file 'nowhere.h'"},
     {"#if 1\nsurface s() {}", "1:1: warning: this #if has no #endif"},
-    {"surface s() {}\n#if 0\nfloat f(", "2:1: warning: this #if has no #endif (all that stands behind it"},
+    {"surface s() {}\n#if 0\nfloat f(", "2:1: warning: this #if has no #endif (the rest of its file is skipped"},
     {"#endif\nsurface s() {}", "1:1: error: #endif without #if"},
     {"#error no\nsurface s() {}", "1:1: error: #error no"},
     {"#nonsense\nsurface s() {}", "1:2: warning: unknown directive '#nonsense'"},

@@ -108,7 +108,7 @@ private:
             --files_;
             while (ifs_.size() > f.conditions) {
                 sources_.warning(ifs_.back().place, "this #if has no #endif",
-                                 ifs_.back().taking ? "it ends with its file" : "all that stands behind it in its file is left out");
+                                 ifs_.back().taking ? "it ends with its file" : "the rest of its file is skipped");
                 ifs_.pop_back();
             }
         }

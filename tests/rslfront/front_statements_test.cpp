@@ -112,7 +112,8 @@ TEST(FrontShaders, GlobalsByKind) {
     EXPECT_FALSE(has(ShaderKind::Light, "Ci"));
     EXPECT_FALSE(has(ShaderKind::Displacement, "Ci"));
     EXPECT_TRUE(has(ShaderKind::Imager, "alpha"));
-    EXPECT_FALSE(has(ShaderKind::Volume, "N"));
+    EXPECT_TRUE(has(ShaderKind::Volume, "N")); // of 3Delight
+    EXPECT_FALSE(has(ShaderKind::Volume, "dPdu"));
 }
 
 TEST(FrontFunctions, OverloadsByArgumentAndResult) {

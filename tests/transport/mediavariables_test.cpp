@@ -85,6 +85,17 @@ TEST_P(MediaVariables, VolumesInVolumes) {
     }
 }
 
+// N, Cs and Os are those of the surface at the end of the way, as shaders for 3Delight read them.
+TEST_P(MediaVariables, OfTheSurfaceAtItsEnd) {
+    writeShader("told", "volume told() { Ci = Cs * abs(zcomp(normalize(N))) * Os; }\n");
+    const std::string card = "Surface \"shine\" Atmosphere \"told\" Color 1 .5 .25 Opacity .5 .5 .5\n"
+                             "Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0]\n";
+    for (const auto& [turned, cosine] : {std::pair{"", 1.}, {"Rotate 60 1 0 0\n", .5}}) {
+        const Color c = seen(turned + card).c;
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], .5 * cosine / (1 << k), 2e-5) << turned;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Hiders, MediaVariables, ::testing::Values(Hider::Raytrace, Hider::Path),
                          [](const auto& i) { return i.param == Hider::Path ? "Path" : "Raytrace"; });
 

@@ -70,10 +70,11 @@ constexpr GlobalVariable kLightOwn[] = {{"P", kP, V, R, "position on the light"}
                                         {"Cl", kC, V, W, "result: colour of the light"},
                                         {"Ol", kC, V, W, "result: opacity of the light"}};
 constexpr GlobalVariable kVolumeOwn[] = {
-    {"P", kP, V, R, "end of the ray segment"},           {"I", kV, V, R, "the segment; it starts at P - I"},
-    {"Ci", kC, V, W, "colour at P, to be changed"},      {"Oi", kC, V, W, "opacity at P, to be changed"},
-    {"L", kV, V, R, "toward the light; in illuminance"}, {"Cl", kC, V, R, "light colour; in illuminance"},
-    {"Ol", kC, V, R, "light opacity; in illuminance"}};
+    {"P", kP, V, R, "end of the ray segment"},        {"I", kV, V, R, "the segment; it starts at P - I"},
+    {"N", kN, V, R, "normal of the surface at P"},    {"Cs", kC, V, R, "colour of the surface at P"},
+    {"Os", kC, V, R, "opacity of the surface at P"},  {"Ci", kC, V, W, "colour at P, to be changed"},
+    {"Oi", kC, V, W, "opacity at P, to be changed"},  {"L", kV, V, R, "toward the light; in illuminance"},
+    {"Cl", kC, V, R, "light colour; in illuminance"}, {"Ol", kC, V, R, "light opacity; in illuminance"}};
 constexpr GlobalVariable kImagerOwn[] = {{"P", kP, V, R, "pixel position in raster space"},
                                          {"s", kF, V, R, "position across the picture, 0 to 1"},
                                          {"t", kF, V, R, "position down the picture, 0 to 1"},

@@ -2,6 +2,7 @@
 // first keeps the frame's index, the others are its parts, numbered behind all of the frame's.
 #include "scene/scene.h"
 #include "world/impl.h"
+#include "world/lightobjects.h"
 #include "world/outputs.h"
 
 namespace alpenglow::transport {
@@ -65,6 +66,16 @@ void readLightAttributes(BoundLight& l, bool path, Diagnostics& d) {
                                                                "\"illuminance\" and \"trace\" are known",
                                                                {}});
     }
+}
+
+/// Shaders for Pixie mean the point being lit.
+void warnOfOwnPoint(const ShaderInstance& light, Diagnostics& d) {
+    d.reportOnce("ownpoint:" + light.name, {Severity::Warning,
+                                            Rie::NoError,
+                                            light.place,
+                                            "light \"" + light.name + "\": P is its own place, as it has no area",
+                                            "Ps is the point being lit; --dialect pixie reads P so",
+                                            {}});
 }
 
 /// What the statement that a light comes from makes of it.
@@ -189,6 +200,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibility(*s));
             l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
         }
+        if (!area && readsOwnPoint(l.instance->program->shader())) warnOfOwnPoint(*l.instance, d);
         readLightAttributes(l, path, d);
         for (size_t k = 0; k < blocks.size(); ++k) {
             BoundLight part = l;

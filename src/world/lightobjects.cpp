@@ -43,6 +43,21 @@ bool answers(const rsl::CompiledShader& light, const std::set<std::string>& name
     });
 }
 
+bool readsOwnPoint(const rsl::Shader& light) {
+    bool reads = false;
+    const auto expression = [&](const rsl::Expr& e) {
+        reads |= e.kind == rsl::ExprKind::Variable && e.symbol && e.symbol->origin == rsl::Symbol::Origin::Global &&
+                 e.symbol->name == "P";
+    };
+    const auto statement = [&](const rsl::Stmt& s) {
+        if (s.kind != rsl::StmtKind::Illuminate && s.kind != rsl::StmtKind::Solar) return;
+        for (const rsl::StmtPtr& b : s.body)
+            if (b) rsl::front::everyStmt(*b, [](const rsl::Stmt&) {}, expression);
+    };
+    if (light.body) rsl::front::everyStmt(*light.body, statement, [](const rsl::Expr&) {});
+    return reads;
+}
+
 std::string spaceAt(const Matrix& toCurrent) {
     std::ostringstream out;
     out.imbue(std::locale::classic());

@@ -15,6 +15,9 @@ std::set<std::string> calledOfLights(const rsl::Program&);
 /// parameters only.
 bool answers(const rsl::CompiledShader& light, const std::set<std::string>& names);
 
+/// Whether a light reads P within illuminate() or solar(), where Ps is the point being lit: P is its own place.
+bool readsOwnPoint(const rsl::Shader& light);
+
 /// A name for the space that this matrix takes to "current".
 std::string spaceAt(const Matrix& toCurrent);
 

@@ -46,6 +46,22 @@ TEST(OldLights, ClAroundABlock) {
     }
 }
 
+// P of a light without area is its own place, 5 aside; for Pixie's shaders it is the point being lit, as Ps is.
+TEST(OldLights, ThePointOfALight) {
+    writeShader("ownpoint", "light ownpoint(point from = point \"world\" (0, 2, 0);) { illuminate(from) Cl = 1 + "
+                            "xcomp(transform(\"world\", P)) + 8 * distance(Ps, P); }\n");
+    for (const bool pixie : {false, true}) {
+        Settings settings = under(Hider::Hidden);
+        if (pixie) settings.dialect = "pixie";
+        Scene s("WorldBegin\nSides 2\nTransformBegin\nTranslate 5 0 0\nLightSource \"ownpoint\" 1\nTransformEnd\n" +
+                    std::string(kFloor) + "WorldEnd\n",
+                settings);
+        EXPECT_NEAR(s.one(kView).x, pixie ? 1 : 46, 1e-4);
+        EXPECT_EQ(s.diagnostics.warnings(), pixie ? 0 : 1) << s.messages();
+        EXPECT_EQ(s.messages().find("P is its own place") != std::string::npos, !pixie) << s.messages();
+    }
+}
+
 // A pane of opacity .25 a unit above the floor, and a light above it: shadows only where the file asks for them, of what it says.
 TEST(OldLights, ShadowsByAttribute) {
     const std::string lights[] = {

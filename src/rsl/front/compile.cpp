@@ -65,6 +65,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     const int main = sources.add(name, text);
     if (isFile) program->dependencies.push_back(name);
     Preprocessed p = preprocess(sources, main, options);
+    if (dialectLitPoint(options.dialect)) readLitPoints(p);
     program->preprocessed = p.text();
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
     hashComments(sources, p);

@@ -79,10 +79,13 @@ std::string_view dialectPrelude(std::string_view dialect) {
     return d == "bmrt" || d == "entropy" ? "#include \"rayserver.h\"\n" : "";
 }
 
-bool dialectRispecSpecular(std::string_view dialect) { return lower(dialect) == "rispec"; }
 // Shaders for PRMan and BMRT ask rayserver(), a program beside PRMan, by macros that BMRT's compiler does not take.
 std::string_view dialectOfFunction(std::string_view function) {
     return function == "rayserver" || function == "rayservercall" ? "bmrt" : "";
 }
+
+bool dialectRispecSpecular(std::string_view dialect) { return lower(dialect) == "rispec"; }
+
+bool dialectLitPoint(std::string_view dialect) { return lower(dialect) == "pixie"; }
 
 } // namespace alpenglow::rsl::front

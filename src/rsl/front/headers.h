@@ -25,5 +25,7 @@ std::string_view dialectPrelude(std::string_view dialect);
 std::string_view dialectOfFunction(std::string_view function);
 /// Whether specular() and specularbrdf() have RISpec's exponent in this dialect (shadeops/specular.h).
 bool dialectRispecSpecular(std::string_view dialect);
+/// Whether P of a light shader is the point being lit, as Ps is.
+bool dialectLitPoint(std::string_view dialect);
 
 } // namespace alpenglow::rsl::front

@@ -14,6 +14,9 @@ void addDirectLighting(SourceSet&, Preprocessed&);
 /// Gives class lights of PRMan that send their light through generateSamples() a method light() that takes it from there.
 void addSampledLights(SourceSet&, Preprocessed&);
 
+/// Gives light shaders Ps for P (dialectLitPoint()).
+void readLitPoints(Preprocessed&);
+
 using Tokens = std::vector<Token>;
 /// Behind the bracket that closes the one at `open`; the end of the text if there is none.
 size_t behind(const Tokens&, size_t open);

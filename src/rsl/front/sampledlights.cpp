@@ -171,6 +171,19 @@ Tokens emission(const Tokens& t, size_t call) {
 
 } // namespace
 
+void readLitPoints(Preprocessed& p) {
+    Tokens& t = p.tokens;
+    for (size_t i = 0; i + 2 < t.size(); ++i) {
+        if (!t[i].is("light") || t[i + 1].kind != Tok::Identifier || !t[i + 2].is("(")) continue;
+        const size_t body = behind(t, i + 2);
+        if (body >= t.size() || !t[body].is("{")) continue;
+        const size_t end = behind(t, body);
+        for (size_t k = i + 3; k < end; ++k)
+            if (t[k].kind == Tok::Identifier && t[k].text == "P" && !t[k - 1].is("->")) t[k].text = "Ps";
+        i = end - 1;
+    }
+}
+
 void addSampledLights(SourceSet& sources, Preprocessed& p) {
     if (std::none_of(p.tokens.begin(), p.tokens.end(), [](const Token& t) { return t.is("generateSamples") || t.is("emit"); }))
         return;

@@ -2,6 +2,7 @@
 #include "answers/answers.h"
 #include "base/category.h"
 #include "base/exact.h"
+#include "rsl/front/sentlights.h"
 #include <bit>
 
 namespace alpenglow::transport {
@@ -105,8 +106,10 @@ const std::vector<std::pair<int, int>>& Answers::turnsOf(const SurfaceBinding& b
     if (known.lights == b.lights) return known.turns; // numbers of lists are given while the world is made
     known.lights = b.lights;
     known.turns.clear();
+    const bool samples = world_->settings_.hider == Hider::Path || rsl::internedString(category) == rsl::kSampleLoop;
     world_->eachLight(b.lights, [&](int i) {
         const BoundLight& l = world_->lights_[size_t(i)];
+        if (!samples && l.instance && l.instance->parameters.numbers.count(rsl::kSentOnly)) return false;
         if (l.kernel && l.kind != LightKind::Ambient && l.strategy != LightStrategy::Trace && isOfCategory(category, i))
             for (int k = 0; k < l.samples; ++k) known.turns.push_back({i, k});
         return false;

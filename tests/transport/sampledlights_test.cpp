@@ -42,10 +42,9 @@ void writeWhite() {
         }
     }
 )");
-    // A shape of radiance 1, sampled evenly over its area, with a method light() that says no more than that this is a light.
-    writeShader("shape", R"(#include <stdrsl/AreaSampler.h>
+    // A shape of radiance 1, sampled evenly over its area.
+    const std::string shape = R"(#include <stdrsl/AreaSampler.h>
     class shape(float radiance = 1; uniform float n = 4; string shape = "rect") {
-        public void light(output vector L; output color Cl) { L = 0; Cl = color 0; }
         public void generateSamples(string integrationdomain; output __radiancesample samples[]) {
             stdrsl_AreaSampler sampler;
             sampler->generateSamples(Ps, shape, n, samples);
@@ -57,7 +56,14 @@ void writeWhite() {
         }
         public void shadowSamples(output __radiancesample samples[]) {}
     }
-)");
+)";
+    writeShader("shape", shape);
+    // With a method light() that says no more than that this is a light.
+    std::string zero = shape;
+    zero.replace(zero.find("class shape"), 11, "class zero");
+    zero.insert(zero.find("        public void generate"),
+                "        public void light(output vector L; output color Cl) { L = 0; Cl = color 0; }\n");
+    writeShader("zero", zero);
 }
 
 /// The light stands 2 above the origin of the floor.
@@ -117,6 +123,21 @@ TEST_P(SampledLights, TurnsOfTheLoop) {
         EXPECT_GE(c[1], 2 * n * (1 - 1e-6));
         EXPECT_LE(c[1], std::sqrt(4.5) * n);
     }
+}
+
+// A light() that says zero means it for surfaces that know nothing of samples, as in PRMan, but under path, where all light
+// counts.
+TEST_P(SampledLights, ThatSayZeroLightDirectlightingAlone) {
+    writeWhite();
+    const double a = .25, r = std::sqrt(1 + a * a), factor = 4 / (2 * M_PI) * 2 * (a / r) * std::atan(a / r);
+    const std::string light = facingDown("LightSource \"zero\" 1 \"n\" 4\n");
+    for (const char* surface : {"white", "loops"}) {
+        Scene s(world(light + "Surface \"" + surface + "\"\n" + kFloor), under(GetParam()));
+        if (GetParam() == Hider::Path) expectMean(s.estimate(kView, samples(4000)), factor, .01, surface);
+        else EXPECT_EQ(s.one(kView), Color(0)) << surface;
+    }
+    Scene s(world(light + "Surface \"answers\"\n" + kFloor), under(GetParam()));
+    expectMean(s.estimate(kView, samples(4000)), factor, .01, "directlighting()");
 }
 
 // A handle asks for all samples at once: the mean is the same.

@@ -3,6 +3,7 @@
 // wants them. Before anything is parsed they become methods of the class.
 #include "base/limits.h"
 #include "rsl/front/prelude.h"
+#include "rsl/front/sentlights.h"
 #include <array>
 #include <iterator>
 #include <string>
@@ -20,7 +21,7 @@ constexpr const char* kDirect = R"(
         extern normal N;
         d = 0;
         s = 0;
-        illuminance(P, shadingnormal(N), angle) {
+        illuminance("LOOP", P, shadingnormal(N), angle) {
             float asked = 1;
             LISTED
             if (asked != 0) {
@@ -77,14 +78,16 @@ std::string replaced(std::string text, std::string_view word, const std::string&
 constexpr const char* kNoAnswer = "    void evaluateSamples(string which; output __radiancesample samples[]) {}\n";
 constexpr const char* kNoSamples = "    void generateSamples(string which; output __radiancesample samples[]) {}\n";
 
-/// The methods that calls of the class become. `evaluates`, `generates`: it has what they ask.
-std::string methods(bool direct, bool indirect, bool evaluates, bool generates) {
-    std::string all = std::string(direct && !evaluates ? kNoAnswer : "") + (indirect && !generates ? kNoSamples : "");
-    if (direct) {
+/// The methods that calls of the class become. `directs`, `indirect`: which it calls; `evaluates`, `generates`: it has what they
+/// ask.
+std::string methods(bool directs, bool indirect, bool evaluates, bool generates) {
+    std::string all = std::string(directs && !evaluates ? kNoAnswer : "") + (indirect && !generates ? kNoSamples : "");
+    if (directs) {
+        const std::string direct = replaced(kDirect, "LOOP", kSampleLoop);
         const std::string listed = replaced(kListed, "MOST", std::to_string(limits::kLightHandles));
         all += kDirectOutputs;
-        all += replaced(replaced(replaced(kDirect, "NAME", "__direct"), "LISTED", ""), "LIST", "");
-        all += replaced(replaced(replaced(kDirect, "NAME", "__directof"), "LISTED", listed), "LIST", " shader lights[];");
+        all += replaced(replaced(replaced(direct, "NAME", "__direct"), "LISTED", ""), "LIST", "");
+        all += replaced(replaced(replaced(direct, "NAME", "__directof"), "LISTED", listed), "LIST", " shader lights[];");
     }
     return indirect ? all + kIndirect : all;
 }

@@ -16,6 +16,8 @@ namespace {
 constexpr const char* kSentOutputs = "output varying vector __sentL[MOST] = {0}; output varying color __sentCl[MOST] = {0};";
 /// Where the class wants shadows and does not say how: shadowSamples() of PRMan without areashadow().
 constexpr const char* kShadows = "uniform float __sentShadows = 1;";
+/// Where its light() says zero: rsl::kSentOnly.
+constexpr const char* kOnly = "uniform float __sentOnly = 1;";
 
 // What a sample with radiance R and density pdf of n adds to the irradiance over pi that Cl means is R / (pi pdf n). A density of
 // zero says that there is no sample. Those beyond MOST share the places of others: of two one is kept, in proportion to its
@@ -220,7 +222,8 @@ void addSampledLights(SourceSet& sources, Preprocessed& p) {
         }
         if (!f.generates || (f.light ? !setsZero(t, f.light + 1) : f.surface || !f.domain)) continue;
         if (f.light) t[f.light].text = kReplacedLight;
-        insert(i + 3, tokensOf(sources, std::string(kSentOutputs) + (f.shadows && !f.casts ? kShadows : "")));
+        insert(i + 3,
+               tokensOf(sources, std::string(kSentOutputs) + (f.shadows && !f.casts ? kShadows : "") + (f.light ? kOnly : "")));
         insert(end - 1, tokensOf(sources, replaced(kLight, "SHADOWED", f.casts ? "shadowSamples(sent);" : "")));
         i = end - 1;
     }

@@ -191,6 +191,17 @@ TEST(PlausibleSamples, EmissionOfAPrimitive) {
     }
 }
 
+// A surface that says what it sends, and reads what lights do not have: it is no light.
+TEST(PlausibleSamples, EmissionOfASurface) {
+    writeShader("shining", "class shining(float intensity = 1;) {\n"
+                           "    color sent() { return intensity * Cs; }\n"
+                           "    public void prelighting(output color Ci, Oi) { emit(sent()); }\n"
+                           "    public void surface(output color Ci, Oi) { Ci = Cs; Oi = 1; }\n}\n");
+    for (const Hider h : {Hider::Hidden, Hider::Path})
+        EXPECT_EQ(Scene(world("Surface \"shining\"\nColor .25 .5 1\n" + std::string(kFloor)), withShaders(h)).one(kView),
+                  Color(.25f, .5f, 1));
+}
+
 } // namespace
 
 } // namespace plausiblesamples_test

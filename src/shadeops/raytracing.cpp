@@ -158,7 +158,8 @@ std::vector<Shadeop> raytracingShadeops() {
                          "Light arriving at p from direction r, or gathered over a distribution about r. An array gets the parts "
                          "of glass-ggx (reflected, refracted) or of hair (one a lobe), each by rays of its own. dist: distance "
                          "of the nearest hit, above 1e30 for none. "
-                         "The float form is that distance, among objects visible to transmission. Current space.");
+                         "The float form is that distance, among objects visible to transmission. Current space. From the zero "
+                         "vector comes nothing.");
     list.back().examples = {{"trace(P, N)", "1 1 1", "", kWhite}};
     trace.lastResort = {Base::Float};
     trace.optional = trace.optional + distributionParameters() +
@@ -279,27 +280,26 @@ std::vector<Shadeop> raytracingShadeops() {
         sky.source = "Alpenglow";
         sky.optional.clear();
     }
-    Shadeop& gather =
-        add("gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}),
-            Lowering::Request,
-            "A statement of the language: gather(category, P, dir, angle, samples, pairs) body else other. Its body runs for "
-            "each ray that hits "
-            "something, what stands behind else for each that misses. Rays are spread over the cone of half angle `angle` about "
-            "dir, each "
-            "standing for the same part of it; 4096 at most. Categories: \"illuminance\" and \"\" cast rays; \"samplepattern\" "
-            "casts none, and all "
-            "count as misses; \"environment:MAP\" draws directions in proportion to the light of a map, from all around, and all "
-            "count as hits. "
-            "Pairs with a prefix name variables that the turn fills; what is not there leaves them as they were: surface:x "
-            "displacement:x volume:x "
-            "(outputs and parameters of shaders at the hit; surface:Ci is what trace() would bring, surface:Oi its opacity, "
-            "surface:x also P N Ng I "
-            "Cs Os u v s t dPdu dPdv there), primitive:x (variables "
-            "of the primitive), attribute:x, ray:origin ray:direction ray:length (of misses too; 1e38), environment:color "
-            "environment:direction "
-            "environment:solidangle (that of one sample: the sum of color times solidangle is the integral of the map). Shaders "
-            "run at a hit only "
-            "where a pair asks for what they give.");
+    Shadeop& gather = add(
+        "gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}),
+        Lowering::Request,
+        "A statement of the language: gather(category, P, dir, angle, samples, pairs) body else other. Its body runs for "
+        "each ray that hits "
+        "something, what stands behind else for each that misses. Rays are spread over the cone of half angle `angle` about "
+        "dir, each "
+        "standing for the same part of it; 4096 at most. Categories: \"illuminance\" and \"\" cast rays; \"samplepattern\" "
+        "casts none, and all "
+        "count as misses; \"environment:MAP\" draws directions in proportion to the light of a map, from all around, and all "
+        "count as hits. "
+        "Pairs with a prefix name variables that the turn fills; what is not there leaves them as they were: surface:x "
+        "displacement:x volume:x "
+        "(outputs and parameters of shaders at the hit; surface:Ci and volume:Ci are what trace() would bring, surface:Oi and "
+        "volume:Oi its opacity, surface:x also P N Ng I Cs Os u v s t dPdu dPdv there), primitive:x (variables "
+        "of the primitive), attribute:x, ray:origin ray:direction ray:length (of misses too; 1e38), environment:color "
+        "environment:direction "
+        "environment:solidangle (that of one sample: the sum of color times solidangle is the integral of the map). Shaders "
+        "run at a hit only "
+        "where a pair asks for what they give.");
     gather.examples = {
         {"misses", "4", "float misses = 0; gather(\"illuminance\", P, N, 0.5, 4) { } else misses += 1;", kNothing}};
     std::erase_if(gather.optional, [](const OptionalParameter& p) {

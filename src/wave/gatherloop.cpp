@@ -274,7 +274,8 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
     const GatherSite& g = *a.s.gather;
     const RaySite& r = *a.s.rays;
     const ShadePoint& p = a.point();
-    const bool cast = g.category == GatherSite::Category::Rays && e.world().accel_;
+    const bool aimed = a.triple(a.s.rows[1]) != Vec3(0); // refract() at total reflection gives no direction
+    const bool cast = g.category == GatherSite::Category::Rays && e.world().accel_ && aimed;
     RayKind kind{RayType::Specular, true, {}, 0};
     kind.set = e.raySetOf(a.s, [&](int row) { return a.f(row); }, p.shape, kind.type, kind.label);
     const RayKind* const kept = e.kindOf(kind);

@@ -26,6 +26,13 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
     return m;
 }
 
+/// Whether a trace() has no direction, as that of refract() at total reflection: no ray goes there, nothing comes from there.
+template <class Row> bool pointsNowhere(const SiteInfo& s, const Row& f) {
+    if (s.kind != SiteKind::Trace || s.trace->hemisphere) return false;
+    const int row = s.rows[1];
+    return f(row) == 0 && f(row + 1) == 0 && f(row + 2) == 0;
+}
+
 /// What lights may ask about a point that asks for light.
 template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& s, int point, const Row& f) {
     LitValues told;
@@ -152,7 +159,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion)
         return requestShadows(c, s, point, f, weight, target, owns, occurrence);
     const LobeKind* const kind = lobeOf(c, s, f);
-    if (!kind) return; // under path ambient light is what escaping diffuse rays see
+    if (!kind || pointsNowhere(s, f)) return; // under path ambient light is what escaping diffuse rays see
     if (s.kind == SiteKind::Trace && s.trace->apart && !owns) apartAt_.push_back(point);
     if (s.kind == SiteKind::Trace && s.trace->records.call) {
         if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {

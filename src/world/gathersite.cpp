@@ -13,6 +13,9 @@ using Of = GatherSite::Of;
 std::optional<std::pair<Of, std::string>> meaning(const std::string& name) {
     static const std::map<std::pair<std::string, std::string>, Of> whole = {{{"surface", "Ci"}, Of::Light},
                                                                             {{"surface", "Oi"}, Of::Opacity},
+                                                                            // Behind the Atmosphere, as surface:Ci here is.
+                                                                            {{"volume", "Ci"}, Of::Light},
+                                                                            {{"volume", "Oi"}, Of::Opacity},
                                                                             {{"ray", "origin"}, Of::Origin},
                                                                             {{"ray", "direction"}, Of::Direction},
                                                                             {{"ray", "length"}, Of::Length},

@@ -13,7 +13,7 @@ struct GatherSite {
         Displacement,
         Volume, ///< parameters and outputs of the shaders at the hit
         Light,
-        Opacity, ///< surface:Ci and surface:Oi
+        Opacity, ///< surface:Ci and surface:Oi, volume:Ci and volume:Oi
         Primitive,
         Attribute, ///< of what was hit
         Origin,

@@ -179,7 +179,7 @@ constexpr OptionDescription kAttributes[] = {
     {"visibility:subset", "string", "", "", Ignored, kSeveral},
     {"visibility:trace", "int", "1 under path and where a scene says no visibility at all, else 0", "1", Used,
      "Seen by diffuse and specular rays that no attribute of their own decides on."},
-    {"visibility:transmission", "", "1", "0", Used,
+    {"visibility:transmission", "", "1 under path and where a scene says 1 of nothing, else 0", "0", Used,
      "Stops shadow rays. The old words: \"transparent\" is 0; \"opaque\", \"Os\" and \"shader\" are 1 and say what stops them, "
      "as shade:transmissionhitmode does."},
     {"volume:depthinterpolation", "", "", "", Ignored, kPrman},

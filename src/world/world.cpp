@@ -32,45 +32,54 @@ bool shadesAtOpen(const scene::Frame& f, const Settings& settings, const std::ve
     return std::none_of(shapes.begin(), shapes.end(), asks);
 }
 
-// Whether the scene says who is visible to traced rays. BMRT's scenes never do, and their shaders trace.
-// Procedurals that wait are asked themselves, and not what is in them.
-bool saysVisibility(const std::vector<geometry::ShapeRef>& shapes, const scene::Frame& frame) {
-    const auto says = [](const scene::Attributes& a) {
+bool isVisible(const scene::Attributes& a, const char* rays, bool otherwise) {
+    const scene::Param* p = a.value(std::string("visibility:") + rays);
+    if (!p) return otherwise;
+    if (!p->strings.empty()) return p->strings[0] != "transparent";
+    return !p->numbers.empty() && p->numbers[0] != 0;
+}
+
+/// Whether primitives that do not say it are visible to traced rays, and to shadow rays.
+struct UnsetVisibility {
+    bool traced = true, shadows = true;
+};
+
+// Under path all are. Elsewhere none are to the rays for which the scene says of some that they are: BMRT's scenes never do, and
+// their shaders trace. Procedurals that wait are asked themselves, and not what is in them.
+UnsetVisibility unsetVisibility(const std::vector<geometry::ShapeRef>& shapes, const scene::Frame& frame, bool path) {
+    UnsetVisibility unset;
+    if (path) return unset;
+    const auto ask = [&](const scene::Attributes& a) {
+        if (!scene::partOf(a).empty()) return;
         for (const char* name : {"visibility:trace", "visibility:diffuse", "visibility:specular"})
-            if (a.value(name) && scene::partOf(a).empty()) return true;
-        return false;
+            unset.traced &= a.value(name) == nullptr;
+        unset.shadows &= !isVisible(a, "transmission", false);
     };
     const scene::Attributes* last = nullptr; // of a row of shapes with the same attributes
     for (const geometry::ShapeRef& s : shapes) {
         if (&s->attributes() == last) continue;
         last = &s->attributes();
-        if (says(*last)) return true;
+        ask(*last);
     }
-    return std::any_of(frame.primitives.begin(), frame.primitives.end(),
-                       [&](const scene::PrimitiveRef& p) { return p && scene::isProcedural(*p) && says(*p->attributes); });
+    for (const scene::PrimitiveRef& p : frame.primitives)
+        if (p && scene::isProcedural(*p)) ask(*p->attributes);
+    return unset;
 }
 
-// Visibility bits. Unset: everything sees everything under path and where no one is told apart (all); elsewhere only camera and
-// shadow rays of the file's own asking.
-uint32_t visibilityOf(const scene::Attributes& a, bool all) {
-    auto on = [&](const char* name, bool fallback) {
-        const scene::Param* p = a.value(std::string("visibility:") + name);
-        if (!p) return fallback;
-        if (!p->strings.empty()) return p->strings[0] != "transparent";
-        return !p->numbers.empty() && p->numbers[0] != 0;
-    };
+// Visibility bits.
+uint32_t visibilityOf(const scene::Attributes& a, const UnsetVisibility& unset) {
+    const auto on = [&](const char* name, bool otherwise) { return isVisible(a, name, otherwise); };
     // BMRT's word: 1 for camera rays, 2 for reflections, 4 for shadows. Visibilities of their own have the last word.
     const scene::Param* old = a.value("render:visibility");
     const int of = old && !old->numbers.empty() ? int(std::clamp(double(old->numbers[0]), 0., 7.)) : -1;
-    bool traced = on("trace", of < 0 ? all : (of & 2) != 0);
+    bool traced = on("trace", of < 0 ? unset.traced : (of & 2) != 0);
     uint32_t bits = 0;
     if (on("camera", of < 0 || (of & 1) != 0)) bits |= accel::kCamera;
     if (on("diffuse", traced)) bits |= accel::kDiffuse;
     if (on("specular", traced)) bits |= accel::kSpecular;
-    // Under path shadow rays are the renderer's own; elsewhere they are traced only when asked for, and old files that ask
-    // (transmission(), trace()) without saying who may be seen mean everything.
     const scene::Param* casts = a.value("render:casts_shadows"); // BMRT's word
-    if (on("transmission", of < 0 || (of & 4) != 0) && !(casts && !casts->strings.empty() && casts->strings[0] == "none"))
+    if (on("transmission", of < 0 ? unset.shadows : (of & 4) != 0) &&
+        !(casts && !casts->strings.empty() && casts->strings[0] == "none"))
         bits |= accel::kTransmission;
     return bits;
 }
@@ -208,9 +217,9 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->clippingPlanes_ = o.clippingPlanes;
     w->clipNear_ = o.clipNear;
     w->clipFar_ = o.clipFar;
-    const bool all = path || !saysVisibility(w->shapes_, *frame);
+    const UnsetVisibility unset = unsetVisibility(w->shapes_, *frame, path);
     w->findProcedurals();
-    w->bindLights(d, [all](const geometry::Shape& s) { return visibilityOf(s.attributes(), all); });
+    w->bindLights(d, [&](const geometry::Shape& s) { return visibilityOf(s.attributes(), unset); });
     w->findShining();
     w->evaluators_ = std::move(evaluators);
     const std::unique_ptr<Evaluator> evaluator = w->evaluators_(*w, d, settings.stop);
@@ -223,7 +232,7 @@ std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> fr
     w->diceShapes(d); // with displacement, by the same kernels that shade
     if (stopped()) return nullptr;
     std::vector<uint32_t> visibility;
-    for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), all));
+    for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), unset));
     takeDiced(*w, visibility);
     w->bindPhotons(visibility);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);

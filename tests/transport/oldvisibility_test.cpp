@@ -57,4 +57,35 @@ TEST(OldVisibility, BmrtsFlags) {
     }
 }
 
+// A scene that says of some primitives that they cast shadows means that the others cast none. One that only takes some out does
+// not.
+TEST(OldVisibility, ShadowsOfWhatSaysSo) {
+    writeShader("upto", "surface upto() { Oi = 1; Ci = transmission(P, P + vector(0, 9, 0)); }\n");
+    const std::string floor = "AttributeBegin Surface \"upto\" Polygon \"P\" [-9 0 -9  -9 0 9  9 0 9  9 0 -9] AttributeEnd\n";
+    const auto card = [](const std::string& says, const char* at) {
+        return "AttributeBegin\n" + (says.empty() ? "" : "Attribute \"visibility\" " + says + "\n") +
+               "Surface \"constant\" Translate " + at + "  Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\nAttributeEnd\n";
+    };
+    const struct {
+        const char *near, *far; // of a card above the point, and of one elsewhere
+        bool shadow;
+    } cases[] = {{"", "", true},
+                 {"", "\"int transmission\" 0", true},
+                 {"", "\"string transmission\" \"transparent\"", true},
+                 {"", "\"int transmission\" 1", false},
+                 {"", "\"string transmission\" \"opaque\"", false},
+                 {"\"int transmission\" 1", "", true},
+                 {"\"int transmission\" 0", "", false}};
+    for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        Settings s;
+        s.hider = h;
+        s.shaderPaths.push_back(shaderFolder());
+        for (const auto& c : cases) {
+            Scene scene("WorldBegin\n" + floor + card(c.near, "0 2 0") + card(c.far, "90 2 0") + "WorldEnd\n", s);
+            const bool shadow = c.shadow || (h == Hider::Path && !*c.near); // all of path's unset visibilities are 1
+            EXPECT_NEAR(scene.one(rayTo({.3f, 1, -.4f}, {0, 0, 0})).x, shadow ? 0 : 1, 1e-6) << int(h) << c.near << c.far;
+        }
+    }
+}
+
 } // namespace oldvisibility_test

@@ -1,6 +1,7 @@
 #include "transport/bakes.h"
 #include "scene/scene.h"
 #include "shading/grids.h"
+#include "world/cloudsite.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"
 
@@ -11,8 +12,7 @@ namespace {
 const WorldImpl& implOf(const World& w) { return static_cast<const WorldImpl&>(w); }
 
 bool bakesAt(const BoundKernel& k) {
-    return std::any_of(k.sites.begin(), k.sites.end(),
-                       [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; });
+    return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.cloud && s.cloud->writes; });
 }
 
 Vec3 placeOf(const WorldImpl& w, const shading::GridPoint& p) {

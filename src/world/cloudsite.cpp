@@ -115,7 +115,8 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
         l.channels.push_back({"_area", clouds::ChannelType::Float});
         ++l.width;
     }
-    if (i.kind != SiteKind::Texture3d) {
+    c->writes = i.kind != SiteKind::Texture3d && (c->computed || !c->name.empty());
+    if (c->writes) {
         world.clouds_->bakes = true;
         world.clouds_->centres |= c->centres >= 0;
     }

@@ -246,6 +246,23 @@ TEST_F(Bake, WhatCannotBe) {
     EXPECT_NEAR(p[2], .5f, 1e-3) << "x stays as it was";
 }
 
+// A call without the name of a file does nothing: no primitive is shaded whole for it.
+TEST_F(Bake, WithoutANameNothingIsShadedWhole) {
+    const auto points = [&](const std::string& call) {
+        write("baker.sl", "surface baker(uniform string cloud = \"\";) { uniform string type = \"\"; attribute(\"user:type\", "
+                          "type); Ci = Cs; Oi = 1; if (type == \"point\") " +
+                              call + "; }\n");
+        write("a.rib", header("a.exr") + begin + "Attribute \"user\" \"string type\" \"point\"\n" + ball);
+        quiet("render a.rib --stats s.json");
+        const std::string stats = bytes("s.json");
+        return std::atoi(stats.c_str() + stats.find("\"points\":") + 9);
+    };
+    const int without = points("Ci = Cs"), never = points("bake3d(cloud, \"\", P, N)");
+    EXPECT_GT(without, 100);
+    EXPECT_EQ(never, without);
+    EXPECT_GT(points("bake3d(\"there.ptc\", \"\", P, N)"), without);
+}
+
 TEST_F(Bake, ThePtcCommand) {
     writeShader("baker", "bake3d(\"f.ptc\", \"\", P, N, \"_c\", color(1, .5, 0), \"_s\", s);");
     write("a.rib", header("a.exr") + begin + ball);

@@ -115,9 +115,10 @@ Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : KeyedShape(std:
 }
 
 void Curves::chooseParts() {
-    // Boxes around long thin pieces hold mostly air: short pieces have smaller ones. Beyond some millions memory counts more.
+    // Boxes around long thin pieces hold mostly air: short pieces have smaller ones. Beyond some millions memory counts more. A
+    // cubic segment is as long as several straight ones, and a ray costs more there.
     constexpr uint32_t kProbes = 512;
-    constexpr size_t kMost = 6'000'000;
+    constexpr size_t kMost = 6'000'000, kMostCubic = 500'000;
     const uint32_t n = set_.segments(), step = std::max(1u, n / kProbes);
     double longs = 0, wides = 0;
     for (uint32_t i = 0; i < n; i += step) {
@@ -126,8 +127,11 @@ void Curves::chooseParts() {
         longs += length(g.linear ? g.p[2] - g.p[1] : g.p[3] - g.p[0]);
         wides += 2 * g.widest();
     }
+    const auto mayHalve = [&](uint32_t parts, size_t most) {
+        return parts_ < parts && longs > 4 * parts_ * wides && 2 * size_t(n) * parts_ <= most;
+    };
     if (facing_.kind != CurveFacing::Round || !set_.linear())
-        while (parts_ < 8 && longs > 4 * parts_ * wides && 2 * size_t(n) * parts_ <= kMost) parts_ *= 2;
+        while (mayHalve(8, kMost) || (!set_.linear() && mayHalve(32, kMostCubic))) parts_ *= 2;
 }
 
 /// A segment at a time: positions, widths and normals are linear between keys.

@@ -1,4 +1,5 @@
 #include "photons/photonmap.h"
+#include <cmath>
 #include <limits>
 
 namespace alpenglow::photons {
@@ -19,6 +20,50 @@ PhotonMap::PhotonMap(std::vector<Photon> from) {
     build(from, order, 0, order.size());
     photons_.resize(from.size());
     for (size_t i = 0; i < order.size(); ++i) photons_[i] = from[order[i]];
+    bounds_.resize(photons_.size() / kBoundStep + 1);
+    if (!photons_.empty()) bound(0, photons_.size());
+}
+
+PhotonMap::Bounds PhotonMap::bound(size_t begin, size_t end) {
+    const size_t middle = middleOf(begin, end);
+    const auto of = [](const Photon& p) {
+        const Vec3 n = unpackUnit(p.normal) * 127.f;
+        Bounds b{p.P, p.P, {}, {}};
+        for (int k = 0; k < 3; ++k) b.normalLo[k] = int8_t(std::floor(n[k])), b.normalHi[k] = int8_t(std::ceil(n[k]));
+        return b;
+    };
+    Bounds all = of(photons_[middle]);
+    const auto add = [&](const Bounds& b) {
+        for (int k = 0; k < 3; ++k) {
+            all.lo[k] = std::min(all.lo[k], b.lo[k]), all.hi[k] = std::max(all.hi[k], b.hi[k]);
+            all.normalLo[k] = std::min(all.normalLo[k], b.normalLo[k]);
+            all.normalHi[k] = std::max(all.normalHi[k], b.normalHi[k]);
+        }
+    };
+    if (end - begin < kBounded) {
+        for (size_t i = begin; i < end; ++i) add(of(photons_[i]));
+        return all;
+    }
+    if (begin < middle) add(bound(begin, middle));
+    if (middle + 1 < end) add(bound(middle + 1, end));
+    return bounds_[middle / kBoundStep] = all;
+}
+
+/// Whether a photon of this node may be nearer than those that were found, and face the right way. The distance is rounded as
+/// those of photons are, each of which is at least as far along each axis, so none that would count is passed over.
+bool PhotonMap::mayCount(const Lookup& l, size_t begin, size_t end, const std::vector<Found>& heap, size_t most) const {
+    const Bounds& b = bounds_[middleOf(begin, end) / kBoundStep];
+    if (heap.size() == most) {
+        Vec3 away(0.f);
+        for (int k = 0; k < 3; ++k) away[k] = std::max(std::max(b.lo[k] - l.P[k], l.P[k] - b.hi[k]), 0.f);
+        if (dot(away, away) >= heap.front().distance2) return false;
+    }
+    float facing = 0, size = 0;
+    for (int k = 0; k < 3; ++k) {
+        facing += std::max(float(b.normalLo[k]) * l.N[k], float(b.normalHi[k]) * l.N[k]);
+        size += std::fabs(l.N[k]);
+    }
+    return facing + 1e-3f * size > kSameSide * 127;
 }
 
 /// Order among equals is that of emission, so the tree does not depend on how the middle is found.
@@ -67,6 +112,8 @@ void PhotonMap::nearest(const Lookup& l, std::vector<Found>& heap) const {
         Part part = waiting[--depth];
         while (part.begin < part.end) {
             if (heap.size() == most && part.beyond2 > heap.front().distance2) break;
+            if (part.end - part.begin >= kBounded && !mayCount(l, part.begin, part.end, heap, most)) break;
+            if (l.visited) ++*l.visited;
             const size_t at = middleOf(part.begin, part.end);
             const Photon& p = photons_[at];
             const Vec3 away = p.P - l.P;

@@ -20,9 +20,10 @@ public:
     Color power() const;
 
     struct Lookup {
-        Vec3 P, N;          ///< N: unit; light counts that arrives on its side
-        int estimator = 50; ///< photons that are asked for, 1 to kMostAsked
-        int minBounces = 0; ///< photons with fewer are passed over
+        Vec3 P, N;                   ///< N: unit; light counts that arrives on its side
+        int estimator = 50;          ///< photons that are asked for, 1 to kMostAsked
+        int minBounces = 0;          ///< photons with fewer are passed over
+        uint64_t* visited = nullptr; ///< counts the photons that are looked at
     };
     static constexpr int kMostAsked = 4096;
     /// Power of the nearest photons over the area of the disc that they fill: irradiance, in radiance times steradians. The
@@ -41,11 +42,21 @@ private:
         Color power, given;
         float area = 0;
     };
+    /// What bounds the photons of a node: their places, and their normals in steps of 1/127.
+    struct Bounds {
+        Vec3 lo, hi;
+        int8_t normalLo[3], normalHi[3];
+    };
     Estimate estimate(const Lookup&) const;
+    Bounds bound(size_t begin, size_t end);
+    bool mayCount(const Lookup&, size_t begin, size_t end, const std::vector<Found>& heap, size_t most) const;
     void build(std::vector<Photon>& from, std::vector<uint32_t>& order, size_t begin, size_t end);
     void nearest(const Lookup&, std::vector<Found>& heap) const;
     std::vector<Photon> photons_;
     std::vector<uint8_t> axis_; ///< by photon: along which its node divides
+    /// Of nodes of kBounded photons or more, by their middle / kBoundStep: the middles of two such nodes are that far apart.
+    std::vector<Bounds> bounds_;
+    static constexpr size_t kBounded = 16, kBoundStep = 8;
 };
 
 /// The distance to the n-th nearest other photon, of a photon in the middle of `asked` that are picked evenly: how dense photons

@@ -67,6 +67,33 @@ TEST(PhotonMap, NearestAreThoseOfASlowSearch) {
     EXPECT_NEAR(map.power().x, 1, 1e-4);
 }
 
+// Far from all photons, or on a side on which none lies, most of them are not looked at; what is found is the same.
+TEST(PhotonMap, LooksAtFewPhotonsFromAfar) {
+    std::vector<Photon> all = evenly(20000, 2);
+    const PhotonMap map(all);
+    const Vec3 up(0, 1, 0);
+    for (const Vec3 at : {Vec3(.5f, 0, 9), Vec3(-7, 0, .3f), Vec3(.5f, 6, .5f), Vec3(4, 2, -3), Vec3(.2f, 0, .6f)}) {
+        uint64_t visited = 0;
+        PhotonMap::Lookup l{at, up, 400, 0, &visited};
+        const float e = map.irradiance(l).x;
+        EXPECT_LT(visited, 3000u) << at.x;
+        std::vector<float> far;
+        for (const Photon& p : all) far.push_back(dot(p.P - at, p.P - at));
+        std::nth_element(far.begin(), far.begin() + 400, far.end());
+        const double want = 400. / 20000 / (kPi * double(far[400]));
+        EXPECT_NEAR(e, want, 1e-4 * want) << at.x;
+    }
+    for (const Vec3 n : {-up, Vec3(1, 0, 0), normalize(Vec3(1, .4f, 0))}) {
+        uint64_t visited = 0;
+        EXPECT_EQ(map.irradiance({{.5f, 0, .5f}, n, 400, 0, &visited}).x, 0);
+        EXPECT_LT(visited, 10u);
+    }
+    // One photon of another side among them is found.
+    all[777].normal = packUnit(-up), all[777].from = packUnit(-up);
+    all[778] = all[777];
+    EXPECT_GT(PhotonMap(all).irradiance({{.5f, 0, .5f}, -up, 400, 0}).x, 0);
+}
+
 // The estimate is right in the mean: irradiance 1 within the square. (With the k-th photon's own disc and all k of them it would
 // be k / (k - 1) too bright, 25 % at 5.)
 TEST(PhotonMap, RightInTheMean) {

@@ -8,7 +8,7 @@ namespace alpenglow::transport {
 
 namespace {
 /// Beyond so many of its radii a lamp is sampled by area: what is nearer and faces the point more differs little.
-constexpr double kNear = 4;
+constexpr double kNear = 2.5;
 /// Beyond, a triangle fills nearly all that a point on its plane can see (2 pi).
 constexpr double kMostAngle = 6.2;
 

@@ -14,6 +14,7 @@ enum RandomUse : uint32_t {
     kLevel,
     kFlight,
     kDrawAgain,
+    kAmbient,
     kLightPoint = 1u << 21
 };
 

@@ -175,6 +175,7 @@ void Engine::forget() {
     gathered_.clear();
     walks_.clear();
     below_.clear();
+    ambients_.clear();
     litValues_.clear();
     waiting_.clear();
     moreLight_.clear();

@@ -27,6 +27,9 @@ struct Rules {
           emissionCounts(pickOne) {}
 };
 
+/// Questions that shadow rays answer: their weights hold the ray's throughput.
+inline bool asksShadows(SiteKind k) { return k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Ambient; }
+
 class Engine final : public Sched::RayService, public Tracer {
 public:
     Engine(std::shared_ptr<const WorldImpl>, Diagnostics&);
@@ -76,7 +79,8 @@ public:
     void depositPart(Sched&, const PathRay*, uint16_t end, const Color& light);
     void depositThroughVolume(Sched&, const PathRay&, const Color& met, const Color& shown); // shadegroup.cpp
     // lightevents.cpp: PathRay::path from event to event. All keep 0.
-    uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w) const; ///< the same by a loop over lights
+    /// The same by a loop over lights, or by ambient(), under that label.
+    uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w, int label) const;
     uint16_t atLobe(const LobeVertex&, const ShadePoint&, const PathRay&, const Vec3& w) const; ///< scattered towards w, unit
     uint16_t atLight(uint16_t path, const BoundLight& l) const {
         return path ? lightPaths_->next(path, lightSymbols_[size_t(&l - world_->lights_.data())]) : 0;
@@ -89,7 +93,7 @@ public:
     const scene::LightPaths* lightPaths_ = nullptr;                                         ///< Settings::lightPaths, under path
     std::vector<int32_t> lightSymbols_;                                                     ///< by light
     int32_t straight_ = 0, volume_ = 0, object_ = 0, map_ = 0, loopLight_ = 0, mirror_ = 0; ///< events without labels
-    int loopLabel_ = -1;
+    int loopLabel_ = -1, ambientLabel_ = -1;
     mutable std::unordered_map<int32_t, int> labelOfRays_; ///< by interned text
     mutable std::unordered_map<const LobeKind*, int> labelOfLobe_;
     std::vector<TargetId> partTargets_; ///< by camera sample and part
@@ -243,6 +247,16 @@ public:
                  bool owns, uint32_t occurrence);
     void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
                          float distance);
+    // ambient.cpp
+    std::vector<AmbientAsked> ambients_; ///< of the batch whose requests are taken
+    render::NumberRows ambientNumbers_;
+    void drawAmbient(const BatchContext&, std::vector<AmbientAsked>&);
+    void gatherAmbient(BatchContext&); ///< makes shadow rays of them
+    void sendAmbient(const BatchContext&, const AmbientAsked&, const Color& light, int number, int& last);
+    /// Where a ray from a point of a batch in direction w starts.
+    Vec3 leave(const BatchContext&, size_t point, const Vec3& w) const;
+    /// What outputs of the surface are now, for lights that ask; of a kernel that waits they stay as they were at the call.
+    void tellOutputs(LitValues&, const BatchContext&, size_t point) const;
     /// Gathers light over `lobes` (gather.h).
     void gather(BatchContext&, Sched&);
     /// The environment map of a trace() in direction w (unit, current space).

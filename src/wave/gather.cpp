@@ -29,6 +29,14 @@ void Gather::sortByPoint() {
     for (size_t i = 0; i < e_.lobes.size(); ++i) order_[size_t(next_[size_t(e_.lobes[i].point)]++)] = int(i);
 }
 
+void Engine::tellOutputs(LitValues& told, const BatchContext& c, size_t point) const {
+    if (c.bound->kernel->facts().suspends) return;
+    for (auto& [output, v] : told.outputs) {
+        const int o = c.batch->output(output->name);
+        for (size_t r = 0; o >= 0 && r < v.size(); ++r) v[r] = c.batch->value(o, int(r), int(point));
+    }
+}
+
 /// A vertex has one answer for lights that ask. Where its requests are summed up, its kernel is done: its outputs as they are
 /// now.
 void Gather::tellLights() {
@@ -36,10 +44,7 @@ void Gather::tellLights() {
         const auto list = lobesOf(point);
         if (list.empty()) continue;
         const int first = e_.lobes[size_t(list[0])].lit;
-        for (auto& [output, v] : e_.litValues_[size_t(first)].outputs) {
-            const int o = c_->bound->kernel->facts().suspends ? -1 : c_->batch->output(output->name);
-            for (size_t r = 0; o >= 0 && r < v.size(); ++r) v[r] = c_->batch->value(o, int(r), int(point));
-        }
+        e_.tellOutputs(e_.litValues_[size_t(first)], *c_, point);
         for (int i : list) e_.lobes[size_t(i)].lit = first;
     }
 }
@@ -50,11 +55,13 @@ uint32_t Gather::lightVertex(size_t point) const {
     return first.ownsTarget ? childVertex(vertex, kLightPoint + first.site, first.occurrence) : vertex;
 }
 
-Vec3 Gather::origin(size_t point, const Vec3& w) const {
-    const ShadePoint& p = c_->points[point];
-    if (const float bias = world_.bindings_[size_t(c_->bindings[point])].bias; bias > 0) return p.P + w * bias;
+Vec3 Engine::leave(const BatchContext& c, size_t point, const Vec3& w) const {
+    const ShadePoint& p = c.points[point];
+    if (const float bias = world_->bindings_[size_t(c.bindings[point])].bias; bias > 0) return p.P + w * bias;
     return geometry::offsetOrigin(p.surface, w, p.P == p.surface.P ? 0 : length(p.P - p.surface.P));
 }
+
+Vec3 Gather::origin(size_t point, const Vec3& w) const { return e_.leave(*c_, point, w); }
 
 Vec3 Gather::origin(const LobeVertex& l, const Vec3& w) const {
     const Vec3& at = l.elsewhere ? l.from : c_->points[size_t(l.point)].P;

@@ -41,6 +41,7 @@ void Engine::prepareLightPaths() {
     map_ = lightPaths_->symbol(Sky);
     loopLight_ = lightPaths_->symbol(Light);
     loopLabel_ = labelOf("illuminance");
+    ambientLabel_ = labelOf("ambient");
 }
 
 uint16_t Engine::atLobe(const LobeVertex& l, const ShadePoint& p, const PathRay& ray, const Vec3& w) const {
@@ -67,10 +68,10 @@ uint16_t Engine::atLobe(const LobeVertex& l, const ShadePoint& p, const PathRay&
     return pathEvent(ray.path, lightPaths_->symbol(event, how, ofRays, ofLobe));
 }
 
-uint16_t Engine::atLoop(const ShadePoint& p, const PathRay& ray, const Vec3& w) const {
+uint16_t Engine::atLoop(const ShadePoint& p, const PathRay& ray, const Vec3& w, int label) const {
     if (ray.path == 0) return 0;
     const auto event = reflects(ray, p, w) ? scene::PathEvent::Reflection : scene::PathEvent::Transmission;
-    return pathEvent(ray.path, lightPaths_->symbol(event, scene::PathScattering::Diffuse, loopLabel_));
+    return pathEvent(ray.path, lightPaths_->symbol(event, scene::PathScattering::Diffuse, label));
 }
 
 } // namespace alpenglow::transport

@@ -163,9 +163,8 @@ void Engine::followAsides(std::span<const AskedAside> rest, std::span<std::share
                 lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target,
                                 args[size_t(s.rows[0]) * size_t(e.lanes) + size_t(a.lane)]);
             else
-                request(c, s, point, args, e.lanes, a.lane,
-                        s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion ? a.weight * through : a.weight, target,
-                        false, occurrence[{e.site, point}]++);
+                request(c, s, point, args, e.lanes, a.lane, asksShadows(s.kind) ? a.weight * through : a.weight, target, false,
+                        occurrence[{e.site, point}]++);
         }
         gather(c, sched);
         flushShadows(sched);

@@ -53,6 +53,13 @@ void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const
     const ShadePoint& p = c.points[size_t(point)];
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
     const size_t had = shadows.size(), settled = settled_.size();
+    if (s.kind == SiteKind::Ambient) {
+        ambients_.push_back({point, Vec3(f(s.rows[0]), f(s.rows[0] + 1), f(s.rows[0] + 2)), weight, target, owns});
+        if (!world_->lightsAsk()) return;
+        ambients_.back().lit = int(litValues_.size());
+        litValues_.push_back(litValues(c, s, point, f));
+        return;
+    }
     if (s.kind == SiteKind::Transmission) {
         if (s.rays->samples >= 0 && s.rays->cone >= 0 && f(s.rays->cone) > 0)
             samplesOf(std::max(1.f, f(s.rays->samples)), p.shape, s, c); // says when there are too many
@@ -156,10 +163,9 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     const ShadePoint& p = c.points[point];
     const auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
-    if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion)
-        return requestShadows(c, s, point, f, weight, target, owns, occurrence);
+    if (asksShadows(s.kind)) return requestShadows(c, s, point, f, weight, target, owns, occurrence);
     const LobeKind* const kind = lobeOf(c, s, f);
-    if (!kind || pointsNowhere(s, f)) return; // under path ambient light is what escaping diffuse rays see
+    if (!kind || pointsNowhere(s, f)) return;
     if (s.kind == SiteKind::Trace && s.trace->apart && !owns) apartAt_.push_back(point);
     if (s.kind == SiteKind::Trace && s.trace->records.call) {
         if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
@@ -223,6 +229,7 @@ Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const 
 }
 
 void Engine::gather(BatchContext& c, Sched& sched) {
+    if (!ambients_.empty()) gatherAmbient(c);
     std::unique_ptr<Gather> g = std::move(gather_); // taken, so that one inside of this has its own
     if (!g) g = std::make_unique<Gather>(*this);
     g->run(c, sched);

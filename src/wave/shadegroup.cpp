@@ -237,8 +237,7 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
             if (weight == Color(0) || c.rays[size_t(point)].quiet) continue;
             if (world_->bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
             const float* args = rows + size_t(3) * e.lanes;
-            if (photonTrace_ &&
-                (s.kind == SiteKind::LightVisibility || s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion))
+            if (photonTrace_ && (s.kind == SiteKind::LightVisibility || asksShadows(s.kind)))
                 continue; // nobody asks what photons see
             if (s.kind == SiteKind::LightVisibility) {
                 const size_t had = shadows.size();
@@ -247,12 +246,12 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
                 if (shadows.size() > had) {
                     const PathRay& ray = c.rays[size_t(point)];
                     shadows.back().share = extraOf(ray).share;
-                    shadows.back().path = atLoop(c.points[size_t(point)], ray, shadows.back().dir);
+                    shadows.back().path = atLoop(c.points[size_t(point)], ray, shadows.back().dir, loopLabel_);
                     shadows.back().light = e.light >= 0 && !lightSymbols_.empty() ? lightSymbols_[size_t(e.light)] : loopLight_;
                 }
                 continue;
             }
-            if (s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion) weight *= c.rays[point].weight;
+            if (asksShadows(s.kind)) weight *= c.rays[point].weight;
             const size_t had = lobes.size();
             if (shadows.size() > kShadowsAtOnce) flushShadows(sched);
             request(c, s, point, args, e.lanes, lane, weight, c.targets[point], false,

@@ -114,7 +114,7 @@ void KernelStrip::ask(Sched& s) {
                               in_[size_t(site.rows[0]) * size_t(lanes_) + size_t(lane)]);
             continue;
         }
-        if (c_->rays[size_t(point)].quiet && site.lobe) continue; // nobody hears of light
+        if (c_->rays[size_t(point)].quiet && (site.lobe || site.kind == SiteKind::Ambient)) continue; // nobody hears of light
         const size_t had = e.lobes.size();
         if (e.shadows.size() > kShadowsAtOnce) e.flushShadows(s);
         e.request(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k], true, occurrence);

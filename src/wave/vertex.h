@@ -28,6 +28,16 @@ struct WalkAsked {
     float indirect = 1;  ///< LobeVertex::indirect where it comes out
 };
 
+/// An ambient() at a point of the batch.
+struct AmbientAsked {
+    int point = 0;
+    Vec3 way;     ///< the shading normal; then the unit direction of its shadow ray
+    Color weight; ///< as of ShadowRay::contribution
+    TargetId target = shading::kNoTarget;
+    bool owns = false; ///< LobeVertex::ownsTarget
+    int lit = -1;      ///< of Engine::litValues_
+};
+
 /// A lobe at a point that light shall be gathered over.
 struct LobeVertex {
     int point = 0;

@@ -75,13 +75,13 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     std::vector<LightValue> value;
     for (const int number : world_->skies_) {
         const BoundLight& l = world_->lights_[size_t(number)];
+        if (l.kind == LightKind::Ambient) continue; // ambient() asks for it
         q.clear();
         of.clear();
         litBy_.clear();
         for (const Sched::Task* t : tasks) {
             const PathRay& r = t->payload;
-            const bool ambient = l.kind == LightKind::Ambient;
-            if (ambient ? r.type() != RayType::Diffuse : !l.seenBy(*r.kind)) continue;
+            if (!l.seenBy(*r.kind)) continue;
             // A lobe that samples lights: those that are off for its surface do not light it by chance either.
             if (r.lobeBinding >= 0 && !world_->bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
             if (bringsPhotons(r, number)) continue;
@@ -102,8 +102,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
         for (size_t i = 0; i < of.size(); ++i)
             if (value[i].lit) {
                 const PathRay& r = of[i]->payload;
-                const bool weighed = l.kind == LightKind::Environment && r.bounces > 0 &&
-                                     !r.kind->fromTrace; // met by a lobe of a lighting shadeop
+                const bool weighed = r.bounces > 0 && !r.kind->fromTrace; // met by a lobe of a lighting shadeop
                 float weight = weighed ? value[i].kept(r.type()) : 1.f;
                 if (l.sky && r.lobePdf >= 0) { // its lobe has sampled this sky
                     float pdf = l.sky->pdf(r.dir);

@@ -166,7 +166,7 @@ std::vector<Row> rows() {
     area("two_shapes", areaLight(4, square + "\nTranslate 1.5 2 0\nSphere .5 -.5 .5 360"),
          4 * squareWant + 4 * (.25 / 6.25) * 2 / 2.5);
     r.push_back({"envlight", "LightSource \"envlight\" 1 \"intensity\" .8\n", .8, Row::Sky, {}, 0});
-    r.push_back({"ambientlight", "LightSource \"ambientlight\" 1 \"intensity\" .8\n", .8, Row::Sky, {}, 0});
+    r.push_back({"ambientlight", "LightSource \"ambientlight\" 1 \"intensity\" .8\n", 0, Row::Sky, {}, 0});
     return r;
 }
 

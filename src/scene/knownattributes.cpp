@@ -115,7 +115,7 @@ constexpr OptionDescription kAttributes[] = {
      "BMRT: a sum: 1 seen by the camera, 2 by reflected and refracted rays, 4 by shadow rays."},
     {"shade:backfacing", "", "", "", Ignored, kPrman},
     {"shade:camerahitmode", "string", "", "", Ignored, kPrman},
-    {"shade:derivatives", "string", "\"exact\" under path, else \"differences\"", "\"exact\"", Used,
+    {"shade:derivatives", "string", "surface shaders under path: \"exact\", else \"differences\"", "\"exact\"", Used,
      "How shaders take derivatives: \"exact\", or \"differences\" over the footprint of the pixel, as grids had them."},
     {"shade:diffusehitmode", "string", "\"shader\"", "\"primitive\"", Used,
      "What diffuse rays meet: the shader's result, or \"primitive\": Cs and Os."},

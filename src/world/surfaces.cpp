@@ -57,21 +57,6 @@ static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKerne
                   {}});
 }
 
-bool SurfaceBinder::differences(const geometry::Shape& shape) {
-    const scene::Param* p = shape.attributes().value("shade:derivatives");
-    if (!p || p->strings.empty()) return !path_;
-    const std::string& how = p->strings[0];
-    if (how != "exact" && how != "differences")
-        diagnostics_.reportOnce("derivatives:" + how,
-                                {Severity::Warning,
-                                 Rie::Range,
-                                 p->place,
-                                 "Attribute \"shade\" \"derivatives\" cannot be \"" + how + "\"; the default is used",
-                                 "it can be \"exact\" or \"differences\"",
-                                 {}});
-    return how == "differences" || (how != "exact" && !path_);
-}
-
 /// Whether a variable of a primitive holds what a parameter is: one text, as many numbers, or elements of the same kind.
 static bool overrides(const geometry::PrimVar& v, const rsl::ParameterInfo& p) {
     if (p.type.base == rsl::Base::String || v.type == scene::Type::String)
@@ -120,7 +105,7 @@ SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, cons
 
 bool SurfaceBinder::bindAll() {
     path_ = world_.settings_.hider == Hider::Path;
-    fallback_ = world_.builtin(path_ ? "matte" : "defaultsurface", rsl::ShaderKind::Surface, diagnostics_);
+    fallback_ = world_.builtin(path_ && !needsHeadlight() ? "matte" : "defaultsurface", rsl::ShaderKind::Surface, diagnostics_);
     if (!fallback_) {
         diagnostics_.report(Severity::Severe, Rie::NoShader, {}, "the shaders that ship with the program were not found",
                             "set ALPENGLOW_SHADERS to the folder that holds matte.sl");
@@ -227,18 +212,18 @@ std::string SurfaceBinder::keyOf(const SurfaceBinding& b, const geometry::Shape&
 int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     const scene::Attributes& a = shape->attributes();
     SurfaceBinding b;
-    const bool grid = differences(*shape);
+    const bool grid = differences(*shape, !path_), diced = differences(*shape, true);
     b.surface = world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Surface, grid), a.coshaders, diagnostics_, a.lights);
     b.explicitSurface = b.surface != nullptr;
     if (!b.surface) b.surface = fallback_;
     b.displacement =
-        world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_);
+        world_.withCoShaders(instanceOf(a.displacement, rsl::ShaderKind::Displacement, diced), a.coshaders, diagnostics_);
     // A class with surface and displacement is both.
     const bool both =
         !a.displacement && b.explicitSurface && rsl::ShaderCompiler::variant(b.surface->program, rsl::ShaderKind::Displacement);
     if (both)
         b.displacement =
-            quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, grid), a.coshaders, diagnostics_));
+            quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, diced), a.coshaders, diagnostics_));
     b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
     const Names varying = varyingOf(*shape, *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};

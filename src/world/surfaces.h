@@ -19,9 +19,10 @@ public:
 private:
     using Names = std::vector<std::string>;
     InstanceRef instanceOf(const scene::ShaderRef&, rsl::ShaderKind, bool differences = false);
-    /// Attribute "shade" "derivatives": whether shaders take derivatives as grids have them; by default under hidden and
-    /// raytrace.
-    bool differences(const geometry::Shape&);
+    /// Attribute "shade" "derivatives": whether shaders take derivatives as grids have them. surfacedefaults.cpp
+    bool differences(const geometry::Shape&, bool byDefault);
+    /// Under path: whether nothing in the scene can give light, so that primitives without a surface are lit by the eye.
+    bool needsHeadlight();
     /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
     Names varyingOf(const geometry::Shape&, const ShaderInstance&);
     /// The binding of a shape: that of one with the same attributes and variables where there is one.

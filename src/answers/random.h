@@ -15,6 +15,7 @@ enum RandomUse : uint32_t {
     kFlight,
     kDrawAgain,
     kAmbient,
+    kAlbedo,
     kLightPoint = 1u << 21
 };
 

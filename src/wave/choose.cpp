@@ -52,7 +52,7 @@ void Gather::choosePoint(size_t point) {
         l.delta = e_.lobeRows_.delta(l.place);
         l.narrow = isNarrow(l, narrowest, normalize(c_->points[point].I));
         if (l.lobeOfShader) sum += weight * l.albedo;
-        if (!l.ownsTarget) seen += l.weight * l.albedo;
+        if (!l.ownsTarget && !albedoIsMeasured(l)) seen += l.weight * l.albedo;
         l.chosen = std::max(worth(weight) * l.albedo, 0.f);
         if (!std::isfinite(l.chosen)) {
             e_.notFinite(*c_, from, l.site);

@@ -10,6 +10,7 @@ void Gather::run(BatchContext& c, Sched& sched) {
     if (world_.lightsAsk() && !e_.photonTrace()) tellLights();
     e_.lobeRows_.prepare();
     choose();
+    measureAlbedos();
     besideLights();
     if (rules_.lightsAtRequests) light(sched);
     if (rules_.emissionCounts) lastSkies();

@@ -85,6 +85,10 @@ private:
     bool tooDeep(const LobeVertex&, const PathRay&, const SurfaceBinding&) const;
     float energyScale(size_t point, const Color& reflected, const Color& clear);
 
+    // albedo.cpp
+    bool albedoIsMeasured(const LobeVertex&) const; ///< once `delta` is known
+    void measureAlbedos();
+
     // beside.cpp
     void besideLights();
     void besideLight(size_t point);

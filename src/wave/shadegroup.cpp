@@ -6,6 +6,15 @@
 
 namespace alpenglow::transport {
 
+namespace {
+/// The unit shading normal on the side of a surface that a ray sees; 0 where there is none.
+Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
+    const float l = length(p.N);
+    if (!(l > 0) || !std::isfinite(l)) return {};
+    return p.N * (((dot(p.N, p.surface.n) > 0) == (dot(dir, p.surface.n) < 0) ? 1.f : -1.f) / l);
+}
+} // namespace
+
 void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
                              TargetId target, float distance) {
     auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
@@ -107,8 +116,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             depositThroughVolume(sched, ray, binding.matte && ray.camera() ? shown : c.haze[size_t(i)].slope * color, shown);
         if (ray.counts) {
             SampleResult& r = *results[size_t(ray.sample->path)];
-            if (const Vec3 n = c.points[size_t(i)].N; world_->settings_.firstSeen && length(n) > 0 && std::isfinite(length(n)))
-                r.normal += n / length(n) * luminance(ray.weight * opacity);
+            if (world_->settings_.firstSeen)
+                r.normal += normalSeen(c.points[size_t(i)], ray.dir) * luminance(ray.weight * opacity);
             if (!binding.matte) r.opacity += ray.weight * opacity;
             const float z = c.depths.empty() ? c.points[size_t(i)].P.z : c.depths[size_t(i)];
             if (r.z >= 1e38f) r.z = z;

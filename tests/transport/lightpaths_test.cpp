@@ -125,7 +125,38 @@ TEST(LightPathOutputs, ALitPlaneIsDirect) {
     for (size_t k : {1, 3, 4}) EXPECT_EQ(t.output(0, k), Color(0)) << k;
     EXPECT_EQ(t.samples[0].albedo, Color(.5f));
     EXPECT_NEAR(length(t.samples[0].normal), 1, 1e-6);
-    EXPECT_NEAR(std::fabs(t.samples[0].normal.y), 1, 1e-6);
+    EXPECT_NEAR(t.samples[0].normal.y, 1, 1e-6);
+    const Told below =
+        tell(world(std::string("Surface \"matte\"\n") + kFloor), {rayTo({.3f, -.8f, -.4f}, {0, 0, 0})}, {"direct"});
+    EXPECT_NEAR(below.samples[0].normal.y, -1, 1e-6); // the side that is seen
+}
+
+/// Under an even sky of 1 a surface shows its albedo. Seen straight on, glass of index 1.5 gives back ((1.5 - 1) / (1.5 + 1))^2,
+/// a mirror of facets nearly all; a highlight its closed form 8 (1 - 2^(-(e + 2) / 2)) / (e + 2), of an exponent e.
+TEST(LightPathOutputs, AlbedoIsWhatAnEvenSkyShows) {
+    const auto facets = [](const char* name, const char* more) {
+        return std::string("trace(P, n, \"distribution\", \"") + name + "\", \"roughness\", .1, \"wo\", -normalize(I)" + more +
+               ")";
+    };
+    const struct {
+        std::string what;
+        double want, precision;
+    } cases[] = {{facets("cook-torrance", ", \"eta\", 1.5"), .04, .02},
+                 {facets("blinn", ", \"eta\", 1.5"), .04, .02},
+                 {facets("ashikhmin-shirley", ", \"eta\", 1.5"), .04, .1},
+                 {"specularstd(n, -normalize(I), .1)", 8 * (1 - std::exp2(-6)) / 12, .01},
+                 {".5 * diffuse(n)", .5, 1e-6}};
+    int number = 0;
+    for (const auto& c : cases) {
+        const std::string name = "albedoof" + std::to_string(++number);
+        writeShader(name, "surface " + name + "() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = " + c.what + "; }\n");
+        const Told t = tell(world("LightSource \"envlight\" 1 \"intensity\" 1\nSurface \"" + name + "\"\n" + kFloor),
+                            many(rayTo({.01f, 1, .01f}, {0, 0, 0}), 4000), {"direct"});
+        double albedo = 0;
+        for (const SampleResult& r : t.samples) albedo += r.albedo.x / double(t.samples.size());
+        EXPECT_NEAR(albedo, c.want, c.precision * c.want) << c.what;
+        EXPECT_NEAR(albedo, t.meanBeauty(), .05 * c.want) << c.what;
+    }
 }
 
 /// Under an even sky all light of a plane is met by its first scattering; in a furnace, a ball of albedo a that shines 1, the

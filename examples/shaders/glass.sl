@@ -21,12 +21,11 @@ surface glass(float ior = 1.5, density = .4, dispersion = 0, Ks = .4, roughness 
     color mirror = kr * trace(P, R);
     color refracted = 0;
     if (dispersion > 0) {
-        float k;
-        for (k = 0; k < 3; k += 1) {
-            float bent = ior + dispersion * (k - 1) / 2;
-            color ray = trace(P, refract(In, Nf, inside > .5 ? bent : 1 / bent));
-            setcomp(refracted, k, kt * comp(ray, k));
-        }
+        // A sum of products with trace(), so that the shader need not wait for its rays, and photons go through it.
+        float red = ior - dispersion / 2, blue = ior + dispersion / 2;
+        refracted = kt * (color(1, 0, 0) * trace(P, refract(In, Nf, inside > .5 ? red : 1 / red))
+            + color(0, 1, 0) * trace(P, refract(In, Nf, inside > .5 ? ior : 1 / ior))
+            + color(0, 0, 1) * trace(P, refract(In, Nf, inside > .5 ? blue : 1 / blue)));
     } else if (kt > 0) {
         refracted = kt * trace(P, T);
     }

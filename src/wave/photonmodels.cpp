@@ -20,6 +20,19 @@ float reflectance(float cosine, float index, Vec3 in, Vec3 n, Vec3& refracted) {
     return (s * s + p * p) / 2;
 }
 
+/// Of the caustics of path, where Attribute "photon" "shadingmodel" does not count.
+void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
+    d.reportOnce(
+        "causticwaits:" + b.surface->name,
+        {Severity::Warning,
+         Rie::Incapable,
+         b.surface->place,
+         "surface \"" + b.surface->name + "\" makes no caustics: its shader decides on what its rays bring",
+         "a shader whose Ci is a sum of products with trace() makes them, as slmaterial does; `alpenglow info` names the "
+         "call that is used otherwise",
+         {}});
+}
+
 } // namespace
 
 void Engine::takeModels(BatchContext& c, bool all) {
@@ -74,7 +87,8 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
     const size_t n = c.points.size();
     for (size_t i = 0; i < n; ++i) {
         const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
-        if (b.photons.model == PhotonModel::Shader || !photonTrace_->job->models)
+        if (photonTrace_->job->caustics) sayNoCaustics(b, diagnostics_);
+        else if (b.photons.model == PhotonModel::Shader)
             diagnostics_.reportOnce(
                 "photonwaits:" + b.surface->name,
                 {Severity::Info,

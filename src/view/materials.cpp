@@ -22,16 +22,17 @@ class Collector {
 public:
     explicit Collector(size_t most) : most_(most) {}
     std::vector<ShaderUse> uses;
-    void take(const char* role, const ShaderRef& call) {
+    void take(const char* role, const ShaderRef& call, const std::string& handle = {}, bool area = false) {
         if (!call) return;
         const auto [at, fresh] = numbers_.try_emplace(call.get(), uses.size());
-        if (fresh && uses.size() < most_) uses.push_back({role, call, 0});
+        if (fresh && uses.size() < most_) uses.push_back({role, call, 0, handle, area});
         else if (fresh) at->second = most_;
         if (at->second < uses.size()) ++uses[at->second].primitives;
     }
     void take(const AttributesRef& a) {
         if (!a) return;
         for (const auto& [role, member] : kRoles) take(role, (*a).*member);
+        for (const auto& [handle, call] : a->coshaders) take("coshader", call, handle);
     }
 
 private:
@@ -51,11 +52,14 @@ public:
         if (!a) return a;
         const auto [at, fresh] = attributes_.try_emplace(a.get(), a);
         if (!fresh) return at->second;
-        const bool any = std::any_of(std::begin(kRoles), std::end(kRoles),
-                                     [&](const auto& r) { return calls.contains(((*a).*r.second).get()); });
+        const bool any =
+            std::any_of(std::begin(kRoles), std::end(kRoles),
+                        [&](const auto& r) { return calls.contains(((*a).*r.second).get()); }) ||
+            std::any_of(a->coshaders.begin(), a->coshaders.end(), [&](const auto& c) { return calls.contains(c.second.get()); });
         if (!any) return a;
         auto copy = std::make_shared<Attributes>(*a);
         for (const auto& [role, member] : kRoles) (*copy).*member = (*this)((*a).*member);
+        for (auto& [handle, call] : copy->coshaders) call = (*this)(call);
         return at->second = copy;
     }
     scene::PrimitiveRef operator()(const scene::PrimitiveRef& p) {
@@ -75,7 +79,11 @@ private:
 
 std::vector<ShaderUse> shadersOf(const scene::Frame& f, size_t most) {
     Collector c(most);
-    for (const scene::Light& l : f.lights) c.take("light", l.shader);
+    for (const scene::Light& l : f.lights) {
+        c.take("light", l.shader, l.handle, l.area);
+        if (l.attributes) // what its shader calls
+            for (const auto& [handle, call] : l.attributes->coshaders) c.take("coshader", call, handle);
+    }
     for (const scene::PrimitiveRef& p : f.primitives) c.take(p->attributes);
     for (const scene::Object& o : f.objects)
         for (const scene::PrimitiveRef& p : o.primitives) c.take(p->attributes);

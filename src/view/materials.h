@@ -3,14 +3,17 @@
 #include "scene/fwd.h"
 #include "scene/primitive.h"
 #include <map>
+#include <optional>
 
 namespace alpenglow::view {
 
 /// A shader call of a frame; calls that primitives share are one.
 struct ShaderUse {
-    std::string role; ///< "surface", "displacement", "atmosphere", "interior", "exterior", "light", "imager"
+    std::string role; ///< "surface", "displacement", "atmosphere", "interior", "exterior", "coshader", "light", "imager"
     scene::ShaderRef call;
     size_t primitives = 0; ///< that have it
+    std::string handle;    ///< of a light or a co-shader
+    bool area = false;     ///< a light of AreaLightSource
 };
 
 /// In the order of the scene; the first `most` of them.

@@ -2,6 +2,7 @@
 #include "view/session.h"
 #include "render/outputnames.h"
 #include "scene/scene.h"
+#include "view/ribcopy.h"
 #include <algorithm>
 #include <cmath>
 
@@ -47,6 +48,17 @@ const char* severityName(Severity s) {
 double one(const Json& j, size_t i) { return j.is_array() && i < j.size() && j[i].is_number() ? j[i].get<double>() : NAN; }
 
 Json failed(const std::string& why) { return {{"error", why}}; }
+
+/// The default of a float parameter in what `describe` says of a shader.
+std::optional<double> defaultOf(const Json& about, const std::string& name) {
+    if (!about.is_object() || !about.contains("parameters")) return {};
+    for (const Json& p : about["parameters"]) {
+        if (!p.is_object() || p.value("name", "") != name || !p.contains("default")) continue;
+        const Json& d = p["default"].is_array() && p["default"].size() == 1 ? p["default"][0] : p["default"];
+        if (d.is_number()) return d.get<double>();
+    }
+    return {};
+}
 
 } // namespace
 
@@ -385,11 +397,15 @@ Json Session::scene() {
     Json j = Json::object();
     std::vector<std::string> folders;
     ParameterChanges changes;
+    std::map<std::string, double> dim;
+    std::optional<Pose> pose;
     {
         std::lock_guard lock(mutex_);
         s = scene_;
         folders = shaderFolders_;
         changes = wishes_.parameters;
+        if (wishes_.lights) dim = wishes_.dim;
+        pose = pose_;
         j["outputs"] = outputs_;
         j["scene"] = sceneSerial_;
     }
@@ -397,6 +413,12 @@ Json Session::scene() {
         for (const auto& [name, declaration] : s->frame->options.displayChannels) j["outputs"].push_back(name);
     j["lights"] = s ? Json(s->lights) : Json::array();
     j["frames"] = s ? Json(s->frames) : Json::array();
+    if (s && pose) {
+        scene::Options o = s->frame->options;
+        pose->apply(o);
+        j["cameraRib"] = ribOfCamera(o);
+    }
+    std::string lights;
     Json& shaders = j["shaders"] = Json::array();
     for (size_t i = 0; s && i < s->shaders.size(); ++i) {
         const ShaderUse& u = s->shaders[i];
@@ -405,7 +427,9 @@ Json Session::scene() {
             for (const scene::Param& p : list) values[p.name] = p.strings.empty() ? Json(p.numbers) : Json(p.strings);
         };
         put(u.call->params);
-        if (const auto c = changes.find(i); c != changes.end()) put(c->second);
+        const auto c = changes.find(i);
+        const scene::ParamList tuned = c == changes.end() ? scene::ParamList() : c->second;
+        put(tuned);
         Json about;
         if (options_.describe && !folders.empty()) {
             std::unique_lock lock(mutex_);
@@ -422,9 +446,14 @@ Json Session::scene() {
                            {"name", u.call->name},
                            {"place", placeJson(u.call->place)},
                            {"primitives", u.primitives},
+                           {"handle", u.handle},
+                           {"rib", ribOfShader(u, tuned)},
                            {"values", values},
                            {"about", about}});
+        if (const auto d = dim.find(u.handle); u.role == "light" && d != dim.end() && d->second != 1)
+            lights += ribOfDimmedLight(u, tuned, d->second, defaultOf(about, "intensity"));
     }
+    j["lightsRib"] = lights;
     return j;
 }
 

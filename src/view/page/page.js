@@ -227,12 +227,34 @@ async function loadScene() {
     const names = data.shaders.map((s) => `${s.name} ${s.about ? 1 : 0}`).join();
     if (open && (page.shadersHave !== names || !$('shaderlist').contains(document.activeElement))) {
       page.shadersHave = names;
-      showShaders($('shaderlist'), data.shaders, (p) => parameters(new Map([[`${p.shader} ${p.name}`, p]])));
+      showShaders($('shaderlist'), data.shaders, (p) => parameters(new Map([[`${p.shader} ${p.name}`, p]])),
+        (number) => copyRib((d) => d.shaders[number].rib, 'the shader'));
     }
     if (page.state) showState(page.state);
   } catch { /* the next state says so */ }
   page.loading = false;
   if (page.loadAgain) { page.loadAgain = false; loadScene(); }
+}
+
+// --- what was tuned, as RIB ---
+async function toClipboard(text) {
+  try { await navigator.clipboard.writeText(text); return; } catch { /* an old browser, or not allowed */ }
+  const area = document.createElement('textarea');
+  area.value = text;
+  document.body.append(area);
+  area.select();
+  const done = document.execCommand('copy');
+  area.remove();
+  if (!done) throw new Error('the browser does not let this page copy');
+}
+async function copyRib(part, what) {
+  try {
+    const text = part(await (await fetch('scene')).json());
+    page.copied = text;
+    if (!text) { say(`Nothing was changed of ${what}`); return; }
+    await toClipboard(text);
+    say(`Copied ${what} as RIB`);
+  } catch (e) { say(`Not copied: ${e.message}`); }
 }
 
 // --- controls ---
@@ -285,6 +307,8 @@ for (const id of ['spp', 'depth', 'factor', 'clamp']) $(id).onchange = () => { i
 $('hider').onchange = () => set({ hider: $('hider').value });
 $('uncrop').onclick = () => set({ crop: null });
 $('recamera').onclick = () => post({ do: 'camera', reset: true, settle: true });
+$('copycamera').onclick = () => copyRib((d) => d.cameraRib, 'the camera');
+$('copylights').onclick = () => copyRib((d) => d.lightsRib, 'the lights');
 $('keep').onclick = keep;
 $('wipego').onclick = () => compare('wipe');
 $('diffgo').onclick = () => compare('difference');

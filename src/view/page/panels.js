@@ -111,14 +111,34 @@ function textRow(p, value, send) {
   return el('div', { className: 'param' }, el('label', { htmlFor: id, textContent: p.name, title: p.name }), wide);
 }
 
-export function showShaders(box, shaders, send) {
+/** Points and vectors: three numbers, each with room for its sign and digits. */
+function vectorRow(p, value, send) {
+  const id = `p${++ids}`;
+  const numbers = value.map((v, k) => {
+    const n = el('input', { type: 'number', step: 'any', value: +v.toPrecision(6) });
+    n.setAttribute('aria-label', `${p.name} ${'xyz'[k]}`);
+    return n;
+  });
+  numbers[0].id = id;
+  for (const n of numbers)
+    n.addEventListener('change', () => {
+      const v = numbers.map((x) => +x.value);
+      if (numbers.every((x) => x.value !== '') && v.every(Number.isFinite)) send(v);
+    });
+  return el('div', { className: 'param' }, el('label', { htmlFor: id, textContent: p.name, title: p.name }), el('div', { className: 'wide three' }, ...numbers));
+}
+
+export function showShaders(box, shaders, send, copy) {
   const open = new Set([...box.querySelectorAll('details[open]')].map((d) => d.dataset.key));
   box.replaceChildren();
   shaders.forEach((s, number) => {
     const key = `${number} ${s.name}`;
     const d = el('details', { className: 'shader', open: open.has(key) || shaders.length === 1 },
-      el('summary', {}, el('b', { textContent: s.name }), ` ${s.role}${s.primitives > 1 ? ` × ${s.primitives}` : ''}`),
+      el('summary', {}, el('b', { textContent: s.name }), ` ${s.role === 'coshader' ? 'co-shader' : s.role}${s.handle ? ` ${s.handle}` : ''}${s.primitives > 1 ? ` × ${s.primitives}` : ''}`),
       el('p', { className: 'quiet place', textContent: placeText(s.place) }));
+    const button = el('button', { type: 'button', textContent: 'Copy RIB', title: 'The request of this shader, with what was changed here' });
+    button.addEventListener('click', () => copy(number));
+    d.append(el('p', { className: 'row' }, button));
     d.dataset.key = key;
     d.dataset.shader = number;
     const parameters = s.about && s.about.parameters ? s.about.parameters : [];
@@ -130,7 +150,7 @@ export function showShaders(box, shaders, send) {
       const push = (v) => send({ shader: number, name: p.name, type: p.type, value: v });
       let row = null;
       if (p.type === 'float' && value.length === 1) row = floatRow(p, value, push);
-      else if (/^(color|point|vector|normal)$/.test(p.type) && value.length === 3) row = p.type === 'color' ? colorRow(p, value, push) : colorRow(p, value, push);
+      else if (/^(color|point|vector|normal)$/.test(p.type) && value.length === 3) row = p.type === 'color' ? colorRow(p, value, push) : vectorRow(p, value, push);
       else if (p.type === 'string' && value.length === 1) row = textRow(p, value, push);
       if (!row) continue;
       row.dataset.parameter = p.name;

@@ -69,13 +69,15 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
                             pathEvent(r.path, map_)});
             if (TraceSums* sums = sumsOf(t->target)) sums->add(TraceSums::Environment, r.weight * extraOf(r).environment);
         }
-    if (!rules_.emissionCounts || tasks.empty()) return;
+    if (photonTrace_ || tasks.empty()) return;
     std::vector<ShadePoint> q;
     std::vector<const Sched::Task*> of;
     std::vector<LightValue> value;
     for (const int number : world_->skies_) {
         const BoundLight& l = world_->lights_[size_t(number)];
         if (l.kind == LightKind::Ambient) continue; // ambient() asks for it
+        // Outside of path a sky is a light of loops, or a background of rays.
+        if (!rules_.emissionCounts && (l.kind != LightKind::Environment || l.strategy != LightStrategy::Trace)) continue;
         q.clear();
         of.clear();
         litBy_.clear();

@@ -97,6 +97,7 @@ void setLightKind(BoundLight& part, const std::string& block, bool area, bool pa
         part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
     }
     if (part.kind != LightKind::Area) part.emitter = nullptr;
+    if (part.instance->name == "slbackground" && !path) part.strategy = LightStrategy::Trace; // rays see it, and nobody is lit
     const auto& numbers = part.instance->parameters.numbers;
     if (const auto i = numbers.find(rsl::kImportanceSample); i != numbers.end())
         part.importance = i->second.empty() || i->second[0] != 0;

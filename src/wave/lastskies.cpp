@@ -29,9 +29,7 @@ void Gather::lastSky(int number) {
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const ShadePoint& at = c_->points[size_t(s.point)];
         if (!s.goes || !(s.value.pdf > 0)) continue;
-        if (light.kind == LightKind::Ambient ? l.rays->type != RayType::Diffuse
-                                             : l.rays->fromTrace && light.strategy == LightStrategy::Illuminance)
-            continue;
+        if (light.kind == LightKind::Ambient ? l.rays->type != RayType::Diffuse : !light.seenBy(*l.rays)) continue;
         if (!world_.bindings_[size_t(c_->bindings[size_t(s.point)])].lights.contains(number)) continue;
         ShadePoint& p = q.emplace_back();
         p.Ps = origin(l, s.w);
@@ -56,7 +54,7 @@ void Gather::lastSky(int number) {
             e_.notFinite(&ray, "Cl", light.instance.get());
             continue;
         }
-        float scale = l.indirect * (l.lobeOfShader ? indirectScale_[size_t(s.point)] : 1);
+        float scale = 1; // light of lights counts in full, whatever is scaled of surfaces
         if (light.kind == LightKind::Environment && !l.rays->fromTrace) scale *= value[k].kept(l.rays->type);
         const Color weight = l.weight * (s.value.colour / s.value.pdf) * scale;
         ShadowRay shadow{q[k].Ps,  s.w,          l.maxDistance, (l.ownsTarget ? weight : weight * ray.weight) * value[k].Cl,

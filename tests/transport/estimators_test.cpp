@@ -118,8 +118,13 @@ TEST(EnergyRule, LightsInFull) {
                 expectMean(of(surface, disk(.5, radius, 1), s, n), 2 * ofDisk(.5, radius), .03,
                            "radius " + std::to_string(radius) + " mode " + std::to_string(mode));
             }
-    const Settings s = traced(Hider::Path);
-    expectMean(of(surface, "LightSource \"envlight\" 1 \"intensity\" 1\n", s, 400), 2, 1e-5, "sky");
+    Settings s = traced(Hider::Path);
+    const std::string sky = "LightSource \"envlight\" 1 \"intensity\" 1\n";
+    expectMean(of(surface, sky, s, 400), 2, 1e-5, "sky");
+    s.maxDepth = 0; // where the depth ends a path, too, and beside indirectdiffuse(), which then brings nothing
+    expectMean(of(surface, sky, s, 400), 2, 1e-5, "sky at the last vertex");
+    expectMean(of(shows(".5 * (diffuse(n) + indirectdiffuse(P, up, 16))"), sky, s, 400), .5, 1e-5, "apart at the last vertex");
+    s = traced(Hider::Path);
     expectMean(of(surface, shell(.5), s, 400), .5, 1e-5, "shell");
     expectMean(of(surface, disk(2, .7, 5) + shell(.5), s, samples(10000)), 10 * ofDisk(2, .7) + .5 * (1 - ofDisk(2, .7)), .01,
                "lamp in a shell");

@@ -56,8 +56,7 @@ std::vector<Shadeop> lightingShadeops() {
     };
     add("ambient", sigs({{"color ambient()"}}), Lowering::Service,
         "Sum of Cl over the ambient lights: those without illuminate() and solar(). Under path, what of it comes through: the "
-        "part "
-        "of the hemisphere about N that surfaces block is dark. No other shadeop finds ambient light.");
+        "part of the hemisphere about N that surfaces block is dark. No other shadeop finds ambient light.");
     list.back().examples = {{"ambient()", "0.2 0.2 0.2", "", "there is one light \"ambientlight\" of intensity 0.2"}};
 
     Shadeop& diffuse = add("diffuse", sigs({{"color diffuse(vector n)"}}), Lowering::Rsl,

@@ -16,8 +16,10 @@ void Gather::lastSkies() {
         }
     if (sent_.empty()) return;
     draw(0);
-    for (const int number : world_.skies_)
-        if (!world_.lights_[size_t(number)].sky) lastSky(number);
+    for (const int number : world_.skies_) {
+        const BoundLight& light = world_.lights_[size_t(number)];
+        if (!light.sky && light.kind != LightKind::Ambient) lastSky(number); // ambient() asks for ambient light
+    }
 }
 
 void Gather::lastSky(int number) {
@@ -29,7 +31,7 @@ void Gather::lastSky(int number) {
         const LobeVertex& l = e_.lobes[size_t(s.lobe)];
         const ShadePoint& at = c_->points[size_t(s.point)];
         if (!s.goes || !(s.value.pdf > 0)) continue;
-        if (light.kind == LightKind::Ambient ? l.rays->type != RayType::Diffuse : !light.seenBy(*l.rays)) continue;
+        if (!light.seenBy(*l.rays)) continue;
         if (!world_.bindings_[size_t(c_->bindings[size_t(s.point)])].lights.contains(number)) continue;
         ShadePoint& p = q.emplace_back();
         p.Ps = origin(l, s.w);

@@ -4,6 +4,7 @@
 #include "points.h"
 #include "rsl/compiler.h"
 #include <gtest/gtest.h>
+#include <set>
 
 namespace alpenglow::rsl::coshaders_test {
 namespace {
@@ -71,6 +72,32 @@ TEST(CoShaders, MethodsAndMembers) {
                       (Values{12, 30, 2, 0.75f, 3101}));
             EXPECT_EQ(d.errors(), 0);
         }
+}
+
+// What a kernel says while it runs names the file in which it stands, that of the co-shader or its own.
+TEST(CoShaders, PlacesAreInTheirOwnFiles) {
+    Diagnostics d;
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    const auto layer = compiler.loadText("class layer()\n{\n    public void tell(float k)\n    {\n        printf(\"%f\\n\", k);\n"
+                                         "    }\n}",
+                                         "layer.sl", d);
+    const auto surface = compiler.loadText(
+        "surface s()\n{\n    shader h = getshader(\"a\");\n    h->tell(s);\n    print(\"here\", s);\n}", "surface.sl", d);
+    ASSERT_TRUE(layer && surface);
+    KernelOptions o;
+    o.coShaders.push_back(ShaderCompiler::coShader(layer, "a"));
+    const auto kernel = compiler.kernel(surface, o, d);
+    ASSERT_TRUE(kernel);
+    std::set<std::string> places;
+    for (const ir::Site& site : kernel->sites()) {
+        ASSERT_LT(size_t(site.place.file), kernel->files().size());
+        places.insert(site.op + " " + kernel->files()[size_t(site.place.file)] + ":" + std::to_string(site.place.line));
+    }
+    EXPECT_TRUE(places.count("printf layer.sl:5"));
+    EXPECT_TRUE(places.count("print surface.sl:5"));
+    EXPECT_EQ(kernel->files()[0], "surface.sl");
 }
 
 TEST(CoShaders, OptionalArgumentsOfMethods) {

@@ -54,7 +54,7 @@ Inst* Builder::emit(Op op, Kind kind, std::vector<Inst*> args, int index) {
     }
     Inst* i = k_.make(op, kind, std::move(args));
     i->index = index;
-    i->place = shownPlace(place_);
+    i->place = keptPlace(place_);
     if (Inst* simple = simplify(k_, leaves_, i)) return simple;
     region_->body.push_back(i);
     return i;
@@ -90,7 +90,7 @@ std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*
     Inst* i = k_.make(Op::Runtime, Kind::None, std::move(args));
     i->text = symbol;
     i->results = results;
-    i->place = shownPlace(place_);
+    i->place = keptPlace(place_);
     if (results.size() == 1)
         if (Inst* simple = simplify(k_, leaves_, i)) return {simple};
     region_->body.push_back(i);
@@ -100,10 +100,10 @@ std::vector<Inst*> Builder::runtime(const std::string& symbol, std::vector<Inst*
 }
 
 std::vector<Inst*> Builder::call(Op op, Site site, std::vector<Inst*> args) {
-    site.place = place_;
+    site.place = keptPlace(place_);
     Inst* i = k_.make(op, Kind::None, std::move(args));
     i->results = site.resultKinds;
-    i->place = shownPlace(place_);
+    i->place = keptPlace(place_);
     i->site = static_cast<int>(k_.sites.size());
     k_.sites.push_back(std::move(site));
     region_->body.push_back(i);
@@ -194,7 +194,7 @@ Inst* Builder::newArray(Base base, int length) {
     Inst* a = k_.make(Op::ArrayNew, Kind::Array);
     a->element = kindOf({base, 0});
     a->index = length;
-    a->place = shownPlace(place_);
+    a->place = keptPlace(place_);
     region_->body.push_back(a);
     return a;
 }

@@ -110,7 +110,7 @@ void Builder::everyElement(int count, const std::function<void(Inst* at)>& each)
         return;
     }
     Inst* inst = k_.make(Op::Loop, Kind::None);
-    inst->place = place_;
+    inst->place = keptPlace(place_);
     inst->args = {constant(0)};
     inst->results = {Kind::Float};
     inst->regions.resize(2);

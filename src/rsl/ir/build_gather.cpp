@@ -32,7 +32,7 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     g.site.op = "gather";
     g.turn.op = "gatherturn";
     const Type real{Base::Float, 0}, point{Base::Point, 0}, vector{Base::Vector, 0};
-    g.site.place = g.turn.place = s.place;
+    g.site.place = g.turn.place = keptPlace(s.place);
     g.site.resultType = g.turn.resultType = real;
     g.site.shadeop = g.turn.shadeop = findShadeop("gather");
     const std::string number = std::to_string(gathers_++);

@@ -105,6 +105,7 @@ void Builder::switchInstance(bool fromSelf, size_t from, bool toSelf, size_t to)
     std::swap(slots_, fromSelf ? ownSlots_ : instances_[from].slots);
     std::swap(slots_, toSelf ? ownSlots_ : instances_[to].slots);
     files_ = toSelf ? &program_.files : instances_[to].files;
+    fileBase_ = toSelf ? 0 : instances_[to].fileBase;
 }
 
 /// From here to leaveInstance() variables are those of the co-shader, or of the shader itself again.
@@ -124,7 +125,10 @@ void Builder::leaveInstance() {
 /// Binds the parameters and runs what comes before the methods: members, construct() and begin().
 void Builder::beginCoShaders() {
     if (!program_.handles) return;
-    for (const CoShader& c : options_.coShaders) instances_.push_back({&c, &c.program->files, {}});
+    for (const CoShader& c : options_.coShaders) {
+        instances_.push_back({&c, &c.program->files, int(k_.files.size()), {}});
+        k_.files.insert(k_.files.end(), c.program->files.begin(), c.program->files.end());
+    }
     for (size_t i = 0; i < instances_.size(); ++i) {
         const CoShader& c = *instances_[i].binding;
         enterInstance(i);
@@ -180,7 +184,7 @@ void Builder::beginCoShaders() {
     selfBinding_.handle = thisHandle();
     selfBinding_.program = &program_;
     selfBinding_.shader = &shader_;
-    instances_.push_back({&selfBinding_, &program_.files, {}});
+    instances_.push_back({&selfBinding_, &program_.files, 0, {}});
 }
 
 /// Runs `code` for the co-shader of the handle and gives its value; zero of null.

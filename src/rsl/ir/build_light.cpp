@@ -14,11 +14,11 @@ void Builder::illuminance(const Stmt& s) {
     const Type vector{Base::Vector, 0}, color{Base::Color, 0};
     Site site;
     site.op = "illuminance";
-    site.place = s.place;
+    site.place = keptPlace(s.place);
     // What the renderer must know before the loop begins, beyond P, axis and angle: a call of its own.
     Site setup;
     setup.op = "lightsetup";
-    setup.place = s.place;
+    setup.place = keptPlace(s.place);
     std::vector<Inst*> given;
     const auto give = [&](const std::string& name, Inst* v, Type t) {
         setup.names.push_back(name);
@@ -77,7 +77,7 @@ void Builder::illuminance(const Stmt& s) {
     if (const auto n = globals_.find("N"); n != globals_.end() && writes_.count("N"))
         give("N", get(n->second), {Base::Normal, 0});
     Inst* inst = k_.make(Op::LightLoop, Kind::None);
-    inst->place = shownPlace(s.place);
+    inst->place = keptPlace(s.place);
     inst->regions.resize(1);
     inst->args.push_back(s.exprs.empty() ? global("P", Base::Point) : expr(*s.exprs[0], Kind::Triple));
     inst->args.push_back(s.exprs.size() > 1 ? expr(*s.exprs[1], Kind::Triple) : zero(Kind::Triple));

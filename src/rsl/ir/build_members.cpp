@@ -226,7 +226,7 @@ Inst* Builder::memberArray(const Expr& e) {
         [&](Inst* handle) -> Inst* { // a light
             Site s;
             s.op = "lightparameter";
-            s.place = place_;
+            s.place = keptPlace(place_);
             s.strings = {e.text};
             s.resultKinds = {Kind::Float, Kind::Float};
             s.resultNames = {"", lengthResult("value")};
@@ -265,7 +265,7 @@ Inst* Builder::memberLength(const Expr& e) {
         [&](Inst* handle) -> Inst* { // a light
             Site s;
             s.op = "lightparameter";
-            s.place = place_;
+            s.place = keptPlace(place_);
             s.strings = {e.text};
             s.resultKinds = {Kind::Float, Kind::Float};
             s.resultNames = {"", lengthResult("value")};

@@ -100,7 +100,7 @@ Inst* Builder::askPrimitive(Inst* name, const Expr* to) {
     Site s;
     s.op = "getvar";
     s.shadeop = findShadeop("getvar");
-    s.place = place_;
+    s.place = keptPlace(place_);
     s.resultType = {Base::Float, 0};
     s.resultKinds = {Kind::Float};
     s.resultNames = {""};

@@ -117,7 +117,7 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
     Region* const saved = region_;
     Inst* function = k_.make(Op::Function, Kind::None);
     function->text = f.name;
-    function->place = f.place;
+    function->place = keptPlace(f.place);
     function->regions.resize(1);
     Region& body = function->regions[0];
     region_ = &body;
@@ -129,7 +129,7 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
         }
         Inst* p = k_.make(Op::RegionParam, v->kind);
         p->index = static_cast<int>(body.params.size());
-        p->place = f.place;
+        p->place = keptPlace(f.place);
         body.params.push_back(p);
         env_[static_cast<size_t>(n)] = p;
         return true;
@@ -204,7 +204,7 @@ bool Builder::outlined(const Function& f, const std::vector<Inst*>& values, Inst
         if (v->op != Op::ConstString) args.push_back(v);
     for (int n : o.inputs) args.push_back(get(n));
     Inst* call = k_.make(Op::Call, Kind::None, std::move(args));
-    call->place = shownPlace(place_);
+    call->place = keptPlace(place_);
     for (const Inst* y : o.function->regions[0].yields) call->results.push_back(y->kind);
     region_->body.push_back(call);
     std::vector<Inst*> r;

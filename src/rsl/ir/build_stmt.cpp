@@ -9,7 +9,7 @@ std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vec
                                    const std::function<std::vector<Inst*>()>& no) {
     if (isConst(condition)) return condition->numbers[0] != 0 ? yes() : no();
     Inst* inst = k_.make(Op::If, Kind::None, {condition});
-    inst->place = shownPlace(place_);
+    inst->place = keptPlace(place_);
     inst->regions.resize(2);
     const size_t mark = log_.size();
     std::map<int, Inst*> changed[2];
@@ -259,7 +259,7 @@ void Builder::turns(std::set<int>& assigned, bool jumps, const Turns& t, const P
 
     std::vector<int> carried;
     Inst* inst = k_.make(Op::Loop, Kind::None);
-    inst->place = place;
+    inst->place = keptPlace(place);
     inst->regions.resize(2);
     for (int n : assigned) {
         const Symbol* s = symbols_[static_cast<size_t>(n)];

@@ -207,6 +207,7 @@ private:
     struct Instance {
         const CoShader* binding;
         const std::vector<std::string>* files;
+        int fileBase;                                 ///< where they begin among the kernel's
         std::unordered_map<const Symbol*, int> slots; ///< two instances of one shader have variables of their own
     };
     Type typeOfMember(const Expr&);
@@ -344,6 +345,13 @@ private:
     Place place_;
     std::optional<Place> ownText_; ///< inside a function of the renderer that is written in RSL: where the shader calls it
     Place shownPlace(const Place& p) const { return ownText_ ? *ownText_ : p; }
+    /// The same with its file among the kernel's, for what is said when it runs.
+    Place keptPlace(const Place& p) const {
+        Place kept = shownPlace(p);
+        if (kept.file >= 0) kept.file += fileBase_;
+        return kept;
+    }
+    int fileBase_ = 0; ///< of files_
     std::unordered_map<const Symbol*, int> slots_;
     std::map<std::string, int> globals_;
     std::vector<const Symbol*> symbols_; ///< by slot; null for the builder's own

@@ -343,7 +343,7 @@ TEST_F(Said, LinesOfManyMessages) {
     std::string world;
     for (int i = 0; i < many; ++i) world += "Surface \"plastic\" \"float q" + std::to_string(i) + "\" [1]\nSphere 1 -1 1 360\n";
     scene("", world);
-    run("render --spp 1 -o a.png a.rib");
+    run("render -v --spp 1 -o a.png a.rib"); // -v: each of the warnings that repeat
     EXPECT_EQ(times("has no parameter"), many) << errors().substr(0, 600);
     EXPECT_EQ(times("^"), alpenglow::limits::kSourceLines);
 }

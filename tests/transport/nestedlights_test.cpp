@@ -289,7 +289,6 @@ TEST(NestedIlluminance, SamplesOfAreaLights) {
 // The lights of generateSamples() are turns, as many as they send.
 TEST(NestedIlluminance, SamplesThatLightsSend) {
     writeShader("nsends", R"(class nsends(uniform float n = 3) {
-        public void light(output vector L; output color Cl) { L = 0; Cl = color 0; }
         public void generateSamples(string integrationdomain; output __radiancesample samples[]) {
             uniform float i;
             resize(samples, n);

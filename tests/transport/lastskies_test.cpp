@@ -52,7 +52,8 @@ TEST(LastSkies, EachBounceOnce) {
 }
 
 TEST(LastSkies, AmbientLightAndTrace) {
-    Scene ambient(world("LightSource \"ambientlight\" 1 \"float intensity\" .75\nSurface \"matte\"\n" + kFloor), depth(0));
+    Scene ambient(world(std::string("LightSource \"ambientlight\" 1 \"float intensity\" .75\nSurface \"matte\"\n") + kFloor),
+                  depth(0));
     EXPECT_NEAR(ambient.estimate(kView, 200).mean(), .75, 1e-4);
     writeShader("lasttrace",
                 "surface lasttrace(float lights = 0;) { normal n = normalize(faceforward(N, I)); Oi = 1; Ci = trace(P, "

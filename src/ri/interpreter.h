@@ -247,7 +247,7 @@ private:
     void sayOutOfScope(const Request& request, unsigned scope, const SourcePlace& place);
     // innerworld.cpp
     std::optional<size_t> archiveInWorld() const;
-    /// Whether it is said later, or never, that a request is out of scope: an option of an archive that is read in a world.
+    /// True for options of an archive that is read inside a world: that they are out of scope is reported later or never.
     bool waitsForInnerWorld(const Call& call);
     /// To be called when an archive has ended.
     void endInnerOptions();

@@ -21,7 +21,7 @@ inline std::string distributionNames(const char* between) {
     for (const char* name : kDistributions) all += (all.empty() ? "" : between) + std::string(name);
     return all;
 }
-/// What is said of a name that is none.
+/// The message for a name that is no distribution.
 inline std::string noDistribution(const std::string& op, std::string_view name) {
     return op + "(): there is no distribution \"" + std::string(name) + "\"";
 }

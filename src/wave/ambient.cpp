@@ -5,21 +5,6 @@
 
 namespace alpenglow::transport {
 
-namespace {
-
-/// n on the side of the surface that the ray comes from.
-Vec3 turnedToRay(const Vec3& n, const ShadePoint& p, const Vec3& dir) {
-    return (dot(n, p.surface.n) > 0) == (dot(dir, p.surface.n) < 0) ? n : -n;
-}
-
-Vec3 byCosine(const Vec3& axis, const Vec2& e) {
-    const float r = std::sqrt(e.x);
-    const Vec2 d = unitCircle(e.y);
-    return Basis(axis).toWorld({r * d.x, r * d.y, std::sqrt(std::max(0.f, 1 - e.x))});
-}
-
-} // namespace
-
 /// Turns what was asked for into directions: those of the vertex, whatever asks, so that parts of Ci that ask by themselves find
 /// the same.
 void Engine::drawAmbient(const BatchContext& c, std::vector<AmbientAsked>& asked) {
@@ -33,7 +18,7 @@ void Engine::drawAmbient(const BatchContext& c, std::vector<AmbientAsked>& asked
         AmbientAsked& a = asked[i];
         const ShadePoint& p = c.points[size_t(a.point)];
         const Vec3 n = normalizeOr(a.way, p.surface.n);
-        a.way = byCosine(turnedToRay(n, p, c.rays[size_t(a.point)].dir), ambientNumbers_.pair(i));
+        a.way = Basis(onSeenSide(n, p, c.rays[size_t(a.point)].dir)).toWorld(sampleCosine(ambientNumbers_.pair(i)));
         if (a.lit >= 0) tellOutputs(litValues_[size_t(a.lit)], c, size_t(a.point));
     }
 }

@@ -27,6 +27,11 @@ struct Rules {
           emissionCounts(pickOne) {}
 };
 
+/// n or -n: the one on the side of the surface at p that a ray in direction dir comes from.
+inline Vec3 onSeenSide(const Vec3& n, const ShadePoint& p, const Vec3& dir) {
+    return (dot(n, p.surface.n) > 0) == (dot(dir, p.surface.n) < 0) ? n : -n;
+}
+
 /// Questions that shadow rays answer: their weights hold the ray's throughput.
 inline bool asksShadows(SiteKind k) { return k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Ambient; }
 

@@ -11,7 +11,7 @@ namespace {
 Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
     const float l = length(p.N);
     if (!(l > 0) || !std::isfinite(l)) return {};
-    return p.N * (((dot(p.N, p.surface.n) > 0) == (dot(dir, p.surface.n) < 0) ? 1.f : -1.f) / l);
+    return onSeenSide(p.N, p, dir) * (1 / l);
 }
 } // namespace
 

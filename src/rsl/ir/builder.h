@@ -345,7 +345,7 @@ private:
     Place place_;
     std::optional<Place> ownText_; ///< inside a function of the renderer that is written in RSL: where the shader calls it
     Place shownPlace(const Place& p) const { return ownText_ ? *ownText_ : p; }
-    /// The same with its file among the kernel's, for what is said when it runs.
+    /// The same, with the file added to the kernel's list of files, so that run-time messages can name it.
     Place keptPlace(const Place& p) const {
         Place kept = shownPlace(p);
         if (kept.file >= 0) kept.file += fileBase_;

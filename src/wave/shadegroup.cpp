@@ -179,7 +179,7 @@ void Engine::fillBatch(BatchContext& c) {
     bindCall(c.batch->call(), c);
 }
 
-void Engine::shadeGroup(std::shared_ptr<BatchContext> c, Sched& sched) {
+void Engine::shadeGroup(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     if (c->binding->displacement) takeDisplacement(*c);
     const auto& kernel = *c->bound->kernel;
     if (photonTrace_) hazeOfPhotons(*this, *c);

@@ -329,7 +329,8 @@ struct Tree::Builder {
         tree.beyond_ = count;
         tree.beyondOf_ = of;
         Ref* const end = &refs[0] + triangles + exact.size();
-        std::remove_if(&refs[0], end, [&](const Ref& r) { return r.id() < triangles && reaches(r); });
+        [[maybe_unused]] const Ref* const kept =
+            std::remove_if(&refs[0], end, [&](const Ref& r) { return r.id() < triangles && reaches(r); });
     }
 
     void run() {

@@ -196,7 +196,7 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
     if (hidden(real.lexically_relative(folder).string()) || (!absolute && hidden(name)))
         return refuse("\"" + name + "\" is a hidden name, which a scene may not write");
     const bool plain = policy.root.empty() || policy.root == ".";
-    const std::string path = climbs(name) ? real.string() : absolute || plain ? name : given.string();
+    std::string path = climbs(name) ? real.string() : absolute || plain ? name : given.string();
     if (!replaceable(path))
         return refuse("\"" + path + "\" is there and is no picture; a scene may not replace it",
                       "choose another name, or permit it by --allow-write");

@@ -94,11 +94,11 @@ Diagnostics::Handler printer(Severity least) {
 namespace {
 
 // A signal handler can reach nothing but a global.
-StopFlag interrupted{0};
+StopFlag signalled{0};
 
 extern "C" void onInterrupt(int) {
-    if (interrupted) _exit(kInterrupted);
-    interrupted = 1;
+    if (signalled) _exit(kInterrupted);
+    signalled = 1;
 }
 
 } // namespace
@@ -126,7 +126,7 @@ const StopFlag* watchInterrupts() {
     a.sa_flags = SA_RESTART;
     sigaction(SIGINT, &a, nullptr);
     sigaction(SIGTERM, &a, nullptr);
-    return &interrupted;
+    return &signalled;
 }
 
 std::vector<std::string> environmentShaders() {

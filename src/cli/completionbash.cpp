@@ -53,7 +53,7 @@ std::string bashNames(const std::vector<OptionText>& options) {
 
 /// What to do for the argument of an option.
 std::string bashAction(const OptionText& o, const std::string& command) {
-    const std::string words = "_alpenglow_words '" + joined(o.choices, " ") + "'";
+    std::string words = "_alpenglow_words '" + joined(o.choices, " ") + "'";
     if (o.attached) return "[ \"$attached\" ] && " + words;
     if (!o.choices.empty()) return words;
     if (o.takesFile()) return "";

@@ -30,7 +30,8 @@ template <class F> void scan(const std::string& text, size_t end, F&& f) {
                 where = Where::Comment;
                 block = next == '*';
                 if (!f(i, where)) return;
-                if (++i < end && !f(i, where)) return;
+                ++i;
+                if (i < end && !f(i, where)) return;
                 continue;
             }
             if (!f(i, where)) return;

@@ -74,7 +74,7 @@ std::string optionHelp(const OptionText& o) {
 }
 
 std::string optionSections(const std::vector<OptionText>& all) {
-    std::string arguments, rest, group = "Options";
+    std::string arguments, rest;
     for (const OptionText& o : all)
         if (o.positional) arguments += roffEntry(optionUsage(o), optionHelp(o));
     if (!arguments.empty()) arguments = roffSection("ARGUMENTS") + arguments;

@@ -140,7 +140,7 @@ bool hasNoValue(const OldFlag& f, const std::vector<std::string>& all, size_t i)
 void takeFlag(const OldFlag& f, const std::string& inlineValue, const std::vector<std::string>& all, size_t* i,
               TranslatedFlags* out) {
     std::vector<std::string> values;
-    const std::string written = all[*i];
+    const std::string& written = all[*i];
     if (inlineValue.empty() && hasNoValue(f, all, *i)) {
         values.push_back("1");
     } else if (!valuesOf(f, inlineValue, all, i, &values)) {

@@ -33,7 +33,7 @@ ShapeRef makeCone(ShapeSource s, Diagnostics& diag) {
     double h = quadricNumber(p, 0, ok), r = quadricNumber(p, 1, ok), sweep = quadricNumber(p, 2, ok);
     if (!ok) return reportDegenerate(p, diag, "needs three finite numbers"), nullptr;
     if (r == 0 || sweep == 0) return reportDegenerate(p, diag, "has no radius or no sweep"), nullptr;
-    return std::make_shared<Cone>(s, h, r, sweep, diag);
+    return std::make_shared<Cone>(std::move(s), h, r, sweep, diag);
 }
 
 } // namespace alpenglow::geometry

@@ -28,7 +28,7 @@ ShapeRef makeCylinder(ShapeSource s, Diagnostics& diag) {
            sweep = quadricNumber(p, 3, ok);
     if (!ok) return reportDegenerate(p, diag, "needs four finite numbers"), nullptr;
     if (r == 0 || sweep == 0 || zmin == zmax) return reportDegenerate(p, diag, "has no radius, no sweep or no height"), nullptr;
-    return std::make_shared<Cylinder>(s, r, zmin, zmax, sweep, diag);
+    return std::make_shared<Cylinder>(std::move(s), r, zmin, zmax, sweep, diag);
 }
 
 } // namespace alpenglow::geometry

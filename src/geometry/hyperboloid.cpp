@@ -52,7 +52,7 @@ ShapeRef makeHyperboloid(ShapeSource s, Diagnostics& diag) {
     Vec3d p1(n[0], n[1], n[2]), p2(n[3], n[4], n[5]);
     if (p1 == p2 || n[6] == 0) return reportDegenerate(p, diag, "has no length or no sweep"), nullptr;
     if (n[0] == 0 && n[1] == 0 && n[3] == 0 && n[4] == 0) return reportDegenerate(p, diag, "lies on its axis"), nullptr;
-    return std::make_shared<Hyperboloid>(s, p1, p2, n[6], diag);
+    return std::make_shared<Hyperboloid>(std::move(s), p1, p2, n[6], diag);
 }
 
 } // namespace alpenglow::geometry

@@ -42,7 +42,7 @@ ShapeRef makeParaboloid(ShapeSource s, Diagnostics& diag) {
         diag.report(Severity::Warning, Rie::Range, p.place, "Paraboloid zmin lies beyond its apex; it is drawn from the apex");
         zmin = 0;
     }
-    return std::make_shared<Paraboloid>(s, r, zmin, zmax, zref, sweep, diag);
+    return std::make_shared<Paraboloid>(std::move(s), r, zmin, zmax, zref, sweep, diag);
 }
 
 } // namespace alpenglow::geometry

@@ -43,7 +43,7 @@ ShapeRef makeSphere(ShapeSource s, Diagnostics& diag) {
            sweep = quadricNumber(p, 3, ok);
     if (!ok) return reportDegenerate(p, diag, "needs four finite numbers"), nullptr;
     if (r == 0 || sweep == 0) return reportDegenerate(p, diag, "has no radius or no sweep"), nullptr;
-    auto shape = std::make_shared<Sphere>(s, r, zmin, zmax, sweep, diag);
+    auto shape = std::make_shared<Sphere>(std::move(s), r, zmin, zmax, sweep, diag);
     if (shape->empty()) return reportDegenerate(p, diag, "has no height between zmin and zmax"), nullptr;
     return shape;
 }

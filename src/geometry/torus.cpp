@@ -95,7 +95,7 @@ ShapeRef makeTorus(ShapeSource s, Diagnostics& diag) {
                     "Torus has more than 360 degrees between phimin and phimax; 360 are drawn");
         phi1 = phi0 + std::copysign(2 * kPi, phi1 - phi0);
     }
-    return std::make_shared<Torus>(s, n[0], n[1], phi0, phi1, n[4], diag);
+    return std::make_shared<Torus>(std::move(s), n[0], n[1], phi0, phi1, n[4], diag);
 }
 
 } // namespace alpenglow::geometry

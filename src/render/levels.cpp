@@ -48,7 +48,7 @@ public:
     Levels(const scene::Frame& f, const Camera& camera) : frame_(f), camera_(camera) {}
 
     /// The attributes of what is drawn: null where nothing is, others where it fades.
-    const scene::AttributesRef& drawn(const scene::AttributesRef& a) {
+    scene::AttributesRef drawn(const scene::AttributesRef& a) {
         if (!a || !ranged(*a)) return a;
         auto [known, fresh] = known_.try_emplace(a.get());
         if (fresh) {

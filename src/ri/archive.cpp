@@ -152,7 +152,7 @@ std::string Interpreter::locate(const char* what, const std::string& name, const
     std::vector<std::string> own = settings.searchPaths; // below them everything is read
     own.insert(own.end(), {sceneFolder_.empty() ? "." : sceneFolder_, "."});
     const ReadPolicy policy = readPolicyOf(sceneFolder_, settings.allowRead);
-    const std::string file = findFile(name, folders, &fallback, [&](const std::string& path) {
+    std::string file = findFile(name, folders, &fallback, [&](const std::string& path) {
         if (policy.anywhere || liesBelow(path, own)) return true;
         if (named(followedPath(path)) && (liesBelow(path, folders) || liesBelow(path, policy.folders))) return true;
         if (outside.empty()) outside = path;

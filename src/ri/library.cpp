@@ -63,7 +63,7 @@ void Interpreter::runLibrary(const std::string& name, const std::string& data, c
     if (!frameWanted()) return;
     const Library* library = libraryOf(name, call.place);
     if (!library) return;
-    std::string text = data; // it may write into what it is given
+    std::vector<char> text(data.c_str(), data.c_str() + data.size() + 1); // a copy: a library may write into it
     try {
         void* own = library->convertParameters(text.data());
         subdivide([&](float detail) { library->subdivide(own, detail); }, name, bound, call);

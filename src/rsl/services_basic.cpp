@@ -40,7 +40,7 @@ std::string general(float v, int precision, bool sign) {
     if (precision >= 0 || v != v) return number(double(v), 'f', precision, sign);
     char text[64];
     std::snprintf(text, sizeof text, sign ? "%+.7g" : "%.7g", double(v));
-    const std::string plain = text;
+    std::string plain = text;
     if (!std::isfinite(v) || plain.find('e') != std::string::npos) return plain;
     std::string power = number(double(v), 'e', 6, sign); // 1.000000e+05: without what says nothing it may be shorter
     const size_t e = power.find('e');

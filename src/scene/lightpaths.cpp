@@ -2,6 +2,7 @@
 #include "scene/lightpathtext.h"
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <map>
 #include <unordered_map>
 
@@ -221,7 +222,7 @@ bool LightPaths::build(std::span<const LightPathText> texts, std::string& why) {
 
     countsStraight_ = std::any_of(texts.begin(), texts.end(), [](const LightPathText& t) { return t.straight; });
     std::unordered_map<Places, State, Hash> numbers;
-    std::vector<Places> states(1, Places(joint.words, ~uint64_t(0))); // kNone, which nothing leads to
+    std::deque<Places> states(1, Places(joint.words, ~uint64_t(0))); // of kNone, which nothing leads to; number() adds to it
     const auto number = [&](const Places& p) {
         const auto [i, fresh] = numbers.try_emplace(p, State(states.size()));
         if (fresh) states.push_back(p);
@@ -235,7 +236,8 @@ bool LightPaths::build(std::span<const LightPathText> texts, std::string& why) {
             why = "they need more than " + std::to_string(std::min(kMostStates, kMostTable / classes_)) + " states";
             return false;
         }
-        const Places here = states[s], reach = joint.reach(here);
+        const Places& here = states[s];
+        const Places reach = joint.reach(here);
         for (const Places& m : matching) {
             Places to(joint.words);
             for (size_t w = 0; w < joint.words; ++w)

@@ -13,10 +13,10 @@ using geometry::Shape;
 constexpr int kMostSteps = 4096; ///< along an edge
 
 /// The shape whose triangles or parameters rays meet, at its first time.
-const Shape& baseOf(const Shape& s) {
+const Shape* baseOf(const Shape& s) {
     const geometry::Placed* placed = s.placed();
-    if (!placed) return s;
-    return placed->deforming() ? *placed->deforming()->keys()[0] : *placed->geometry();
+    if (!placed) return &s;
+    return placed->deforming() ? placed->deforming()->keys()[0].get() : placed->geometry().get();
 }
 
 bool isQuadric(const Shape& s) {
@@ -27,7 +27,7 @@ bool isQuadric(const Shape& s) {
 class Grid {
 public:
     Grid(const Shape& s, const geometry::DiceCamera& camera, bool middles, std::vector<GridPoint>& points, std::vector<Vec3>& P)
-        : shape_(s), base_(baseOf(s)), camera_(camera), edge_(geometry::diceEdge(s.attributes())), middles_(middles),
+        : shape_(s), base_(*baseOf(s)), camera_(camera), edge_(geometry::diceEdge(s.attributes())), middles_(middles),
           points_(points), P_(P) {}
     void ofQuadric();
     void ofTriangles();
@@ -221,13 +221,13 @@ void Grid::ofTriangles() {
 
 } // namespace
 
-bool hasGrid(const Shape& s) { return !baseOf(s).exact() || isQuadric(baseOf(s)); }
+bool hasGrid(const Shape& s) { return !baseOf(s)->exact() || isQuadric(*baseOf(s)); }
 
 void gridOf(const Shape& s, const geometry::DiceCamera& camera, bool middles, std::vector<GridPoint>& points,
             std::vector<Vec3>& P) {
     if (!hasGrid(s)) return;
     Grid grid(s, camera, middles, points, P);
-    if (baseOf(s).exact()) grid.ofQuadric();
+    if (baseOf(s)->exact()) grid.ofQuadric();
     else grid.ofTriangles();
 }
 

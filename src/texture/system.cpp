@@ -200,7 +200,7 @@ struct TextureSystem::Entry {
     std::shared_ptr<const Texture> texture;
 };
 
-TextureSystem::TextureSystem(Diagnostics& d, TextureSettings s) : diags_(d), settings_(s), limit_(s.memory) {
+TextureSystem::TextureSystem(Diagnostics& d, TextureSettings s) : diags_(d), settings_(std::move(s)), limit_(settings_.memory) {
     constexpr size_t unknown = size_t(1) << 30; // where the system does not say what it has
     if (!limit_) limit_ = machineMemory() ? machineMemory() / 4 : unknown;
 }

@@ -265,7 +265,7 @@ bool Session::save(const Save& s, const Means& means, const render::Film* film, 
             spec.gamma = gamma;
         }
     }
-    plan.pictures.assign(1, std::move(spec));
+    plan.pictures.assign(1, spec);
     plan.resolve(plan.engineWidths, *diags_);
     std::map<std::string, double> dim;
     {

@@ -67,10 +67,9 @@ void Preview::finished(std::unique_ptr<render::Film> film) {
 }
 
 void Watchers::finished(std::unique_ptr<render::Film> film) {
-    for (size_t i = 0; i < all.size(); ++i) {
-        if (i + 1 == all.size()) all[i]->finished(std::move(film));
-        else all[i]->finished(film ? std::make_unique<render::Film>(*film) : nullptr);
-    }
+    if (all.empty()) return;
+    for (size_t i = 0; i + 1 < all.size(); ++i) all[i]->finished(film ? std::make_unique<render::Film>(*film) : nullptr);
+    all.back()->finished(std::move(film));
 }
 
 Bytes shrunk(const display::Image& image, int width, int height) {

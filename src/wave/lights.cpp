@@ -83,7 +83,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     for (int r = 0; r < rows; ++r) in.push_back(row(r));
     request(c, s, point, in.data(), 1, 0, Color(1), target, true, occurrence);
     if (lobes.empty()) return {};
-    LobeVertex l = std::move(lobes.back());
+    LobeVertex l = lobes.back();
     lobes.clear();
     if (from.bounces + 1 > world_->maxDepth_) return {};
     uint32_t many = from.asked;

@@ -45,7 +45,7 @@ Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying
 
 InstanceRef SurfaceBinder::volumeOf(const scene::ShaderRef& call, const geometry::Shape& shape) {
     const InstanceRef plain = instanceOf(call, rsl::ShaderKind::Volume);
-    const InstanceRef shader = world_.withCoShaders(plain, shape.attributes().coshaders, diagnostics_);
+    InstanceRef shader = world_.withCoShaders(plain, shape.attributes().coshaders, diagnostics_);
     if (!shader) return nullptr;
     shading::ParameterBlock own = shader->parameters;
     std::string key;

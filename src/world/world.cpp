@@ -179,7 +179,7 @@ static void takeDiced(WorldImpl& w, const std::vector<uint32_t>& visibility) {
         if (l.emitter) l.emitter->takeDiced(seenThrough);
 }
 
-std::shared_ptr<const World> World::build(std::shared_ptr<const scene::Frame> frame, const Settings& settings,
+std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Frame>& frame, const Settings& settings,
                                           MakeEvaluator evaluators, Diagnostics& d) {
     double begin = buildClock();
     auto w = std::make_shared<WorldImpl>();

@@ -18,7 +18,8 @@ using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&,
 class World {
 public:
     /// Null when nothing can be rendered (an error was reported); missing shaders fall back with an error.
-    static std::shared_ptr<const World> build(std::shared_ptr<const scene::Frame>, const Settings&, MakeEvaluator, Diagnostics&);
+    static std::shared_ptr<const World> build(const std::shared_ptr<const scene::Frame>&, const Settings&, MakeEvaluator,
+                                              Diagnostics&);
     virtual ~World() = default;
     virtual const scene::Frame& frame() const = 0;
     virtual const Settings& settings() const = 0;

@@ -51,10 +51,10 @@ std::shared_ptr<scene::Primitive> closedMesh() {
 struct Scene {
     Diagnostics diag;
     std::unique_ptr<Accel> accel;
-    Scene(std::vector<std::shared_ptr<scene::Primitive>> prims, const Matrix& m, scene::Attributes a = {},
-          std::vector<uint32_t> mask = {}) {
+    Scene(const std::vector<std::shared_ptr<scene::Primitive>>& prims, const Matrix& m, const scene::Attributes& a = {},
+          const std::vector<uint32_t>& mask = {}) {
         std::vector<ShapeRef> shapes;
-        for (auto& p : prims)
+        for (const auto& p : prims)
             if (auto s = build(p, m, diag, a)) shapes.push_back(s);
         DiceOptions opt;
         opt.camera = {true, 200};

@@ -51,7 +51,7 @@ struct Scene {
     Diagnostics diag;
     std::vector<ShapeRef> shapes;
     std::unique_ptr<Accel> accel;
-    void add(const std::shared_ptr<scene::Primitive>& p, const Matrix& m, scene::Attributes a) {
+    void add(const std::shared_ptr<scene::Primitive>& p, const Matrix& m, const scene::Attributes& a) {
         shapes.push_back(build(p, m, diag, a));
     }
     void ready() {
@@ -236,7 +236,7 @@ namespace {
 
 /// Of each part its pieces, of several kinds, at a place that may move.
 struct Parts : Scene {
-    void part(int number, float operation, std::vector<std::shared_ptr<scene::Primitive>> pieces, const Matrix& m,
+    void part(int number, float operation, const std::vector<std::shared_ptr<scene::Primitive>>& pieces, const Matrix& m,
               const Matrix* last = nullptr) {
         for (const auto& p : pieces) {
             ShapeRef s = build(p, m, diag, at({1, operation, 0, float(2 + number), kPart, float(number)}));

@@ -84,7 +84,6 @@ TEST_F(Unmade, PartsMeetOthersFirstAndAreTheSame) {
     EXPECT_EQ(pixels("whole.exr"), pixels("merged.exr"));
     draw("--spp 4 --crop .2,.5,.3,.6 -o crop.exr late.rib");
     EXPECT_EQ(status, 0);
-    const std::string all = run("--spp 4 --pixel 24,20 at.rib", "2>err");
     write("at.rib", scene("path", false));
     EXPECT_EQ(run("--spp 4 --pixel 24,20 late.rib", "2>err"), run("--spp 4 --pixel 24,20 at.rib", "2>err"));
 }

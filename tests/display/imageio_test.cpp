@@ -105,7 +105,7 @@ TEST(ImageIo, TopRowFirst) {
     Scratch s;
     Image m = makeImage(2, 3, {"r", "g", "b"});
     m.pixel(1, 0)[0] = 1; // top right is red
-    for (auto o : {as(Format::Exr, Sample::Float), as(Format::Tiff, Sample::UInt8), as(Format::Png, Sample::UInt8)})
+    for (const auto& o : {as(Format::Exr, Sample::Float), as(Format::Tiff, Sample::UInt8), as(Format::Png, Sample::UInt8)})
         expectSame(roundTrip(s, m, o), m);
 }
 
@@ -130,7 +130,7 @@ TEST(ImageIo, MetadataMatricesAndCrop) {
     m.originY = 20;
     m.fullWidth = 64;
     m.fullHeight = 48;
-    for (auto o : {as(Format::Exr, Sample::Float), as(Format::Tiff, Sample::UInt8)}) {
+    for (const auto& o : {as(Format::Exr, Sample::Float), as(Format::Tiff, Sample::UInt8)}) {
         Image r = roundTrip(s, m, o);
         EXPECT_EQ(r.metadata["Software"], "Alpenglow");
         EXPECT_EQ(r.metadata["wrapmodes"], "periodic,clamp");
@@ -165,7 +165,7 @@ TEST(ImageIo, PngLeavesOutWhatItCannotHoldAndSaysSo) {
     o.policy = s.policy();
     EXPECT_TRUE(writeImage("a.png", pattern(3, 3, {"r", "g", "b", "z"}), o, d));
     EXPECT_EQ(d.warnings(), 1);
-    EXPECT_NE(messages(d).find("z"), std::string::npos);
+    EXPECT_NE(messages(d).find('z'), std::string::npos);
     auto r = readImage(s / "a.png", d);
     ASSERT_TRUE(r);
     EXPECT_EQ(r->channels, (V{"r", "g", "b"}));

@@ -50,7 +50,7 @@ Outcome readModelFile(const Bytes& b) {
     int said = 0;
     bool fits = true;
     {
-        ri::ModelLog log([&](Severity, Rie, const SourcePlace&, std::string) { ++said; });
+        ri::ModelLog log([&](Severity, Rie, const SourcePlace&, const std::string&) { ++said; });
         const std::string name = b.empty() || b[0] == 'p' ? "m.ply" : "m.obj";
         for (const scene::Primitive& p :
              ri::readModel(name, b, [&](const std::string&) { return std::optional<std::string>(b); }, log)) {

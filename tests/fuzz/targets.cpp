@@ -131,7 +131,7 @@ Bytes summedBytes(Random& r, const Seeds& seeds) {
     Bytes b = anyBytes(r, seeds);
     return r.once(5) ? b : summed(std::move(b));
 }
-Seeds mapsOf(void (*make)(), std::vector<std::string> extensions) { return madeInChild(make, std::move(extensions)); }
+Seeds mapsOf(void (*make)(), const std::vector<std::string>& extensions) { return madeInChild(make, extensions); }
 
 /// A small model of each form, and what may stand in their texts.
 Seeds models() {

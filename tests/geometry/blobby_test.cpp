@@ -421,7 +421,7 @@ TEST(Blobby, WhatIsTakenAwayColoursNothing) {
 
 TEST(Blobby, FaultyCodeIsSaid) {
     const auto b = ball(0, 0, 0, 1);
-    const auto errors = [&](std::shared_ptr<scene::Primitive> p) {
+    const auto errors = [&](const std::shared_ptr<scene::Primitive>& p) {
         Diagnostics diag;
         EXPECT_FALSE(build(p, Matrix(), diag));
         return diag.errors();

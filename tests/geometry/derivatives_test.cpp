@@ -74,7 +74,7 @@ TEST(Derivatives, PartialsAndNormalsOfParametricSurfaces) {
 
 TEST(Derivatives, QuadricPositionsAreThoseOfTheReference) {
     Diagnostics diag;
-    auto at = [&](std::shared_ptr<scene::Primitive> p, double u, double v) {
+    auto at = [&](const std::shared_ptr<scene::Primitive>& p, double u, double v) {
         return build(p, Matrix(), diag)->evaluate(0, u, v).P;
     };
     auto expect = [](Vec3 p, double x, double y, double z) {
@@ -95,7 +95,7 @@ TEST(Derivatives, QuadricPositionsAreThoseOfTheReference) {
 
 TEST(Area, ClosedForms) {
     Diagnostics diag;
-    auto area = [&](std::shared_ptr<scene::Primitive> p) { return build(p, translateMatrix(1, 2, 3), diag)->area(); };
+    auto area = [&](const std::shared_ptr<scene::Primitive>& p) { return build(p, translateMatrix(1, 2, 3), diag)->area(); };
     EXPECT_NEAR(area(quadric("Sphere", {2, -2, 2, 360})), 16 * kPi, 1e-6);
     EXPECT_NEAR(area(quadric("Sphere", {2, -1, 1, 180})), 4 * kPi, 1e-6); // zone: 2 pi r h, half a turn
     EXPECT_NEAR(area(quadric("Cylinder", {0.5f, -1, 1, 360})), 2 * kPi, 1e-6);
@@ -124,7 +124,7 @@ TEST(Area, SampledPointsHaveTheStatedDensity) {
 
 TEST(Orientation, NormalsFollowTheRules) {
     Diagnostics diag;
-    auto outward = [&](const Matrix& m, scene::Attributes a, std::shared_ptr<scene::Primitive> prim) {
+    auto outward = [&](const Matrix& m, const scene::Attributes& a, const std::shared_ptr<scene::Primitive>& prim) {
         ShapeRef s = build(prim, m, diag, a);
         SurfacePoint p = s->evaluate(0, 0.3, 0.6);
         Vec3d centre = transformPoint(m, Vec3d(0.0));

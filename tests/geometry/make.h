@@ -55,7 +55,8 @@ inline std::vector<float> bentNet() {
         }
     return P;
 }
-inline ShapeRef build(const std::shared_ptr<scene::Primitive>& p, const Matrix& m, Diagnostics& d, scene::Attributes a = {}) {
+inline ShapeRef build(const std::shared_ptr<scene::Primitive>& p, const Matrix& m, Diagnostics& d,
+                      const scene::Attributes& a = {}) {
     return buildShape(p, std::make_shared<scene::Attributes>(a), m, -1, d);
 }
 /// Turned, unevenly scaled, moved; without a mirror.

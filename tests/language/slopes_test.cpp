@@ -46,7 +46,6 @@ struct Special {
 const std::multimap<std::string, Special>& specials() {
     static const std::multimap<std::string, Special> all = [] {
         std::multimap<std::string, Special> m;
-        const std::string low = "(0.1 + 0.05 * U)", high = "(0.9 + 0.1 * U * V)";
         m.insert({"clamp", {{{"lo", ""}, {"hi", ""}}, ""}}); // each type its own: see special()
         m.insert({"mod", {{{"x", "(3.4 + 2 * U - V)"}, {"y", "(0.8 + 0.1 * U)"}}, ""}});
         m.insert({"smoothstep", {{{"lo", ""}, {"hi", ""}}, ""}});

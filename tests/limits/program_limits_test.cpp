@@ -319,7 +319,6 @@ TEST_F(ProgramLimits, ReadsOutsideTheFolders) {
     in("ReadArchive \"" + top + "/a/far.rib\"", "", "--allow-read");
     EXPECT_EQ(status, 0) << err;
 
-    const std::string ball = "Surface \"t\" Translate 0 0 2 Sphere 1 -1 1 360";
     write("a/b/scene/t.sl", "surface t(string name = \"\") { Ci = texture(name); }\n");
     for (const std::string& name : {std::string("../../paint.tif"), top + "/a/paint.tif"}) {
         in("Surface \"t\" \"name\" \"" + name + "\" Sphere 1 -1 1 360", "");

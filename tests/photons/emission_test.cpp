@@ -229,7 +229,7 @@ TEST(Emission, SameBitsInAnyCompany) {
     const auto same = [&](const std::vector<StoredPhoton>& got) {
         if (got.size() != want.size()) return false;
         for (size_t i = 0; i < got.size(); ++i)
-            if (std::memcmp(&got[i].photon, &want[i].photon, sizeof(photons::Photon)) || got[i].number != want[i].number)
+            if (std::memcmp(&got[i].photon, &want[i].photon, sizeof(photons::Photon)) != 0 || got[i].number != want[i].number)
                 return false;
         return true;
     };

@@ -320,7 +320,6 @@ TEST_F(PtexScenes, AColouredCube) {
     write("want.sl", "surface want() { Oi = 1; point p = transform(\"object\", P); Ci = color(xcomp(p) + 1, ycomp(p) + 1, "
                      "zcomp(p) + 1) / 2; }\n");
     const std::string polygons = "PointsPolygons " + indices + " " + points + "\n";
-    std::string creases;
     const char* edges[] = {"0 1", "1 3", "3 2", "2 0", "4 5", "5 7", "7 6", "6 4", "0 4", "1 5", "2 6", "3 7"};
     std::string names, counts, ints, floats;
     for (const char* e : edges) names += "\"crease\" ", counts += "2 1 ", ints += std::string(e) + " ", floats += "10 ";

@@ -116,7 +116,7 @@ size_t watch(const Case& c, Looker& looker) {
         w->settings_ = of;
         return w;
     };
-    e.tracer = [](std::shared_ptr<const transport::World>, Diagnostics&) { return std::make_unique<SlowTracer>(); };
+    e.tracer = [](const std::shared_ptr<const transport::World>&, Diagnostics&) { return std::make_unique<SlowTracer>(); };
     Diagnostics diags;
     Progress progress(ProgressMode::None);
     Renderer r(s, e, diags, progress);

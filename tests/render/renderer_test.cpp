@@ -68,7 +68,7 @@ Engine fakeEngine() {
                 w->settings_ = s;
                 return w;
             },
-            [](std::shared_ptr<const transport::World> w, Diagnostics&) -> std::unique_ptr<Tracer> {
+            [](const std::shared_ptr<const transport::World>& w, Diagnostics&) -> std::unique_ptr<Tracer> {
                 auto t = std::make_unique<FakeTracer>();
                 t->outputs = w->settings().outputs;
                 return t;
@@ -102,7 +102,7 @@ struct Session {
     Renderer renderer;
     explicit Session(RenderSettings s, Renderer::Print print = {})
         : renderer(std::move(s), fakeEngine(), diags, progress, std::move(print)) {}
-    void frame(std::shared_ptr<scene::Frame> f) {
+    void frame(const std::shared_ptr<scene::Frame>& f) {
         renderer.override(f->options);
         renderer.render(f);
     }

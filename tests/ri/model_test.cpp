@@ -22,7 +22,7 @@ struct Said {
     int errors = 0, warnings = 0;
     std::string text;
     ModelLog::Sink sink() {
-        return [this](Severity s, Rie, const SourcePlace& p, std::string m) {
+        return [this](Severity s, Rie, const SourcePlace& p, const std::string& m) {
             ++(s >= Severity::Error ? errors : warnings);
             text += p.file + ":" + std::to_string(p.line) + ": " + m + "\n";
         };

@@ -75,7 +75,7 @@ TEST_F(Unmade, ContentIsWhatItWouldHaveBeenAtOnce) {
                               left("b.rib") +
                               "Translate 0 0 5 Procedural \"DelayedReadArchive\" [\"seen.rib\"] [-1 1 -1 1 -1 1] WorldEnd";
     Renders c;
-    c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) {
+    c.then = [](Renders& r, const std::shared_ptr<const scene::Frame>& f) {
         EXPECT_EQ(summary(*f), "? Sp4@0 ? Sp7@0 ");
         EXPECT_EQ(f->primitives[0]->numbers, (std::vector<float>{-1, 1, -1, 1, -1, 1}));
         const auto one = r.make(*f, {0});
@@ -101,7 +101,7 @@ TEST_F(Unmade, WhatIsNotAskedForIsNotRead) {
     Renders c;
     readHere(c, camera + left("bad.rib") + left("missing.rib") + "WorldEnd");
     EXPECT_EQ(c.messages(), "");
-    c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) { EXPECT_NE(r.make(*f, {0, 1}), nullptr); };
+    c.then = [](Renders& r, const std::shared_ptr<const scene::Frame>& f) { EXPECT_NE(r.make(*f, {0, 1}), nullptr); };
     readHere(c, camera + left("bad.rib") + left("missing.rib") + "WorldEnd");
     EXPECT_NE(c.messages().find("bad.rib"), std::string::npos) << c.messages();
     EXPECT_NE(c.messages().find("missing.rib"), std::string::npos) << c.messages();
@@ -114,7 +114,7 @@ TEST_F(Unmade, NestsAndComesInTheOrderOfTheSceneWhateverIsMadeFirst) {
     const std::string scene = camera + "ObjectBegin \"o\" Sphere 9 -9 9 360 ObjectEnd " +
                               left("branch.rib", "[-60 1 -1 1 -1 9]") + left("leaf.rib") + "ObjectInstance \"o\" WorldEnd";
     Renders c;
-    c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) {
+    c.then = [](Renders& r, const std::shared_ptr<const scene::Frame>& f) {
         EXPECT_EQ(summary(*f), "? ? o@0 ");
         const auto outer = r.make(*f, {0});
         EXPECT_EQ(summary(*outer), "! Sp2@-50 ? Sp3@-50 ? ? o@0 o@-50 ");
@@ -140,7 +140,7 @@ TEST_F(Unmade, LightsHaveNumbersByTheOrderOfTheScene) {
     write("lamp.rib", "LightSource \"pointlight\" 5 \"intensity\" [2] Sphere 1 -1 1 360");
     write("plain.rib", "Sphere 2 -2 2 360");
     Renders c;
-    c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) {
+    c.then = [](Renders& r, const std::shared_ptr<const scene::Frame>& f) {
         EXPECT_EQ(summary(*r.make(*f, {1})), "? ! Sp2@-50 ? ");
         const auto made = r.make(*f, {2}); // a lamp: all are made
         EXPECT_EQ(summary(*made), "! Sp1@-50 ! Sp2@-50 ! Sp1@-50 ");
@@ -159,7 +159,7 @@ TEST_F(Unmade, NamesAreItsOwnAndWorldsCannotEndInIt) {
     write("a.rib", "Declare \"own\" \"uniform float\" Sphere 1 -1 1 360 \"own\" [1] WorldEnd WorldBegin FrameEnd Format 7 7 1");
     write("b.rib", "Sphere 2 -2 2 360 \"own\" [1]");
     Renders c;
-    c.then = [](Renders& r, std::shared_ptr<const scene::Frame> f) {
+    c.then = [](Renders& r, const std::shared_ptr<const scene::Frame>& f) {
         if (r.frames.size() > 1) return; // the world behind it
         const auto made = r.make(*f, {});
         ASSERT_EQ(summary(*made), "! Sp1@-50 ! Sp2@-50 ");

@@ -31,7 +31,7 @@ struct Compiled {
 };
 
 /// Null kernel after an error; the messages say which.
-inline Compiled compile(const std::string& source, KernelOptions options = {}, bool optimise = true) {
+inline Compiled compile(const std::string& source, const KernelOptions& options = {}, bool optimise = true) {
     Compiled c;
     Diagnostics d;
     c.program = compileText(source, "test.sl", {}, d);

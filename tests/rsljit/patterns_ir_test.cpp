@@ -16,7 +16,7 @@ std::string offences(const std::string& llvm) {
     std::istringstream in(llvm);
     std::string line, found;
     while (std::getline(in, line)) {
-        if (line.rfind("declare", 0) == 0 || line.rfind(";", 0) == 0) continue;
+        if (line.rfind("declare", 0) == 0 || line.starts_with(';')) continue;
         bool bad = line.find(" alloca ") != std::string::npos || line.find("gather") != std::string::npos ||
                    line.find("scatter") != std::string::npos;
         if (line.find(" call ") != std::string::npos) {

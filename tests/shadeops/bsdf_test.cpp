@@ -35,7 +35,7 @@ void append(std::vector<float>& in, const V& v) { in.insert(in.end(), v.begin(),
 using Model = std::function<double(const V& l, const V& o)>;
 
 /// Models that need rows of vectors, then numbers.
-Model model(const std::string& symbol, bool udir, std::vector<float> numbers, size_t part = 0) {
+Model model(const std::string& symbol, bool udir, const std::vector<float>& numbers, size_t part = 0) {
     return [=](const V& l, const V& o) {
         std::vector<float> in;
         append(in, l), append(in, kUp), append(in, o);

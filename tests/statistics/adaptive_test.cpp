@@ -67,7 +67,7 @@ Engine knownEngine() {
                 w->settings_ = s;
                 return w;
             },
-            [](std::shared_ptr<const transport::World> w, Diagnostics&) -> std::unique_ptr<Tracer> {
+            [](const std::shared_ptr<const transport::World>& w, Diagnostics&) -> std::unique_ptr<Tracer> {
                 auto t = std::make_unique<KnownTracer>();
                 t->seed = w->settings().seed;
                 return t;

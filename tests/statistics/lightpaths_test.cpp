@@ -80,7 +80,7 @@ struct Maker {
 
     Tree one() {
         static const std::string events = "CRTVLBO", hows = "DGSs";
-        const auto eventBits = [&](int k) { return uint8_t(k == 4 ? 1 << 4 | 1 << 5 : k < 4 ? 1 << k : 1 << k); };
+        const auto eventBits = [&](int k) { return uint8_t(k == 4 ? 1 << 4 | 1 << 5 : 1 << k); };
         Tree t;
         const int what = below(6), e = below(7), h = below(4), l = below(2);
         const auto how = [&] {

@@ -16,7 +16,7 @@ const int kPerTile = samples(2500, 65536);
 class BoxAgreement : public ::testing::TestWithParam<bool> {
 protected:
     std::string rib_ = boxRib(GetParam());
-    Technique with(Settings s, double share = 1) {
+    Technique with(const Settings& s, double share = 1) {
         return [this, s, share](int n, uint32_t seed) { return boxTiles(rib_, s, int(n * share), seed); };
     }
     uint32_t seed(uint32_t k) { return k + (GetParam() ? 100 : 0); } // scenes with and without spheres share no stream

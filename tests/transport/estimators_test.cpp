@@ -41,7 +41,7 @@ std::string shell(double colour, double radius = 20) {
 const CameraRay kNear = rayTo({.2f, .3f, -.1f}, {0, 0, 0});
 
 Moments of(const std::string& surface, const std::string& others, Settings s, int n) {
-    return Scene(world(others + surface + kFloor), s).estimate(kNear, n);
+    return Scene(world(others + surface + kFloor), std::move(s)).estimate(kNear, n);
 }
 Settings traced(Hider h, bool suspend = false) {
     Settings s = withShaders(h);

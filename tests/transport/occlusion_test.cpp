@@ -125,7 +125,7 @@ TEST(Occlusion, OfTheHalfThatTheAxisSees) {
 }
 
 TEST(Occlusion, AsksTheMapOfTheSky) {
-    const std::string map = writeMap("occsky.exr", 16, 8, Color(.25f, .5f, .75f));
+    writeMap("occsky.exr", 16, 8, Color(.25f, .5f, .75f));
     for (const char* op : {"occlusion", "indirectdiffuse"})
         for (const Hider h : kAll) {
             const std::string name = shaderFolder() + "/occsky.exr";
@@ -208,7 +208,7 @@ TEST(IndirectDiffuse, OfAWallThatShines) {
 TEST(IndirectDiffuse, OfAMapAlone) {
     writeMap("indwhite.exr", 16, 8, Color(1));
     writeMap("indtop.exr", 256, 128, [](int, int y, int c) { return y < 64 ? float(c + 1) : 0.f; });
-    const std::string dir = shaderFolder();
+    const std::string& dir = shaderFolder();
     EXPECT_NEAR(of(shows("indwhite", "indirectdiffuse(\"" + dir + "/indwhite.exr\", up)"), kFloor, Hider::Hidden, 1).mean(), 1,
                 1e-4);
     // Half a ball of light about +z: a plane that is turned away from it by a sees (1 + cos a) / 2 of it.

@@ -251,7 +251,7 @@ TEST(Units, TheTableNamesItsTests) {
     std::stringstream text(readText(ALPENGLOW_SOURCE_DIR "/docs/light.md"));
     int count = 0;
     for (std::string line, before; std::getline(text, line); before = line) {
-        if (line.rfind("| ", 0) != 0 || before.rfind("|", 0) != 0) continue; // not a table, or its head
+        if (line.rfind("| ", 0) != 0 || !before.starts_with('|')) continue; // not a table, or its head
         ++count;
         size_t end = line.rfind('`'), begin = line.rfind('`', end - 1);
         ASSERT_NE(begin, std::string::npos) << line;

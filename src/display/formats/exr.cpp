@@ -44,7 +44,8 @@ std::string checkHeaders(Bytes b) {
             }
             auto text = [&](std::string& s) {
                 while (at < b.size() && b[at] && s.size() < 256) s += char(b[at++]);
-                return at < b.size() && b[at++] == 0;
+                if (at >= b.size()) return false;
+                return b[at++] == 0;
             };
             std::string name, type;
             if (!text(name) || !text(type)) return bad;

@@ -39,7 +39,8 @@ std::optional<Image> decodeRadiance(Bytes b, const DecodeContext& ctx) {
     auto line = [&](std::string& s) {
         s.clear();
         while (at < b.size() && b[at] != '\n' && s.size() < 4096) s += char(b[at++]);
-        return at < b.size() && b[at++] == '\n';
+        if (at >= b.size()) return false;
+        return b[at++] == '\n';
     };
     std::string s;
     do {

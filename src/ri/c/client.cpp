@@ -38,7 +38,7 @@ int64_t total(const RtInt* counts, int64_t n) {
 }
 
 RtPointer newHandle(Client& c, std::string& name) {
-    const RtPointer handle = reinterpret_cast<RtPointer>(uintptr_t(c.in.nextHandle()));
+    RtPointer handle = reinterpret_cast<RtPointer>(uintptr_t(c.in.nextHandle()));
     name = handleName(handle);
     return handle;
 }

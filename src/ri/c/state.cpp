@@ -26,7 +26,7 @@ RtPointer light(const char* request, const char* shader, RtInt n, RtToken tokens
     Building b(request);
     if (!b.client()) return nullptr;
     std::string name;
-    const RtPointer handle = newHandle(*b.client(), name);
+    RtPointer handle = newHandle(*b.client(), name);
     b.text(shader).text(name.c_str()).parameters(n, tokens, values).run();
     return handle;
 }
@@ -78,7 +78,7 @@ RtObjectHandle RiObjectBegin(void) {
     Building b("ObjectBegin");
     if (!b.client()) return nullptr;
     std::string name;
-    const RtPointer handle = newHandle(*b.client(), name);
+    RtPointer handle = newHandle(*b.client(), name);
     b.text(name.c_str()).run();
     return handle;
 }

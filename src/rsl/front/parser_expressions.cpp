@@ -226,8 +226,8 @@ ExprPtr Parser::primary() {
     const Token& t = peek();
     if (t.kind == Tok::Number) {
         auto e = node(ExprKind::Number, t.place);
-        const char* end = t.text.data() + t.text.size();
-        const auto r = std::from_chars(t.text.data(), end, e->number);
+        const char *const begin = t.text.data(), *const end = begin + t.text.size();
+        const auto r = std::from_chars(begin, end, e->number);
         const bool suffix = r.ptr + 1 == end && (*r.ptr == 'f' || *r.ptr == 'F');
         if (r.ec == std::errc::result_out_of_range) {
             // Too large or too small for a double: the exponent's sign says which.

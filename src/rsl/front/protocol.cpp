@@ -31,7 +31,9 @@ int takeNumber(std::string_view& s, char mark) {
     if (n >= 0) s = s.substr(0, at);
     return n;
 }
-std::string elementOf(std::string text, int element) { return element < 0 ? text : text + "[" + std::to_string(element) + "]"; }
+std::string elementOf(const std::string& text, int element) {
+    return element < 0 ? text : text + "[" + std::to_string(element) + "]";
+}
 
 } // namespace
 

@@ -110,7 +110,7 @@ std::string Lowering::methodNamed(Type t, const std::string& method, size_t argu
         name = method.substr(colon + 2);
     }
     for (;;) {
-        const std::string full = structOf(t).name + "->" + name;
+        std::string full = structOf(t).name + "->" + name;
         const auto [begin, end] = functions_.equal_range(full);
         for (auto f = begin; f != end; ++f)
             if (f->second.parameters.size() == arguments + 1) return full;

@@ -40,7 +40,7 @@ struct Converter {
     int changes = 0;
 
     Inst* add(std::vector<Inst*>& body, Inst* i, Place place) {
-        i->place = std::move(place);
+        i->place = place;
         body.push_back(i);
         return i;
     }

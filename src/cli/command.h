@@ -34,6 +34,9 @@ struct StatusText {
 };
 std::span<const StatusText> statusTexts();
 
+/// Runs what a command line asks for. Returns the exit status; prints its messages. Lets exceptions of the work through.
+int runProgram(int argc, char** argv);
+
 /// Each describes its options to the parser and, when its subcommand is called, does the work and sets *status.
 void addRender(CLI::App&, int* status, const std::string& command); ///< `command`: the whole line, for --stats and --stamp
 void addView(CLI::App&, int* status);

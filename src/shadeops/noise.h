@@ -200,6 +200,7 @@ std::vector<Shadeop> noiseShadeops() {
     Shadeop op;
     op.section = "Noise";
     op.outOfLine = true;
+    op.widest = 32;
 
     op.name = "noise";
     op.signatures = noiseForms("noise", "al_noise", false);

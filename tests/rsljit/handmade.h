@@ -118,4 +118,36 @@ inline std::string describe(const KernelOptions& o) {
            std::to_string(o.optimize);
 }
 
+inline constexpr int kPoints = 150; // not a multiple of any strip
+
+/// Runs a kernel over kPoints points.
+struct Batch {
+    Rows rows{kPoints};
+    std::vector<const float*> in;
+    std::vector<float*> out;
+    KernelCall call{};
+    /// Inputs: values[i](point, row); uniform inputs are given by point 0, in lanes when mixed.
+    void operator()(const CompiledKernel& k, const KernelOptions& o, const std::function<float(int, int, int)>& value) {
+        for (size_t i = 0; i < k.inputs().size(); i++) {
+            const ir::Input& x = k.inputs()[i];
+            const int count = ir::components(x.kind) * inputParts(x) * std::max(1, x.array);
+            float* p = rows.make(count);
+            if (x.uniform && !o.mixed)
+                for (int r = 0; r < count; r++) p[r] = value(int(i), 0, r);
+            else
+                for (int r = 0; r < count; r++)
+                    for (int n = 0; n < kPoints; n++) p[r * rows.stride + n] = value(int(i), x.uniform ? 0 : n, r);
+            in.push_back(p);
+        }
+        for (const auto& x : k.outputs()) out.push_back(rows.make(ir::components(x.kind)));
+        call.in = in.data();
+        call.out = out.data();
+        call.n = kPoints;
+        call.stride = rows.stride;
+        call.strings = k.strings().data();
+        k.run(&call);
+    }
+    float operator()(int output, int row, int point) const { return out[size_t(output)][row * rows.stride + point]; }
+};
+
 } // namespace alpenglow::rsl::test

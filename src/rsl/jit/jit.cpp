@@ -7,10 +7,11 @@ namespace alpenglow::rsl::jit {
 namespace {
 
 // Raised whenever the generated code changes for the same IR, or the IR for the same source.
-constexpr const char* kVersion = "alpenglow-jit-7";
+constexpr const char* kVersion = "alpenglow-jit-8";
 
 struct SymbolSets {
-    std::set<std::string> zeroDerivative, outOfLine;
+    std::set<std::string> zeroDerivative;
+    std::map<std::string, int> outOfLine;
 };
 
 const SymbolSets& symbolSets() {
@@ -21,7 +22,7 @@ const SymbolSets& symbolSets() {
             for (const Signature& sig : op.signatures) {
                 if (sig.symbol.empty()) continue;
                 if (op.derivative == DerivativeRule::Zero) s.zeroDerivative.insert(sig.symbol);
-                if (op.outOfLine) s.outOfLine.insert(sig.symbol);
+                if (op.outOfLine) s.outOfLine.emplace(sig.symbol, op.widest);
             }
         }
         return s;

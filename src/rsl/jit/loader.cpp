@@ -58,7 +58,7 @@ void* LoadedObject::find(const std::string& name) const {
 }
 
 std::unique_ptr<LoadedObject> LoadedObject::load(const std::string& elf, std::string& error, const Outside& outside) {
-    auto fail = [&](std::string why) -> std::unique_ptr<LoadedObject> {
+    auto fail = [&](const std::string& why) -> std::unique_ptr<LoadedObject> {
         error = "object file: " + why;
         return nullptr;
     };

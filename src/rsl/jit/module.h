@@ -2,6 +2,7 @@
 #pragma once
 #include "rsl/ir/ir.h"
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -29,8 +30,10 @@ struct ModuleRequest {
     Isa isa = Isa::Avx512;
     BitcodeView (*bitcode)(int lanes) = nullptr;           ///< the runtime at 4, 8, 16, 32, 64 lanes
     const std::set<std::string>* zeroDerivative = nullptr; ///< runtime symbols whose derivatives are zero
-    const std::set<std::string>* outOfLine = nullptr; ///< runtime symbols that are called, not inlined, when there are many calls
-    bool wantText = false;                            ///< fill ModuleResult::text with the optimised LLVM IR
+    /// Runtime symbols that are called, not inlined, when there are many calls; with the most lanes that the runtime has them
+    /// for.
+    const std::map<std::string, int>* outOfLine = nullptr;
+    bool wantText = false; ///< fill ModuleResult::text with the optimised LLVM IR
 };
 
 struct ModuleResult {

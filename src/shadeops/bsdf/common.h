@@ -95,6 +95,7 @@ inline Shadeop bsdfOp(const char* signature, const char* symbol, const char* doc
     op.name = text.substr(text.find(' ') + 1, open - text.find(' ') - 1);
     op.section = "Lighting";
     op.outOfLine = true;
+    op.widest = 16;
     op.doc = std::string("A distribution of bsdf(). ") + doc;
     op.source = source;
     op.examples = {std::move(example)};

@@ -139,7 +139,7 @@ void Emitter::arithmetic(const Inst* i) {
     auto arg = [&](size_t k) -> const Val& { return value(i->args[k]); };
     Val r;
     auto each = [&](auto&& f) {
-        const Val a = arg(0), b = arg(1);
+        const Val &a = arg(0), &b = arg(1);
         if (a.size() != b.size()) fail(std::string("operands of different kinds: ") + ir::name(i->op));
         for (size_t c = 0; c < a.size(); c++) r.push_back(f(a[c], b[c]));
     };
@@ -199,7 +199,7 @@ void Emitter::arithmetic(const Inst* i) {
         r.push_back({b_.CreateNot(arg(0)[0].v)});
         break;
     case Op::Select: {
-        const Val c = arg(0), a = arg(1), b = arg(2);
+        const Val &c = arg(0), &a = arg(1), &b = arg(2);
         for (size_t k = 0; k < a.size(); k++) r.push_back(select(c[0].v, a[k], b[k]));
         break;
     }

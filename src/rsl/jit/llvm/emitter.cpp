@@ -40,7 +40,7 @@ Plan plan(const ModuleRequest& r, const Shapes& shapes) {
     else if (r.lanes >= 8 && p.live <= 7 && p.outOfLineCalls == 0 && !p.loops) plan.vectors = 4;
     else if (p.outOfLineCalls > 0) plan.vectors = 2; // long chains of integer operations: a second one hides half of each
     else if (p.live <= 14) plan.vectors = 2;
-    while (r.lanes * plan.vectors > 64) plan.vectors /= 2;
+    while (r.lanes * plan.vectors > p.widest) plan.vectors /= 2;
     if (plan.vectors == 3) plan.vectors = 2; // the runtime exists for powers of two
     return plan;
 }

@@ -250,7 +250,7 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
     }
 }
 
-Pressure measure(const ir::Kernel& k, const Shapes& shapes, const std::set<std::string>* outOfLine) {
+Pressure measure(const ir::Kernel& k, const Shapes& shapes, const std::map<std::string, int>* outOfLine) {
     Pressure p;
     std::unordered_map<const Inst*, int> born, lastUse;
     std::vector<const Inst*> all;
@@ -273,7 +273,9 @@ Pressure measure(const ir::Kernel& k, const Shapes& shapes, const std::set<std::
             if (i->op == Op::Runtime) {
                 p.runtimeCalls++;
                 const int order = shapes.callOrder(i);
-                if (outOfLine && outOfLine->count(i->text)) {
+                const auto large = outOfLine ? outOfLine->find(i->text) : std::map<std::string, int>::const_iterator();
+                if (outOfLine && large != outOfLine->end()) {
+                    p.widest = std::min(p.widest, large->second);
                     p.outOfLineCalls += order == 0 ? 1 : order == 1 ? 3 : 6;
                     p.wideCalls += order > 0;
                 }

@@ -70,9 +70,10 @@ struct Pressure {
     int instructions = 0;
     int runtimeCalls = 0;
     int outOfLineCalls = 0; ///< derivative orders count 3 and 6
+    int widest = 64;        ///< the most lanes that the runtime has all of its functions for
     int wideCalls = 0;      ///< of those, calls that carry derivatives: few registers are left
     bool effects = false, loops = false;
 };
-Pressure measure(const ir::Kernel&, const Shapes&, const std::set<std::string>* outOfLine);
+Pressure measure(const ir::Kernel&, const Shapes&, const std::map<std::string, int>* outOfLine);
 
 } // namespace alpenglow::rsl::jit

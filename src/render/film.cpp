@@ -48,6 +48,18 @@ uint64_t total(const std::vector<SampleRange>& ranges) {
 
 } // namespace
 
+std::array<double, 2> signScales(double negative, const std::array<uint32_t, kReplicas>& samples, double plusWeights,
+                                 double minusWeights) {
+    if (!(minusWeights > 0)) return {plusWeights > 0 ? 1 / plusWeights : 0, 0};
+    if (!(plusWeights > 0)) return {0, 1 / minusWeights};
+    // A replica's first numbers are one in each of as many strata, so that it has about `share` times its samples below 0.
+    const double share = negative / (1 + 2 * negative);
+    double none = 1;
+    for (uint32_t n : samples) none *= std::max(0.0, 1 - n * share);
+    const double part = none < 1 ? negative / (1 - none) : negative;
+    return {(1 + part) / plusWeights, -part / minusWeights};
+}
+
 bool Film::check(const FilmDescription& d, Diagnostics& diag, const SourcePlace& place) {
     auto bad = [&](const std::string& what) {
         diag.report(Severity::Error, Rie::Limit, place, what);
@@ -66,7 +78,8 @@ bool Film::check(const FilmDescription& d, Diagnostics& diag, const SourcePlace&
 }
 
 Film::Film(FilmDescription d) : description_(std::move(d)) {
-    pixels_.resize(window().pixels());
+    pixels_.resize(window().pixels() * layers());
+    if (description_.negative) weights_.resize(pixels_.size());
     size_t n = description_.channels.size();
     aovs_.resize(pixels_.size() * n);
     for (size_t i = 0; i < aovs_.size(); ++i) aovs_[i] = emptyValue(description_.channels[i % n].rule);
@@ -85,7 +98,8 @@ void Film::addParts(size_t at, const FilmSample& s, const Int128 (&rgb)[3], bool
             const float v = size_t(i) < s.aovs.size() ? s.aovs[size_t(i)] : 0.0f;
             const bool good = std::isfinite(v);
             if (!good) tally(nonFiniteAovs_);
-            const Int128 part = good ? toFixed(v, saturated) : Int128(0), size = part < 0 ? -part : part;
+            const Int128 part = good ? toFixed(double(v) * std::fabs(s.weight), saturated) : Int128(0),
+                         size = part < 0 ? -part : part;
             aovs_[at * n + size_t(i)] += part;
             left -= part;
             if (size > most) most = size, largest = size_t(i);
@@ -108,12 +122,16 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
         lock.store(0, std::memory_order_release);
         return false;
     }
+    const double weight = std::fabs(s.weight);
     size_t at = index(x, y);
+    if (description_.negative && s.weight < 0) at = below(at);
     Pixel& p = pixels_[at];
     bool saturated = false;
-    const Int128 rgb[3] = {toFixed(c.x, &saturated), toFixed(c.y, &saturated), toFixed(c.z, &saturated)};
+    const Int128 rgb[3] = {toFixed(c.x * weight, &saturated), toFixed(c.y * weight, &saturated),
+                           toFixed(c.z * weight, &saturated)};
     for (int k = 0; k < 3; ++k) p.rgb[k] += rgb[k];
-    p.alpha += toFixed(s.alpha, &saturated);
+    p.alpha += toFixed(s.alpha * weight, &saturated);
+    if (description_.negative) weights_[at] += toFixed(weight, &saturated);
     // The square is taken of the rounded luminance, so that the variance of equal samples is exactly 0.
     Int128 lum = toFixed(luminance(Vec3d(c)), &saturated);
     p.replicaY[sampleIndex % kReplicas] += lum;
@@ -130,7 +148,7 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
         ChannelRule rule = description_.channels[i].rule;
         if (rule >= ChannelRule::PartOfRed) continue;
         if (std::isnan(v) || (rule == ChannelRule::Average && std::isinf(v))) tally(nonFiniteAovs_);
-        else if (rule == ChannelRule::Average) sum += toFixed(v, &saturated);
+        else if (rule == ChannelRule::Average) sum += toFixed(v * weight, &saturated);
         else if (rule == ChannelRule::Min) sum = std::min<Int128>(sum, orderKey(v));
         else sum = std::max<Int128>(sum, orderKey(v));
     }
@@ -149,7 +167,7 @@ bool Film::addRange(SampleRange r) {
 uint32_t Film::samplesPerPixel() const { return uint32_t(total(ranges_)); }
 
 bool Film::spread(std::vector<uint16_t> rates) {
-    if (spread_ || ranges_.size() != 1 || ranges_[0].begin != 0 || rates.size() != pixels_.size()) return false;
+    if (spread_ || ranges_.size() != 1 || ranges_[0].begin != 0 || rates.size() != window().pixels()) return false;
     if (std::any_of(rates.begin(), rates.end(), [](uint16_t r) { return r > Spread::kMost; })) return false;
     spread_ = Spread{ranges_[0].end, 0, std::move(rates)};
     return true;
@@ -174,13 +192,13 @@ Film::Samples Film::samplesAfter(uint32_t steps) const {
     if (!spread_) return {double(n), n, n};
     Samples s{0, ~0ull, 0};
     uint64_t sum = 0;
-    for (size_t i = 0; i < pixels_.size(); ++i) {
+    for (size_t i = 0; i < window().pixels(); ++i) {
         const uint64_t held = spread_->held(i, uint64_t(spread_->steps) + steps);
         sum += held;
         s.least = std::min(s.least, held);
         s.most = std::max(s.most, held);
     }
-    s.mean = double(sum) / double(pixels_.size());
+    s.mean = double(sum) / double(window().pixels());
     return s;
 }
 
@@ -193,6 +211,7 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     if (a.width != b.width || a.height != b.height || a.window != b.window)
         return bad(Rie::Consistency, "the parts have different sizes or crop windows");
     if (a.channels != b.channels) return bad(Rie::Consistency, "the parts have different channels");
+    if (a.negative != b.negative) return bad(Rie::Consistency, "the parts have different pixel filters");
     if (a.seed != b.seed)
         return bad(Rie::Consistency,
                    "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
@@ -220,6 +239,7 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
             p.surfaceCount[k] += q.surfaceCount[k];
         }
     }
+    for (size_t i = 0; i < weights_.size(); ++i) weights_[i] += o.weights_[i];
     size_t n = a.channels.size();
     for (size_t i = 0; i < aovs_.size(); ++i) {
         ChannelRule rule = a.channels[i % n].rule;
@@ -235,41 +255,65 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     return true;
 }
 
-uint32_t Film::count(int x, int y) const {
-    uint32_t n = 0;
-    for (uint32_t c : pixel(x, y).replicaCount) n += c;
+std::array<uint32_t, kReplicas> Film::countsAt(size_t pixel) const {
+    std::array<uint32_t, kReplicas> n{};
+    for (size_t at = pixel; at < pixels_.size(); at = below(at))
+        for (uint32_t r = 0; r < kReplicas; ++r) n[r] += pixels_[at].replicaCount[r];
     return n;
 }
 
+uint32_t Film::count(int x, int y) const {
+    const auto counts = countsAt(index(x, y));
+    return std::accumulate(counts.begin(), counts.end(), 0u);
+}
+
+/// sumOf: of a pixel of a layer.
+template <class SumOf> double Film::average(int x, int y, SumOf sumOf) const {
+    const size_t at = index(x, y);
+    if (!description_.negative) {
+        const uint32_t n = count(x, y);
+        return n ? fromFixed(sumOf(at)) / n : 0;
+    }
+    const auto [plus, minus] =
+        signScales(*description_.negative, countsAt(at), fromFixed(weights_[at]), fromFixed(weights_[below(at)]));
+    return plus * fromFixed(sumOf(at)) + minus * fromFixed(sumOf(below(at)));
+}
+
 Color Film::mean(int x, int y) const {
-    const Pixel& p = pixel(x, y);
-    uint32_t n = count(x, y);
-    return n ? Color(float(fromFixed(p.rgb[0]) / n), float(fromFixed(p.rgb[1]) / n), float(fromFixed(p.rgb[2]) / n)) : Color();
+    Color c;
+    for (int k = 0; k < 3; ++k) c[k] = float(average(x, y, [&](size_t at) { return pixels_[at].rgb[k]; }));
+    return c;
 }
 
 float Film::alpha(int x, int y) const {
-    uint32_t n = count(x, y);
-    return n ? float(fromFixed(pixel(x, y).alpha) / n) : 0;
+    return float(average(x, y, [&](size_t at) { return pixels_[at].alpha; }));
 }
 
 float Film::aov(int x, int y, int channel) const {
-    const Int128& v = aovs_[index(x, y) * description_.channels.size() + size_t(channel)];
-    if (!isSum(description_.channels[size_t(channel)].rule)) return fromKey(int32_t(v));
-    uint32_t n = count(x, y);
-    return n ? float(fromFixed(v) / n) : 0;
+    const size_t n = description_.channels.size();
+    const auto sumOf = [&](size_t at) { return aovs_[at * n + size_t(channel)]; };
+    const ChannelRule rule = description_.channels[size_t(channel)].rule;
+    if (isSum(rule)) return float(average(x, y, sumOf));
+    Int128 v = sumOf(index(x, y));
+    if (description_.negative) {
+        const Int128 other = sumOf(below(index(x, y)));
+        v = rule == ChannelRule::Min ? std::min(v, other) : std::max(v, other);
+    }
+    return fromKey(int32_t(v));
 }
 
 float Film::aov(int x, int y, std::span<const int> channels) const {
-    Int128 v = 0;
-    for (int channel : channels) v += fixedAov(x, y, channel);
-    const uint32_t n = count(x, y);
-    return n ? float(fromFixed(v) / n) : 0;
+    const size_t n = description_.channels.size();
+    return float(average(x, y, [&](size_t at) {
+        Int128 v = 0;
+        for (int channel : channels) v += aovs_[at * n + size_t(channel)];
+        return v;
+    }));
 }
 
-Moments Film::moments(int x, int y) const {
-    const Pixel& p = pixel(x, y);
+Moments Film::momentsOf(const Pixel& p) {
     Moments m;
-    m.n = count(x, y);
+    for (uint32_t c : p.replicaCount) m.n += c;
     Int128 sum = 0;
     for (Int128 v : p.replicaY) sum += v;
     m.s1 = fromFixed(sum);
@@ -283,18 +327,58 @@ Moments Film::moments(int x, int y) const {
     return m;
 }
 
-void Film::replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const {
-    const Pixel& p = pixel(x, y);
-    *sum = fromFixed(p.replicaY[r]);
-    *n = p.replicaCount[r];
+Moments Film::moments(int x, int y) const {
+    const size_t at = index(x, y);
+    if (!description_.negative) return momentsOf(pixels_[at]);
+    // The variance that n independent samples would have whose mean is as uncertain as what the two signs make.
+    const Moments part[2] = {momentsOf(pixels_[at]), momentsOf(pixels_[below(at)])};
+    const auto scale = signScales(*description_.negative, countsAt(at), part[0].n, part[1].n);
+    Moments m;
+    m.n = part[0].n + part[1].n;
+    for (size_t k = 0; k < 2; ++k) {
+        m.s1 += scale[k] * part[k].s1 * m.n;
+        m.variance += scale[k] * scale[k] * part[k].n * part[k].variance * m.n;
+    }
+    if (m.n > 0) m.s2 = m.variance * (m.n - 1.0) + m.s1 * m.s1 / m.n;
+    return m;
 }
 
-SurfaceSums Film::surface(int x, int y) const {
-    const Pixel& p = pixel(x, y);
-    SurfaceSums s;
-    s.y = fromFixed(p.surfaceY);
-    std::copy(std::begin(p.surfaceCount), std::end(p.surfaceCount), s.count.begin());
-    return s;
+std::vector<LuminanceSums> Film::luminanceSums(int x, int y) const {
+    std::vector<LuminanceSums> all;
+    for (size_t at = index(x, y); at < pixels_.size(); at = below(at)) {
+        const Pixel& p = pixels_[at];
+        LuminanceSums& s = all.emplace_back();
+        for (uint32_t r = 0; r < kReplicas; ++r) s.y[r] = fromFixed(p.replicaY[r]);
+        std::copy(std::begin(p.replicaCount), std::end(p.replicaCount), s.count.begin());
+        s.surfaceY = fromFixed(p.surfaceY);
+        std::copy(std::begin(p.surfaceCount), std::end(p.surfaceCount), s.surfaceCount.begin());
+    }
+    if (all.size() < 2) return all;
+    const uint32_t plus = all[0].samples(), minus = all[1].samples();
+    const auto scales = signScales(*description_.negative, countsAt(index(x, y)), plus, minus);
+    for (size_t k = 0; k < 2; ++k) all[k].scale = scales[k] * (double(plus) + minus);
+    return all;
+}
+
+void Film::replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const {
+    if (!description_.negative) {
+        const Pixel& p = pixel(x, y);
+        *sum = fromFixed(p.replicaY[r]);
+        *n = p.replicaCount[r];
+        return;
+    }
+    *sum = 0;
+    *n = 0;
+    const std::vector<LuminanceSums> signs = luminanceSums(x, y);
+    double whole = 0, samples = 0;
+    for (const LuminanceSums& s : signs) {
+        const uint32_t count = s.samples();
+        *n += s.count[r];
+        samples += count;
+        whole += s.scale * s.sum();
+        if (count > 0) *sum += s.scale * (s.y[r] - s.sum() / count * s.count[r]);
+    }
+    if (samples > 0) *sum += whole / samples * *n;
 }
 
 std::optional<DroppedSample> Film::firstDropped() const {
@@ -319,6 +403,7 @@ uint64_t Film::digest() const {
         for (uint32_t v : p.surfaceCount) mix(v);
     }
     for (Int128 v : aovs_) mix128(v);
+    for (Int128 v : weights_) mix128(v);
     for (auto r : ranges_) mix(uint64_t(r.begin) << 32 | r.end);
     for (uint64_t v : {nonFinite_, nonFiniteAovs_, saturated_}) mix(v);
     if (spread_) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,15 +71,20 @@ struct FilmDescription {
     uint64_t seed = 0;
     std::string scene;             ///< a digest of the scene and of every option that changes the picture; chosen by the caller
     std::vector<Channel> channels; ///< AOVs
+    /// Of a pixel filter whose samples have weights (FilterSampler::negativePart()): the integral of its negative part by that of
+    /// the filter, at least 0. Samples of either sign are then summed apart, and each sum is divided by its weights: what does
+    /// not vary stays as it is, and a pixel that has samples of both signs is unbiased.
+    std::optional<double> negative;
     friend bool operator==(const FilmDescription&, const FilmDescription&) = default;
 };
 
-/// One sample of one pixel. Linear, unclamped; already multiplied by its filter weight.
+/// One sample of one pixel. Linear, unclamped.
 struct FilmSample {
     Color radiance;
     float alpha = 0;
     std::span<const float> aovs; ///< one value per channel; missing ones count as 0
     bool surface = true;         ///< the camera ray met a surface, whatever its opacity; false: it saw the background alone
+    float weight = 1;            ///< of the pixel filter: multiplies radiance, alpha and averaged AOVs, not the noise figures
 };
 
 /// The first (least sample index, then y, then x) sample that was dropped: its reproducer.
@@ -94,11 +100,23 @@ struct Moments {
     double variance = 0;   ///< (s2 - s1^2 / n) / (n - 1), the difference taken exactly; 0 for n < 2
 };
 
-/// The samples of a pixel that met a surface.
-struct SurfaceSums {
-    double y = 0;                            ///< sum of their luminance
-    std::array<uint32_t, kReplicas> count{}; ///< how many, by replica
+/// Luminance of the samples of a pixel, of one sign where they have weights, and of those that met a surface.
+struct LuminanceSums {
+    double scale = 1; ///< what a sum counts in that of the pixel
+    std::array<double, kReplicas> y{};
+    std::array<uint32_t, kReplicas> count{};
+    double surfaceY = 0;
+    std::array<uint32_t, kReplicas> surfaceCount{};
+    uint32_t samples() const { return std::accumulate(count.begin(), count.end(), 0u); }
+    uint32_t onSurface() const { return std::accumulate(surfaceCount.begin(), surfaceCount.end(), 0u); }
+    double sum() const { return std::accumulate(y.begin(), y.end(), 0.0); }
 };
+
+/// By what sums of samples of positive and of negative weight are multiplied to make a pixel, from the sizes of their weights.
+/// A pixel that has samples of one sign only is their mean; in return the negative part counts more where there are samples of
+/// both, by the chance that there are. `samples`: of both, by replica.
+std::array<double, 2> signScales(double negative, const std::array<uint32_t, kReplicas>& samples, double plusWeights,
+                                 double minusWeights);
 
 /// Exact sums over a crop window. Radiance, alpha and luminance are fixed point (fixed.h): values are rounded to 2^-40 one by
 /// one and saturate (counted) at 2^60; from there on every sum is an integer. So the sums do not depend on the order of the
@@ -156,15 +174,17 @@ public:
     /// Mean of the sum of such channels, all isSum(); 0 of none.
     float aov(int x, int y, std::span<const int> channels) const;
     /// The integer sum of one, in units of 2^-40; of a component of Ci.
-    Int128 fixedAov(int x, int y, int channel) const {
+    Int128 fixedAov(int x, int y, int channel) const { // of positive weight, where samples have weights
         return aovs_[index(x, y) * description_.channels.size() + size_t(channel)];
     }
     Int128 fixed(int x, int y, int component) const { return pixel(x, y).rgb[component]; }
     Moments moments(int x, int y) const;
-    /// Luminance sum and count of one replica.
+    /// Luminance sum and count of one replica. Where samples have weights the sums are such that they add up to the pixel's, and
+    /// depart from its mean as the replica's share of the pixel does.
     void replica(int x, int y, uint32_t r, double* sum, uint32_t* n) const;
 
-    SurfaceSums surface(int x, int y) const;
+    /// Of all samples; where they have weights of positive and of negative weight.
+    std::vector<LuminanceSums> luminanceSums(int x, int y) const;
 
     uint64_t nonFinite() const { return nonFinite_; }         ///< samples dropped
     uint64_t nonFiniteAovs() const { return nonFiniteAovs_; } ///< AOV values not counted
@@ -189,14 +209,21 @@ private:
         Int128 surfaceY = 0; ///< of the samples that met a surface
         uint32_t surfaceCount[kReplicas] = {};
     };
+    size_t layers() const { return description_.negative ? 2 : 1; }
+    template <class SumOf> double average(int x, int y, SumOf) const;
+    static Moments momentsOf(const Pixel&);
+    std::array<uint32_t, kReplicas> countsAt(size_t pixel) const; ///< of all layers
     size_t index(int x, int y) const { return size_t(y - window().y0) * size_t(window().width()) + size_t(x - window().x0); }
     const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+    /// Where the sums of a pixel for samples of negative weight are, behind those of all pixels.
+    size_t below(size_t pixel) const { return pixel + window().pixels(); }
     void addParts(size_t pixel, const FilmSample&, const Int128 (&rgb)[3], bool* saturated);
 
     FilmDescription description_;
-    std::vector<Pixel> pixels_;
-    std::vector<int> parts_[3]; ///< channels that are parts, by component
-    std::vector<Int128> aovs_;  ///< pixels x channels; Min and Max hold the key of the value (film.cpp)
+    std::vector<Pixel> pixels_;   ///< by layer, then place
+    std::vector<Int128> weights_; ///< sizes of the weights, like pixels_; empty where all are 1
+    std::vector<int> parts_[3];   ///< channels that are parts, by component
+    std::vector<Int128> aovs_;    ///< like pixels_, by channel; Min and Max hold the key of the value (film.cpp)
     std::vector<SampleRange> ranges_;
     std::optional<Spread> spread_;
     uint64_t nonFinite_ = 0, nonFiniteAovs_ = 0, saturated_ = 0;

@@ -140,6 +140,12 @@ FilterSampler::FilterSampler(const PixelFilter& f) : filter_(f) {
     }
 }
 
+std::optional<double> FilterSampler::negativePart() const {
+    const bool even = filter_.separable() || filter_.kind == FilterKind::Disk;
+    if (even && std::fabs(absolute_ / total_ - 1) < 1e-12) return {};
+    return std::max(0.0, (absolute_ / total_ - 1) / 2);
+}
+
 FilterSample FilterSampler::sample(Vec2 u) const {
     double x, y, weight = 1;
     if (filter_.kind == FilterKind::Box) {

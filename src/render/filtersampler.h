@@ -3,10 +3,11 @@
 // The density is |f| / A, A = integral of |f|. A sample's weight is its sign times A / T, T = integral of f, so that
 // E[weight * g(offset)] = integral f g / T: the filtered value, negative lobes included. The sign is decided by the first number
 // alone: [0, s) gives the positive part of f, [s, 1) the negative. So with stratified numbers the share of each sign is fixed to
-// within one sample a replica, and the sign costs little noise.
+// within one sample a replica, and the sign costs little noise. The film sums the signs apart (FilmDescription::negative).
 #pragma once
 #include "base/vec.h"
 #include "render/pixelfilter.h"
+#include <optional>
 #include <vector>
 
 namespace alpenglow::render {
@@ -27,6 +28,8 @@ public:
     double absIntegral() const { return absolute_; }
     /// True when the filter's integral is not positive, so that it cannot be normalised; then a box of its widths is drawn.
     bool degenerate() const { return degenerate_; }
+    /// Integral of the filter's negative part by that of the filter; unset where all samples weigh 1.
+    std::optional<double> negativePart() const;
     const PixelFilter& filter() const { return filter_; }
 
 private:

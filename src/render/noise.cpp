@@ -88,27 +88,31 @@ ReplicaError replicaError(const Film& film, int x, int y) {
 double relativeReplicaError(const ReplicaError& e) { return e.replicas < 2 ? 0 : relative(e.se / c4(e.replicas), e.mean); }
 
 SurfaceError surfaceError(const Film& film, int x, int y) {
-    const SurfaceSums met = film.surface(x, y);
-    std::array<double, kReplicas> sums;
-    std::array<uint32_t, kReplicas> counts;
-    double y1 = 0, n = 0, h = 0;
-    for (uint32_t r = 0; r < kReplicas; ++r) {
-        film.replica(x, y, r, &sums[r], &counts[r]);
-        y1 += sums[r];
-        n += counts[r];
-        h += met.count[r];
-    }
     SurfaceError e;
+    double n = 0, h = 0, share = 0;
+    std::array<double, kReplicas> away{}, met{};
+    for (const LuminanceSums& s : film.luminanceSums(x, y)) {
+        const double of = s.samples(), on = s.onSurface(), mean = on > 0 ? s.surfaceY / on : 0;
+        const double behind = of > on ? (s.sum() - s.surfaceY) / (of - on) : 0;
+        n += of;
+        h += on;
+        if (on > 0) {
+            e.mean += s.scale * of * mean;
+            share += s.scale * of;
+        }
+        for (uint32_t r = 0; r < kReplicas; ++r) {
+            away[r] += s.scale * (s.y[r] - mean * s.surfaceCount[r] - behind * (s.count[r] - s.surfaceCount[r]));
+            met[r] += s.surfaceCount[r];
+        }
+    }
     if (h == 0) return e;
     e.coverage = h / n;
-    e.mean = met.y / h;
-    const double behind = n > h ? (y1 - met.y) / (n - h) : 0;
+    e.mean /= share;
     double square = 0, shares = 0;
     for (uint32_t r = 0; r < kReplicas; ++r) {
-        const double d = sums[r] - e.mean * met.count[r] - behind * (counts[r] - met.count[r]);
-        square += d * d;
-        shares += met.count[r] / h * (met.count[r] / h);
-        e.replicas += met.count[r] > 0;
+        square += away[r] * away[r];
+        shares += met[r] / h * (met[r] / h);
+        e.replicas += met[r] > 0;
     }
     if (e.replicas >= 2) e.se = std::sqrt(square / (1 - shares)) / h;
     return e;

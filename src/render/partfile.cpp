@@ -1,6 +1,7 @@
 #include "render/partfile.h"
 #include "base/limits.h"
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@ namespace {
 constexpr char kMagic[8] = {'A', 'L', 'P', 'G', 'P', 'A', 'R', 'T'};
 constexpr uint32_t kVersion = 3;       // 1 had no sums of the samples that met a surface, 2 had eight replicas a pixel
 constexpr uint32_t kSpreadVersion = 4; // of a film that is spread; others stay what older programs read
+constexpr uint32_t kSignedVersion = 5; // of a film whose samples have weights, spread or not
 constexpr size_t kPrefix = 20;         // magic, version, header size, header CRC
 constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas + 16 + 4 * kReplicas;
 constexpr size_t kDeflateRatio = 1040; // deflate cannot pack better than 1032 : 1
@@ -172,57 +174,79 @@ struct FilmIo {
             w.text(k);
             w.text(v);
         }
+        if (d.negative) {
+            w.number(std::bit_cast<uint64_t>(*d.negative));
+            w.number(uint8_t(f.spread_.has_value()));
+        }
         if (f.spread_) w.number(f.spread_->steps);
         return std::move(w.bytes);
     }
 
+    /// The sums of a pixel of a layer.
+    static void sums(const Film& f, size_t i, PartWriter& w) {
+        const size_t n = f.description_.channels.size();
+        const Film::Pixel& p = f.pixels_[i];
+        for (Int128 v : p.rgb) w.number(UInt128(v));
+        w.number(UInt128(p.alpha));
+        for (Int128 v : p.replicaY) w.number(UInt128(v));
+        for (uint64_t v : p.y2.limb) w.number(v);
+        for (uint32_t v : p.replicaCount) w.number(v);
+        w.number(UInt128(p.surfaceY));
+        for (uint32_t v : p.surfaceCount) w.number(v);
+        for (size_t c = 0; c < n; ++c) w.number(UInt128(f.aovs_[i * n + c]));
+        if (f.description_.negative) w.number(UInt128(f.weights_[i]));
+    }
+
     static void row(const Film& f, int y, PartWriter& w) {
-        size_t n = f.description_.channels.size(), first = f.index(f.window().x0, y);
+        const size_t first = f.index(f.window().x0, y);
         for (size_t i = first; i < first + size_t(f.window().width()); ++i) {
-            const Film::Pixel& p = f.pixels_[i];
-            for (Int128 v : p.rgb) w.number(UInt128(v));
-            w.number(UInt128(p.alpha));
-            for (Int128 v : p.replicaY) w.number(UInt128(v));
-            for (uint64_t v : p.y2.limb) w.number(v);
-            for (uint32_t v : p.replicaCount) w.number(v);
-            w.number(UInt128(p.surfaceY));
-            for (uint32_t v : p.surfaceCount) w.number(v);
-            for (size_t c = 0; c < n; ++c) w.number(UInt128(f.aovs_[i * n + c]));
+            for (size_t at = i; at < f.pixels_.size(); at = f.below(at)) sums(f, at, w);
             if (f.spread_) w.number(f.spread_->rates[i]);
         }
     }
 
-    static size_t pixelBytes(const Film& f) {
-        return kPixelBytes + 16 * f.description_.channels.size() + (f.spread_ ? sizeof f.spread_->rates[0] : 0);
+    static size_t sumsBytes(const FilmDescription& d) {
+        const size_t one = kPixelBytes + 16 * d.channels.size();
+        return d.negative ? 2 * (one + 16) : one;
     }
+    static size_t pixelBytes(const Film& f) { return sumsBytes(f.description_) + (f.spread_ ? sizeof f.spread_->rates[0] : 0); }
 
     /// False when the sums cannot come from the counted samples: then later arithmetic could overflow.
+    static bool readSums(Film& f, size_t i, PartReader& r) {
+        const size_t n = f.description_.channels.size();
+        Film::Pixel& p = f.pixels_[i];
+        for (Int128& v : p.rgb) v = Int128(r.number<UInt128>());
+        p.alpha = Int128(r.number<UInt128>());
+        for (Int128& v : p.replicaY) v = Int128(r.number<UInt128>());
+        for (uint64_t& v : p.y2.limb) v = r.number<uint64_t>();
+        for (uint32_t& v : p.replicaCount) v = r.number<uint32_t>();
+        p.surfaceY = Int128(r.number<UInt128>());
+        for (uint32_t& v : p.surfaceCount) v = r.number<uint32_t>();
+        for (size_t c = 0; c < n; ++c) f.aovs_[i * n + c] = Int128(r.number<UInt128>());
+        if (f.description_.negative) f.weights_[i] = Int128(r.number<UInt128>());
+        uint64_t samples = 0;
+        for (uint32_t v : p.replicaCount) samples += v;
+        if (samples > limits::kSamplesPerPixel) return false;
+        Int128 most = Int128(samples) << (60 + kFixedBits);
+        auto fits = [&](Int128 v) { return v <= most && v >= -most; };
+        bool ok = fits(p.rgb[0]) && fits(p.rgb[1]) && fits(p.rgb[2]) && fits(p.alpha);
+        for (uint32_t k = 0; k < kReplicas; ++k) ok = ok && fits(p.replicaY[k]) && p.surfaceCount[k] <= p.replicaCount[k];
+        ok = ok && fits(p.surfaceY);
+        if (f.description_.negative) ok = ok && fits(f.weights_[i]) && f.weights_[i] >= 0;
+        for (size_t c = 0; c < n; ++c)
+            ok = ok && (isSum(f.description_.channels[c].rule) ? fits(f.aovs_[i * n + c])
+                                                               : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
+        return ok;
+    }
+
     static bool readRow(Film& f, int y, PartReader& r) {
-        size_t n = f.description_.channels.size(), first = f.index(f.window().x0, y);
+        const size_t first = f.index(f.window().x0, y);
         for (size_t i = first; i < first + size_t(f.window().width()); ++i) {
-            Film::Pixel& p = f.pixels_[i];
-            for (Int128& v : p.rgb) v = Int128(r.number<UInt128>());
-            p.alpha = Int128(r.number<UInt128>());
-            for (Int128& v : p.replicaY) v = Int128(r.number<UInt128>());
-            for (uint64_t& v : p.y2.limb) v = r.number<uint64_t>();
-            for (uint32_t& v : p.replicaCount) v = r.number<uint32_t>();
-            p.surfaceY = Int128(r.number<UInt128>());
-            for (uint32_t& v : p.surfaceCount) v = r.number<uint32_t>();
-            for (size_t c = 0; c < n; ++c) f.aovs_[i * n + c] = Int128(r.number<UInt128>());
-            if (f.spread_) f.spread_->rates[i] = r.number<uint16_t>();
-            uint64_t samples = 0;
-            for (uint32_t v : p.replicaCount) samples += v;
-            if (f.spread_ && f.spread_->rates[i] > Spread::kMost) return false;
-            if (samples > limits::kSamplesPerPixel || (f.spread_ && f.spread_->held(i) > limits::kSamplesPerPixel)) return false;
-            Int128 most = Int128(samples) << (60 + kFixedBits);
-            auto fits = [&](Int128 v) { return v <= most && v >= -most; };
-            bool ok = fits(p.rgb[0]) && fits(p.rgb[1]) && fits(p.rgb[2]) && fits(p.alpha);
-            for (uint32_t k = 0; k < kReplicas; ++k) ok = ok && fits(p.replicaY[k]) && p.surfaceCount[k] <= p.replicaCount[k];
-            ok = ok && fits(p.surfaceY);
-            for (size_t c = 0; c < n; ++c)
-                ok = ok && (isSum(f.description_.channels[c].rule) ? fits(f.aovs_[i * n + c])
-                                                                   : f.aovs_[i * n + c] == int32_t(f.aovs_[i * n + c]));
-            if (!ok) return false;
+            for (size_t at = i; at < f.pixels_.size(); at = f.below(at))
+                if (!readSums(f, at, r)) return false;
+            if (!f.spread_) continue;
+            f.spread_->rates[i] = r.number<uint16_t>();
+            if (f.spread_->rates[i] > Spread::kMost || f.spread_->held(i) > limits::kSamplesPerPixel) return false;
         }
         return r.ok;
     }
@@ -257,14 +281,20 @@ struct FilmIo {
             std::string key = r.text();
             metadata[key] = r.text();
         }
-        const uint32_t steps = version == kSpreadVersion ? r.number<uint32_t>() : 0;
+        bool spread = version == kSpreadVersion;
+        if (version == kSignedVersion) {
+            d.negative = std::bit_cast<double>(r.number<uint64_t>());
+            spread = r.number<uint8_t>() == 1;
+            r.ok = r.ok && *d.negative >= 0 && *d.negative < 1e9;
+        }
+        const uint32_t steps = spread ? r.number<uint32_t>() : 0;
         SourcePlace place{name, 0, 0};
         if (!r.ok || r.at != r.bytes.size()) {
             diag.report(Severity::Error, Rie::BadFile, place, "the header of the part file is damaged");
             return nullptr;
         }
         if (!Film::check(d, diag, place)) return nullptr;
-        size_t raw = d.window.pixels() * (kPixelBytes + 16 * d.channels.size());
+        size_t raw = d.window.pixels() * sumsBytes(d);
         if (raw / kDeflateRatio > packed) {
             diag.report(Severity::Error, Rie::BadFile, place, "the part file is too short for a picture of its size");
             return nullptr;
@@ -275,8 +305,8 @@ struct FilmIo {
                 diag.report(Severity::Error, Rie::BadFile, place, "the part file holds the same samples twice");
                 return nullptr;
             }
-        if (version == kSpreadVersion) {
-            if (!film->spread(std::vector<uint16_t>(film->pixels_.size())) || !film->addSteps(steps)) {
+        if (spread) {
+            if (!film->spread(std::vector<uint16_t>(film->window().pixels())) || !film->addSteps(steps)) {
                 diag.report(Severity::Error, Rie::BadFile, place, "the part file's numbers of samples are damaged");
                 return nullptr;
             }
@@ -303,7 +333,7 @@ bool savePart(const Film& film, const std::string& path, const OutputPolicy& pol
     }
     PartWriter prefix;
     for (char c : kMagic) prefix.number(uint8_t(c));
-    prefix.number(film.spread() ? kSpreadVersion : kVersion);
+    prefix.number(film.description().negative ? kSignedVersion : film.spread() ? kSpreadVersion : kVersion);
     prefix.number(uint32_t(header.size()));
     prefix.number(crc(header));
     file->write(prefix.bytes.data(), prefix.bytes.size());
@@ -337,7 +367,7 @@ std::unique_ptr<Film> parsePart(std::span<const uint8_t> bytes, const std::strin
     PartReader prefix{bytes.subspan(0, std::min(bytes.size(), kPrefix)), sizeof kMagic};
     uint32_t version = prefix.number<uint32_t>(), size = prefix.number<uint32_t>(), sum = prefix.number<uint32_t>();
     if (!prefix.ok) return bad(Rie::BadFile, "the part file is truncated");
-    if (version != kVersion && version != kSpreadVersion)
+    if (version < kVersion || version > kSignedVersion)
         return bad(Rie::Version, version < kVersion
                                      ? "a part file of an older version of this program, which kept other sums of each "
                                        "pixel; render that part again"

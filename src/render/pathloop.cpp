@@ -110,7 +110,7 @@ private:
     const uint64_t seed_;
     const FilterSampler filter_;
     const std::vector<Channel>& channels_;
-    const size_t stride_; ///< floats of a sample that is held: colour, alpha, whether a surface was met, the rest
+    const size_t stride_; ///< floats of a sample that is held: colour, alpha, whether a surface was met, weight, the rest
     std::vector<Window> tiles_;
     std::vector<std::vector<float>> held_; ///< by tile: the samples of the pass
     uint32_t next_;                        ///< the first sample that no pixel has
@@ -138,7 +138,7 @@ uint32_t behind(const Film& film, SampleRange wanted) {
 
 PathLoop::PathLoop(Job& job, Film& film, SampleRange wanted, uint64_t seed)
     : job_(job), film_(film), settings_(job.settings), wanted_(wanted), seed_(seed), filter_(job.plan.basis.filter),
-      channels_(film.description().channels), stride_(5 + channels_.size()), next_(behind(film, wanted)), adapts_(mayAdapt()),
+      channels_(film.description().channels), stride_(6 + channels_.size()), next_(behind(film, wanted)), adapts_(mayAdapt()),
       any_(film.samplesPerPixel() > 0), samples_(film.samples().mean), caustics_(job) {
     if (filter_.degenerate())
         job.diagnostics.report(Severity::Error, Rie::Range, {},
@@ -244,15 +244,12 @@ bool PathLoop::take(int worker, std::vector<float>& out, Rays& r) {
     if (!job_.trace(worker, r.rays, r.results)) return false;
     for (size_t k = 0; k < r.rays.size(); ++k) {
         transport::SampleResult& s = r.results[k];
-        const float w = r.weights[k];
-        const Color c = clampSample(s.color, settings_.sampleClamp) * w;
+        const Color c = clampSample(s.color, settings_.sampleClamp);
         if (const float m = maxComponent(s.color); settings_.sampleClamp > 0 && m > settings_.sampleClamp)
             for (Color& part : s.parts) part *= settings_.sampleClamp / m;
-        out.insert(out.end(), {c.x, c.y, c.z, (s.opacity.x + s.opacity.y + s.opacity.z) / 3 * w, s.z < 1e38f ? 1.f : 0.f});
-        const size_t at = out.size();
+        const float alpha = (s.opacity.x + s.opacity.y + s.opacity.z) / 3;
+        out.insert(out.end(), {c.x, c.y, c.z, alpha, s.z < 1e38f ? 1.f : 0.f, r.weights[k]});
         if (!channels_.empty()) filmValues(job_.plan, s, &out);
-        for (size_t j = 0; j < channels_.size(); ++j)
-            if (isSum(channels_[j].rule)) out[at + j] *= w;
     }
     r.samples.clear();
     return true;
@@ -312,7 +309,8 @@ bool PathLoop::addPass(const Pass& pass) {
                         f.radiance = {p[0], p[1], p[2]};
                         f.alpha = p[3];
                         f.surface = p[4] != 0;
-                        f.aovs = {p + 5, channels_.size()};
+                        f.weight = p[5];
+                        f.aovs = {p + 6, channels_.size()};
                         film_.add(x, y, s, f);
                     }
                 }

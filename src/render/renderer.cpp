@@ -25,8 +25,6 @@
 namespace alpenglow::render {
 namespace {
 
-using transport::Hider;
-
 std::string text(double v) {
     char t[40];
     std::snprintf(t, sizeof t, "%.9g", v);
@@ -182,7 +180,8 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
         diagnostics_.report(Severity::Error, Rie::Range, {}, "--pixel: a pixel has " + std::to_string(nx * ny) + " samples");
         return;
     }
-    double sum[4] = {0, 0, 0, 0};
+    double sum[2][5] = {}; // of weight above and below 0: colour, alpha, weights
+    std::array<uint32_t, kReplicas> counts{};
     CausticPasses caustics(job);
     for (uint32_t s = begin; s < end && !job.pollStop(); ++s) {
         if (path && !caustics.ready(s, 1)) break;
@@ -198,13 +197,15 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
         while (whole && job.unfinished(0)) whole = job.makeMet() && job.trace(0, {&ray, 1}, {&r, 1});
         if (!whole) break;
         Color c = clampSample(r.color, settings_.sampleClamp);
-        for (int k = 0; k < 3; ++k) sum[k] += double(c[k] * weight);
-        sum[3] += double((r.opacity.x + r.opacity.y + r.opacity.z) / 3 * weight);
+        ++counts[s % kReplicas];
+        const float alpha = (r.opacity.x + r.opacity.y + r.opacity.z) / 3;
+        const double values[5] = {c.x, c.y, c.z, alpha, 1};
+        for (size_t k = 0; k < 5; ++k) sum[weight < 0][k] += values[k] * std::fabs(double(weight));
     }
     outcome_.interrupted |= job.interrupted;
-    double n = end - begin;
-    if (print_ && !job.interrupted)
-        print_(text(sum[0] / n) + " " + text(sum[1] / n) + " " + text(sum[2] / n) + " " + text(sum[3] / n));
+    const auto scales = signScales(filter.negativePart().value_or(0), counts, sum[0][4], sum[1][4]);
+    const auto mean = [&](size_t k) { return text(scales[0] * sum[0][k] + scales[1] * sum[1][k]); };
+    if (print_ && !job.interrupted) print_(mean(0) + " " + mean(1) + " " + mean(2) + " " + mean(3));
     stats_.renderSec += job.elapsed();
     stats_.spp = end - begin;
 }

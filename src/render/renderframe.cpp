@@ -250,6 +250,7 @@ FilmDescription Renderer::filmOf(const FrameWork& f) const {
     d.window = f.camera.window();
     d.seed = settings_.seed;
     d.channels = filmChannels(f.plan);
+    d.negative = FilterSampler(f.plan.basis.filter).negativePart();
     if (f.part || !f.checkpoint.empty()) {
         char how[160];
         std::snprintf(how, sizeof how, "path depth %d clamp %.9g direct %d indirect %d unbiased %d local %d", f.settings.maxDepth,

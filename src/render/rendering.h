@@ -75,7 +75,7 @@ uint64_t totalRays(const transport::Counters&);
 /// The tiles of a window, in reading order.
 std::vector<Window> tilesOf(const Window&, int side = kTile);
 
-/// The camera ray of a sample of `path`: its place is drawn from the filter. *weight multiplies what comes along it.
+/// The camera ray of a sample of `path`: its place is drawn from the filter. *weight is FilmSample::weight.
 transport::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
 /// The same for many samples at a time.
 struct PixelSample {

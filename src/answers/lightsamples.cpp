@@ -1,6 +1,7 @@
 // Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in
 // between.
 #include "answers/answers.h"
+#include "base/direction.h"
 #include "base/exact.h"
 #include "lobes/sampling.h"
 #include "world/emitterfootprint.h"
@@ -191,21 +192,20 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
         *factor = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns));
     } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
         // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.
-        const Vec3 to = length(axis) > 0 ? axis : dot(p.N, p.I) > 0 ? -p.N : p.N;
-        const Vec3 w = length(to) > 0 ? normalize(to) : Vec3(0, 0, 1);
+        const Vec3 w = directionOr(axis, directionOr(dot(p.N, p.I) > 0 ? -p.N : p.N, Vec3(0, 0, 1)));
         p.shape = nullptr;
         p.P = at + w;
         p.N = -w;
     } else if (light.kind == LightKind::Environment) {
         // The sky from directions evenly in the cone of the loop, of an uneven sky half of them from where it is bright.
         if (!p.ray) return false;
-        const float la = length(axis);
-        const bool all = !(la > 0) || !(angle < float(kPi));
+        const Vec3 way = directionOr(axis, {});
+        const bool all = !(dot(way, way) > 0) || !(angle < float(kPi));
         const float half = float(exact::sin(0.5 * std::max(angle, 0.f))),
                     cap = all ? 2 : 2 * half * half; // 1 - cos of the half angle
         if (!(cap > 0)) return false;
         const Random rng = random(*p.ray).draw(uint32_t(turn), uint32_t(turns));
-        const Vec3 middle = all ? Vec3(0, 0, 1) : axis / la;
+        const Vec3 middle = all ? Vec3(0, 0, 1) : way;
         Vec2 u = rng.pair(p.ray->vertex, use, nth);
         Vec3 w;
         float density = 0; // of the table, for a half of the directions

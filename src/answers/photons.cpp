@@ -1,5 +1,6 @@
 // photonmap() and caustic(): what photon maps say.
 #include "answers/answers.h"
+#include "base/direction.h"
 
 namespace alpenglow::transport {
 
@@ -26,7 +27,7 @@ void answerPhotons(Answers& answers, const ServiceCall& call) {
             estimator = b->photons.estimator;
         }
         if (!map) return;
-        photons::PhotonMap::Lookup l{triple(s.point, lane), normalize(triple(s.normal, lane)),
+        photons::PhotonMap::Lookup l{triple(s.point, lane), directionOr(triple(s.normal, lane), {}),
                                      std::clamp(count(s.estimator, lane, estimator), 1, photons::PhotonMap::kMostAsked),
                                      count(s.minBounces, lane, 0)};
         const bool radiance = s.lookup < 0 ? s.radiance : std::bit_cast<int32_t>(call.at(s.lookup, lane)) == kRadiance;

@@ -1,5 +1,6 @@
 // ambient() under path: what of the ambient lights reaches a point from the hemisphere that is seen. The lights shine from
 // everywhere evenly; a shadow ray in a direction drawn by the cosine says whether a surface is before them.
+#include "base/direction.h"
 #include "lobes/sampling.h"
 #include "wave/engine.h"
 
@@ -17,7 +18,7 @@ void Engine::drawAmbient(const BatchContext& c, std::vector<AmbientAsked>& asked
     for (size_t i = 0; i < asked.size(); ++i) {
         AmbientAsked& a = asked[i];
         const ShadePoint& p = c.points[size_t(a.point)];
-        const Vec3 n = normalizeOr(a.way, p.surface.n);
+        const Vec3 n = directionOr(a.way, p.surface.n);
         a.way = Basis(onSeenSide(n, p, c.rays[size_t(a.point)].dir)).toWorld(sampleCosine(ambientNumbers_.pair(i)));
         if (a.lit >= 0) tellOutputs(litValues_[size_t(a.lit)], c, size_t(a.point));
     }

@@ -1,5 +1,6 @@
 // Stage connect: what lobes give back of the light that lights send them. Lobes of a vertex share the sample of a light, and so
 // the way to it: one shadow ray carries what all of them give.
+#include "base/direction.h"
 #include "lobes/sampling.h"
 #include "wave/gather.h"
 #include "wave/medium.h"
@@ -42,7 +43,7 @@ void Gather::reach(int query) {
     const size_t k = size_t(query);
     const BoundLight& light = *q.light[k];
     const bool area = light.kind == LightKind::Area;
-    const Vec3 w = area || light.sky ? q.drawn[k].direction : normalizeOr(-q.value[k].L, Vec3(0, 0, 1));
+    const Vec3 w = area || light.sky ? q.drawn[k].direction : directionOr(-q.value[k].L, Vec3(0, 0, 1));
     for (int i : lobesOf(size_t(q.point[k]))) {
         const LobeVertex& l = e_.lobes[size_t(i)];
         if (!samples(l, light) || q.draw[k].nth >= lightSamples(l)) continue;

@@ -1,4 +1,5 @@
 #include "wave/gatherloop.h"
+#include "base/direction.h"
 #include "base/exact.h"
 #include "lobes/sampling.h"
 #include "world/raysets.h"
@@ -29,7 +30,8 @@ void put(float* row, const Output& o, const Told& t) {
     if (size == 0 || (!t.kind && !array && size != most) || (!array && size < most)) return;
     float* to = row + o.at;
     *to++ = 1;
-    if (o.open) *to++ = float(std::min(size, most) / each);
+    const size_t elements = std::min(size, most) / each;
+    if (o.open) *to++ = float(elements);
     for (size_t k = 0; k < std::min(size, most); ++k)
         to[k] = text ? std::bit_cast<float>(rsl::internString(t.texts[k])) : t.numbers[k];
 }
@@ -71,9 +73,8 @@ struct Asking {
     Vec2 pair(int k, int count) const { return numbers(k, count).pair(point().ray->vertex, site(), occurrence * 4096); }
 
     Vec3 direction(int k, int count) const {
-        Vec3 axis = triple(s.rows[1]);
-        const float l = length(axis), angle = f(s.rows[2]);
-        axis = l > 0 && std::isfinite(l) ? axis / l : surface() ? surface()->n : Vec3(0, 0, 1);
+        const Vec3 axis = directionOr(triple(s.rows[1]), surface() ? surface()->n : Vec3(0, 0, 1));
+        const float angle = f(s.rows[2]);
         if (!(angle > 0)) return axis;
         const bool cosine = s.gather->cosine;
         const double a = std::min(double(angle), cosine ? kPi / 2 : kPi);

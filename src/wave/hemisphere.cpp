@@ -1,5 +1,6 @@
 // occlusion(): how much of a hemisphere, or of a cone, is open. Its rays are shadow rays: surfaces on the way take their share of
 // what one brings, and no shader runs but where an opacity is not known beforehand.
+#include "base/direction.h"
 #include "base/exact.h"
 #include "geometry/shape.h"
 #include "lobes/sampling.h"
@@ -73,9 +74,7 @@ void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const Shad
     const auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     const auto triple = [&](int row) { return Vec3(f(row), f(row + 1), f(row + 2)); };
     const Vec3 from = triple(s.rows[0]);
-    Vec3 normal = triple(s.rows[1]);
-    const float l = length(normal);
-    normal = l > 0 && std::isfinite(l) ? normal / l : surface ? surface->n : Vec3(0, 0, 1);
+    const Vec3 normal = directionOr(triple(s.rows[1]), surface ? surface->n : Vec3(0, 0, 1));
     const Vec3 towards = o.axis >= 0 ? triple(o.axis) : Vec3();
     const float half = number(o.cone, float(kPi / 2));
     const Directions directions(normal, half > 0 ? half : 0, o.uniform);

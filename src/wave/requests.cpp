@@ -1,4 +1,5 @@
 // Requests of kernels: what a call asks for at a point (design decisions 2 and 3). What becomes of lobes is in gather.h.
+#include "base/direction.h"
 #include "lobes/sampling.h"
 #include "shadeops/distributions.h"
 #include "texture/lookup.h"
@@ -133,11 +134,11 @@ void Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoi
                         LobeParams& params) {
     const auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     const auto vector = [&](int row, const Vec3& fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
-    params.axis = normalizeOr(vector(s.rows[1], Vec3()), p.surface.n);
-    params.wo = normalizeOr(vector(s.rowWo, params.wo), params.wo);
+    params.axis = directionOr(vector(s.rows[1], Vec3()), p.surface.n);
+    params.wo = directionOr(vector(s.rowWo, params.wo), params.wo);
     params.a = l.kind->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
     l.trace = s.trace.get();
-    if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = normalizeOr(vector(s.rowHorizon, p.surface.n), p.surface.n);
+    if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = directionOr(vector(s.rowHorizon, p.surface.n), p.surface.n);
     l.rays = raysOfTrace(s, f, p);
     l.lights = l.rays->asksLights;
     l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);
@@ -196,14 +197,14 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     if (s.kind != SiteKind::Diffuse) params.wo = normalizeOr(-p.I, p.surface.n);
     switch (s.kind) {
     case SiteKind::Diffuse:
-        params.axis = normalizeOr(v(0), p.surface.n);
+        params.axis = directionOr(v(0), p.surface.n);
         l.rays = &kDiffuseKind;
         if (s.trace && s.trace->apart) l.indirect = 0; // indirectdiffuse() brings what surfaces send
         break;
     case SiteKind::Specular:
     case SiteKind::Phong:
-        params.axis = normalizeOr(v(0), p.surface.n);
-        params.wo = normalizeOr(v(1), params.wo);
+        params.axis = directionOr(v(0), p.surface.n);
+        params.wo = directionOr(v(1), params.wo);
         params.a = f(s.rows[2]);
         if (s.kind == SiteKind::Specular) params.a = s.exponent / std::max(params.a, 1e-6f);
         l.rays = &kSpecularKind;
@@ -220,7 +221,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
 
 Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const {
     const Vec3 at(transformVector(t.toMap, Vec3d(w)));
-    const Basis b(at / length(at));
+    const Basis b(directionOr(at, Vec3(0, 0, 1)));
     float v[3] = {};
     texture::LookupOptions colours;
     colours.asLight = true;

@@ -1,5 +1,6 @@
 // Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what
 // it asked for.
+#include "base/direction.h"
 #include "wave/engine.h"
 #include "world/outputs.h"
 #include <algorithm>
@@ -10,8 +11,9 @@ namespace {
 /// The unit shading normal on the side of a surface that a ray sees; 0 where there is none.
 Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
     const float l = length(p.N);
-    if (!(l > 0) || !std::isfinite(l)) return {};
-    return onSeenSide(p.N, p, dir) * (1 / l);
+    if (l > 0 && std::isfinite(l)) return onSeenSide(p.N, p, dir) * (1 / l);
+    const Vec3 n = directionOr(p.N, {});
+    return dot(n, n) > 0 ? onSeenSide(n, p, dir) : n;
 }
 } // namespace
 
@@ -19,10 +21,9 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
                              TargetId target, float distance) {
     auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
-    float length_ = length(l);
-    if (!(length_ > 0)) return;
+    const Vec3 w = directionOr(l, {});
+    if (!(dot(w, w) > 0)) return;
     const ShadePoint& p = c.points[point];
-    Vec3 w = l / length_;
     Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
     shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.shutter, p.ray});
     shadows.back().media = mediaTowards(c, point, w);

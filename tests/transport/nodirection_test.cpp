@@ -25,6 +25,45 @@ Color shown(const std::string& name, const std::string& body, Hider h, const std
 
 } // namespace
 
+// A direction has no length: 1e38 is as good as 1, and so is 1e-35. Squares of both are no floats.
+TEST(NoDirection, NoLengthIsTooLongOrTooShort) {
+    const std::string bodies[] = {
+        "Ci = trace(P, way);",
+        "c = trace(P, way, d); Ci = c + (d > 2 ? 1 : 0);",
+        "gather(\"illuminance\", P, way, 0.01, 4, \"surface:Ci\", c) Ci += c / 4;",
+        "Ci = occlusion(P, normal way, 16);",
+        "Ci = indirectdiffuse(P, normal way, 16);",
+        "illuminance(P, normal way, .8) Ci += Cl * color(1, 2, 3);",
+        "N = normal way; gather(\"illuminance\", P, normal way, 0.5, 4, \"surface:Ci\", c) Ci += c / 4;",
+    };
+    int n = 0;
+    // The card is beside the normal, the light nearer to the way than to the normal.
+    const std::string beside = "AttributeBegin\nSurface \"constant\" Color 1 .5 .25 Translate 0 2 0\n"
+                               "Polygon \"P\" [.8 0 -9  .8 0 9  9 0 9  9 0 -9]\nAttributeEnd\n";
+    for (const std::string& body : bodies) {
+        const std::string name = "nd_long" + std::to_string(n++);
+        writeShader(name, "surface " + name +
+                              "(float size = 1) { color c = 0; float d = 0; Ci = 0; Oi = 1; vector way = size * "
+                              "vector \"world\" (.5, 1, .5); " +
+                              body + " }\n");
+        for (const Hider h : kAll) {
+            const auto of = [&](const char* size) {
+                Scene s(world("Attribute \"visibility\" \"int trace\" 1 \"int diffuse\" 1\nLightSource \"distantlight\" 1 "
+                              "\"from\" [.3 1 1.5] \"to\" [0 0 0]\n" +
+                              beside + "Surface \"" + name + "\" \"size\" [" + size + "]\n" + kFloor),
+                        withShaders(h));
+                return s.one(kView);
+            };
+            const Color one = of("1");
+            EXPECT_GT(maxComponent(one), .1f) << body << int(h);
+            for (const char* size : {"1e38", "1e-35"}) {
+                const Color c = of(size);
+                for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], one[k], 1e-4f) << body << size << int(h);
+            }
+        }
+    }
+}
+
 // The card is above the floor, along N.
 TEST(NoDirection, TraceOfNowhereIsBlack) {
     for (const Hider h : kAll) {

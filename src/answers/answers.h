@@ -4,6 +4,7 @@
 #include "answers/random.h"
 #include "answers/servicecall.h"
 #include "clouds/hemisphere.h"
+#include "clouds/limits.h"
 #include "world/below.h"
 #include "world/cloudstore.h"
 #include <set>
@@ -94,11 +95,20 @@ public:
         return at->second;
     }
 
-    /// The same for point-based shadeops. `light`: they want what its points send.
-    const clouds::PointOctree* octreeOf(int32_t id, bool light, const ServiceCall& call) {
-        const auto [at, fresh] = octrees_.try_emplace(int64_t(id) * 2 + light, nullptr);
-        if (fresh && id) at->second = world_->clouds_->octree(rsl::internedString(id), light, call.place());
-        return at->second;
+    /// The same for point-based shadeops. `light`: they want what its points send. With `shear` it lives until trimOctrees().
+    const clouds::PointOctree* octreeOf(int32_t id, bool light, const std::optional<clouds::Shear>& shear,
+                                        const ServiceCall& call) {
+        if (!shear) {
+            const auto [at, fresh] = octrees_.try_emplace(int64_t(id) * 2 + light, nullptr);
+            if (fresh && id) at->second = world_->clouds_->octree(rsl::internedString(id), light, {}, call.place()).get();
+            return at->second;
+        }
+        const auto [at, fresh] = shearedOctrees_.try_emplace({int64_t(id) * 2 + light, *shear});
+        if (fresh && id) at->second = world_->clouds_->octree(rsl::internedString(id), light, shear, call.place());
+        return at->second.get();
+    }
+    void trimOctrees() {
+        if (shearedOctrees_.size() > limits::kShearedOctrees) shearedOctrees_.clear();
     }
     const ptex::Texture* ptexOf(int32_t id, const ServiceCall& call); ///< the same of Ptex files. ptexture.cpp
     clouds::Hemisphere& hemisphere() { return hemisphere_; }
@@ -199,6 +209,7 @@ private:
     std::unordered_map<int32_t, const photons::PhotonMap*> photonMaps_; ///< by interned name
     std::unordered_map<int32_t, const clouds::CloudMap*> clouds_;       ///< by interned name
     std::unordered_map<int64_t, const clouds::PointOctree*> octrees_;
+    std::map<std::pair<int64_t, clouds::Shear>, std::shared_ptr<const clouds::PointOctree>> shearedOctrees_;
     std::unordered_map<int32_t, const ptex::Texture*> ptex_; ///< by interned name
     clouds::Hemisphere hemisphere_;
     HalfSpaces halfSpaces_;

@@ -88,12 +88,15 @@ void answerBake(Answers& answers, const ServiceCall& call) {
         row.clear();
         static const Matrix kSame;
         const Matrix& to = s.layout.flat ? kSame : space.at(lane, p);
+        Vec3 normal(0.f);
         if (s.layout.flat) {
             row = {call.at(s.s, lane), call.at(s.t, lane)};
         } else {
             const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane)))),
                 n = normalTo(to, tripleAt(call, s.normal, lane));
-            const float radius = s.radius < 0 ? extentOf(call, lane, p).first * space.growth() : call.at(s.radius, lane);
+            normal = unitOr0(tripleAt(call, s.normal, lane));
+            const float grows = space.shear() ? std::sqrt(space.areaGrowth(normal)) : space.growth();
+            const float radius = s.radius < 0 ? extentOf(call, lane, p).first * grows : call.at(s.radius, lane);
             const float scale = s.scale < 0 ? 1 : call.at(s.scale, lane);
             row = {at.x, at.y, at.z, n.x, n.y, n.z, std::max(0.f, radius * scale)};
         }
@@ -104,10 +107,7 @@ void answerBake(Answers& answers, const ServiceCall& call) {
             if (part.type == clouds::ChannelType::Matrix) turnMatrix(to, &row[from]);
             else turn(part.type, to, &row[from]);
         }
-        if (!s.layout.flat && s.addsArea) {
-            const float g = space.growth();
-            row.push_back(extentOf(call, lane, p).second * g * g);
-        }
+        if (!s.layout.flat && s.addsArea) row.push_back(extentOf(call, lane, p).second * space.areaGrowth(normal));
         const bool kept = world.clouds_->baked.add(name, s.layout, key, row);
         if (!s.layout.flat) call.put(0, lane, kept ? 1.f : 0.f);
     });

@@ -1,7 +1,9 @@
 // Between the space of a shader and that of a file of points.
 #pragma once
 #include "answers/answers.h"
+#include "base/direction.h"
 #include "base/exact.h"
+#include "clouds/shear.h"
 #include "world/information.h"
 #include <utility>
 
@@ -21,28 +23,32 @@ inline Matrix toCloudSpace(Answers& answers, const ServiceCall& call, const std:
 /// How much longer lengths are behind a matrix.
 inline float growth(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 1.0 / 3)); }
 
-inline Vec3 unitOr0(const Vec3& n) {
-    const float l = length(n);
-    return l > 0 && std::isfinite(l) ? n / l : Vec3(0.f);
-}
+inline Vec3 unitOr0(const Vec3& n) { return directionOr(n, Vec3(0.f)); }
 
 inline Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(transformNormal(m, Vec3d(n)))); }
 
-/// The way from "current" to the space of a file, for the points of a call: found once where it is the same for all.
+/// The way from "current" to the space of a file, for the points of a call: found once where it is the same for all. `straight`:
+/// to one that has the angles of "current" instead, where the file's has others (clouds/shear.h).
 class CloudSpace {
 public:
-    CloudSpace(Answers& answers, const ServiceCall& call, const std::string& name, int row)
-        : answers_(answers), call_(call), name_(name), row_(row), same_(row < 0 && name != "object" && name != "shader") {}
+    CloudSpace(Answers& answers, const ServiceCall& call, const std::string& name, int row, bool straight = false)
+        : answers_(answers), call_(call), name_(name), row_(row), same_(row < 0 && name != "object" && name != "shader"),
+          straight_(straight) {}
     /// For the point of a lane; good until the next call.
     const Matrix& at(int lane, const ShadePoint& p) {
         if (!known_ || !same_) {
             to_ = toCloudSpace(answers_, call_, name_, row_, lane, p);
             growth_ = transport::growth(to_);
+            shear_ = clouds::shearOf(to_);
+            if (straight_ && shear_) to_ = to_ * shear_->matrix();
             known_ = true, turned_ = false;
         }
         return to_;
     }
     float growth() const { return growth_; } ///< of lengths
+    /// Of an area on the way, `n` its unit normal. Not of a straight one.
+    float areaGrowth(const Vec3& n) const { return shear_ && dot(n, n) > 0 ? clouds::areaGrowth(to_, n) : growth_ * growth_; }
+    const std::optional<clouds::Shear>& shear() const { return shear_; }
     const Matrix& back() {
         if (!std::exchange(turned_, true)) back_ = inverse(to_);
         return back_;
@@ -53,10 +59,11 @@ private:
     const ServiceCall& call_;
     const std::string& name_;
     const int row_;
-    const bool same_;
+    const bool same_, straight_;
     bool known_ = false, turned_ = false;
     Matrix to_, back_;
     float growth_ = 1;
+    std::optional<clouds::Shear> shear_;
 };
 
 } // namespace alpenglow::transport

@@ -9,12 +9,14 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// The clouds that the point of a lane names.
-void cloudsOf(Answers& answers, const ServiceCall& call, int lane, bool light, std::vector<const clouds::PointOctree*>& to) {
+/// The clouds that the point of a lane names. They live until the next call.
+void cloudsOf(Answers& answers, const ServiceCall& call, int lane, bool light, const std::optional<clouds::Shear>& shear,
+              std::vector<const clouds::PointOctree*>& to) {
     const PointSite& s = *call.s.points;
     to.clear();
+    answers.trimOctrees();
     const auto add = [&](int32_t id) {
-        if (const clouds::PointOctree* o = answers.octreeOf(id, light, call)) to.push_back(o);
+        if (const clouds::PointOctree* o = answers.octreeOf(id, light, shear, call)) to.push_back(o);
     };
     for (const int32_t id : s.names) add(id);
     for (const int row : s.nameRows) add(std::bit_cast<int32_t>(call.at(row, lane)));
@@ -83,11 +85,11 @@ Color between(Answers& answers, const PointSite& s, const clouds::Hemisphere& h,
 void answerPointHemisphere(Answers& answers, const ServiceCall& call) {
     const PointSite& s = *call.s.points;
     clouds::Hemisphere& h = answers.hemisphere();
-    CloudSpace space(answers, call, s.space, s.spaceRow);
+    CloudSpace space(answers, call, s.space, s.spaceRow, true);
     std::vector<const clouds::PointOctree*> from;
     call.each([&](int lane, const ShadePoint& p) {
-        cloudsOf(answers, call, lane, !s.blocks, from);
         const Matrix& to = space.at(lane, p);
+        cloudsOf(answers, call, lane, !s.blocks, space.shear(), from);
         clouds::HemisphereQuery q;
         if (!queryOf(call, lane, p, to, space.growth(), q)) return;
         h.begin(q);
@@ -116,11 +118,11 @@ void answerPointSubsurface(Answers& answers, const ServiceCall& call) {
     if (site.model == SubsurfaceSite::Model::Walk) site.model = SubsurfaceSite::Model::Dipole;
     const bool better = site.model == SubsurfaceSite::Model::BetterDipole;
     std::vector<const clouds::PointOctree*> from;
-    CloudSpace space(answers, call, s.space, s.spaceRow);
+    CloudSpace space(answers, call, s.space, s.spaceRow, true);
     call.each([&](int lane, const ShadePoint& p) {
         if (!p.shape) return;
-        cloudsOf(answers, call, lane, true, from);
         const Matrix& to = space.at(lane, p);
+        cloudsOf(answers, call, lane, true, space.shear(), from);
         const double scale = double(space.growth()); // the file's lengths
         const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane))));
         if (!std::isfinite(dot(at, Vec3(1))) || !(scale > 0)) return;

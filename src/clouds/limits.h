@@ -8,6 +8,7 @@ namespace alpenglow::limits {
 inline constexpr uint64_t kCloudPoints = 200'000'000;      ///< of one point cloud
 inline constexpr size_t kCloudBytes = size_t(16) << 30;    ///< of its numbers in memory, and of all that one frame bakes
 inline constexpr uint64_t kOctreePoints = 50'000'000;      ///< of a cloud that point-based shadeops read: about 100 bytes each
+inline constexpr size_t kShearedOctrees = 64;              ///< kept in memory; beyond, they are made again for each use
 inline constexpr size_t kCloudFragments = size_t(1) << 20; ///< of clusters that a sorted lookup keeps before some become one
 inline constexpr int kCloudChannels = 256;                 ///< numbers beside position, normal and radius, of one point
 inline constexpr size_t kBrickMemory = size_t(256) << 20;  ///< of points while a brick map is made of a larger cloud

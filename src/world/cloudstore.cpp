@@ -30,32 +30,39 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
     return at->second.get();
 }
 
-const clouds::PointOctree* CloudStore::octree(const std::string& name, bool light, const SourcePlace& place) {
+std::shared_ptr<const clouds::PointOctree>
+CloudStore::octree(const std::string& name, bool light, const std::optional<clouds::Shear>& shear, const SourcePlace& place) {
     if (name.empty()) return nullptr;
     std::lock_guard lock(mutex_);
     for (const bool lit : {light, true}) // one with light serves both
-        if (const auto known = octrees_.find({name, lit}); known != octrees_.end()) return known->second.get();
-    return (octrees_[{name, light}] = makeOctree(name, light, place)).get();
+        if (const auto known = octrees_.find({name, lit, shear}); known != octrees_.end()) return known->second;
+    auto made = makeOctree(name, light, shear, place);
+    // Objects may stand in any number of sheared spaces. Which ones are kept changes time only.
+    if (!shear || !made || ++sheared_ <= limits::kShearedOctrees) octrees_[{name, light, shear}] = made;
+    return made;
 }
 
-std::shared_ptr<const clouds::PointOctree> CloudStore::makeOctree(const std::string& name, bool light, const SourcePlace& place) {
+std::shared_ptr<const clouds::PointOctree>
+CloudStore::makeOctree(const std::string& name, bool light, const std::optional<clouds::Shear>& shear, const SourcePlace& place) {
     const auto path = pathOf(name, place);
     if (!path) return nullptr;
     const auto report = [&](Severity s, const std::string& what, const std::string& hint) {
-        diagnostics_.report(s, Rie::BadFile, place, "point cloud \"" + name + "\" " + what, hint);
+        diagnostics_.reportOnce("octree:" + name + what,
+                                {s, Rie::BadFile, place, "point cloud \"" + name + "\" " + what, hint, {}});
     };
     if (clouds::isBrickMap(*path)) {
         report(Severity::Error, "is a brick map, which is no place for rays; it is left out",
                "give the point cloud that it was made of");
         return nullptr;
     }
-    const auto cloud = clouds::loadCloud(*path, diagnostics_, place);
+    auto cloud = clouds::loadCloud(*path, diagnostics_, place);
     if (!cloud) return nullptr;
     if (cloud->size() > limits::kOctreePoints) {
         report(Severity::Error, "has more than " + std::to_string(limits::kOctreePoints) + " points; it is left out",
                "alpenglow ptc filter --depth thins it");
         return nullptr;
     }
+    if (shear) clouds::transform(*cloud, shear->matrix());
     std::string channel;
     if (light)
         for (const char* known : {"_irradiance", "_radiosity"})

@@ -3,6 +3,7 @@
 #include "clouds/bakelog.h"
 #include "clouds/map.h"
 #include "clouds/octree.h"
+#include "clouds/shear.h"
 #include "world/mapfiles.h"
 
 namespace alpenglow::transport {
@@ -15,8 +16,9 @@ public:
     const clouds::CloudMap* find(const std::string& name, const SourcePlace&);
 
     /// The cloud of a name as point-based shadeops see it; `light`: they want what its points send or get. Null: there is none,
-    /// which was reported once. Thread safe; it lives as long as the store.
-    const clouds::PointOctree* octree(const std::string& name, bool light, const SourcePlace&);
+    /// which was reported once. Thread safe. `shear`: where points stand for their space's (clouds/shear.h).
+    std::shared_ptr<const clouds::PointOctree> octree(const std::string& name, bool light,
+                                                      const std::optional<clouds::Shear>& shear, const SourcePlace&);
 
     clouds::BakeLog baked;
     /// Some kernel of a surface bakes; some of these calls may want middles of micropolygons. While the world is made.
@@ -24,12 +26,15 @@ public:
 
 private:
     std::optional<std::string> pathOf(const std::string& name, const SourcePlace&);
-    std::shared_ptr<const clouds::PointOctree> makeOctree(const std::string& name, bool light, const SourcePlace&);
+    std::shared_ptr<const clouds::PointOctree> makeOctree(const std::string& name, bool light,
+                                                          const std::optional<clouds::Shear>&, const SourcePlace&);
     MapFiles files_;
     Diagnostics& diagnostics_;
     std::mutex mutex_;
-    std::map<std::string, std::shared_ptr<const clouds::CloudMap>> maps_;                        ///< null: none
-    std::map<std::pair<std::string, bool>, std::shared_ptr<const clouds::PointOctree>> octrees_; ///< null: none
+    std::map<std::string, std::shared_ptr<const clouds::CloudMap>> maps_; ///< null: none
+    using OctreeKey = std::tuple<std::string, bool, std::optional<clouds::Shear>>;
+    std::map<OctreeKey, std::shared_ptr<const clouds::PointOctree>> octrees_; ///< null: none
+    size_t sheared_ = 0;                                                      ///< of these
 };
 
 } // namespace alpenglow::transport

@@ -302,6 +302,31 @@ TEST_F(PointScenes, SpacesAndSeveralClouds) {
     EXPECT_NEAR(a[size_t(kSide * kSide / 2 + kSide / 2) * 4], .5, .025);
 }
 
+// Angles are those of the scene, whatever space a file is in: one that leans, one that is stretched.
+TEST_F(PointScenes, SpacesThatLeanOrStretch) {
+    const std::string spaces = "TransformBegin Skew 50 0 1 0 1 0 0 CoordinateSystem \"leaning\" TransformEnd\n"
+                               "TransformBegin Rotate 20 0 0 1 Scale 1 4 .5 CoordinateSystem \"stretched\" TransformEnd\n";
+    const char* const names[] = {"world", "leaning", "stretched"};
+    std::string bakes;
+    for (const char* n : names)
+        bakes += std::string("bake3d(\"") + n + ".ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"coordsystem\", \"" + n +
+                 "\", \"_radiosity\", color(1, .5, .25)); ";
+    shader("baker", "", bakes + "Ci = 1;");
+    shader(
+        "points", "string space = \"world\"; string file = \"world.ptc\";",
+        "Ci = color(0, 0, occlusion(P, n, 1, \"pointbased\", 1, \"filename\", file, \"coordsystem\", space)) + color(1, 1, 0) * "
+        "indirectdiffuse(P, n, 1, \"pointbased\", 1, \"filename\", file, \"coordsystem\", space);");
+    const std::string corner = scenes()[2].second;
+    bake(corner, "Surface \"baker\"\n", spaces);
+    std::vector<std::string> surfaces;
+    for (const std::string n : names)
+        surfaces.push_back("Surface \"points\" \"space\" \"" + n + "\" \"file\" \"" + n + ".ptc\"\n");
+    const auto seen = pictures(corner, surfaces, spaces);
+    ASSERT_EQ(seen.size(), 3u);
+    EXPECT_LT(meanError(seen[0], seen[1]), .01);
+    EXPECT_LT(meanError(seen[0], seen[2]), .01);
+}
+
 // Points do not see threads.
 TEST_F(PointScenes, SameBitsForAllThreads) {
     shader("baker", "", "bake3d(\"o.ptc\", \"\", P, normalize(N), \"interpolate\", 1, \"_radiosity\", Cs); Ci = 1;");

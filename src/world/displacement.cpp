@@ -9,8 +9,9 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// What in a kernel that gives P alone cannot be known when shapes are diced; "" when nothing. `moves`: P is not what it was.
-std::string undiceable(const rsl::ir::Kernel& k, bool& moves) {
+/// What in a kernel that gives P alone cannot be known when shapes are diced; "" when nothing. `moves`: P is not what it was;
+/// `loops`: lights decide, which may be known.
+std::string undiceable(const rsl::ir::Kernel& k, bool& moves, bool& loops) {
     using rsl::ir::Op;
     std::string why;
     rsl::ir::forEach(k.body, [&](const rsl::ir::Inst* i) {
@@ -19,29 +20,50 @@ std::string undiceable(const rsl::ir::Kernel& k, bool& moves) {
             const rsl::ir::Inst* v = i->args[0];
             moves |= !(v->op == Op::Input && k.inputs[size_t(v->index)].name == "P");
         } else if (i->op == Op::LightLoop) {
-            why = "light";
+            loops = true;
         } else if (i->op == Op::Request || i->op == Op::Emit) {
-            why = op() + "()";
-        } else if (i->op == Op::Service &&
-                   (op() == "ambient" || op() == "lightsource" || op() == "getlights" || op() == "lightcall")) {
+            why = op() == "lightvisibility" ? "light" : op() + "()";
+        } else if (i->op == Op::Service && (op() == "ambient" || op() == "getlights" || op() == "lightcall")) {
             why = "light";
         }
     });
     return why;
 }
 
+bool sendsRays(const BoundKernel& k) {
+    return k.kernel->facts().suspends || std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) {
+               return s.rays || s.kind == SiteKind::Occlusion || s.kind == SiteKind::Gather;
+           });
+}
+
+/// Whether a turn of a light needs its kernel alone: neither geometry, which is not there yet, nor a random number.
+bool isKnownEarly(const BoundLight& l, bool path) {
+    if (!l.kernel || l.kind == LightKind::Ambient) return true; // it has no turn
+    return l.kind != LightKind::Area && !l.shadows && !sendsRays(l.kernel) &&
+           !(path && (l.cone || l.kind == LightKind::Environment));
+}
+
 } // namespace
 
-BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKernel& bound,
+BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKernel& bound, const scene::LightSet& lights,
                                     const std::vector<std::string>& varying, Diagnostics& d) {
+    const bool path = settings_.hider == Hider::Path;
     const auto& writes = bound.kernel->facts().writes;
     if (std::find(writes.begin(), writes.end(), "P") == writes.end()) return {};
     Diagnostics quiet; // all of it was said when the surface was compiled
-    auto k = compiler_->analyse(*surface.program, kernelOptions(surface, {"P"}, varying, false, false), quiet);
+    auto k = compiler_->analyse(*surface.program, kernelOptions(surface, {"P"}, varying, false, path), quiet);
     if (!k) return {};
-    bool moves = false;
-    const std::string why = undiceable(*k, moves);
+    bool moves = false, loops = false;
+    std::string why = undiceable(*k, moves, loops);
     if (!moves) return {};
+    BoundKernel moving;
+    if (why.empty()) moving = kernel(surface, {"P"}, varying, false, false, quiet);
+    if (why.empty() && loops) {
+        const auto sendsStrings = [](const SiteInfo& s) { return s.kind == SiteKind::LightSetup && !s.sentStrings.empty(); };
+        bool late = std::any_of(moving.sites.begin(), moving.sites.end(), sendsStrings); // their kernels come later
+        eachLight(lights, [&](int l) { return late |= !isKnownEarly(lights_[size_t(l)], path); });
+        if (late) why = "light";
+    }
     if (!why.empty()) {
         d.reportOnce("moves:" + surface.name, {Severity::Warning,
                                                Rie::Unimplement,
@@ -59,7 +81,7 @@ BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKe
                   "surface shader \"" + surface.name + "\" moves P: it displaces its primitives",
                   "Attribute \"displacementbound\" says how far for other renderers; a displacement shader is the place for it",
                   {}});
-    return kernel(surface, {"P"}, varying, false, false, quiet);
+    return moving;
 }
 
 void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& shape, geometry::DiceGrid& grid,

@@ -78,8 +78,9 @@ public:
     /// Matrices of the camera, from the frame's options.
     void setCamera(const scene::Options&);
     /// Of a surface shader (as it is bound) that assigns P: the kernel that gives P alone, run when shapes are diced. None where
-    /// the shader leaves P as it is, and where light or rays decide, which is reported.
-    BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const std::vector<std::string>& varying, Diagnostics&);
+    /// the shader leaves P as it is, and where rays decide, or lights that need more than their shaders, which is reported.
+    BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const scene::LightSet&,
+                             const std::vector<std::string>& varying, Diagnostics&);
     /// Fills numberOfShape_ and moves_.
     void numberShapes();
     /// Makes the meshes that rays meet.

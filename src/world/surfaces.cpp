@@ -245,7 +245,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     bindAtmosphere(b, atmosphereVarying);
     if (!bindSurface(b, varying)) return -1;
     hearDisplacement(b, varying, displacementVarying, left);
-    if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, asked_.back().varying, diagnostics_);
+    if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, a.lights, asked_.back().varying, diagnostics_);
     bindLights(b, a);
     // A light without a kernel (its shader is missing, does not compile or is no light) was reported; its geometry is an ordinary
     // surface.

@@ -75,25 +75,55 @@ TEST(SurfaceMovesP, OpacityOfShadows) {
         under(Hider::Path));
     EXPECT_NEAR(s.one(rayTo({.1f, .9f, -.1f}, {0, .5f, 0})).x, .75 * 4 / (1.5 * 1.5), 1e-3);
 }
-// A light or a ray decides where P goes: that is not known when the primitive is diced. It stays, and says so; the shader sees
-// its own P.
-TEST(SurfaceMovesP, NotByLight) {
+// Rays, or lights that need more than their shaders, decide where P goes: that is not known when the primitive is diced. It
+// stays, and says so; the shader sees its own P.
+TEST(SurfaceMovesP, NotByRays) {
     writeShader(
         "bylight",
         "surface bylight() { illuminance(P) P -= vector \"world\" (0, 0, .5) * comp(Cl, 0); Oi = 1; Ci = color(zcomp(P)); }\n");
     writeShader("byrays", "surface byrays() { if (comp(transmission(P, P + vector(0, 0, -1)), 0) > .5) P -= vector \"world\" (0, "
                           "0, .5); Oi = 1; Ci = color(zcomp(P)); }\n");
-    for (const char* name : {"bylight", "byrays"}) {
-        Scene s(world("LightSource \"distantlight\" 1 \"intensity\" 1 \"to\" [0 0 1]\n" +
-                      square("Surface \"" + std::string(name) + "\"")),
-                under(Hider::Hidden));
+    writeShader("seen", "light seen() { solar(vector(0, 0, 1), 0) Cl = transmission(Ps, Ps - vector(0, 0, 9)); }\n");
+    const std::string sun = "LightSource \"distantlight\" 1 \"intensity\" 1 \"to\" [0 0 1]\n";
+    struct Case {
+        const char* shader;
+        std::string lights;
+        Hider hider;
+    };
+    for (const Case& k : {Case{"byrays", sun, Hider::Hidden}, Case{"bylight", sun, Hider::Path},
+                          Case{"bylight", "LightSource \"seen\" 1\n", Hider::Hidden},
+                          Case{"bylight", "Attribute \"light\" \"string shadows\" \"on\"\n" + sun, Hider::Hidden}}) {
+        Scene s(world(k.lights + square("Surface \"" + std::string(k.shader) + "\"")), under(k.hider));
         const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
         const SampleResult r = s.trace({&ray, 1})[0];
-        EXPECT_NEAR(r.z, 3, 1e-5) << name;
-        EXPECT_NEAR(r.color.x, 2.5, 1e-5) << name;
-        EXPECT_NE(s.messages().find("warning: surface shader \"" + std::string(name) + "\" moves P by"), std::string::npos)
+        EXPECT_NEAR(r.z, 3, 1e-5) << k.shader << k.lights;
+        EXPECT_NEAR(r.color.x, 2.5, 1e-5) << k.shader << k.lights;
+        EXPECT_NE(s.messages().find("warning: surface shader \"" + std::string(k.shader) + "\" moves P by"), std::string::npos)
             << s.messages();
     }
+}
+// What lights are told decides: the square is where the sum of their parameters puts it, and of those in whose cone it lies.
+TEST(SurfaceMovesP, ByLightsThatAreKnown) {
+    writeShader("bysource", "surface bysource() { float by = 0, sum = 0; illuminance(P) { lightsource(\"intensity\", by); sum += "
+                            "by; } P -= vector \"world\" (0, 0, sum); Oi = 1; Ci = color(zcomp(P)); }\n");
+    writeShader(
+        "bylight",
+        "surface bylight() { illuminance(P) P -= vector \"world\" (0, 0, .5) * comp(Cl, 0); Oi = 1; Ci = color(zcomp(P)); }\n");
+    const std::string lights = "LightSource \"distantlight\" 1 \"intensity\" .25 \"to\" [0 0 1]\n"
+                               "LightSource \"pointlight\" 2 \"intensity\" .5 \"from\" [0 0 0]\n"
+                               "LightSource \"spotlight\" 3 \"intensity\" 1 \"from\" [9 0 0] \"to\" [9 0 3] \"coneangle\" .1\n";
+    for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        Scene s(world(lights + square("Surface \"bysource\"")), under(h));
+        const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
+        const SampleResult r = s.trace({&ray, 1})[0];
+        EXPECT_NEAR(r.z, 2.25, 1e-5) << int(h);
+        EXPECT_NEAR(r.color.x, 2.25, 1e-5) << int(h);
+        EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
+    }
+    Scene s(world("LightSource \"distantlight\" 1 \"intensity\" .5 \"to\" [0 0 1]\n" + square("Surface \"bylight\"")),
+            under(Hider::Hidden));
+    const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
+    EXPECT_NEAR(s.trace({&ray, 1})[0].z, 2.75, 1e-5);
 }
 // Assigning P what it was moves nothing, and light may decide about what is not P.
 TEST(SurfaceMovesP, OnlyWhereItMoves) {

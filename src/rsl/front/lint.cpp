@@ -140,9 +140,10 @@ private:
         const Symbol* s = root(e);
         if (!found_) uniformHazard(e, s);
         if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
-            sources_.warning(
-                e.place, "a surface shader that moves 'P' displaces its primitive, but not where light or rays decide how far",
-                "a displacement shader is the place for it");
+            sources_.warning(e.place,
+                             "a surface shader that moves 'P' displaces its primitive, but not where rays or lights that need "
+                             "them decide how far",
+                             "a displacement shader is the place for it");
         if (s) assigned_.insert(s);
         given(s);
     }

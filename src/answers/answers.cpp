@@ -14,7 +14,7 @@ void KernelRun::forget() {
     lit = nullptr;
     volume = nullptr;
     aside = nullptr;
-    below = between = false;
+    below = between = again = false;
     displaced.reset();
     for (LightLoop& loop : loops) loop.reset(-1);
     ambient.clear();

@@ -34,40 +34,53 @@ void turnMatrix(const Matrix& m, float* v) {
     for (int k = 0; k < 16; ++k) v[k] = float(of.m[k / 4][k % 4]);
 }
 
-/// Whether the point of a lane is one that bakes, and its place among all.
-bool keyOf(const ServiceCall& call, int lane, const ShadePoint& p, bool centre, clouds::BakeKey& key) {
+/// The ray that a lane's point comes from; of a light the ray that met the surface which it lights. Null: none, or a point that
+/// is on no surface.
+const shading::PathRay* rayOfLane(const ServiceCall& call, int lane, const ShadePoint& p) {
     const KernelRun& c = call.c;
-    if (c.aside || c.light || c.volume || c.forShadow || c.rays.empty() || !c.binding) return false;
-    const shading::PathRay& r = c.rays[size_t(call.first + lane)];
-    if (!r.camera() || r.bounces > 0 || !r.sample) return false;
-    if (const shading::GridPoint* g = r.sample->grid) {
-        if (r.layers > 0 || g->corner == centre) return false;
-        key = {false, r.sample->py, r.sample->px, 0, 0, r.sample->sample};
+    if (c.aside || c.again || c.forShadow || c.between) return nullptr;
+    if (c.light) return p.lit ? p.ray : nullptr;
+    if (c.volume) return c.surface ? p.ray : nullptr;
+    return c.rays.empty() || !c.binding ? nullptr : &c.rays[size_t(call.first + lane)];
+}
+
+/// Lights of one shader are told apart; the parts of a light are not.
+uint32_t numberOf(const WorldImpl& world, const BoundLight& light) {
+    const auto first = std::find_if(world.lights_.begin(), world.lights_.end(),
+                                    [&](const BoundLight& l) { return &l == &light || (l.source && l.source == light.source); });
+    return uint32_t(first - world.lights_.begin()) + 1;
+}
+
+/// Whether the point of a lane is one that bakes, and its place among all. `light`: numberOf() one, 0: none.
+bool keyOf(const shading::PathRay* r, const ShadePoint& p, bool centre, uint32_t light, clouds::BakeKey& key) {
+    if (!r || !r->camera() || r->bounces > 0 || !r->sample) return false;
+    if (const shading::GridPoint* g = r->sample->grid) {
+        if (r->layers > 0 || r->vertex != 0 || g->corner == centre) return false;
+        key = {false, r->sample->py, r->sample->px, 0, light, r->sample->sample};
         return true;
     }
-    if (r.sample->records || !p.shape || shading::hasGrid(*p.shape)) return false; // its grid has been shaded
-    key = {true, r.sample->py, r.sample->px, r.layers, r.vertex, r.sample->sample};
+    if (light || r->sample->records || !p.shape || shading::hasGrid(*p.shape)) return false; // its grid has been shaded
+    key = {true, r->sample->py, r->sample->px, r->layers, r->vertex, r->sample->sample};
     return true;
 }
 
 /// The radius of the disk about a point, and the part of the surface that it stands for. Camera space.
-std::pair<float, float> extentOf(const ServiceCall& call, int lane, const ShadePoint& p) {
-    const shading::PathRay& r = call.c.rays[size_t(call.first + lane)];
+std::pair<float, float> extentOf(const shading::PathRay& r, const ShadePoint& p) {
     if (r.sample->grid) return {r.sample->grid->radius, r.sample->grid->area};
     const float half = r.footprint.at(length(p.P - r.origin)); // of a pixel
     return {half * 1.41421356f, 4 * half * half};
 }
 
+bool isImager(const KernelRun& c) { return !c.binding && !c.light && !c.volume; }
+
 void reportNotBaked(const ServiceCall& call) {
-    const KernelRun& c = call.c;
-    const char* who = c.light ? "light" : c.volume ? "volume" : c.rays.empty() ? "displacement" : nullptr;
-    if (!who || c.aside || (c.binding && c.bound == &c.binding->moveS)) return; // the surface shader bakes when it shades
-    call.diagnostics.reportOnce(std::string("bake:") + who, {Severity::Warning,
-                                                             Rie::Unimplement,
-                                                             call.place(),
-                                                             call.d.op + "() of " + who + " shaders writes nothing",
-                                                             "the surface shader bakes",
-                                                             {}});
+    if (!isImager(call.c)) return;
+    call.diagnostics.reportOnce("bake:imager", {Severity::Warning,
+                                                Rie::Unimplement,
+                                                call.place(),
+                                                call.d.op + "() of imager shaders writes nothing",
+                                                "surface, displacement, volume and light shaders bake",
+                                                {}});
 }
 
 } // namespace
@@ -78,13 +91,15 @@ void answerBake(Answers& answers, const ServiceCall& call) {
     std::vector<float> row;
     CloudSpace space(answers, call, s.space, s.spaceRow);
     reportNotBaked(call);
+    const uint32_t light = call.c.light ? numberOf(world, *call.c.light) : 0;
     call.each([&](int lane, const ShadePoint& p) {
         const std::string name = s.computed ? call.name(lane) : s.name;
         if (name.empty()) return;
-        if (!s.layout.flat) call.put(0, lane, call.c.light || call.c.volume || call.c.rays.empty() ? 0.f : 1.f);
+        if (!s.layout.flat) call.put(0, lane, isImager(call.c) ? 0.f : 1.f);
         const bool centre = s.centres >= 0 && call.at(s.centres, lane) != 0;
         clouds::BakeKey key;
-        if (!keyOf(call, lane, p, centre, key)) return;
+        const shading::PathRay* const ray = rayOfLane(call, lane, p);
+        if (!keyOf(ray, p, centre, light, key)) return;
         row.clear();
         static const Matrix kSame;
         const Matrix& to = s.layout.flat ? kSame : space.at(lane, p);
@@ -96,7 +111,7 @@ void answerBake(Answers& answers, const ServiceCall& call) {
                 n = normalTo(to, tripleAt(call, s.normal, lane));
             normal = unitOr0(tripleAt(call, s.normal, lane));
             const float grows = space.shear() ? std::sqrt(space.areaGrowth(normal)) : space.growth();
-            const float radius = s.radius < 0 ? extentOf(call, lane, p).first * grows : call.at(s.radius, lane);
+            const float radius = s.radius < 0 ? extentOf(*ray, p).first * grows : call.at(s.radius, lane);
             const float scale = s.scale < 0 ? 1 : call.at(s.scale, lane);
             row = {at.x, at.y, at.z, n.x, n.y, n.z, std::max(0.f, radius * scale)};
         }
@@ -107,7 +122,7 @@ void answerBake(Answers& answers, const ServiceCall& call) {
             if (part.type == clouds::ChannelType::Matrix) turnMatrix(to, &row[from]);
             else turn(part.type, to, &row[from]);
         }
-        if (!s.layout.flat && s.addsArea) row.push_back(extentOf(call, lane, p).second * space.areaGrowth(normal));
+        if (!s.layout.flat && s.addsArea) row.push_back(extentOf(*ray, p).second * space.areaGrowth(normal));
         const bool kept = world.clouds_->baked.add(name, s.layout, key, row);
         if (!s.layout.flat) call.put(0, lane, kept ? 1.f : 0.f);
     });

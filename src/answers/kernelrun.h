@@ -18,6 +18,7 @@ struct KernelRun {
     const Medium* volume = nullptr;     ///< while a volume's kernel runs
     const LightOutput* aside = nullptr; ///< the run gives this output and nothing else
     bool forShadow = false;             ///< the kernel tells its opacity to shadow rays
+    bool again = false;                 ///< it is no shading of its own: nothing is printed and baked
     bool below = false;                 ///< walks below a surface come out at the points: light is gathered; no kernel
     bool between = false;               ///< the points lie on the way of rays, inside of a medium, on no surface
     std::shared_ptr<const KernelRun>

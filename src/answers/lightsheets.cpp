@@ -2,17 +2,18 @@
 // that most shaders write begin at P of the surface and send nothing: what their lights find does not depend on the loop. Strips
 // then only look up their points. The numbers are those that the strips would find one by one.
 #include "answers/answers.h"
+#include "world/cloudsite.h"
 #include <bit>
 
 namespace alpenglow::transport {
 
 bool hasSheets(const BoundLight& l) {
-    // A sky depends on the loop's cone; what a light sends, gives to AOVs, traces or prints is for the points that ask.
+    // A sky depends on the loop's cone; what a light sends, gives to AOVs, traces, prints or bakes is for the points that ask.
     if (!l.kernel || l.kind == LightKind::Environment || l.sentCl >= 0 || l.channels || l.kernel.kernel->facts().suspends)
         return false;
     return std::none_of(l.kernel.sites.begin(), l.kernel.sites.end(), [](const SiteInfo& s) {
         return s.kind == SiteKind::Trace || s.kind == SiteKind::Transmission || s.kind == SiteKind::Occlusion ||
-               s.kind == SiteKind::Gather || s.site->op == "printf";
+               s.kind == SiteKind::Gather || s.site->op == "printf" || (s.cloud && s.cloud->writes);
     });
 }
 

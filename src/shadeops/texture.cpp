@@ -146,19 +146,19 @@ std::vector<Shadeop> textureShadeops() {
     list.back().examples = {{"ptexture(\"none.ptx\", 0, 0)", "0"}};
     Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Service,
                         "Writes (s, t, value) to a file, which maketx or MakeTexture turn into a texture. Readable text, one "
-                        "line a point: s, t and the numbers of value; "
-                        "binary when the name ends with \"&binary\", which is no part of the name. Before the frame is rendered, "
-                        "each primitive whose surface shader bakes is shaded once at "
+                        "line a point: s, t and the numbers of value; binary when the name ends with \"&binary\", which is no "
+                        "part of the name. Before the frame is rendered, "
+                        "each primitive is shaded once at which a surface, displacement, light or Atmosphere shader bakes, at "
                         "every corner of micropolygons of the size that ShadingRate says, seen or not, in their order; under "
                         "path as often as a pixel has samples, and the mean is written. "
-                        "Curves, points and other primitives without a grid are baked where camera rays meet them. "
-                        "docs/pointclouds.md has the format.");
+                        "Curves, points and other primitives without a grid are baked where camera rays meet them, but not by "
+                        "lights. These bake for each point that asks for their light. docs/pointclouds.md has the format.");
     list.back().examples = {{"x", "7", "float x = 7; bake(\"none.bake\", s, t, x);"}};
     bake.pure = false;
     bake.optional.clear();
     bake.bias = Bias::Unbiased;
     bake.biasReason.clear();
-    bake.contexts = kSurface | kDisplacement | kVolume;
+    bake.contexts = kSurface | kDisplacement | kVolume | kLight;
     Shadeop& bake3d =
         add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Service,
             "Writes p, n, a radius and values, given as pairs, to a point cloud: .ply where the name says so, else of "
@@ -166,7 +166,7 @@ std::vector<Shadeop> textureShadeops() {
             "those of bake(). Points, vectors, normals and matrices among the values go to the space of the file, too. \"_area\" "
             "is the part of the surface that the point "
             "stands for (missing: of its micropolygon), \"_radiosity\" the light that it sends. \"channels\" is not read. Calls "
-            "in lights, volumes and displacement write nothing.");
+            "in imagers write nothing.");
     list.back().examples = {{"bake3d(\"light.ptc\", \"\", P, N, \"light\", Cs)", "0"}};
     bake3d.pure = false;
     bake3d.bias = Bias::Unbiased;

@@ -15,6 +15,14 @@ bool bakesAt(const BoundKernel& k) {
     return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.cloud && s.cloud->writes; });
 }
 
+/// Whether some shader bakes at the points of a surface: of those that run there.
+bool bakesAt(const WorldImpl& w, const SurfaceBinding& b) {
+    bool bakes = false;
+    for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) bakes |= bakesAt(*k);
+    if (!bakes) w.eachLight(b.lights, [&](int l) { return bakes |= bakesAt(w.lights_[size_t(l)].kernel); });
+    return bakes;
+}
+
 Vec3 placeOf(const WorldImpl& w, const shading::GridPoint& p) {
     const geometry::SurfacePoint at = w.shapes_[p.shape]->evaluateHit(p.prim, p.b1, p.b2);
     return at.displaced ? at.displacedP : at.P;
@@ -32,7 +40,7 @@ std::vector<uint32_t> bakedShapes(const World& world) {
     std::vector<uint32_t> all;
     for (uint32_t i = 0; i < w.shapes_.size(); ++i) {
         const SurfaceBinding& b = w.bindings_[size_t(w.bindingOf_[i])];
-        if ((bakesAt(b.surfaceS) || bakesAt(b.surfaceV)) && shading::hasGrid(*w.shapes_[i])) all.push_back(i);
+        if (bakesAt(w, b) && shading::hasGrid(*w.shapes_[i])) all.push_back(i);
     }
     return all;
 }

@@ -14,6 +14,7 @@ std::shared_ptr<BatchContext> Engine::displace(const BatchContext& c) {
     d->points = c.points;
     d->rays = c.rays;
     d->bindings = c.bindings;
+    d->again = c.forShadow; // it bakes at the surface
     for (size_t k = 0; k < d->rays.size(); ++k) {
         d->points[k].ray = &d->rays[k];
         if (turnedOver(*d->points[k].shape)) turnOver(d->points[k]);

@@ -18,6 +18,7 @@ void Engine::haze(const Medium& medium, const SurfaceBinding& binding, std::vect
         c.volume = &medium;
         c.binding = &binding;
         c.surface = surface;
+        c.again = !first;
         c.surfacePoint.assign(of.begin(), of.end());
         c.points.swap(points); // lent
         std::vector<shading::InstanceView> views(c.points.size(), medium.shader->view());

@@ -1,0 +1,114 @@
+// What displacement, light and Atmosphere shaders bake, against closed forms at each point.
+#include "cli/command_folder.h"
+#include "clouds/cloudfile.h"
+#include "clouds/make.h"
+
+namespace bakeshaders_test {
+
+namespace {
+
+using namespace alpenglow;
+
+class BakeShaders : public cli::testing::CommandFolder {
+protected:
+    clouds::PointCloud cloud(const std::string& name) const {
+        Diagnostics d;
+        auto c = clouds::loadCloud((dir / name).string(), d);
+        EXPECT_TRUE(c) << clouds::test::said(d);
+        return c ? std::move(*c) : clouds::PointCloud{};
+    }
+    /// Renders a square in the plane z = 4 of the world, half of it beyond the picture.
+    void render(const std::string& hider, const std::string& world) {
+        write("a.rib", "Format 24 24 1\nPixelSamples 2 2\nHider \"" + hider +
+                           "\"\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nProjection \"perspective\" \"fov\" 40\nWorldBegin\n" +
+                           world + "\nPolygon \"P\" [-1 -1 4  5 -1 4  5 1 4  -1 1 4]\nWorldEnd\n");
+        const std::string said = run("render a.rib", "2>&1");
+        EXPECT_EQ(said.find("error: "), std::string::npos) << said;
+        EXPECT_EQ(said.find("warning: "), std::string::npos) << said;
+        EXPECT_EQ(status, 0) << said;
+    }
+    float area(const clouds::PointCloud& c) const {
+        double sum = 0;
+        for (size_t i = 0; i < c.size(); ++i) sum += double(c.valuesOf(i)[size_t(c.offsetOf("_area"))]);
+        return float(sum);
+    }
+};
+
+// It lifts the square by x: the points lie on a slope, and what is written is where they were.
+TEST_F(BakeShaders, Displacement) {
+    write("lifts.sl", "displacement lifts() { float x = xcomp(transform(\"world\", P)); P -= vector \"world\" (0, 0, .25) * x; "
+                      "bake3d(\"d.ptc\", \"\", P, N, \"_x\", x); bake(\"d.bake\", s, t, x); }\n");
+    for (const char* hider : {"hidden", "path"}) {
+        render(hider, "Attribute \"displacementbound\" \"float sphere\" [2] Surface \"constant\" Displacement \"lifts\"");
+        const clouds::PointCloud c = cloud("d.ptc");
+        ASSERT_GT(c.size(), 100u) << hider;
+        float far = 0;
+        for (size_t i = 0; i < c.size(); ++i) {
+            const float x = c.valuesOf(i)[size_t(c.offsetOf("_x"))];
+            EXPECT_NEAR(c.P[i].x, x, 1e-4);
+            EXPECT_NEAR(c.P[i].z, 4 - x / 4, 1e-4);
+            far = std::max(far, x);
+        }
+        EXPECT_NEAR(far, 5, 1e-4) << "the whole of it, seen or not";
+        EXPECT_NEAR(area(c), 12 * std::sqrt(1 + 1. / 16), .01) << hider;
+        EXPECT_TRUE(std::filesystem::exists(dir / "d.bake"));
+        std::filesystem::remove(dir / "d.ptc");
+    }
+}
+
+// Two lamps of one shader: each has its own point at every place of the grid, with what arrives from it.
+TEST_F(BakeShaders, Lights) {
+    write("lamp.sl",
+          "light lamp(float power = 1; point from = 0;) { illuminate(from) Cl = power / (L . L); float d = distance(Ps, from); "
+          "float ok = bake3d(\"l.ptc\", \"\", Ps, Ns, \"_e\", power / (d * d), \"_power\", power); }\n");
+    for (const char* hider : {"hidden", "path"}) {
+        render(hider, "LightSource \"lamp\" 1 \"power\" 2 \"from\" [0 0 1] LightSource \"lamp\" 2 \"power\" 3 \"from\" [4 0 2]\n"
+                      "Surface \"matte\"");
+        const clouds::PointCloud c = cloud("l.ptc");
+        ASSERT_GT(c.size(), 200u) << hider;
+        size_t first = 0;
+        const size_t e = size_t(c.offsetOf("_e")), power = size_t(c.offsetOf("_power"));
+        for (size_t i = 0; i < c.size(); ++i) {
+            EXPECT_NEAR(c.P[i].z, 4, 1e-4);
+            const bool one = c.valuesOf(i)[power] == 2;
+            first += one;
+            const Vec3 way = c.P[i] - (one ? Vec3(0, 0, 1) : Vec3(4, 0, 2));
+            EXPECT_NEAR(c.valuesOf(i)[e], (one ? 2 : 3) / dot(way, way), 1e-5) << hider;
+        }
+        EXPECT_EQ(2 * first, c.size()) << hider;
+        EXPECT_NEAR(area(c), 2 * 12, .01) << hider;
+        std::filesystem::remove(dir / "l.ptc");
+    }
+}
+
+// The way from the eye, once at each point, whether the compiler knows what the volume makes of light or tries it.
+TEST_F(BakeShaders, Atmospheres) {
+    const std::string bakes = "float d = length(I); bake3d(\"v.ptc\", \"\", P, N, \"_d\", d, \"_c\", comp(Ci, 0));";
+    write("mist.sl", "volume mist() { " + bakes + " Ci = Ci * exp(-d); }\n");
+    write("bent.sl", "volume bent() { " + bakes + " Ci = Ci * Ci; }\n");
+    for (const char* shader : {"mist", "bent"})
+        for (const char* hider : {"hidden", "path"}) {
+            render(hider, "Atmosphere \"" + std::string(shader) + "\" Surface \"constant\" Color .5 .5 .5");
+            const clouds::PointCloud c = cloud("v.ptc");
+            ASSERT_GT(c.size(), 100u) << hider;
+            for (size_t i = 0; i < c.size(); ++i) {
+                EXPECT_NEAR(c.valuesOf(i)[size_t(c.offsetOf("_d"))], length(c.P[i]), 1e-4) << shader << hider;
+                EXPECT_EQ(c.valuesOf(i)[size_t(c.offsetOf("_c"))], .5f) << shader << hider;
+            }
+            EXPECT_NEAR(area(c), 12, .01) << shader << hider;
+            std::filesystem::remove(dir / "v.ptc");
+        }
+}
+
+// An imager has no point: that is said.
+TEST_F(BakeShaders, NotImagers) {
+    write("stamps.sl",
+          "imager stamps() { float ok = bake3d(\"i.ptc\", \"\", P, normal(0, 0, 1), \"_x\", 1); Ci = color(ok); }\n");
+    write("a.rib", "Format 4 4 1\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nImager \"stamps\"\nWorldBegin\nWorldEnd\n");
+    EXPECT_NE(run("render a.rib", "2>&1").find("bake3d() of imager shaders writes nothing"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(dir / "i.ptc"));
+}
+
+} // namespace
+
+} // namespace bakeshaders_test

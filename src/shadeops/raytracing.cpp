@@ -97,7 +97,9 @@ std::vector<OptionalParameter> subsurfaceParameters() {
         {kS, "model", false, "\"walk\"",
          "walk: light is followed as it scatters; jensen: dipole (2001, 2002), grosjean: better dipole (d'Eon 2012), both biased "
          "where the surface is no half space"},
-        {kC, "irradiance", false, "", "accepted and ignored: what enters elsewhere is found there"},
+        {kC, "irradiance", false, "from the lights",
+         "what enters at P, as diffuse() gives it. Walks that come out here take it, by a run of the shader that prints and "
+         "bakes nothing; not where the shader waits for rays (info tells)"},
         {kC, "scattering", false, "attribute subsurface:scattering", "coefficient, 1/mm"},
         {kC, "absorption", false, "attribute subsurface:absorption", "coefficient, 1/mm"},
         {kC, "meanfreepath", false, "attribute subsurface:meanfreepath", "with reflectance: 1 / (scattering + absorption), mm"},
@@ -222,19 +224,18 @@ std::vector<Shadeop> raytracingShadeops() {
                                                      "accepted and ignored: the result is exact for its rays");
     for (OptionalParameter& p : indirect.optional)
         if (p.name == "type" || p.name == "raytype") p.defaultText = "\"diffuse\"";
-    Shadeop& subsurface =
-        add("subsurface",
-            sigs({{"color subsurface(point p; pairs)"},
-                  {"color subsurface(point p; normal n; pairs)"},
-                  {"color subsurface(string type; point p; normal n; pairs)"}}),
-            Lowering::Request,
-            "Light that leaves at p after scattering below the surface: 1 where radiance 1 comes from everywhere and nothing is "
-            "absorbed. Light enters the "
-            "closed surface (primitives of one group) evenly from all sides, is followed from event to event, and leaves evenly "
-            "to all sides; where it enters it is that of lights and of diffuse rays, as diffuse() has it. What the boundary "
-            "reflects outside is left to "
-            "other lobes. It begins at the shaded point and about the normal of its geometry, whatever p and n are. The form "
-            "that begins with the type is that of PRMan 16.");
+    Shadeop& subsurface = add(
+        "subsurface",
+        sigs({{"color subsurface(point p; pairs)"},
+              {"color subsurface(point p; normal n; pairs)"},
+              {"color subsurface(string type; point p; normal n; pairs)"}}),
+        Lowering::Request,
+        "Light that leaves at p after scattering below the surface: 1 where radiance 1 comes from everywhere and nothing is "
+        "absorbed. Light enters the closed surface (primitives of one group) evenly from all sides, is followed from event to "
+        "event, and leaves evenly to all sides; where it enters it is what the shader there says by \"irradiance\", else that "
+        "of lights and of diffuse rays, as diffuse() has it. What the boundary reflects outside is left to other lobes. It "
+        "begins at p, about n, which points out of the surface (not given: of the geometry): a p beside a surface of the "
+        "group is put onto it along n, one inside of it stays there. The form that begins with the type is that of PRMan 16.");
     list.back().examples = {{"subsurface(P)", "0 0 0", "", kNothing}};
     std::erase_if(subsurface.optional, [](const OptionalParameter& p) { return p.name == "type" || p.name == "samples"; });
     for (OptionalParameter& p : subsurface.optional) p.doc = "accepted and ignored";

@@ -14,7 +14,10 @@ void Walks::probe(int asked) {
     const ShadePoint& p = c_.points[size_t(a.point)];
     const PathRay& ray = c_.rays[size_t(a.point)];
     const bool turned = dot(p.surface.n, ray.dir) > 0;
-    const Basis about(turned ? -p.surface.n : p.surface.n);
+    const std::optional<Entry> entered = entry(asked);
+    if (!entered) return;
+    const Basis about(entered->out);
+    const Vec3 from = entered->at;
     Color part(std::fabs(a.weight.x), std::fabs(a.weight.y), std::fabs(a.weight.z));
     for (int k = 0; k < 3; ++k)
         if (!(b.scattering[k] > 0)) part[k] = 0; // it brings nothing, and chooses nothing
@@ -43,16 +46,16 @@ void Walks::probe(int asked) {
     const int k = which < .5f ? 0 : which < .75f ? 1 : 2;
     const Vec3 axis = axes[k], x = axes[(k + 1) % 3], y = axes[(k + 2) % 3];
     const geometry::Bounds box = world.bounds();
-    const float far = length(box.hi - box.lo) + length(p.P - (box.lo + box.hi) * 0.5f) + 1;
+    const float far = length(box.hi - box.lo) + length(from - (box.lo + box.hi) * 0.5f) + 1;
     if (!(r < far)) return; // nothing is there
-    Walker line{asked, p.P + x * float(r * turn.x) + y * float(r * turn.y) + axis * far, -axis, a.weight, a.weight, a.vertex};
+    Walker line{asked, from + x * float(r * turn.x) + y * float(r * turn.y) + axis * far, -axis, a.weight, a.weight, a.vertex};
     accel::Ray probe = rayOf(line, 2 * double(far));
     accel::Hit hit;
     for (int layer = 0; layer < limits::kShadowLayers && e_.meet(probe, hit); ++layer) {
         world.goOn(probe, hit);
         if (!belongs(hit.shape, b.group)) continue;
         const geometry::SurfacePoint s = world.accel_->point(hit);
-        const Vec3 n = s.displaced ? s.displacedN : s.n, to = (s.displaced ? s.displacedP : s.P) - p.P;
+        const Vec3 n = s.displaced ? s.displacedN : s.n, to = (s.displaced ? s.displacedP : s.P) - from;
         double density = 0; // of all ways to come here
         for (int j = 0; j < 3; ++j) {
             const Vec3 beside = to - axes[j] * dot(to, axes[j]);

@@ -49,6 +49,13 @@ void Engine::requestSubsurface(BatchContext& c, const SiteInfo& s, const ShadePo
     l.rays = &kSpecularKind; // of one, that walks: --no-indirect leaves what lights bring by it
     l.lights = l.deltaLights = false;
     l.below = int32_t(below_.size());
+    const auto triple = [&](int row) { return row < 0 ? Vec3() : Vec3(f(row), f(row + 1), f(row + 2)); };
+    b.normal = normalizeOr(triple(site.normal), Vec3());
+    b.from = triple(site.point);
+    // The facet of a displaced surface, and the point that its shader makes, may lie a micropolygon apart.
+    const float apart = p.surface.displaced ? length(p.surface.dPdu) * p.du + length(p.surface.dPdv) * p.dv : 0;
+    const float away = length(b.from - p.P);
+    b.elsewhere = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;
     below_.push_back(b);
 }
 
@@ -67,6 +74,7 @@ void Walks::run(Sched& sched) {
         if (below_[size_t(asked_[i].below)].model == SubsurfaceSite::Model::Walk) start(int(i));
         else probe(int(i));
     while (!walkers_.empty() && !(e_.stop && *e_.stop)) step();
+    askSurfaces(sched);
     const auto list = [&](const Exit& x) { return e_.world().bindings_[size_t(e_.world().bindingOf_[x.shape])].lightList; };
     std::stable_sort(exits_.begin(), exits_.end(), [&](const Exit& a, const Exit& b) { return list(a) < list(b); });
     for (size_t first = 0, end; first < exits_.size(); first = end) {
@@ -75,13 +83,53 @@ void Walks::run(Sched& sched) {
     }
 }
 
+/// At the shaded point, or at the call's. A point beside the surface is put onto it, along the normal; one within stays there.
+std::optional<Walks::Entry> Walks::entry(int asked) const {
+    const WalkAsked& a = asked_[size_t(asked)];
+    const Below& b = below_[size_t(a.below)];
+    const ShadePoint& p = c_.points[size_t(a.point)];
+    const bool turned = dot(p.surface.n, c_.rays[size_t(a.point)].dir) > 0;
+    const Vec3 side = turned ? -p.surface.n : p.surface.n;
+    if (!b.elsewhere) {
+        const float cosine = dot(b.normal, side); // of one that rounding has turned nothing changes
+        return Entry{b.normal == Vec3() || std::fabs(cosine) > 1 - 1e-6f ? side
+                     : cosine < 0                                        ? -b.normal
+                                                                         : b.normal,
+                     p.P, p.surface};
+    }
+    Entry at{b.normal == Vec3() ? side : b.normal, b.from, {}};
+    if (turned && dot(at.out, side) < 0) at.out = -at.out; // seen from behind
+    const float beside = 8 * geometry::roundingError(b.from);
+    accel::Ray ray = rayOf({asked, b.from + at.out * beside, -at.out, {}, {}, 0}, 1e38);
+    accel::Hit hit;
+    bool met = e_.meet(ray, hit);
+    for (int k = 0; met && !belongs(hit.shape, b.group); ++k) {
+        e_.world().goOn(ray, hit);
+        met = k < limits::kShadowLayers && e_.meet(ray, hit);
+    }
+    if (!met) return {};
+    const geometry::SurfacePoint s = e_.world().accel_->point(hit);
+    const Vec3 n = s.displaced ? s.displacedN : s.n;
+    const bool leaves = dot(ray.dir, turned ? -n : n) > 0;
+    if (leaves && !(hit.distance < 4 * double(beside))) {
+        at.at -= at.out * beside;
+        return at;
+    }
+    if (leaves) at.out = -at.out; // on the surface, by a normal that points inward
+    at.at = s.displaced ? s.displacedP : s.P;
+    at.surface = s;
+    if (s.displaced) at.surface->P = s.displacedP, at.surface->n = s.displacedN;
+    return at;
+}
+
 /// Into the surface, as light comes through its boundary that is even outside.
 void Walks::start(int asked) {
     const WalkAsked& a = asked_[size_t(asked)];
     const Below& b = below_[size_t(a.below)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const PathRay& ray = c_.rays[size_t(a.point)];
-    const Vec3 out = dot(p.surface.n, ray.dir) > 0 ? -p.surface.n : p.surface.n;
+    const std::optional<Entry> entered = entry(asked);
+    if (!entered) return; // there is nothing below
     Walker w{asked, {}, {}, a.weight, a.weight, a.vertex};
     const Vec3 outside = sampleCosine(e_.random(ray).pair(a.vertex, kFlight, 0)); // a way out, about the normal
     const double n = b.index, sine2 = (1 - double(outside.z) * outside.z) / (n * n);
@@ -90,9 +138,15 @@ void Walks::start(int asked) {
     const double through = 1 - fresnelInside(cosine, n); // over its mean, by the flux
     const double mean = (1 - e_.halfSpaces_.of(b.index).first()) * n * n;
     w.weight = w.begin = a.weight * float(b.index == 1 ? 1 : through / mean);
-    w.dir = Basis(-out).toWorld({float(outside.x / n), float(outside.y / n), float(cosine)});
+    w.dir = Basis(-entered->out).toWorld({float(outside.x / n), float(outside.y / n), float(cosine)});
     w.dir = w.dir / length(w.dir);
-    w.at = geometry::offsetOrigin(p.surface, w.dir, length(p.P - p.surface.P));
+    w.at = entered->at;
+    if (const auto& on = entered->surface) {
+        const Vec3 side = dot(on->n, entered->out) < 0 ? -on->n : on->n;
+        if (const float away = dot(w.dir, side); away > 0)
+            w.dir -= side * (2 * away); // about a tilted normal: it goes in all the same
+        w.at = geometry::offsetOrigin(*on, w.dir, b.elsewhere ? 0 : length(p.P - p.surface.P));
+    }
     walkers_.push_back(w);
 }
 
@@ -216,19 +270,12 @@ bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
     return false;
 }
 
-/// What light brings where walks came out, as diffuse() has it.
-void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
-    static const LobeKind* const kind = findLobe("diffuse");
+void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
     const WorldImpl& world = e_.world();
-    auto c = e_.takeContext();
-    c->engine = &e_;
-    c->bound = c_.bound;
-    c->binding = &world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
-    c->below = true;
     for (const Exit& x : exits) {
         const WalkAsked& a = asked_[size_t(x.asked)];
         const PathRay& from = c_.rays[size_t(a.point)];
-        PathRay& r = c->rays.emplace_back(from);
+        PathRay& r = c.rays.emplace_back(from);
         r.weight = x.weight;
         r.vertex = childVertex(x.vertex, kFlight, 4);
         r.counts = r.first = false;
@@ -242,15 +289,15 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
         RayExtra extra;
         extra.share = a.share;
         r.extra = e_.newExtra(extra);
-        c->targets.push_back(a.target);
-        c->bindings.push_back(world.bindingOf_[x.shape]);
+        c.targets.push_back(a.target);
+        c.bindings.push_back(world.bindingOf_[x.shape]);
     }
-    c->ownsExtras = true;
-    c->points.resize(exits.size());
+    c.ownsExtras = true;
+    c.points.resize(exits.size());
     for (size_t i = 0; i < exits.size(); ++i) {
         const Exit& x = exits[i];
-        const PathRay& r = c->rays[i];
-        ShadePoint& p = c->points[i] = {};
+        const PathRay& r = c.rays[i];
+        ShadePoint& p = c.points[i] = {};
         p.shape = world.shapes_[x.shape].get();
         p.surface = x.point;
         p.P = p.E = r.origin;
@@ -260,6 +307,22 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
         p.shutter = p.surface.time = world.shadesAtOpen_ ? 0 : r.shutter();
         world.tellTime(p);
         p.ray = &r;
+    }
+}
+
+/// What light brings where walks came out, as diffuse() has it.
+void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
+    static const LobeKind* const kind = findLobe("diffuse");
+    const WorldImpl& world = e_.world();
+    auto c = e_.takeContext();
+    c->engine = &e_;
+    c->bound = c_.bound;
+    c->binding = &world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
+    c->below = true;
+    settleAt(*c, exits);
+    for (size_t i = 0; i < exits.size(); ++i) {
+        const Exit& x = exits[i];
+        const ShadePoint& p = c->points[i];
         LobeVertex& l = e_.lobes.emplace_back();
         l.kind = kind;
         l.point = int(i);

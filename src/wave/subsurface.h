@@ -32,6 +32,12 @@ private:
         geometry::SurfacePoint point;
         Vec3 out; ///< unit normal of the surface, away from its inside
     };
+    /// Where light enters, and the outward normal about which it does.
+    struct Entry {
+        Vec3 out, at;
+        std::optional<geometry::SurfacePoint> surface; ///< that `at` is on; none: a point within
+    };
+    std::optional<Entry> entry(int asked) const;
     void start(int asked);
     void step();
     bool scatter(Walker&, double distance);
@@ -39,7 +45,14 @@ private:
     void probe(int asked);
     void weigh(Walker&, double way, bool scatters) const;
     double distance(const Walker&) const;
+    /// Points of a batch where light is to be found that enters there.
+    void settleAt(BatchContext&, std::span<const Exit>);
     void gatherAt(std::span<const Exit>, Sched&);
+    /// Takes the exits where surfaces say themselves what enters.
+    void askSurfaces(Sched&);
+    /// What the shader of the surface, the same for all, says of that light; moves to the front the exits of which it says
+    /// nothing.
+    size_t askAt(std::span<Exit>, Sched&);
     void skies(const BatchContext&, Sched&);
     bool belongs(uint32_t shape, int group) const;
     accel::Ray rayOf(const Walker&, double length) const;

@@ -11,6 +11,9 @@ struct Below {
     float anisotropy = 0, index = 1; ///< index: of refraction, relative to outside
     SubsurfaceSite::Model model = SubsurfaceSite::Model::Walk;
     int group = 0; ///< Engine::groupOf(): of the shapes that bound it
+    Vec3 normal;   ///< about which light enters, unit, out of the surface; 0: that of the geometry
+    Vec3 from;     ///< where it enters, if not at the shaded point
+    bool elsewhere = false;
 };
 
 /// What Attribute "subsurface" says of a shape; < 0: nothing.

@@ -219,11 +219,14 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     b->scale = row({"scale", "unitlength"});
     b->anisotropy = row({"anisotropy"});
     b->group = text("groupname");
+    for (size_t a = 0; a < i.rows.size(); ++a)
+        if (s.argKinds[a] == rsl::ir::Kind::Triple) (b->point < 0 ? b->point : b->normal) = i.rows[a];
     for (const char* name : {"model", "groupname"})
         if (row({name}) >= 0)
             said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
-    if (row({"irradiance"}) >= 0)
-        said("irradiance", "\"irradiance\" is not used: what enters elsewhere on the surface is found there, from the lights");
+    if ((b->irradiance = row({"irradiance"})) >= 0 && k.facts().suspends)
+        said("irradiance",
+             "the shader waits for rays, so that its \"irradiance\" is not used: what enters is found from the lights");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
         said("type", "a point cloud is read where \"filename\" names one; light is found by rays here");

@@ -82,7 +82,7 @@ struct OcclusionSite {
 /// What subsurface() says of what lies below. Rows, or -1: Attribute "subsurface" says it.
 struct SubsurfaceSite {
     int samples = -1, scattering = -1, absorption = -1, path = -1, diffusePath = -1, reflectance = -1, index = -1, scale = -1,
-        anisotropy = -1;
+        anisotropy = -1, point = -1, normal = -1, irradiance = -1;
     enum class Model : uint8_t { Walk, Dipole, BetterDipole } model = Model::Walk;
     std::string group; ///< "": the attribute's
 };

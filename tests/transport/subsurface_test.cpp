@@ -286,14 +286,114 @@ TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
                        "subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
     Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(s.one(kView).x));
-    for (const char* word :
-         {"no model \"mirror\"", "\"irradiance\" is not used", "a point cloud is read where \"filename\" names one"})
+    for (const char* word : {"no model \"mirror\"", "a point cloud is read where \"filename\" names one"})
         EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
     for (const char* bad : {"\"color sc\" [0 0 0]", "\"color sc\" [-1 -1 -1]", "\"sc_\" 0", "\"ior\" 0", "\"ior\" 1e9",
                             "\"color sc\" [1e30 1e30 1e30] \"color ab\" [1e30 1e30 1e30]"}) {
         Scene b(world(kAbove + "Surface \"skin\" " + std::string(bad) + " " + kFloor), withShaders(Hider::Path));
         const double v = b.estimate(kView, 50).mean();
         EXPECT_TRUE(std::isfinite(v) && v >= 0) << bad;
+    }
+}
+
+// A clear body that absorbs, in a furnace: what is left is exp(-absorption way), over ways that are known.
+TEST_F(Subsurface, ItBeginsAtItsPointAndAboutItsNormal) {
+    writeShader(
+        "begins",
+        "surface begins(float at = 0, tilt = 0;) { Oi = 1; normal n = normalize(N); vector t = normalize(n ^ "
+        "vector(.3, 1, .2)); point c = point \"object\" (0, 0, 0);\n"
+        "    Ci = subsurface(at > 0 ? c + (at - 1) * n : at < 0 ? c - n : P, cos(tilt) * n + sin(tilt) * t, \"scattering\", 0, "
+        "\"absorption\", .7, \"ior\", 1); }\n");
+    // Entering a ball of radius 1 about a normal that is tilted by so much, a way of cosine c with the ball's own is 2 |c| long.
+    const auto chords = [](double tilt) {
+        double sum = 0;
+        const int n = 400;
+        for (int i = 0; i < n; ++i)
+            for (int k = 0; k < n; ++k) {
+                const double z2 = (i + .5) / n, z = std::sqrt(z2), x = std::sqrt(1 - z2) * std::cos(2 * kPi * (k + .5) / n);
+                sum += std::exp(-.7 * 2 * std::fabs(z * std::cos(tilt) + x * std::sin(tilt)));
+            }
+        return sum / (n * n);
+    };
+    EXPECT_NEAR(chords(0), 2 * (1 - 2.4 * std::exp(-1.4)) / (1.4 * 1.4), 1e-4);
+    struct Case {
+        const char* given;
+        double want;
+    };
+    for (const Case& k : {Case{"", chords(0)}, Case{"\"tilt\" .6", chords(.6)}, Case{"\"tilt\" 1.2", chords(1.2)},
+                          Case{"\"at\" 1", std::exp(-.7)}, // from the middle
+                          Case{"\"at\" 3.5", chords(0)},   // above the surface: it is put onto it
+                          Case{"\"at\" -1", chords(0)}}) { // on the other side: n points inward there
+        Scene s(world(kSky + "Translate 0 0 5 Surface \"begins\" " + std::string(k.given) + " Sphere 1 -1 1 360\n"),
+                withShaders(Hider::Path));
+        const Moments m = s.estimate(rayTo({.3f, .1f, 0}, {.3f, .1f, 5}), samples(6000));
+        EXPECT_NEAR(m.mean(), k.want, kZ * m.se() + 1e-4) << k.given;
+        EXPECT_LT(m.se(), .01) << k.given;
+    }
+}
+
+// The floor is dark, and what its shader asks for is on a wall behind it that has the light of the sun straight on.
+TEST_F(Subsurface, ItBeginsOnAnotherPrimitiveOfTheGroup) {
+    writeShader("there", "surface there() { Oi = 1; vector x = vector \"world\" (-1, 0, 0);\n"
+                         "    Ci = subsurface(point \"world\" (-70, 2, 0), x, \"model\", \"walk\", \"scattering\", .8, "
+                         "\"absorption\", .2, \"scale\", 20, \"ior\", 1.3); }\n");
+    writeShader("thereflat", "surface thereflat() { Oi = 1; vector x = vector \"world\" (-1, 0, 0);\n"
+                             "    Ci = subsurface(point \"world\" (-70, 2, 0), x, \"model\", \"jensen\", \"scattering\", .8, "
+                             "\"absorption\", .2, \"scale\", 20, \"ior\", 1.3); }\n");
+    for (const char* shader : {"there", "thereflat"})
+        for (const Hider h : {Hider::Hidden, Hider::Path}) {
+            Scene s(world("LightSource \"distantlight\" 1 \"intensity\" .5 \"from\" [-1 0 0] \"to\" [0 0 0] Attribute "
+                          "\"subsurface\" \"string groupname\" \"all\" Surface \"" +
+                          std::string(shader) + "\" " + kFloor + "Polygon \"P\" [-70 -9 -9  -70 -9 9  -70 13 9  -70 13 -9]\n"),
+                    withShaders(h));
+            const Moments m = s.estimate(kView, h == Hider::Path ? samples(8000) : 600);
+            const double whole = shader == std::string("there") ? HalfSpace(1.3).reflectance(.8)
+                                                                : Dipole(HalfSpace(1.3), false, .2 * 20, .8 * 20).total();
+            EXPECT_NEAR(m.mean(), .5 * whole, kZ * m.se() + 1e-5) << shader << int(h);
+            EXPECT_LT(m.se(), .03 * whole) << shader << int(h);
+        }
+}
+
+// What enters is what shaders say of it: no light is there, and of the spot comes as much back to its middle as the dipole's
+// integral over it.
+TEST_F(Subsurface, WhatEntersIsWhatShadersSay) {
+    const std::string tail = "\"scattering\", .8, \"absorption\", .2, \"ior\", 1.3); }\n";
+    writeShader("even",
+                "surface even() { Oi = 1; Ci = subsurface(P, N, \"scale\", 20, \"irradiance\", color(.2, .5, 2), " + tail);
+    writeShader("spot",
+                "surface spot() { Oi = 1; point w = transform(\"world\", P); float r = sqrt(xcomp(w) * xcomp(w) + zcomp(w) * "
+                "zcomp(w));\n    Ci = subsurface(P, N, \"model\", \"jensen\", \"scale\", 1, \"irradiance\", color(r < .8 ? "
+                "1 : 0), " +
+                    tail);
+    const HalfSpace half(1.3);
+    const Dipole dipole(half, false, .2, .8);
+    double within = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const double r = .8 * (i + .5) / 4000;
+        within += 2 * kPi * r * dipole.at(r) * .8 / 4000;
+    }
+    EXPECT_LT(within, .7 * dipole.total());
+    for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        const int n = h == Hider::Path ? samples(20000) : 1500;
+        const Moments even = Scene(world("Surface \"even\" " + std::string(kFloor)), withShaders(h)).estimate(kView, n);
+        int k = 0;
+        for (const double irradiance : {.2, .5, 2.}) {
+            const double want = irradiance * half.reflectance(.8);
+            EXPECT_NEAR(even.mean(k), want, kZ * even.se(k) + 1e-5) << int(h);
+            EXPECT_LT(even.se(k++), .03 * want);
+        }
+        const Moments spot = Scene(world("Surface \"spot\" " + std::string(kFloor)), withShaders(h)).estimate(kView, n);
+        EXPECT_NEAR(spot.mean(), within, kZ * spot.se() + 1e-5) << int(h);
+        EXPECT_LT(spot.se(), .03 * within);
+    }
+    // Made of light: by itself where lights run at once; from the lights where the shader waits for them.
+    writeShader("lit",
+                "surface lit() { Oi = 1; Ci = subsurface(P, N, \"scale\", 20, \"irradiance\", diffuse(normalize(N)), " + tail);
+    for (const Hider h : {Hider::Hidden, Hider::Path}) {
+        Scene s(world(kAbove + "Surface \"lit\" " + kFloor), withShaders(h));
+        const Moments m = s.estimate(kView, h == Hider::Path ? samples(8000) : 600);
+        EXPECT_NEAR(m.mean(), .5 * half.reflectance(.8), kZ * m.se() + 1e-5) << int(h);
+        EXPECT_EQ(s.messages().find("\"irradiance\" is not used") != std::string::npos, h == Hider::Path) << s.messages();
     }
 }
 

@@ -21,7 +21,7 @@ void KernelRun::forget() {
     for (LightSheet& sheet : sheets) sheet.made = sheet.refused = false;
     draws.clear();
     lightChannels.clear();
-    lightDistance.clear();
+    lightReach.clear();
     gathers.clear();
 }
 

@@ -22,8 +22,8 @@ public:
     /// Light arriving at queries (ShadePoint::Ps) from one light. Area lights: P is the point on the emitter.
     virtual void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue>, const LightCall&) = 0;
     /// Takes from the values of one light what stands between it and the points that it lights: point `first` + laneOf[i] of a
-    /// run.
-    virtual void shadowLight(const KernelRun&, const BoundLight&, int first, std::span<const ShadePoint>,
+    /// run. `draw`: drawOf() the loop.
+    virtual void shadowLight(const KernelRun&, const BoundLight&, int first, uint32_t draw, std::span<const ShadePoint>,
                              std::span<const int> laneOf, std::span<LightValue>) = 0;
 };
 

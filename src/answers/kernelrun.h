@@ -31,9 +31,10 @@ struct KernelRun {
     std::vector<LightSheet> sheets; ///< by turn of all lights; empty until a loop runs
     std::vector<uint32_t> draws;    ///< by site and point: how often random() was called there; empty until it is
     std::vector<float>
-        lightChannels; ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
-    int lightNow = -1; ///< whose light it is that the loop over lights has; -1: not known
-    std::vector<float> lightDistance; ///< by lane: to the light sample; 1e38 for distant lights
+        lightChannels;      ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
+    int lightNow = -1;      ///< whose light it is that the loop over lights has; -1: not known
+    uint32_t lightDraw = 0; ///< drawOf() that loop
+    std::vector<ShadowReach> lightReach; ///< by lane: of the light sample; 1e38 far for distant lights
     /// By number of the statement and first point of a strip: what its gather loops hold now.
     std::map<std::pair<int, int>, GatherRows> gathers;
     /// As new, in the memory that is there; of `points` and `batch` the caller decides.

@@ -158,10 +158,11 @@ void Answers::lightParameters(const ServiceCall& call, const LightsAsked& asked)
 void Answers::callLights(const ServiceCall& call, const LightsAsked& asked) {
     KernelRun& c = call.c;
     const size_t width = size_t(call.lanes);
-    c.lightDistance.assign(width, 1e38f);
+    c.lightReach.assign(width, {});
     c.lightNow = asked.size() == 1 ? int(asked.begin()->first) : -1;
     LightLoop turn;
     turn.depth = lightLoop(c, call.first, call.lanes).depth + 1; // a call is a loop of its own
+    c.lightDraw = drawOf(turn);
     turn.rows.assign(7 * width, 0);
     for (int lane = 0; lane < call.lanes; ++lane) {
         for (size_t r = 0; r < 3; ++r) turn.rows[r * width + size_t(lane)] = call.at(int(r) + 1, lane);
@@ -175,7 +176,7 @@ void Answers::callLights(const ServiceCall& call, const LightsAsked& asked) {
             call.put(0, lane, 1);
             const auto row = [&](size_t r) { return (r < 3 ? -1.f : 1.f) * kept.out[r * width + size_t(lane)]; };
             for (size_t r = 0; r < 9; ++r) call.put(int(r) + 1, lane, lit >> lane & 1 ? row(r) : r < 6 ? 0.f : 1.f);
-            c.lightDistance[size_t(lane)] = kept.distance[size_t(lane)];
+            c.lightReach[size_t(lane)] = kept.reach[size_t(lane)];
         }
     }
 }
@@ -189,7 +190,7 @@ uint64_t Answers::callLight(const ServiceCall& call, LightLoop& turn, int li, ui
     for (int k = 0; k < light.samples; ++k) {
         LightLoop::Kept one;
         one.out.assign(9 * width, 0);
-        one.distance.assign(width, 1e38f);
+        one.reach.assign(width, {});
         one.values.assign(width * size_t(light.valueWidth), 0);
         const uint64_t now = sampleLight(c, turn, li, k, light.samples, call.first, of, call.lanes, one);
         if (k == 0) kept = one;
@@ -213,7 +214,7 @@ uint64_t Answers::callLight(const ServiceCall& call, LightLoop& turn, int li, ui
             if (u * sum[at] >= w) continue;
             weight[at] = w;
             for (size_t r = 0; r < 9; ++r) kept.out[r * width + at] = one.out[r * width + at];
-            kept.distance[at] = one.distance[at];
+            kept.reach[at] = one.reach[at];
         }
     }
     for (size_t at = 0; at < width; ++at)

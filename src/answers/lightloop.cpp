@@ -23,7 +23,8 @@ std::string categoriesOf(const BoundLight& l) {
 }
 
 bool sampledAnew(const BoundLight& l, bool path) {
-    return l.kind == LightKind::Area || l.sentCl >= 0 || (path && (l.cone || l.kind == LightKind::Environment));
+    return l.kind == LightKind::Area || l.sentCl >= 0 || (!path && l.shadows && l.shadowRadius >= 0) ||
+           (path && (l.cone || l.kind == LightKind::Environment));
 }
 
 // Room for limits::kLightTurns turns and more.
@@ -66,7 +67,7 @@ int32_t Answers::lightBegin(KernelRun& c, int site, int first, uint64_t mask, in
     const SiteInfo& info = c.bound->sites[size_t(site)];
     // The loop around waits; when this one ends it is as it was.
     if (loop.around.size() <= size_t(loop.depth)) loop.around.emplace_back();
-    loop.distance = c.lightDistance;
+    loop.reach = c.lightReach;
     std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
     ++loop.depth;
     std::swap(static_cast<LightSetup&>(loop), loop.next);
@@ -122,8 +123,9 @@ void Answers::lightEnd(KernelRun& c, int first, int lanes) {
     if (loop.depth == 0) return;
     --loop.depth;
     std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
-    c.lightDistance = loop.distance;
+    c.lightReach = loop.reach;
     c.lightNow = loop.light;
+    c.lightDraw = drawOf(loop);
 }
 
 void Answers::checkCategory(KernelRun& c, const rsl::ir::Site& site, int32_t category) {
@@ -191,7 +193,8 @@ uint64_t Answers::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet&
         loop.values.assign(width * values, 0);
         std::copy_n(sheet.values.begin() + long(from * values), most * values, loop.values.begin());
     }
-    c.lightDistance.assign(width, 1e38f);
+    c.lightReach.assign(width, {});
+    c.lightDraw = drawOf(loop);
     c.lightNow = int(&light - world_->lights_.data());
     LoopCone cone(loop, width);
     uint64_t lit = 0;
@@ -199,7 +202,7 @@ uint64_t Answers::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet&
         const auto at = [&](size_t r) { return sheet.out[r * size + from + lane]; };
         if (!(mask >> lane & 1) || !sheet.lit[from + lane] || !cone.has(lane, {at(0), at(1), at(2)})) continue;
         lit |= uint64_t(1) << lane;
-        c.lightDistance[lane] = sheet.distance[from + lane];
+        c.lightReach[lane] = sheet.reach[from + lane];
     }
     for (size_t r = 0; r < 9; ++r)
         for (size_t lane = 0; lane < most; ++lane)
@@ -219,7 +222,7 @@ uint64_t Answers::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int fi
         kept.key.assign(7 * width, 0);
         kept.hash.assign(width, 0);
         kept.out.assign(9 * width, 0);
-        kept.distance.assign(width, 1e38f);
+        kept.reach.assign(width, {});
         kept.values.assign(width * size_t(light.valueWidth), 0);
     }
     const int same = light.kind == LightKind::Environment ? 7 : 3;
@@ -243,7 +246,8 @@ uint64_t Answers::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int fi
     }
     loop.values = kept.values;
     uint64_t lit = 0;
-    c.lightDistance.assign(width, 1e38f);
+    c.lightReach.assign(width, {});
+    c.lightDraw = drawOf(loop);
     c.lightNow = li;
     LoopCone cone(loop, width);
     for (int lane = 0; lane < lanes; ++lane) {
@@ -252,7 +256,7 @@ uint64_t Answers::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int fi
         if (light.kind != LightKind::Environment && !cone.has(l, {kept.out[l], kept.out[width + l], kept.out[2 * width + l]}))
             continue;
         lit |= uint64_t(1) << lane;
-        c.lightDistance[l] = kept.distance[l];
+        c.lightReach[l] = kept.reach[l];
         for (size_t r = 0; r < 9; ++r) out[r * width + l] = kept.out[r * width + l];
     }
     return lit;

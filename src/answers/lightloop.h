@@ -26,6 +26,11 @@ struct LightCall {
     std::vector<float>* values = nullptr;        ///< gets BoundLight::values: valueWidth numbers a query
 };
 
+/// How far shadow rays go to a light sample, and the radius of the disk there that they go to; 0: to a point.
+struct ShadowReach {
+    float distance = 1e38f, radius = 0;
+};
+
 /// What the setup before a loop gave.
 struct LightSetup {
     int setup = -1;                  ///< its call site; -1: none
@@ -39,9 +44,9 @@ struct LightTurns : LightSetup {
     std::vector<float> rows;                 ///< P, axis, angle: seven rows
     bool refresh = false;                    ///< "lightcache" "refresh"
     // The turn that runs now.
-    int light = -1;              ///< -1: no loop runs
-    std::vector<float> values;   ///< by lane, the light's BoundLight::values
-    std::vector<float> distance; ///< by lane: KernelRun::lightDistance
+    int light = -1;                 ///< -1: no loop runs
+    std::vector<float> values;      ///< by lane, the light's BoundLight::values
+    std::vector<ShadowReach> reach; ///< by lane: KernelRun::lightReach
 };
 
 /// State of the loops of one strip: of the innermost that runs. A strip that waits for rays in the middle of its loop keeps it
@@ -58,7 +63,7 @@ struct LightLoop : LightTurns {
         std::vector<float> key;              ///< the seven rows
         std::vector<uint64_t> hash;
         std::vector<float> out, values; ///< L, Cl, Ol: nine rows; values by lane
-        std::vector<float> distance;
+        std::vector<ShadowReach> reach;
     };
     std::unordered_map<uint64_t, Kept> kept; ///< by keptName()
 
@@ -74,11 +79,11 @@ struct LightLoop : LightTurns {
 /// One sample of a light for all points of a batch: what loops find whose P is that of the surface, and that send nothing.
 struct LightSheet {
     bool made = false, refused = false;
-    int size = 0;                ///< points
-    std::vector<float> out;      ///< L, Cl, Ol: nine rows of `size`
-    std::vector<float> distance; ///< by point: KernelRun::lightDistance
-    std::vector<float> values;   ///< by point: BoundLight::values
-    std::vector<char> lit;       ///< by point
+    int size = 0;                   ///< points
+    std::vector<float> out;         ///< L, Cl, Ol: nine rows of `size`
+    std::vector<ShadowReach> reach; ///< by point: KernelRun::lightReach
+    std::vector<float> values;      ///< by point: BoundLight::values
+    std::vector<char> lit;          ///< by point
 };
 
 /// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the

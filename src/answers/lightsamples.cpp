@@ -273,7 +273,7 @@ uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int t
             kept.ran |= uint64_t(v[i].lit) << laneOf[i];
             sentSample(light, turn, values.data() + i * width, v[i]);
         }
-    if (light.shadows) tracer_->shadowLight(c, light, first, q, laneOf, v);
+    if (light.shadows) tracer_->shadowLight(c, light, first, drawOf(loop), q, laneOf, v);
     for (size_t i = 0; i < q.size(); ++i) {
         const size_t lane = size_t(laneOf[i]);
         std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth,
@@ -286,7 +286,8 @@ uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int t
             toLight.x, toLight.y, toLight.z, v[i].Cl.x * factor[i], v[i].Cl.y * factor[i], v[i].Cl.z * factor[i],
             v[i].Ol.x, v[i].Ol.y, v[i].Ol.z};
         for (size_t r = 0; r < 9; ++r) kept.out[r * size_t(lanes) + lane] = rows[r];
-        kept.distance[lane] = v[i].ownShadow ? 0 : sky || light.kind == LightKind::Distant ? 1e38f : length(toLight);
+        if (v[i].ownShadow) kept.reach[lane] = {0, 0};
+        else kept.reach[lane] = {sky || light.kind == LightKind::Distant ? 1e38f : length(toLight), v[i].shadowRadius};
         lit |= uint64_t(1) << lane;
     }
     return lit;

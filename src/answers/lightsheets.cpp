@@ -62,7 +62,7 @@ void Answers::fillSheet(KernelRun& c, const LightLoop& loop, int li, int turn, L
     sheet.made = true;
     sheet.size = int(n);
     sheet.out.resize(9 * n);
-    sheet.distance.assign(n, 1e38f);
+    sheet.reach.assign(n, {});
     sheet.values.assign(n * width, 0);
     sheet.lit.assign(n, 0);
     std::vector<ShadePoint>& q = sheetRoom_.q;
@@ -90,7 +90,7 @@ void Answers::fillSheet(KernelRun& c, const LightLoop& loop, int li, int turn, L
     call.values = &values;
     if (light.asksSurface) lit = litSurface(c, loop, of, 0, int(n)), call.lit = &lit;
     tracer_->evaluateLight(light, q, v, call);
-    if (light.shadows) tracer_->shadowLight(c, light, 0, q, of, v);
+    if (light.shadows) tracer_->shadowLight(c, light, 0, drawOf(loop), q, of, v);
     for (size_t k = 0; k < q.size(); ++k) {
         const size_t i = size_t(of[k]);
         std::copy_n(values.begin() + long(k * width), width, sheet.values.begin() + long(i * width));
@@ -102,7 +102,7 @@ void Answers::fillSheet(KernelRun& c, const LightLoop& loop, int li, int turn, L
             sheet.out[size_t(r + 3) * n + i] = Cl[r];
             sheet.out[size_t(r + 6) * n + i] = v[k].Ol[r];
         }
-        sheet.distance[i] = light.kind == LightKind::Distant ? 1e38f : length(toLight);
+        sheet.reach[i] = {light.kind == LightKind::Distant ? 1e38f : length(toLight), v[k].shadowRadius};
         sheet.lit[i] = 1;
     }
 }

@@ -124,6 +124,13 @@ void Gather::send(const Reached& r) {
         const float far = light.sky ? l.maxDistance : light.kind == LightKind::Distant ? 1e38f : length(queries_.value[k].L);
         e_.shadows.push_back(
             {from, r.w, far < 1e30f && !light.sky ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
+        if (const float radius = queries_.value[k].shadowRadius; radius > 0) {
+            const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+            const Vec2 u = e_.random(ray).pair(lightVertex(size_t(l.point)), use, 0);
+            const Vec3 to = onShadowDisk(queries_.at[k].Ps - queries_.value[k].L, r.w, radius, u) - from;
+            e_.shadows.back().dir = normalizeOr(to, r.w);
+            e_.shadows.back().distance = length(to) * (1 - 1e-5f);
+        }
     }
     ShadowRay& shadow = e_.shadows.back();
     shadow.kind = kind;

@@ -114,8 +114,10 @@ public:
     /// What a transmission() or trace() of a light's kernel gives at a point that it lights, followed to the end at once.
     shading::TargetValue rayOfLight(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                     uint32_t occurrence, TraceSums* sums = nullptr);
-    void shadowLight(const KernelRun&, const BoundLight&, int first, std::span<const ShadePoint>, std::span<const int> laneOf,
-                     std::span<LightValue>) override;
+    void shadowLight(const KernelRun&, const BoundLight&, int first, uint32_t draw, std::span<const ShadePoint>,
+                     std::span<const int> laneOf, std::span<LightValue>) override;
+    /// What a light said of its shadow; nonsense is reported once and left out.
+    void takeShadowSays(LightValue&, const BoundLight&, float radius, float samples);
     // hemisphere.cpp
     /// The rays of an occlusion() at p, for `out`: together they bring `weight` where nothing is met.
     void hemisphereRays(const BatchContext&, const SiteInfo&, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint*,
@@ -250,8 +252,8 @@ public:
     void askOfTrace(const BatchContext&, const SiteInfo&, const ShadePoint&, const Row&, LobeVertex&, LobeParams&);
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
                  bool owns, uint32_t occurrence);
-    void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
-                         float distance);
+    /// `in`: rows of the call's arguments, and behind them two: ShadowReach::radius and the vertex of its random numbers.
+    void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId);
     // ambient.cpp
     std::vector<AmbientAsked> ambients_; ///< of the batch whose requests are taken
     render::NumberRows ambientNumbers_;

@@ -116,6 +116,13 @@ private:
         c *= phase * n.scale * v.kept(RayType::Diffuse) * (area_ ? 1 / drawn_[i].pdf : float(kPi)); // Cl is irradiance / pi
         if (c == Color(0)) return;
         ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter, &r};
+        if (v.shadowRadius > 0) {
+            const uint32_t use = kLightPoint + uint32_t(&light_ - e_.world().lights_.data());
+            const Vec2 u = e_.random(r).pair(childVertex(r.vertex, kFlight, 5), use, 0);
+            const Vec3 onDisk = onShadowDisk(p.Ps - v.L, to, v.shadowRadius, u) - p.Ps;
+            shadow.dir = normalizeOr(onDisk, to);
+            shadow.distance = length(onDisk) * (1 - 1e-5f);
+        }
         if (v.ownShadow) shadow.distance = 0;
         shadow.media = r.media;
         shadow.share = e_.extraOf(r).share;

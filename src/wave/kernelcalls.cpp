@@ -47,10 +47,18 @@ void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64
     throw LimitReached();
 }
 
-/// The row of the light's index is replaced by the distance, which only the loop knows.
-void takeDistances(const BatchContext& c, const SiteInfo& s, float* arguments, int lanes) {
-    const size_t have = std::min(size_t(lanes), c.lightDistance.size());
-    std::copy_n(c.lightDistance.begin(), have, arguments + size_t(s.rows[0]) * size_t(lanes));
+/// What only the loop knows: the row of the light's index is replaced by the distance; two more rows stand behind the arguments.
+void takeReach(const BatchContext& c, const SiteInfo& s, int first, float* arguments, int lanes) {
+    const size_t have = std::min(size_t(lanes), c.lightReach.size()), width = size_t(lanes);
+    float* more = arguments + size_t(rowsOfArguments(s)) * width;
+    std::fill_n(more, 2 * width, 0.f);
+    const uint32_t use = kLightPoint + uint32_t(c.lightNow < 0 ? c.engine->world().lights_.size() : size_t(c.lightNow));
+    for (size_t lane = 0; lane < have; ++lane) {
+        arguments[size_t(s.rows[0]) * width + lane] = c.lightReach[lane].distance;
+        if (!(c.lightReach[lane].radius > 0) || size_t(first) + lane >= c.rays.size()) continue;
+        more[lane] = c.lightReach[lane].radius;
+        more[width + lane] = std::bit_cast<float>(childVertex(c.rays[size_t(first) + lane].vertex, use, c.lightDraw));
+    }
 }
 
 void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
@@ -78,23 +86,27 @@ void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, in
     }
     const SiteInfo& s = c.bound->sites[site];
     if (isRequest(s.kind, c.bound->path)) {
-        size_t rows = 0;
-        for (rsl::ir::Kind k : s.site->argKinds) rows += size_t(rsl::ir::components(k));
+        const size_t rows = size_t(rowsOfArguments(s));
         if (c.bound->kernel->facts().suspends) {
             c.requestSite = site;
             c.requestFirst = first;
             c.requestLanes = lanes;
             c.requestMask = mask;
             c.requestIn.assign(in, in + rows * lanes);
-            if (s.kind == SiteKind::LightVisibility) takeDistances(c, s, c.requestIn.data(), lanes);
+            if (s.kind == SiteKind::LightVisibility) {
+                c.requestIn.resize((rows + 2) * size_t(lanes));
+                takeReach(c, s, first, c.requestIn.data(), lanes);
+            }
             c.requestOut = out;
             return;
         }
-        takeRoom(c, s, rows + 3, lanes, mask);
+        takeRoom(c, s, rows + 5, lanes, mask);
         EmitRecord e{site, first, lanes, mask, c.arena.size(), s.kind == SiteKind::LightVisibility ? c.lightNow : -1};
         c.arena.insert(c.arena.end(), in, in + (rows + 3) * lanes);
-        if (s.kind == SiteKind::LightVisibility)
-            takeDistances(c, s, c.arena.data() + e.offset + size_t(3) * size_t(lanes), lanes);
+        if (s.kind == SiteKind::LightVisibility) {
+            c.arena.resize(c.arena.size() + 2 * size_t(lanes));
+            takeReach(c, s, first, c.arena.data() + e.offset + size_t(3) * size_t(lanes), lanes);
+        }
         c.emits.push_back(e);
         return;
     }

@@ -160,8 +160,7 @@ void Engine::followAsides(std::span<const AskedAside> rest, std::span<std::share
             const TargetId target = c.targets[size_t(point)];
             const Color through = c.rays[size_t(point)].weight;
             if (s.kind == SiteKind::LightVisibility)
-                lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target,
-                                args[size_t(s.rows[0]) * size_t(e.lanes) + size_t(a.lane)]);
+                lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target);
             else
                 request(c, s, point, args, e.lanes, a.lane, asksShadows(s.kind) ? a.weight * through : a.weight, target, false,
                         occurrence[{e.site, point}]++);

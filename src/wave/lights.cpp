@@ -78,9 +78,7 @@ shading::TargetValue Engine::follow(BatchContext& c, const SiteInfo& s, int poin
     const TargetId target = sched.newRoot();
     // request() reads rows of lanes: this is one lane.
     std::vector<float> in;
-    int rows = 0;
-    for (rsl::ir::Kind k : s.site->argKinds) rows += rsl::ir::components(k);
-    for (int r = 0; r < rows; ++r) in.push_back(row(r));
+    for (int r = 0; r < rowsOfArguments(s); ++r) in.push_back(row(r));
     request(c, s, point, in.data(), 1, 0, Color(1), target, true, occurrence);
     if (lobes.empty()) return {};
     LobeVertex l = lobes.back();
@@ -287,6 +285,9 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
         v.lit = light.outLit < 0 || b.value(light.outLit, 0, int(i)) != 0;
         if (light.nonDiffuse >= 0) v.nonDiffuse = b.value(light.nonDiffuse, 0, int(i));
         if (light.nonSpecular >= 0) v.nonSpecular = b.value(light.nonSpecular, 0, int(i));
+        if (light.shadowRadius >= 0)
+            takeShadowSays(v, light, b.value(light.shadowRadius, 0, int(i)),
+                           light.shadowSamples < 0 ? 1 : b.value(light.shadowSamples, 0, int(i)));
         if (call.values) {
             float* to = call.values->data() + i * size_t(light.valueWidth);
             for (const BoundLight::Value& value : light.values)
@@ -326,29 +327,6 @@ LitSurface Engine::litBy(std::span<const int> of) const {
         return litValues_[size_t(of[size_t(q)])].displaced.get();
     };
     return lit;
-}
-
-void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first, std::span<const ShadePoint> q,
-                         std::span<const int> laneOf, std::span<LightValue> v) {
-    std::vector<ShadowRay> rays;
-    std::vector<size_t> of;
-    for (size_t i = 0; i < q.size(); ++i) {
-        if (!v[i].lit || v[i].Cl == Color(0)) continue;
-        const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
-        const Vec3 to = -v[i].L;
-        const float far = length(to);
-        if (!(far > 0)) continue;
-        const Vec3 w = to / far;
-        const Vec3 o = geometry::offsetOrigin(lit.surface, w, length(q[i].Ps - lit.surface.P));
-        const bool anywhere = light.kind == LightKind::Distant;
-        const float distance = anywhere ? 1e38f : light.kind == LightKind::Area ? far * (1 - 1e-4f) : far * (1 - 1e-5f);
-        rays.push_back({o, w, distance, Color(1), shading::kNoTarget, lit.shutter, lit.ray});
-        rays.back().media = mediaTowards(c, first + laneOf[i], w);
-        of.push_back(i);
-    }
-    std::vector<Color> left(rays.size());
-    transmittances(rays, left);
-    for (size_t k = 0; k < of.size(); ++k) v[of[k]].Cl *= left[k];
 }
 
 } // namespace alpenglow::transport

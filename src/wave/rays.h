@@ -76,6 +76,12 @@ struct Way {
 };
 Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 
+/// Rows of floats of all arguments of a call.
+int rowsOfArguments(const SiteInfo&);
+
+/// A point of a disk of this radius about `centre`, which is seen along w (unit): LightValue::shadowRadius.
+Vec3 onShadowDisk(const Vec3& centre, const Vec3& w, float radius, Vec2 random);
+
 /// Light beside that of a ShadowRay, and the next of the same.
 struct MoreLight {
     Color contribution;

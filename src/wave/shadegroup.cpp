@@ -17,18 +17,6 @@ Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
 }
 } // namespace
 
-void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
-                             TargetId target, float distance) {
-    auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
-    Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
-    const Vec3 w = directionOr(l, {});
-    if (!(dot(w, w) > 0)) return;
-    const ShadePoint& p = c.points[point];
-    Vec3 o = geometry::offsetOrigin(p.surface, w, length(p.P - p.surface.P));
-    shadows.push_back({o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.shutter, p.ray});
-    shadows.back().media = mediaTowards(c, point, w);
-}
-
 Color Engine::leftBehind(const BatchContext& c, int i) const {
     // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
     if (world_->media_.empty() || c.haze.empty() || !c.haze[size_t(i)].on) return Color(1);
@@ -251,8 +239,7 @@ void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::ve
                 continue; // nobody asks what photons see
             if (s.kind == SiteKind::LightVisibility) {
                 const size_t had = shadows.size();
-                lightVisibility(c, s, point, args, e.lanes, lane, weight * c.rays[point].weight, c.targets[point],
-                                args[size_t(s.rows[0]) * e.lanes + lane]);
+                lightVisibility(c, s, point, args, e.lanes, lane, weight * c.rays[point].weight, c.targets[point]);
                 if (shadows.size() > had) {
                     const PathRay& ray = c.rays[size_t(point)];
                     shadows.back().share = extraOf(ray).share;

@@ -110,8 +110,7 @@ void KernelStrip::ask(Sched& s) {
         const int lane = laneOf_[k], point = first_ + lane;
         const uint32_t occurrence = occurrences_[size_t(site_) * 64 + size_t(lane)]++;
         if (site.kind == SiteKind::LightVisibility) {
-            e.lightVisibility(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k],
-                              in_[size_t(site.rows[0]) * size_t(lanes_) + size_t(lane)]);
+            e.lightVisibility(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k]);
             continue;
         }
         if (c_->rays[size_t(point)].quiet && (site.lobe || site.kind == SiteKind::Ambient)) continue; // nobody hears of light

@@ -98,6 +98,7 @@ void setLightKind(BoundLight& part, const std::string& block, bool area, bool pa
     }
     if (part.kind != LightKind::Area) part.emitter = nullptr;
     if (part.instance->name == "slbackground" && !path) part.strategy = LightStrategy::Trace; // rays see it, and nobody is lit
+    if (part.kind != LightKind::Point) part.shadowRadius = -1; // shadows of the others are cast by their geometry, or their angle
     const auto& numbers = part.instance->parameters.numbers;
     if (const auto i = numbers.find(rsl::kImportanceSample); i != numbers.end())
         part.importance = i->second.empty() || i->second[0] != 0;
@@ -109,7 +110,7 @@ void setLightKind(BoundLight& part, const std::string& block, bool area, bool pa
 BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, Diagnostics& d) {
     BoundKernel k;
     std::vector<std::string> extra, outputs;
-    for (const char* name : {rsl::kNonDiffuse, rsl::kNonSpecular})
+    for (const char* name : {rsl::kNonDiffuse, rsl::kNonSpecular, kShadowRadius, kShadowSamples})
         for (const auto& p : light.program->parameters())
             if (p.name == name) extra.push_back(OutputName::parameterOf(name).text());
     for (const auto& p : light.program->parameters())
@@ -148,6 +149,8 @@ void WorldImpl::bindLightOutputs(BoundLight& part, int block) {
         else if (ofBlock("Ol")) part.outOl = int(i);
         else if (n == OutputName::parameterOf(rsl::kNonDiffuse)) part.nonDiffuse = int(i);
         else if (n == OutputName::parameterOf(rsl::kNonSpecular)) part.nonSpecular = int(i);
+        else if (n == OutputName::parameterOf(kShadowRadius)) part.shadowRadius = int(i);
+        else if (n == OutputName::parameterOf(kShadowSamples)) part.shadowSamples = int(i);
         if (n.parameter) {
             if (n == OutputName::parameterOf(rsl::kSentL, 0)) part.sentL = part.valueWidth;
             if (n == OutputName::parameterOf(rsl::kSentCl, 0)) part.sentCl = part.valueWidth;

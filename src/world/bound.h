@@ -23,6 +23,9 @@ struct ShaderInstance {
 };
 using InstanceRef = std::shared_ptr<const ShaderInstance>;
 
+/// Outputs of lights that stand at a point: the radius of the disk that casts their shadows, and the shadow rays to it.
+inline constexpr char kShadowRadius[] = "__shadowradius", kShadowSamples[] = "__shadowsamples";
+
 enum class LightKind : uint8_t { Ambient, Point, Distant, Environment, Area };
 
 /// Attribute "light" "samplingstrategy": who sees an area light or a sky, illuminance loops or trace(). The lighting shadeops see
@@ -55,7 +58,8 @@ struct BoundLight {
     bool shadows = false; ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
     /// Kernels for strings that a surface sends: by SiteInfo::sentKey of the loop.
     std::map<std::string, BoundKernel> variants;
-    int nonDiffuse = -1, nonSpecular = -1; ///< outputs, or -1
+    int nonDiffuse = -1, nonSpecular = -1;     ///< outputs, or -1
+    int shadowRadius = -1, shadowSamples = -1; ///< Point: outputs, or -1
     std::string handle;
     int samples = 1;
     const scene::Light* source = nullptr;
@@ -88,6 +92,8 @@ struct LightValue {
     bool lit = false;
     bool ownShadow = false; ///< its shader asked transmission() from or to the lit point: Cl has what is in the way already
     float nonDiffuse = 0, nonSpecular = 0; ///< weights of __nondiffuse and __nonspecular
+    float shadowRadius = 0; ///< of the disk about a point light, facing the lit point, that casts its shadows; 0: the point does
+    int shadowSamples = 1;  ///< rays to that disk, outside of path
     /// What a lobe of a lighting shadeop keeps of this light (rsl.md 9).
     float kept(RayType t) const { return std::max(0.f, 1 - (t == RayType::Diffuse ? nonDiffuse : nonSpecular)); }
 };

@@ -25,7 +25,8 @@ surface slclassic(color ambientcolor = .2, globalambient = 0, diffusecolor = .8,
     Ci = clamp(emissive + ambientcolor * (globalambient + ambient()) + albedo * diff + specularcolor * spec, color 0, color 1);
     float contribution = 1;
     rayinfo("weight", contribution);
-    if (contribution > mincontribution && (kr > 0 || kt > 0)) {
+    if (kr > 0 || kt > 0) {
+        float goes = (contribution > mincontribution) ? 1 : 0; /* a ray of weight 0 is not sent, and counted as ignored */
         vector R = reflect(In, Nf), T = refract(In, Nf, (In . Nn < 0) ? 1 / kn : kn);
         float inside = (T . T == 0) ? 1 : 0; /* total reflection: what would go through comes back, whole */
         if (inside == 1) T = R;
@@ -34,9 +35,11 @@ surface slclassic(color ambientcolor = .2, globalambient = 0, diffusecolor = .8,
             mirrored = kr + (1 - kr) * pow(1 - abs(In . Nn), 5);
             through = 1 - mirrored;
         }
-        if (kt > 0)
-            Ci += through * trace(P, T, "type", "specular", "weight", color((inside == 1) ? 1 : kt));
+        if (kt > 0 && inside == 1)
+            Ci += through * trace(P, T, "type", "specular", "label", "totalreflection", "weight", color(goes));
+        if (kt > 0 && inside == 0)
+            Ci += through * trace(P, T, "type", "specular", "weight", color(goes * kt));
         if (mirrored > 0)
-            Ci += mirrored * trace(P, R, "type", "specular", "weight", color(kr));
+            Ci += mirrored * trace(P, R, "type", "specular", "weight", color(goes * max(kr, 1e-9)));
     }
 }

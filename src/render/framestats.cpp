@@ -27,8 +27,10 @@ void accumulate(RenderStats& all, const RenderStats& f) {
         all.*member += before.*member;
     for (auto member : {&RenderStats::totalRays, &RenderStats::nonFinite, &RenderStats::saturated}) all.*member += before.*member;
     for (const auto& [type, n] : before.rays) all.rays[type] += n;
-    for (auto member : {&RenderStats::Classic::primary, &RenderStats::Classic::reflected, &RenderStats::Classic::refracted,
-                        &RenderStats::Classic::subsampledPixels, &RenderStats::Classic::subsampledRays})
+    for (auto member :
+         {&RenderStats::Classic::primary, &RenderStats::Classic::reflected, &RenderStats::Classic::refracted,
+          &RenderStats::Classic::totalReflected, &RenderStats::Classic::ignored, &RenderStats::Classic::subsampledPixels,
+          &RenderStats::Classic::subsampledRays, &RenderStats::Classic::tests, &RenderStats::Classic::hits})
         all.classic.*member += before.classic.*member;
     all.shading.points += before.shading.points;
     all.shading.batches += before.shading.batches;

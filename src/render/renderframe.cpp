@@ -417,6 +417,10 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.classic.primary += c.camera - std::min(c.camera, stats_.classic.subsampledRays);
     stats_.classic.reflected += c.reflected;
     stats_.classic.refracted += c.refracted;
+    stats_.classic.totalReflected += c.totalReflected;
+    stats_.classic.ignored += c.ignored;
+    stats_.classic.tests += c.tests;
+    stats_.classic.hits += c.hits;
     stats_.shading.points += c.points;
     stats_.shading.batches += c.batches;
     stats_.lanesUsed += double(c.lanesUsed);

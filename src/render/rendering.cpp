@@ -99,6 +99,10 @@ transport::Counters Job::counters() const {
         all.shadow += c.shadow;
         all.reflected += c.reflected;
         all.refracted += c.refracted;
+        all.totalReflected += c.totalReflected;
+        all.ignored += c.ignored;
+        all.tests += c.tests;
+        all.hits += c.hits;
         all.points += c.points;
         all.batches += c.batches;
         all.lanesUsed += c.lanesUsed;

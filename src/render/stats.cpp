@@ -58,8 +58,12 @@ std::string toJson(const RenderStats& s) {
     j["classic"] = {{"primary", s.classic.primary},
                     {"reflected", s.classic.reflected},
                     {"refracted", s.classic.refracted},
+                    {"totalReflected", s.classic.totalReflected},
+                    {"ignored", s.classic.ignored},
                     {"subsampledPixels", s.classic.subsampledPixels},
-                    {"subsampledRays", s.classic.subsampledRays}};
+                    {"subsampledRays", s.classic.subsampledRays},
+                    {"tests", s.classic.tests},
+                    {"hits", s.classic.hits}};
     j["shading"] = {{"points", s.shading.points},
                     {"batches", s.shading.batches},
                     {"laneOccupancy", finite(s.shading.laneOccupancy)},
@@ -86,8 +90,13 @@ std::string toTable(const RenderStats& s) {
         if (n) types += fmt::format("{}{} {}", types.empty() ? "" : ", ", type, grouped(n));
     row("rays", fmt::format("{}, {:.0f} per ms{}", grouped(s.totalRays), raysPerMS(s.totalRays, s.renderSec),
                             types.empty() ? "" : " (" + types + ")"));
-    if (s.classic.reflected || s.classic.refracted)
-        row("specular", fmt::format("{} reflected, {} refracted", grouped(s.classic.reflected), grouped(s.classic.refracted)));
+    const auto part = [](uint64_t n, const char* what) { return n ? fmt::format(", {} {}", grouped(n), what) : ""; };
+    if (s.classic.reflected || s.classic.refracted || s.classic.totalReflected || s.classic.ignored)
+        row("specular", fmt::format("{} reflected, {} refracted{}{}", grouped(s.classic.reflected), grouped(s.classic.refracted),
+                                    part(s.classic.totalReflected, "totally reflected"), part(s.classic.ignored, "ignored")));
+    if (s.classic.tests)
+        row("tests", fmt::format("{}, of which {:.1f} % met a surface", grouped(s.classic.tests),
+                                 100 * double(s.classic.hits) / double(s.classic.tests)));
     if (s.classic.subsampledPixels)
         row("refined",
             fmt::format("{} pixels, by {} rays", grouped(s.classic.subsampledPixels), grouped(s.classic.subsampledRays)));

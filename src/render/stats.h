@@ -23,9 +23,11 @@ struct RenderStats {
     uint64_t saturated = 0;               ///< values clamped by the exact sums
     std::map<std::string, uint64_t> rays; ///< by type; camera, diffuse, specular, transmission, shadow are written even when 0
     /// What a classic ray tracer counts. primary: camera rays but subsampledRays; reflected, refracted: of the specular rays
-    /// those that stay on their side of a surface, and the others.
+    /// those that stay on their side of a surface, and the others; totalReflected: those that shaders call so. ignored: rays
+    /// whose weight is 0, which were not sent. tests, hits: how often rays were followed to the next surface, and met one.
     struct Classic {
-        uint64_t primary = 0, reflected = 0, refracted = 0, subsampledPixels = 0, subsampledRays = 0;
+        uint64_t primary = 0, reflected = 0, refracted = 0, totalReflected = 0, ignored = 0, subsampledPixels = 0,
+                 subsampledRays = 0, tests = 0, hits = 0;
     } classic;
     struct Shading {
         uint64_t points = 0, batches = 0;

@@ -26,8 +26,8 @@ std::vector<OptionalParameter> rayParameters(const char* type = "\"specular\"") 
         {kF, "samples", false, "1", "number of samples"},
         {kS, "type", false, type, "specular, diffuse or transmission: which visibility counts"},
         {kC, "weight", false, "1",
-         "importance of the ray: rayinfo(\"weight\") where it arrives gives the product of those on its way; no ray is left out "
-         "for it"},
+         "importance of the ray: rayinfo(\"weight\") where it arrives gives the product of those on its way; 0: trace() sends no "
+         "ray"},
         {kF, "minsamples", false, "samples", "accepted and ignored"},
         {kF, "samplebase", false, "0", "part of the footprint over which trace() starts its rays"},
         {kS, "excludesubset", false, "\"\"", "groups of objects left out"},

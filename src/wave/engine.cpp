@@ -10,6 +10,10 @@ namespace alpenglow::transport {
 void Counters::operator+=(const Counters& o) {
     reflected += o.reflected;
     refracted += o.refracted;
+    totalReflected += o.totalReflected;
+    ignored += o.ignored;
+    tests += o.tests;
+    hits += o.hits;
     camera += o.camera;
     diffuse += o.diffuse;
     specular += o.specular;
@@ -31,8 +35,8 @@ void Counters::operator+=(const Counters& o) {
 }
 
 Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
-    : world_(std::move(w)), diagnostics_(d), seed_(world_->settings_.seed), rules_(world_->settings_),
-      answers_(*world_, d, this) {
+    : totalReflection_(rsl::internString("totalreflection")), world_(std::move(w)), diagnostics_(d),
+      seed_(world_->settings_.seed), rules_(world_->settings_), answers_(*world_, d, this) {
     noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
     prepareLightPaths();
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };

@@ -56,7 +56,8 @@ public:
     /// way: how far it has come, where it goes straight on. flight.cpp
     void divert(Flight&, PathRay next, Sched&, float way = 0);
     Counters counters;
-    uint64_t& raysOf(RayType); ///< the counter of such rays
+    uint64_t& raysOf(RayType);      ///< the counter of such rays
+    const int32_t totalReflection_; ///< the label of rays that Counters::totalReflected counts
 
     // faults.cpp
     /// A value on the way of a ray is not a finite number: the whole camera sample is left out. `what` made it, at `place`: said
@@ -248,8 +249,9 @@ public:
                         TargetId, bool owns, uint32_t occurrence);
     template <class Row> const LobeKind* lobeOf(const BatchContext&, const SiteInfo&, const Row&);
     template <class Row> const RayKind* raysOfTrace(const SiteInfo&, const Row&, const ShadePoint&);
+    /// What a trace() says of its lobe and its rays; false: its weight is 0, and nothing is sent.
     template <class Row>
-    void askOfTrace(const BatchContext&, const SiteInfo&, const ShadePoint&, const Row&, LobeVertex&, LobeParams&);
+    bool askOfTrace(const BatchContext&, const SiteInfo&, const ShadePoint&, const Row&, LobeVertex&, LobeParams&);
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
                  bool owns, uint32_t occurrence);
     /// `in`: rows of the call's arguments, and behind them two: ShadowReach::radius and the vertex of its random numbers.

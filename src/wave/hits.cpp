@@ -67,6 +67,8 @@ bool Engine::meet(const accel::Ray& ray, accel::Hit& hit) {
         unfinished_ = true;
         hit = {};
     }
+    ++counters.tests;
+    counters.hits += hit.valid();
     return hit.valid();
 }
 
@@ -80,24 +82,26 @@ template <class F> static void inParts(size_t n, const StopFlag* stop, F f) {
 void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits) {
     std::fill(hits.begin(), hits.end(), accel::Hit{});
     inParts(rays.size(), stop, [&](size_t at, size_t n) { world_->accel_->intersect(rays.subspan(at, n), hits.subspan(at, n)); });
-    if (!world_->unmade_) return;
-    for (size_t i = 0; i < rays.size(); ++i) {
+    for (size_t i = 0; world_->unmade_ && i < rays.size(); ++i) {
         if (!world_->unmade_->meets(rays[i], hits[i].valid() ? hits[i].distance : INFINITY)) continue;
         unfinished_ = true;
         hits[i] = {};
     }
+    counters.tests += rays.size();
+    for (const accel::Hit& h : hits) counters.hits += h.valid();
 }
 
 void Engine::block(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
     std::fill(blocked.begin(), blocked.end(), uint8_t(0));
     inParts(rays.size(), stop,
             [&](size_t at, size_t n) { world_->accel_->occluded(rays.subspan(at, n), blocked.subspan(at, n)); });
-    if (!world_->unmade_) return;
-    for (size_t i = 0; i < rays.size(); ++i) {
+    for (size_t i = 0; world_->unmade_ && i < rays.size(); ++i) {
         if (blocked[i] || !world_->unmade_->meets(rays[i], INFINITY)) continue;
         unfinished_ = true;
         blocked[i] = 1;
     }
+    counters.tests += rays.size();
+    for (uint8_t b : blocked) counters.hits += b != 0;
 }
 
 /// What the rays of a slice meet: hits_.

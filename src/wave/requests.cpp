@@ -128,9 +128,9 @@ template <class Row> const LobeKind* Engine::lobeOf(const BatchContext& c, const
     return known->second = nullptr;
 }
 
-/// What a trace() says of its lobe and its rays.
+/// What a trace() says of its lobe and its rays; false: its weight is 0, and nothing is sent.
 template <class Row>
-void Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Row& f, LobeVertex& l,
+bool Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Row& f, LobeVertex& l,
                         LobeParams& params) {
     const auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     const auto vector = [&](int row, const Vec3& fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
@@ -157,6 +157,7 @@ void Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoi
         l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
     const float samples = s.trace->hemisphere ? number(s.rays->samples, 0) : std::max(1.f, number(s.rays->samples, 1));
     l.samples = samplesOf(samples, p.shape, s, c);
+    return l.importance > 0 || photonTrace_;
 }
 
 void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
@@ -210,7 +211,11 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         l.rays = &kSpecularKind;
         break;
     case SiteKind::Trace:
-        askOfTrace(c, s, p, f, l, params);
+        if (!askOfTrace(c, s, p, f, l, params)) {
+            counters.ignored += uint64_t(l.samples);
+            lobes.pop_back();
+            return;
+        }
         break;
     default:
         break;

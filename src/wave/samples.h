@@ -15,6 +15,9 @@ namespace alpenglow::transport {
 struct Counters {
     uint64_t camera = 0, diffuse = 0, specular = 0, transmission = 0, shadow = 0;
     uint64_t reflected = 0, refracted = 0; ///< of specular rays, those that stay on their side of a surface, and the others
+    uint64_t totalReflected = 0;           ///< and those that their shader calls so ("label" "totalreflection")
+    uint64_t ignored = 0;                  ///< rays of trace() that were not sent, for their "weight" is 0
+    uint64_t tests = 0, hits = 0;          ///< how often rays were followed to the next surface, and met one
     uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;

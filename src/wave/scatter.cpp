@@ -235,7 +235,8 @@ void Gather::sendRay(const Sent& s, Sched& sched) {
     r.media = e_.mediaTowards(*c_, s.point, w);
     r.parted = r.passed = false;
     r.importance *= l.importance;
-    if (l.rays->type == RayType::Specular)
+    if (l.rays->type == RayType::Specular && l.rays->label == e_.totalReflection_) ++e_.counters.totalReflected;
+    else if (l.rays->type == RayType::Specular)
         ++(dot(w, p.surface.n) * dot(from.dir, p.surface.n) > 0 ? e_.counters.refracted : e_.counters.reflected);
     extra.lit = l.lit;
     extra.fade = l.fade;

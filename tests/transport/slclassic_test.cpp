@@ -130,6 +130,11 @@ TEST(SlClassic, GlassBySnellAndSchlick) {
         const Color c = s.one(rayTo({float(-x), -1, 0}, {0, 0, 0}));
         expectColour(c, {sin2 < 1 ? 3 * sin2 / std::sqrt(1 - sin2 * sin2) : 2 * x, 0, 1}, "from inside, " + std::to_string(x),
                      2e-4);
+        Counters count;
+        s.estimate(rayTo({float(-x), -1, 0}, {0, 0, 0}), 1, &count);
+        EXPECT_EQ(count.totalReflected, sin2 < 1 ? 0u : 1u) << x;
+        EXPECT_EQ(count.refracted, sin2 < 1 ? 1u : 0u) << x;
+        EXPECT_EQ(count.reflected, 0u) << x;
     }
 }
 
@@ -156,6 +161,9 @@ TEST(SlClassic, ContributionIsCut) {
         for (int k = 0; k <= c.rays; ++k) want += .5 * std::pow(.25, k);
         EXPECT_NEAR(m.mean(), want, 1e-6) << c.more;
         EXPECT_EQ(count.reflected, uint64_t(c.rays)) << c.more;
+        EXPECT_EQ(count.ignored, c.rays < 20 ? 1u : 0u) << c.more;
+        EXPECT_EQ(count.tests, uint64_t(c.rays) + 1) << c.more; // every ray meets a mirror
+        EXPECT_EQ(count.hits, count.tests) << c.more;
         EXPECT_EQ(count.depthMax, c.rays) << c.more;
     }
     // Without weights all of its way is 1.

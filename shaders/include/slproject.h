@@ -26,6 +26,42 @@ color slTexture2D(string map; float u, v, m00, m11, m30, m31)
     return slTexture2D(map, slU(u, m00, m30), slV(v, m11, m31));
 }
 
+/* The whole texture matrix: scale, then a turn by so many degrees counterclockwise, then the offset. */
+void slTransform(float u, v, scaleu, scalev, degrees, offsetu, offsetv; output float su, sv)
+{
+    float c = cos(radians(degrees)), s = sin(radians(degrees)), x = u * scaleu, y = v * scalev;
+    su = c * x - s * y + offsetu;
+    sv = s * x + c * y + offsetv;
+}
+
+/* A coordinate where it lies outside of 0 to 1: "repeat", "mirror" (every other copy turned over), "clamp" (the edge goes on) */
+float slWrap(float x; string wrap)
+{
+    float w = x - floor(x);
+    if (wrap == "clamp") w = clamp(x, 0, 1);
+    else if (wrap == "mirror") {
+        w = mod(x, 2);
+        if (w > 1) w = 2 - w;
+    }
+    return w;
+}
+
+/* filter: "nearest" texel, "bilinear" between four, "mip": over the footprint, between levels of the map */
+color slTexture2D(string map; float u, v; string wrapu, wrapv, filter)
+{
+    float s = slWrap(u, wrapu), t = 1 - slWrap(v, wrapv);
+    color c = 0;
+    if (filter == "nearest") {
+        uniform float size[2] = {1, 1};
+        textureinfo(map, "resolution", size);
+        s = (min(floor(s * size[0]), size[0] - 1) + .5) / size[0];
+        t = (min(floor(t * size[1]), size[1] - 1) + .5) / size[1];
+    }
+    if (filter == "mip") c = color texture(map, s, t);
+    else c = color texture(map, s, t, s, t, s, t, s, t);
+    return c;
+}
+
 /* A stack of slices over the box from lo to hi, in object space (autoCalcTM3D): "slice%03d.png", "strip.png*64", "cloud.vdb", or what
    maketx --gradients has made. 0 beside the box. */
 color slTexture3D(string stack; point p, lo, hi; output float alpha; output vector gradient)

@@ -63,6 +63,43 @@ TEST(SlProject, PicturesRepeatAndBeginBelow) {
     }
 }
 
+TEST(SlProject, WrapModesAndFilters) {
+    const auto at = [](int x, int y, int c) { return float((5 * x + 3 * y + 7 * c) % 16) / 16; };
+    const std::string map = writeMap("slp4.exr", 8, 8, at);
+    // The middles of texels, so that nearest and bilinear agree; v grows upward.
+    const auto texel = [&](int column, int rowFromBelow) {
+        return Color(at(column, 7 - rowFromBelow, 0), at(column, 7 - rowFromBelow, 1), at(column, 7 - rowFromBelow, 2));
+    };
+    const struct {
+        double u, v;
+        const char *wrapu, *wrapv;
+        int column, row;
+    } cases[] = {{1 + 2.5 / 8, -1.5 / 8, "repeat", "repeat", 2, 6}, {1 + 2.5 / 8, -1.5 / 8, "mirror", "repeat", 5, 6},
+                 {1 + 2.5 / 8, -1.5 / 8, "clamp", "mirror", 7, 1},  {-3.5, 2 + 3.5 / 8, "clamp", "mirror", 0, 3},
+                 {2.5 / 8, 4.5 / 8, "clamp", "clamp", 2, 4},        {-2.5 / 8, 1.25, "mirror", "clamp", 2, 7}};
+    for (const auto& c : cases)
+        for (const char* filter : {"nearest", "bilinear"})
+            expectNear(valueOf("Ci = slTexture2D(map, " + number(c.u) + ", " + number(c.v) + ", \"" + c.wrapu + "\", \"" +
+                                   c.wrapv + "\", \"" + filter + "\");",
+                               map),
+                       texel(c.column, c.row), std::string(c.wrapu) + c.wrapv + filter);
+    // Beside the middles: the texel, or a mean of two of a row.
+    const double u = 3.9 / 8, v = 4.5 / 8;
+    expectNear(valueOf("Ci = slTexture2D(map, " + number(u) + ", " + number(v) + ", \"repeat\", \"repeat\", \"nearest\");", map),
+               texel(3, 4), "nearest");
+    expectNear(valueOf("Ci = slTexture2D(map, " + number(u) + ", " + number(v) + ", \"repeat\", \"repeat\", \"bilinear\");", map),
+               texel(3, 4) * .6f + texel(4, 4) * .4f, "bilinear");
+}
+
+TEST(SlProject, TextureMatrixWithATurn) {
+    // Scale (2, 3), a turn of 90 degrees, then the offset: u' = -3 v + .1, v' = 2 u + .2.
+    expectNear(valueOf("float a = 0, b = 0; slTransform(.3, .4, 2, 3, 90, .1, .2, a, b); Ci = color(a, b, 0);"), {-1.1f, .8f, 0},
+               "90");
+    const float h = std::sqrt(.5f);
+    expectNear(valueOf("float a = 0, b = 0; slTransform(1, .5, 1, 2, 45, 0, 0, a, b); Ci = color(a, b, 0);"), {0, 2 * h, 0},
+               "45");
+}
+
 TEST(SlProject, StacksOverABox) {
     const std::string map = writeMap("slp3.exr", 4, 16, [](int x, int y, int c) {
         return c == 0 ? (float(x) + .5f) / 4 : c == 1 ? 1 - (float(y % 4) + .5f) / 4 : (float(y / 4) + .5f) / 4;

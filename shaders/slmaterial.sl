@@ -3,17 +3,22 @@
      shininess, translucency: Phong exponents of the reflected and transmitted lobe; 1000 and above are perfect
      kn: index of refraction; fresnel "schlick" or "exact"
      texturename, bumpname: pictures; what bumpname is, height or normals, is told by its name (wood_H.png, wood_N.png), or by bumptype
-     uscale, vscale, uoffset, voffset: the texture matrix of both; bumpscale: of heights
+     uscale, vscale, rotation (degrees), uoffset, voffset: the texture matrix of both; bumpscale: of heights
+     wrapu, wrapv: repeat, mirror or clamp; filter: nearest, bilinear or mip: of texturename
+     uvindex: 1 takes the second set of coordinates, s2 and t2, which the primitive has as varying or facevarying float
      stack: slices, "s%03d.png", in place of texturename, over the box from boxmin to boxmax in object space
    Under Hider "path" diffuse() and trace() are the estimators: they sample lights and lobe, weight both, play roulette. Ball: Surface "slmaterial" "color diffusecolor" [.6 .25 .1] */
 #include "slproject.h"
 surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, emissive = 0;
                    float shininess = 1000, translucency = 1000, kn = 1;
                    string texturename = "", fresnel = "schlick", bumpname = "", bumptype = "", stack = "";
-                   float uscale = 1, vscale = 1, uoffset = 0, voffset = 0, bumpscale = 1;
+                   float uscale = 1, vscale = 1, rotation = 0, uoffset = 0, voffset = 0, bumpscale = 1, uvindex = 0;
+                   string wrapu = "repeat", wrapv = "repeat", filter = "mip"; varying float s2 = 0, t2 = 0;
                    point boxmin = point(-1, -1, -1), boxmax = point(1, 1, 1);) {
     normal Nn = normalize(N);
-    float su = slU(s, uscale, uoffset), sv = slV(1 - t, vscale, voffset);
+    float su = 0, sv = 0;
+    if (uvindex == 1) slTransform(s2, 1 - t2, uscale, vscale, rotation, uoffset, voffset, su, sv);
+    else slTransform(s, 1 - t, uscale, vscale, rotation, uoffset, voffset, su, sv);
     if (bumpname != "")
         Nn = slBump(bumpname, (bumptype == "") ? slTextureType(bumpname) : bumptype, su, sv, bumpscale, Nn, dPdu, -dPdv);
     vector In = normalize(I);
@@ -24,7 +29,7 @@ surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, 
         if (diffusecolor != zero) {
             color albedo = diffusecolor * Cs;
             if (texturename != "")
-                albedo *= slTexture2D(texturename, su, sv);
+                albedo *= slTexture2D(texturename, su, sv, wrapu, wrapv, filter);
             if (stack != "")
                 albedo *= slTexture3D(stack, P, boxmin, boxmax);
             normal Nf = faceforward(Nn, In);

@@ -1,4 +1,5 @@
 // shaders/include/slproject.h against SLProject's rules written out plainly (pathtracer.md 10).
+#include "transport/floorscene.h"
 #include "transport/maps.h"
 #include <cmath>
 
@@ -98,6 +99,29 @@ TEST(SlProject, TextureMatrixWithATurn) {
     const float h = std::sqrt(.5f);
     expectNear(valueOf("float a = 0, b = 0; slTransform(1, .5, 1, 2, 45, 0, 0, a, b); Ci = color(a, b, 0);"), {0, 2 * h, 0},
                "45");
+}
+
+TEST(SlProject, TheMaterialHasThem) {
+    const auto at = [](int x, int y, int c) { return float((5 * x + 3 * y + 7 * c) % 16) / 16; };
+    const std::string map = writeMap("slp5.exr", 8, 8, at);
+    const std::string lit = "LightSource \"ambientlight\" 1\n";
+    const auto value = [&](const std::string& parameters, const std::string& more) {
+        Scene s("WorldBegin\n" + lit + "Surface \"slmaterial\" \"string texturename\" [" + map +
+                    "] \"string filter\" \"nearest\" " + parameters + "\n" + "Polygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2] " +
+                    more + "\nWorldEnd\n",
+                withShaders(Hider::Path));
+        return s.estimate(rayTo({0, 0, 0}, {0, 0, 2}), 64);
+    };
+    // (s, t) is (2.5, 3.5) / 8 everywhere, (s2, t2) is (6.5, 1.5) / 8. Under even light of 1 the albedo is seen.
+    const std::string first = "\"varying float s\" [.3125 .3125 .3125 .3125] \"varying float t\" [.4375 .4375 .4375 .4375]";
+    const std::string second = " \"varying float s2\" [.8125 .8125 .8125 .8125] \"varying float t2\" [.1875 .1875 .1875 .1875]";
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(value("", first).mean(k), at(2, 3, k), 1e-4);
+        EXPECT_NEAR(value("\"float uvindex\" 1", first + second).mean(k), at(6, 1, k), 1e-4);
+        // v from below is 4.5 / 8: turned by 90 degrees u' is 1 - 4.5 / 8, v' is 2.5 / 8.
+        EXPECT_NEAR(value("\"float rotation\" 90 \"float uoffset\" 1", first).mean(k), at(3, 5, k), 1e-4);
+        EXPECT_NEAR(value("\"float uoffset\" 1 \"string wrapu\" \"mirror\"", first).mean(k), at(5, 3, k), 1e-4);
+    }
 }
 
 TEST(SlProject, StacksOverABox) {

@@ -212,6 +212,7 @@ ControlNet::ControlNet(ShapeSource s, NetDirection u, NetDirection v, std::vecto
     mostWeights_ = std::max(mostWeights_, u_.width() * v_.width());
     for (auto& p : points_) {
         if (p[3] != 1) rational_ = true;
+        if (p[3] == 0) continue; // a direction
         for (size_t k = 0; k < 3; ++k) pointScale_ = std::max(pointScale_, std::fabs(p[k] / p[3]));
     }
     closedU_ = u_.wrap() || sameEdge(true);
@@ -382,6 +383,45 @@ int ControlNet::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
     return n;
 }
 
+namespace {
+
+/// Whether the weight of a net of which some control points have none is 0 where patches begin and end, or between.
+bool atInfinity(const NetDirection& u, const NetDirection& v, const std::vector<std::array<double, 4>>& points) {
+    const auto zero = [](const std::array<double, 4>& p) { return p[3] == 0; };
+    if (std::none_of(points.begin(), points.end(), zero)) return false;
+    double most = 0;
+    for (const auto& p : points) most = std::max(most, std::fabs(p[3]));
+    const auto places = [](const NetDirection& d) {
+        const std::vector<double> borders = d.borders();
+        std::vector<BasisSpan> at{d.at(0)};
+        for (size_t i = 0; i + 1 < borders.size(); ++i)
+            for (const double way : {.5, 1.}) at.push_back(d.at(borders[i] + way * (borders[i + 1] - borders[i])));
+        return at;
+    };
+    const std::vector<BasisSpan> along = places(u), across = places(v);
+    for (const BasisSpan& b : across)
+        for (const BasisSpan& a : along) {
+            double w = 0;
+            for (int j = 0; j < b.count; ++j)
+                for (int i = 0; i < a.count; ++i)
+                    w += a.w[i] * b.w[j] * points[size_t(b.index[j]) * size_t(u.points()) + size_t(a.index[i])][3];
+            if (!(std::fabs(w) > 1e-12 * most)) return true;
+        }
+    return false;
+}
+
+} // namespace
+
+ShapeRef makeNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics& diag,
+                 std::shared_ptr<const TrimRegion> trim) {
+    if (atInfinity(u, v, points)) {
+        diag.report(Severity::Error, Rie::Range, s.primitive->place,
+                    s.primitive->kind + ": the weights of \"Pw\" vanish, so that a part of it is at infinity; it is not drawn");
+        return nullptr;
+    }
+    return std::make_shared<ControlNet>(std::move(s), std::move(u), std::move(v), std::move(points), diag, std::move(trim));
+}
+
 bool readControlPoints(const ShapeSource& s, int nu, int nv, bool wrapU, bool wrapV, Diagnostics& diag,
                        std::vector<std::array<double, 4>>& out) {
     const scene::Primitive& p = *s.primitive;
@@ -408,15 +448,16 @@ bool readControlPoints(const ShapeSource& s, int nu, int nv, bool wrapU, bool wr
         if (width == 1) {
             // A height field over the unit square.
             int du = wrapU ? nu : nu - 1, dv = wrapV ? nv : nv - 1;
+            const size_t row = k / size_t(nu);
             h[0] = double(k % size_t(nu)) / du;
-            h[1] = double(k / size_t(nu)) / dv;
+            h[1] = double(row) / dv;
             h[2] = f[0];
         } else {
             for (int c = 0; c < width; ++c) h[c] = f[c];
         }
         for (double x : h)
             if (!std::isfinite(x)) return fail(Rie::Range, "\"" + q->name + "\" holds a number that is not finite");
-        if (width == 4 && !(std::fabs(h[3]) > 1e-30)) return fail(Rie::Range, "\"Pw\" holds a weight of 0");
+        if (width == 4 && !(std::fabs(h[3]) > 1e-30)) h[3] = 0;
         for (size_t c = 0; c < 4; ++c) out[k][c] = h[0] * m.m[0][c] + h[1] * m.m[1][c] + h[2] * m.m[2][c] + h[3] * m.m[3][c];
     }
     return true;

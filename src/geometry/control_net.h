@@ -95,6 +95,10 @@ private:
     bool rational_ = false, closedU_ = false, closedV_ = false;
 };
 
+/// The surface of a net. A point of weight 0 is a direction; null, with an error: the surface itself is at infinity somewhere.
+ShapeRef makeNet(ShapeSource, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics&,
+                 std::shared_ptr<const TrimRegion> trim = nullptr);
+
 /// Reads "P", "Pw" or "Pz" of nu by nv control points, to camera space; reports and returns false when it cannot.
 bool readControlPoints(const ShapeSource&, int nu, int nv, bool wrapU, bool wrapV, Diagnostics&,
                        std::vector<std::array<double, 4>>& out);

@@ -84,8 +84,7 @@ ShapeRef makeNuPatch(ShapeSource s, Diagnostics& diag) {
     if (s.attributes->trimCurve && !trimOf(s, domain, region, diag)) return nullptr;
     std::vector<std::array<double, 4>> points;
     if (!readControlPoints(s, n[0], n[1], false, false, diag, points)) return nullptr;
-    return std::make_shared<ControlNet>(std::move(s), std::move(dir[0]), std::move(dir[1]), std::move(points), diag,
-                                        std::move(region));
+    return makeNet(std::move(s), std::move(dir[0]), std::move(dir[1]), std::move(points), diag, std::move(region));
 }
 
 } // namespace alpenglow::geometry

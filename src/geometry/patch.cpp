@@ -19,7 +19,7 @@ ShapeRef makePatch(ShapeSource s, Diagnostics& diag) {
     const scene::Attributes& a = *s.attributes;
     NetDirection u = cubic ? NetDirection::cubic(4, false, a.ubasis) : NetDirection::linear(2, false);
     NetDirection v = cubic ? NetDirection::cubic(4, false, a.vbasis) : NetDirection::linear(2, false);
-    return std::make_shared<ControlNet>(std::move(s), std::move(u), std::move(v), std::move(points), diag);
+    return makeNet(std::move(s), std::move(u), std::move(v), std::move(points), diag);
 }
 
 } // namespace alpenglow::geometry

@@ -44,7 +44,7 @@ ShapeRef makePatchMesh(ShapeSource s, Diagnostics& diag) {
     }
     std::vector<std::array<double, 4>> points;
     if (!readControlPoints(s, p.ints[0], p.ints[1], wrap[0], wrap[1], diag, points)) return nullptr;
-    return std::make_shared<ControlNet>(std::move(s), std::move(dir[0]), std::move(dir[1]), std::move(points), diag);
+    return makeNet(std::move(s), std::move(dir[0]), std::move(dir[1]), std::move(points), diag);
 }
 
 } // namespace alpenglow::geometry

@@ -125,6 +125,41 @@ TEST(NuPatch, RationalQuarterCircleIsRound) {
     EXPECT_NEAR(s->area(), kPi, 1e-6); // quarter of 2 pi r h, h = 2
 }
 
+// A hemisphere of nine control points (Geomview's themi.bez): those of weight 0 are directions, its own weight is
+// (1 - 2u + 2u^2) (1 - 2v + 2v^2). The cosine and sine of an angle are (1 - 2u) and 2u (1 - u) over such a factor.
+TEST(NuPatch, ControlPointsAtInfinity) {
+    std::vector<float> Pw = {1, 0, 0, 1,  0, 0, 1,  0, -1, 0, 0, 1, 0, 1, 0, 0, 0, 0,
+                             0, 0, 0, -1, 0, 0, -1, 0, 0,  1, 0, 0, 1, 0, 1, 0, 0, 1};
+    const auto net = [&](Diagnostics& diag) {
+        auto p = std::make_shared<scene::Primitive>();
+        p->kind = "NuPatch";
+        p->ints = {3, 3, 3, 3};
+        p->numbers = {0, 1, 0, 1};
+        p->params = {param("uknot", scene::Class::Constant, scene::Type::Float, {0, 0, 0, 1, 1, 1}),
+                     param("vknot", scene::Class::Constant, scene::Type::Float, {0, 0, 0, 1, 1, 1}),
+                     param("Pw", scene::Class::Vertex, scene::Type::HPoint, Pw)};
+        return build(p, Matrix(), diag);
+    };
+    Diagnostics diag;
+    const ShapeRef s = net(diag);
+    ASSERT_TRUE(s);
+    EXPECT_EQ(diag.all().size(), 0u);
+    const auto over = [](double x, double y) { return x / (1 - 2 * y + 2 * y * y); };
+    for (double u : {0.0, 0.2, 0.5, 0.9, 1.0})
+        for (double v : {0.0, 0.3, 0.5, 1.0}) {
+            const SurfacePoint at = s->evaluate(0, u, v);
+            const double c = over(1 - 2 * u, u);
+            EXPECT_NEAR(at.P.x, c * over(1 - 2 * v, v), 1e-6);
+            EXPECT_NEAR(at.P.y, c * over(2 * v * (1 - v), v), 1e-6);
+            EXPECT_NEAR(at.P.z, over(2 * u * (1 - u), u), 1e-6);
+            if (u != 0.5) EXPECT_NEAR(std::fabs(dot(at.n, at.P)), 1, 1e-6) << u << " " << v;
+        }
+    EXPECT_NEAR(s->area(), 2 * kPi, 1e-4);
+    Pw[3] = 0; // a corner: the patch itself goes to infinity
+    EXPECT_FALSE(net(diag));
+    EXPECT_EQ(diag.errors(), 1);
+}
+
 TEST(NuPatch, DerivativesAcrossKnots) {
     Diagnostics diag;
     auto p = std::make_shared<scene::Primitive>();

@@ -3,9 +3,11 @@
 #include "base/limits.h"
 #include "geometry/dice.h"
 #include "geometry/factories.h"
+#include "geometry/given_normals.h"
 #include "geometry/instance_attributes.h"
 #include "geometry/placed.h"
 #include "scene/scene.h"
+#include "scene/solids.h"
 #include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>
@@ -152,6 +154,7 @@ private:
         ShapeRef geometry;
         Matrix from; ///< its space to object space
         std::shared_ptr<SharedBounds> bounds;
+        bool normalsDecide = false; ///< which side is the front, in all places
     };
     struct Usage {
         std::vector<const scene::Instance*> by;
@@ -163,6 +166,9 @@ private:
     void addShared(const PrimitiveRef&, const scene::AttributesRef&, const Transform& place, const scene::Instance&,
                    int instance);
     ShapeRef geometryOf(const PrimitiveRef&, const scene::AttributesRef&, const Matrix& toCamera, int instance);
+    /// buildShape(), with the front where given normals are.
+    ShapeRef shapeOf(const PrimitiveRef&, const scene::AttributesRef&, const Matrix& toCamera, int instance);
+    const scene::AttributesRef& turned(const scene::AttributesRef&); ///< with ReverseOrientation
     scene::AttributesRef coarser(const scene::AttributesRef&, const scene::Primitive&, const Transform& place) const;
     bool shares(const scene::Primitive&, const scene::Attributes*, size_t instances) const;
     const Matrix& nearest(const scene::Instance&, const scene::Primitive&);
@@ -179,6 +185,7 @@ private:
     std::map<std::tuple<int, const scene::Primitive*, const void*>, Shared>
         shared_; ///< by object, primitive and what of the attributes it depends on
     std::map<std::pair<int, const scene::Primitive*>, Matrix> nearest_;
+    std::map<scene::AttributesRef, scene::AttributesRef> turned_;
 };
 
 bool FrameBuilder::full(const SourcePlace& place) {
@@ -193,6 +200,23 @@ Transform FrameBuilder::overShutter(const Transform& toWorld) const {
     Transform t = scene::overShutter(toWorld, shutter_);
     for (Matrix& m : t.keys) m = m * camera_;
     return t;
+}
+
+const scene::AttributesRef& FrameBuilder::turned(const scene::AttributesRef& a) {
+    scene::AttributesRef& other = turned_[a];
+    if (!other) {
+        auto copy = std::make_shared<scene::Attributes>(*a);
+        (copy->absoluteHandedness ? copy->rightHanded : copy->inside) ^= true;
+        other = std::move(copy);
+    }
+    return other;
+}
+
+ShapeRef FrameBuilder::shapeOf(const PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& toCamera, int instance) {
+    ShapeRef s = buildShape(p, a, toCamera, instance, diag_, facing_);
+    if (!s || normalsSay(*s, diag_) != NormalsSay::Back) return s;
+    Diagnostics said; // what there is to say of the primitive has been
+    return buildShape(p, turned(s->attributesRef()), toCamera, instance, said, facing_);
 }
 
 /// The primitive at one or several times of the shutter, in the space that toCamera leads to. Null: reported.
@@ -218,7 +242,8 @@ ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::Attributes
             first->motionKeys = p->motionKeys;
             now = std::move(first);
         }
-        ShapeRef k = buildShape(now, a, toCamera, instance, diag_, facing_, keys.empty() ? nullptr : keys[0].get());
+        ShapeRef k = keys.empty() ? shapeOf(now, a, toCamera, instance)
+                                  : buildShape(now, keys[0]->attributesRef(), toCamera, instance, diag_, facing_, keys[0].get());
         if (!k) return nullptr;
         keys.push_back(std::move(k));
     }
@@ -241,8 +266,7 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
     const Matrix open = place.first();
     const bool deforms = scene::keysOverShutter(*p, shutter_).size() > 1;
     if (!place.moves() && !deforms) {
-        if (ShapeRef s = buildShape(scene::primitiveAt(p, shutter_.open), a, open, instance, diag_, facing_))
-            out_.push_back(std::move(s));
+        if (ShapeRef s = shapeOf(scene::primitiveAt(p, shutter_.open), a, open, instance)) out_.push_back(std::move(s));
         return;
     }
     // The geometry lives where the shutter opens, so that what does not move has the numbers that it has in a still picture.
@@ -312,17 +336,25 @@ void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& 
         const Matrix& home = nearest(inst, *p);
         shared.geometry = geometryOf(p, a, home, instance);
         shared.from = inverse(home);
+        Diagnostics said; // when the geometry was made
+        const Shape* first = shared.geometry.get();
+        if (const auto* deforming = dynamic_cast<const Deforming*>(first)) first = deforming->keys()[0].get();
+        shared.normalsDecide = first && normalsSay(*first, said) != NormalsSay::Nothing;
         shared.bounds = std::make_shared<SharedBounds>();
     }
     if (!shared.geometry) return;
     for (const Matrix& m : place.keys)
         if (!affine(m) || (&m == &place.keys[0] && !invertible(m))) return add(p, a, place, instance);
     ShapeSource s = shared.geometry->source();
-    s.attributes = a;
-    s.toCamera = place.first();
-    s.instance = instance;
     Transform from = place;
     for (Matrix& m : from.keys) m = shared.from * m;
+    s.toCamera = place.first();
+    s.instance = instance;
+    s.attributes = a;
+    const float handed = determinant3(from.first()) < 0 ? -1.f : 1.f;
+    if (shared.normalsDecide && !scene::solidTakenAway(*a) &&
+        orientationSign(*a, s.toCamera) != handed * shared.geometry->orientation())
+        s.attributes = turned(a);
     out_.push_back(std::make_shared<Placed>(std::move(s), shared.geometry, from, shared.bounds));
 }
 

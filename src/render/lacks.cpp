@@ -60,8 +60,10 @@ void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& dia
         warn(diags, {},
              "the picture is black: surfaces are seen, but " +
                  (lights == 1 ? "the light does" : "the " + counted(lights, "light") + " do") + " not show on them",
-             "check that the lights are on where the surfaces are made (AttributeEnd ends a light), that they reach them, and "
-             "what the shaders do with their light");
+             "check that the lights are on where the surfaces are made (AttributeEnd ends a light), that they reach them, that "
+             "normals which primitives give lie on the sides that are seen (-v tells of some that do not), and what the shaders "
+             "do "
+             "with their light");
 }
 
 } // namespace alpenglow::render

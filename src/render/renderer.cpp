@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "base/memory.h"
 #include "base/processors.h"
+#include "base/realpath.h"
 #include "display/driver.h"
 #include "render/curve.h"
 #include "render/digest.h"
@@ -217,7 +218,7 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
     passOverTexture(files);
     texture::MakeOptions m;
     m.policy.allowWrite = settings_.allowWrite;
-    m.read = readPolicyOf(settings_.scenePath, settings_.allowRead);
+    m.read = readPolicy();
     m.place = place;
     m.searchPath = {""};
     if (!settings_.scenePath.empty()) m.searchPath.push_back(settings_.scenePath);
@@ -229,7 +230,11 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
     const size_t said = diagnostics_.all().size();
     const auto unwritten = [](const Diagnostic& d) { return d.code == Rie::DiskFull || d.code == Rie::System; };
     const bool made = texture::runMakeRequest(kind, files, numbers, m, diagnostics_);
-    if (made) ++outcome_.textures;
+    if (made) {
+        ++outcome_.textures;
+        const size_t map = kind == "MakeBrickMap" ? files.size() - 1 : kind == "MakeCubeFaceEnvironment" ? 6 : 1;
+        written_.push_back(followedPath(files[map]));
+    }
     const auto all = diagnostics_.all();
     outcome_.outputFailed |= !made && std::any_of(all.begin() + long(said), all.end(), unwritten);
     if (!made && diagnostics_.errors() == before) diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");

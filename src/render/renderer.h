@@ -68,6 +68,8 @@ private:
     std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> imagerOf(FrameWork&);
     void describeFrame(FrameWork&);
     void writtenPictures(FrameWork&, bool fine);
+    /// Where names of maps in the scene may lead.
+    ReadPolicy readPolicy() const;
     FilmDescription filmOf(const FrameWork&) const;
     bool renderSamples(FrameWork&, struct Job&);
     void writeFrameFilm(FrameWork&, Film&, double renderSec);
@@ -110,7 +112,8 @@ private:
     Progress& progress_;
     Print print_;
     MakeProcedurals makeProcedurals_;
-    std::set<std::string> read_; ///< fileIdentity() of setScene()'s pictures
+    std::set<std::string> read_;       ///< fileIdentity() of setScene()'s pictures
+    std::vector<std::string> written_; ///< pictures and maps of this run, with links followed: scenes may read them
     Outcome outcome_;
     RenderStats stats_;              ///< of the frame being rendered
     RenderStats all_;                ///< of the frames before

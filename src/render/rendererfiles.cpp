@@ -10,6 +10,21 @@
 
 namespace alpenglow::render {
 
+namespace {
+
+/// What two renders do not have in common: "seed (3, not 4)".
+std::string differing(const FilmDescription& a, const FilmDescription& b) {
+    const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+    if (a.width != b.width || a.height != b.height)
+        return "size of picture (" + size(a.width, a.height) + ", not " + size(b.width, b.height) + ")";
+    if (a.window != b.window) return "crop window";
+    if (a.seed != b.seed) return "seed (" + std::to_string(a.seed) + ", not " + std::to_string(b.seed) + ")";
+    if (a.channels != b.channels) return "set of outputs";
+    return "scene, or options that change the picture";
+}
+
+} // namespace
+
 std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
     if (settings_.output == "-") return "-"; // frame after frame
     if (!settings_.output.empty()) {
@@ -95,6 +110,12 @@ void Renderer::passOverTexture(const std::vector<std::string>& files) {
     for (const std::string& f : files) names_.release(f);
 }
 
+ReadPolicy Renderer::readPolicy() const {
+    ReadPolicy policy = readPolicyOf(settings_.scenePath, settings_.allowRead);
+    policy.folders.insert(policy.folders.end(), written_.begin(), written_.end()); // each below itself
+    return policy;
+}
+
 void Renderer::finish() {
     const std::string given = pictureOptions(settings_);
     if (maps_ == 0 || pictures_ > 0 || given.empty()) return;
@@ -144,10 +165,10 @@ bool Renderer::resume(const std::string& checkpoint, const FilmDescription& want
     film = loadPart(checkpoint, diagnostics_);
     if (film && film->description() == wanted) return true;
     if (film)
-        diagnostics_.report(
-            Severity::Error, Rie::Consistency, {checkpoint},
-            "the checkpoint belongs to another picture, scene or seed; it is left as it is, and nothing is rendered",
-            "render what it belongs to, name another file, or give --restart instead of --resume to replace it");
+        diagnostics_.report(Severity::Error, Rie::Consistency, {checkpoint},
+                            "the checkpoint belongs to another " + differing(film->description(), wanted) +
+                                "; it is left as it is, and nothing is rendered",
+                            "render what it belongs to, name another file, or give --restart instead of --resume to replace it");
     else
         diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint},
                             "the checkpoint is left as it is, and nothing is rendered",

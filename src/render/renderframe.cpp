@@ -181,7 +181,7 @@ transport::Settings Renderer::engineSettings(const FrameWork& f) const {
     t.localRoulette = settings_.localRoulette;
     t.dialect = settings_.dialect;
     t.allowExec = settings_.allowExec;
-    t.read = readPolicyOf(settings_.scenePath, settings_.allowRead);
+    t.read = readPolicy();
     t.reads = settings_.reads;
     t.pluginPaths = searchPaths(f.o, "rslplugin", settings_.shaderPaths, true);
     t.shaderPaths = searchPaths(f.o, "shader", settings_.shaderPaths, true);
@@ -236,7 +236,7 @@ void Renderer::describeFrame(FrameWork& f) {
 void Renderer::writtenPictures(FrameWork& f, bool fine) {
     outcome_.outputFailed |= !fine;
     for (const OutputSpec& s : f.plan.pictures)
-        if (fine) f.told.pictures.push_back({s.name, s.type, s.channels()});
+        if (fine) f.told.pictures.push_back({s.name, s.type, s.channels()}), written_.push_back(followedPath(s.name));
     if (!fine) return;
     for (const OutputSpec& s : f.plan.pictures) // of an older picture: merge would take it for this one's
         if (!extensionOf(s.name).empty() && (f.checkpoint.empty() || !sameFile(sidecarName(s.name), f.checkpoint)))

@@ -253,7 +253,10 @@ std::shared_ptr<const Texture> TextureSystem::loadFile(const std::string& name, 
         d.code = Rie::NoFile;
         d.message = "texture \"" + name + "\" was not found";
         std::string dirs;
-        for (const std::string& s : searchPath) dirs += (dirs.empty() ? "" : ":") + (s.empty() ? "." : s);
+        for (const std::string& s : searchPath) {
+            const std::string folder = s.empty() ? "." : s;
+            if ((":" + dirs + ":").find(":" + folder + ":") == std::string::npos) dirs += (dirs.empty() ? "" : ":") + folder;
+        }
         d.hint = "searched: " + dirs;
         diags_.reportOnce("texture:" + name, d);
         return {};
@@ -358,7 +361,13 @@ bool TextureSystem::present(const std::string& name, const std::vector<std::stri
     std::lock_guard lock(mutex_);
     const auto [known, fresh] = present_.try_emplace(key, false);
     if (!fresh) return known->second;
-    bool there = find(name, searchPath);
+    std::string outside;
+    bool there = findFile(name, searchPath, settings_.read, &outside).has_value();
+    if (!there && !outside.empty()) {
+        Diagnostic d = outsideMessage("texture", name, outside, {});
+        d.message += "; to textureinfo() it is missing";
+        diags_.reportOnce("textureinfo:" + name, d);
+    }
     if (const auto number = tileNumberIn(name); !there && number)
         for (int k = 1001; k <= 1100 && !there; ++k) {
             std::string tile = name;

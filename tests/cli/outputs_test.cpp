@@ -55,6 +55,29 @@ TEST_F(Outputs, AbsoluteNamesOutsideAreRefusedBeforeRendering) {
     EXPECT_FALSE(has("f.exr"));
 }
 
+// A scene may read a map that it has just made, wherever that is; textureinfo() says that it may not read another.
+TEST_F(Outputs, MapsThatASceneMadeAreReadable) {
+    const fs::path elsewhere = dir.string() + "-elsewhere"; // neither below the scene nor below the current folder
+    fs::create_directories(elsewhere);
+    fs::create_directories(dir / "a/b");
+    const std::string map = (elsewhere / "m.tx").string(), wall = "Polygon \"P\" [-9 -9 1 -9 9 1 9 9 1 9 -9 1]\nWorldEnd\n";
+    scene("p.rib", "Display \"p.exr\" \"openexr\" \"rgba\"", "WorldBegin\nColor [.25 .5 .75]\nSurface \"constant\"\n" + wall);
+    ASSERT_EQ(render("p.rib"), 0) << err;
+    write("a/b/own.sl", "surface own(string map = \"\") { float c = 0, known = textureinfo(map, \"channels\", c);\n"
+                        "  Oi = 1; Ci = known == 1 ? color texture(map) : color (1, 0, 1); }\n");
+    const std::string use = "WorldBegin\nSurface \"own\" \"string map\" \"" + map + "\"\n" + wall;
+    scene("a/b/s.rib", "MakeTexture \"../../p.exr\" \"" + map + "\" \"clamp\" \"clamp\" \"box\" 1 1", use);
+    EXPECT_EQ(run("render --progress none --allow-write --pixel 8,6 a/b/s.rib", "2>err").rfind("0.25 0.5 0.75", 0), 0u)
+        << read("err");
+    EXPECT_EQ(status, 0);
+    scene("a/b/t.rib", "", use);
+    EXPECT_EQ(run("render --progress none --allow-write --pixel 8,6 a/b/t.rib", "2>err"), "1 0 1 1\n");
+    err = read("err");
+    EXPECT_TRUE(says("outside the folders that a scene may read; to textureinfo() it is missing")) << err;
+    EXPECT_EQ(status, 1);
+    fs::remove_all(elsewhere);
+}
+
 TEST_F(Outputs, FilesOfTheCommandLineAreTriedBeforeTheSceneIsRead) {
     write("file", "a file, no folder");
     for (const char* bad : {"-o file/a.png", "--stats file/s.json", "--checkpoint file/c.part"}) {

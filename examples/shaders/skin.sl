@@ -1,5 +1,5 @@
-/* skin: light goes in and comes out elsewhere, so shadows have soft and red edges. Here without tracing the way inside: the terminator is
-   wrapped around, red further than blue. Freckles, pores and a film of oil lie over it.
+/* skin: light goes in and comes out elsewhere, so shadows have soft and red edges. Here without tracing
+   the way inside (translucent.sl traces it): the terminator is wrapped around, red further than blue. Freckles, pores and a film of oil lie over it.
      base, blood    colours of the skin and of what shines through
      wrap           how far light wraps around, for red; green and blue get less
      freckles       how many

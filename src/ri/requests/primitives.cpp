@@ -197,8 +197,9 @@ std::vector<Request> primitiveRequests() {
          "An implicit surface of blobs: constants, ellipsoids, segments, repelling planes and all operators.",
          "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
         {"Geometry", "string name; ..", k, s, true,
-         "A shape the renderer knows: \"teapot\", \"cube\", \"sphere\"; or the polygons of a file of .ply or .obj.", "\"teapot\"",
-         geometry},
+         "A shape the renderer knows: \"teapot\" (Newell's: on z = 0 about the z axis, spout to +x, largest radius 2, 3 high), "
+         "\"cube\" (side 1), \"sphere\" (radius 1); or the polygons of a file of .ply or .obj.",
+         "\"teapot\"", geometry},
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
          "A region that the Interior, or without one the Atmosphere, fills: \"box\", \"ellipsoid\", or along z \"cylinder\" and "
          "\"cone\", as large "

@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "base/printable.h"
 #include "cli/command.h"
+#include "cli/jsonreport.h"
 #include "rsl/compiler.h"
 #include "rsl/front/messages.h"
 #include "rsl/nonlinear.h"
@@ -20,26 +21,6 @@ namespace alpenglow::cli {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-
-OrderedJson placeJson(const SourcePlace& p, int length) {
-    return {{"file", p.file}, {"line", p.line}, {"column", p.column}, {"length", length}};
-}
-
-/// For editors: everything a diagnostic says, places counted from 1, columns and lengths in bytes.
-OrderedJson diagnosticJson(const Diagnostic& d) {
-    OrderedJson j = placeJson(d.place, d.length);
-    j["severity"] = d.severity == Severity::Info ? "note" : d.severity == Severity::Warning ? "warning" : "error";
-    j["id"] = d.id;
-    j["message"] = d.message;
-    if (!d.hint.empty()) j["hint"] = d.hint;
-    if (!d.notes.empty()) j["notes"] = d.notes;
-    for (const FixIt& f : d.fixes) {
-        OrderedJson fix = placeJson(f.place, f.length);
-        fix["text"] = f.text;
-        j["fixes"].push_back(std::move(fix));
-    }
-    return j;
-}
 
 constexpr const char* kStandardInput = "<stdin>";
 
@@ -165,10 +146,7 @@ void addCompile(CLI::App& app, int* status) {
                 if (diags.errors() == before) diags.report(Severity::Error, Rie::NoShader, {f}, "it cannot be compiled");
             }
         }
-        if (a->json) {
-            const OrderedJson all = {{"shaders", std::move(shaders)}, {"diagnostics", std::move(report)}};
-            std::printf("%s\n", all.dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
-        }
+        if (a->json) printReport({{"shaders", std::move(shaders)}}, std::move(report));
         *status = failed ? kDoneWithErrors : kDone;
     });
 }

@@ -2,6 +2,7 @@
 #include "answers/withoutscene.h"
 #include "base/printable.h"
 #include "cli/command.h"
+#include "cli/jsonreport.h"
 #include "rsl/evaluate.h"
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -13,7 +14,7 @@ void addEval(CLI::App& app, int* status) {
     struct Arguments {
         std::string setup, expression, dialect;
         int lanes = 16;
-        bool allowExec = false;
+        bool allowExec = false, json = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("eval", "Run RSL at one point and print the value");
@@ -22,13 +23,15 @@ void addEval(CLI::App& app, int* status) {
     c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
     addDialect(*c, a->dialect);
     c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
+    c->add_flag("--json", a->json, "As JSON, with messages under \"diagnostics\"");
     c->footer(
         "The point: u=v=s=t=0.5, P=(0,0,0), N=(0,0,1), I=(0,0,1), Cs=Os=1, du=dv=1. Numbers are printed as %.7g, separated by\n"
         "spaces, a string as it is. Maps are looked for in the current folder; there are no lights and nothing for rays to "
         "meet.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
         "  alpenglow eval --setup 'color c = (1, .5, 0);' 'ctransform(\"hsv\", c)'");
     c->callback([a, status] {
-        Diagnostics diags(printer());
+        nlohmann::ordered_json said;
+        Diagnostics diags(printerOr(a->json, said));
         rsl::ShaderCompiler::Settings settings;
         settings.allowExec = a->allowExec;
         settings.dialect = a->dialect;
@@ -43,8 +46,15 @@ void addEval(CLI::App& app, int* status) {
         const auto answer = [&](const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
                                 const float* in, float* out) { return services.answer(k, site, first, mask, lanes, in, out); };
         rsl::Evaluation e = rsl::evaluate(compiler, a->setup, a->expression, options, diags, answer);
-        std::fputs(printable(e.printed).c_str(), stdout);
-        if (e.ok && e.type.base != rsl::Base::Void)
+        if (a->json) {
+            nlohmann::ordered_json found = {{"ok", e.ok}, {"printed", e.printed}};
+            if (e.ok && e.type.base != rsl::Base::Void)
+                found.update({{"type", toString(e.type)}, {"text", e.text}, {"numbers", e.numbers}});
+            printReport(std::move(found), std::move(said));
+        } else {
+            std::fputs(printable(e.printed).c_str(), stdout);
+        }
+        if (!a->json && e.ok && e.type.base != rsl::Base::Void)
             std::printf("%s\n", (isatty(STDOUT_FILENO) ? printable(e.text) : e.text).c_str());
         *status = e.ok && diags.errors() == 0 ? kDone : kDoneWithErrors;
     });

@@ -1,7 +1,10 @@
-// alpenglow info: what a shader is, which shaders there are, and the manuals of shadeops, requests, options and displays.
+// alpenglow info: what a shader is, what is in other files, which shaders there are, and the manuals of shadeops, requests,
+// options and displays.
 #include "base/installation.h"
 #include "base/printable.h"
 #include "cli/command.h"
+#include "cli/fileinfo.h"
+#include "cli/jsonreport.h"
 #include "cli/manual.h"
 #include "cli/optionmanual.h"
 #include "cli/shaderdescription.h"
@@ -9,6 +12,7 @@
 #include "rsl/compiler.h"
 #include "shadeops/descriptor.h"
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -79,6 +83,22 @@ std::vector<std::string> searched(const InfoArguments& a) {
     return paths;
 }
 
+/// Whether what is asked for is a file that holds no shader. A name without a dot or a folder is one of a shader.
+bool namesOtherFile(const std::string& name) {
+    std::error_code e;
+    return name.find_first_of("./") != name.npos && !name.ends_with(".sl") && std::filesystem::is_regular_file(name, e);
+}
+
+int otherFile(const InfoArguments& a) {
+    OrderedJson said;
+    Diagnostics diags(printerOr(a.json, said));
+    const auto facts = fileFacts(a.file, diags);
+    if (a.json) printReport(facts.value_or(OrderedJson::object()), std::move(said));
+    else if (facts) std::fputs(printable(factsText(*facts)).c_str(), stdout);
+    if (!facts) return kNothingRendered;
+    return diags.errors() > 0 ? kDoneWithErrors : kDone;
+}
+
 int shader(const InfoArguments& a) {
     Diagnostics diags(printer());
     rsl::ShaderCompiler::Settings settings;
@@ -88,7 +108,13 @@ int shader(const InfoArguments& a) {
     settings.pluginPaths = paths;
     rsl::ShaderCompiler compiler(settings);
     auto shader = compiler.load(a.file, paths, diags);
-    if (!shader) return kDoneWithErrors;
+    if (!shader) {
+        std::vector<std::string> names;
+        for (const ListedShader& s : listShaders(paths)) names.push_back(s.name);
+        if (const std::string near = nearestName(a.file, names); !near.empty() && near != a.file)
+            std::fprintf(stderr, "  hint: did you mean \"%s\"?\n", printable(near).c_str());
+        return kDoneWithErrors;
+    }
     // A file tells about all of its shaders, beginning with the one that its name means; a name about one.
     std::vector<std::shared_ptr<const rsl::CompiledShader>> wanted{shader};
     if (a.file.ends_with(".sl"))
@@ -109,8 +135,12 @@ int shader(const InfoArguments& a) {
 
 void addInfo(CLI::App& app, int* status) {
     auto a = std::make_shared<InfoArguments>();
-    CLI::App* c = app.add_subcommand("info", "Tell what a shader is, or how shadeops, requests, options and displays work");
-    c->add_option("shader", a->file, "RSL file (all of its shaders), or the name of a shader on the search path")
+    CLI::App* c = app.add_subcommand(
+        "info", "Tell what is in a file or what a shader is, or how shadeops, requests, options and displays work");
+    c->add_option(
+         "file", a->file,
+         "RSL file (all of its shaders), the name of a shader on the search path, or a picture, map, point cloud, photon "
+         "map, part, model or scene")
         ->type_name("FILE");
     CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")
                            ->expected(0, 1)
@@ -153,9 +183,9 @@ void addInfo(CLI::App& app, int* status) {
             return;
         }
         if (a->file.empty())
-            throw CLI::RequiredError(
-                "a shader, or --shaders, --shadeops, --options, --attributes, --hiders, --displays or --requests");
-        *status = shader(*a);
+            throw CLI::RequiredError("a file, the name of a shader, or --shaders, --shadeops, --options, --attributes, --hiders, "
+                                     "--displays or --requests");
+        *status = namesOtherFile(a->file) ? otherFile(*a) : shader(*a);
     });
 }
 

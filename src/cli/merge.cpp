@@ -1,5 +1,6 @@
 // alpenglow merge: one picture of parts that were rendered with --samples.
 #include "cli/command.h"
+#include "cli/jsonreport.h"
 #include "render/filmpicture.h"
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -12,6 +13,7 @@ void addMerge(CLI::App& app, int* status) {
         std::string output, expect;
         std::vector<std::string> searchPaths;
         render::MergeSettings settings;
+        bool json = false;
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("merge", "Add parts rendered with --samples; the same bits as one render");
@@ -26,6 +28,7 @@ void addMerge(CLI::App& app, int* status) {
     c->add_option("--searchpath", a->searchPaths, "Folders for the imager's shaders before those of the render, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
+    c->add_flag("--json", a->json, "The messages as JSON, under \"diagnostics\"");
     c->footer(
         "Parts fit when scene, options, seed and crop window are the same and no sample is in two of them. Samples that are\n"
         "missing between them are warned about; the picture is written all the same, with a part file beside it, so that\n"
@@ -38,7 +41,8 @@ void addMerge(CLI::App& app, int* status) {
             if (!a->settings.expect)
                 throw CLI::ValidationError("--expect", "takes A:B with A < B: samples A to B-1, for example 0:64");
         }
-        Diagnostics diags(printer());
+        nlohmann::ordered_json said;
+        Diagnostics diags(printerOr(a->json, said));
         a->settings.shaderPaths = folders(a->searchPaths);
         switch (render::mergePictures(a->parts, a->output, a->settings, diags)) {
         case render::MergeResult::Done:
@@ -51,6 +55,7 @@ void addMerge(CLI::App& app, int* status) {
             *status = kOutputFailed;
             break;
         }
+        if (a->json) printReport({{"merged", *status == kDone || *status == kDoneWithErrors}}, std::move(said));
     });
 }
 

@@ -8,6 +8,7 @@
 #include "base/processors.h"
 #include "base/sampler.h"
 #include "cli/command.h"
+#include "cli/jsonreport.h"
 #include "cli/ranges.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
@@ -58,18 +59,18 @@ struct ProbeArguments {
     uint64_t seed = 0;
     int threads = 0, maxDepth = -1, lanes = 16;
     double radius = 0; ///< 0: a 400th of the scene
-    bool unbiased = false, allowExec = false, allowRead = false;
+    bool unbiased = false, allowExec = false, allowRead = false, json = false;
     std::vector<std::string> searchPaths;
 };
 
-int probe(const ProbeArguments& a) {
+/// found: what --json prints.
+int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& found) {
     auto p = parseNumbers(a.point, 3), n = parseNumbers(a.normal, 3);
     if (!p) throw CLI::ValidationError("point", "takes X,Y,Z in world space");
     if (!n) throw CLI::ValidationError("normal", "takes NX,NY,NZ in world space");
     Vec3d P((*p)[0], (*p)[1], (*p)[2]), N((*n)[0], (*n)[1], (*n)[2]);
     if (!(length(N) > 0)) throw CLI::ValidationError("normal", "must not be zero");
     N = normalize(N);
-    Diagnostics diags(printer());
     Keeper keeper;
     ri::ReaderOptions options;
     options.searchPaths = folders(a.searchPaths);
@@ -206,7 +207,8 @@ int probe(const ProbeArguments& a) {
         for (const Color& c : means) error[k] += (double(c[k]) - mean[k]) * (double(c[k]) - mean[k]);
         error[k] = std::sqrt(error[k] / (double(blocks) * (blocks - 1)));
     }
-    std::printf("%.7g %.7g %.7g  %.3g %.3g %.3g\n", mean[0], mean[1], mean[2], error[0], error[1], error[2]);
+    if (a.json) found = {{"radiance", mean}, {"standardError", error}, {"spp", uint64_t(blocks) * each}};
+    else std::printf("%.7g %.7g %.7g  %.3g %.3g %.3g\n", mean[0], mean[1], mean[2], error[0], error[1], error[2]);
     return diags.errors() ? kDoneWithErrors : kDone;
 }
 
@@ -239,7 +241,13 @@ void addProbe(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->footer("Prints R G B and the standard errors of the three. Path tracing, whatever the scene's hider.\n\n"
               "Example: alpenglow probe examples/muttenzer_box.rib 0,-1.25,0 0,1,0 --spp 65536");
-    c->callback([a, status] { *status = probe(*a); });
+    c->add_flag("--json", a->json, "As JSON, with messages under \"diagnostics\"");
+    c->callback([a, status] {
+        nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
+        Diagnostics diags(printerOr(a->json, said));
+        *status = probe(*a, diags, found);
+        if (a->json) printReport(std::move(found), std::move(said));
+    });
 }
 
 } // namespace alpenglow::cli

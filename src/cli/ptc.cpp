@@ -1,7 +1,10 @@
 // alpenglow ptc: point clouds and brick maps. What is in them, several as one, thinned and smoothed, as PLY, as pictures.
 #include "base/file.h"
+#include "base/printable.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/fileinfo.h"
+#include "cli/jsonreport.h"
 #include "cli/ranges.h"
 #include "clouds/bounce.h"
 #include "clouds/brickmap.h"
@@ -25,46 +28,10 @@ struct PtcArguments {
     std::string albedo = "0.5"; ///< a number, three, or a channel
     float solidAngle = .1f;
     float smooth = 0;
+    bool json = false;
 };
 
 const OutputPolicy kAnywhere{".", true};
-
-std::string numbers(const Vec3& v) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.6g %.6g %.6g", double(v.x), double(v.y), double(v.z));
-    return text;
-}
-
-/// What is in a file: lines of name and value.
-bool printInfo(const std::string& name, Diagnostics& d) {
-    if (clouds::isBrickMap(name)) {
-        const auto map = clouds::openMap(name, d);
-        if (!map) return false;
-        std::printf("%s\n  kind brick map\n", name.c_str());
-        for (const clouds::Channel& c : map->channels()) std::printf("  channel %s %s\n", nameOf(c.type), c.name.c_str());
-        return true;
-    }
-    const auto cloud = clouds::loadCloud(name, d);
-    if (!cloud) return false;
-    Vec3 lo, hi;
-    cloud->bounds(lo, hi);
-    std::printf("%s\n  kind point cloud\n  points %zu\n  from %s\n  to %s\n", name.c_str(), cloud->size(), numbers(lo).c_str(),
-                numbers(hi).c_str());
-    if (cloud->size()) {
-        const auto [least, most] = std::minmax_element(cloud->radius.begin(), cloud->radius.end());
-        std::printf("  radius %.6g to %.6g\n", double(*least), double(*most));
-    }
-    for (const clouds::Channel& c : cloud->channels) {
-        const int at = cloud->offsetOf(c.name);
-        std::vector<double> sum(size_t(sizeOf(c.type)));
-        for (size_t i = 0; i < cloud->size(); ++i)
-            for (size_t k = 0; k < sum.size(); ++k) sum[k] += double(cloud->valuesOf(i)[size_t(at) + k]);
-        std::printf("  channel %s %s, mean", nameOf(c.type), c.name.c_str());
-        for (const double s : sum) std::printf(" %.6g", cloud->size() ? s / double(cloud->size()) : 0.0);
-        std::printf("\n");
-    }
-    return true;
-}
 
 /// The channels that are named, and the points in the box; one point a cell; means within a radius.
 clouds::PointCloud filtered(clouds::PointCloud from, const PtcArguments& a) {
@@ -154,13 +121,22 @@ std::string bounced(clouds::PointCloud& cloud, const PtcArguments& a) {
     return clouds::bounce(cloud, o);
 }
 
-/// 0: done; else why not.
-int runPtc(const PtcArguments& a, Diagnostics& d) {
-    if (a.action == "info") {
-        bool all = true;
-        for (const std::string& f : a.files) all &= printInfo(f, d);
-        return all ? kDone : kNothingRendered;
+/// What is in files, as `info` tells it.
+int tell(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
+    bool all = true;
+    found["files"] = nlohmann::ordered_json::array();
+    for (const std::string& f : a.files) {
+        auto facts = fileFacts(f, d);
+        all &= facts.has_value();
+        if (facts && !a.json) std::fputs(printable(factsText(*facts)).c_str(), stdout);
+        if (facts) found["files"].push_back(std::move(*facts));
     }
+    return all ? kDone : kNothingRendered;
+}
+
+/// 0: done; else why not. found: what --json prints.
+int runPtc(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
+    if (a.action == "info") return tell(a, d, found);
     if (a.action == "brick") {
         if (clouds::brickMapOfFiles(std::span(&a.files[0], 1), a.files[1], kAnywhere, d)) return kDone;
         const auto unwritten = [](const Diagnostic& m) { return m.code == Rie::System || m.code == Rie::DiskFull; };
@@ -240,9 +216,11 @@ void addPtc(CLI::App& app, int* status) {
         ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
         ->type_name("AXIS");
     picture->add_option("--size", a->size, "Pixels of a side")->check(between(1, 8192))->type_name("PIXELS");
+    c->add_flag("--json", a->json, "As JSON: what info tells under \"files\", messages under \"diagnostics\"");
     c->footer("alpenglow ptc brick room.ptc room.bkm. docs/pointclouds.md describes the files.");
     c->callback([a, status] {
-        Diagnostics diags(printer());
+        nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
+        Diagnostics diags(printerOr(a->json, said));
         const size_t least = a->action == "info" ? 1 : 2;
         if (a->files.size() < least || (least == 2 && a->action != "merge" && a->files.size() != 2))
             throw CLI::ValidationError("files",
@@ -255,8 +233,9 @@ void addPtc(CLI::App& app, int* status) {
             if (!corners) throw CLI::ValidationError("--box", "takes six numbers, not " + a->box);
             a->corners = *corners;
         }
-        *status = runPtc(*a, diags);
+        *status = runPtc(*a, diags, found);
         if (*status == kDone && diags.errors()) *status = kDoneWithErrors;
+        if (a->json) printReport(std::move(found), std::move(said));
     });
 }
 

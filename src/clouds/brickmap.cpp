@@ -27,6 +27,7 @@ public:
         : path_(path), diagnostics_(d), place_(std::move(place)), file_(path), most_(cacheBytes) {}
     /// "": fine, else what is wrong.
     std::string readDirectory();
+    BrickFacts facts() const;
     const std::vector<Channel>& channels() const override { return channels_; }
     bool lookup(const Query& q, std::span<float> out) const override {
         const int levels = int(largest_.size());
@@ -79,6 +80,13 @@ private:
     mutable std::list<uint32_t> used_; ///< the last one met first
     mutable size_t bytes_ = 0;
 };
+
+BrickFacts BrickMap::facts() const {
+    BrickFacts f{channels_, largest_.size(), bricks_.size(), 0, corner_, side_};
+    for (const Brick& b : bricks_)
+        if (b.at[0] + 1 == largest_.size()) f.points += b.points;
+    return f;
+}
 
 std::string BrickMap::readDirectory() {
     std::vector<uint8_t> b;
@@ -179,6 +187,15 @@ std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostic
     d.report(Severity::Error, Rie::BadFile, place, "brick map \"" + path + "\" cannot be read: " + fault,
              "alpenglow ptc brick makes it anew");
     return nullptr;
+}
+
+std::optional<BrickFacts> brickFacts(const std::string& path, Diagnostics& d) {
+    BrickMap map(path, d, {}, 0);
+    const std::string fault = map.readDirectory();
+    if (fault.empty()) return map.facts();
+    d.report(Severity::Error, Rie::BadFile, {}, "brick map \"" + path + "\" cannot be read: " + fault,
+             "alpenglow ptc brick makes it anew");
+    return {};
 }
 
 std::vector<uint8_t> brickHead(std::span<const Channel> of, std::span<const float> largest, const Vec3& corner, float side,

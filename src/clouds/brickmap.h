@@ -17,6 +17,7 @@
 //   then the points of the bricks, as those of point clouds
 #pragma once
 #include "clouds/map.h"
+#include <optional>
 
 namespace alpenglow {
 struct OutputPolicy;
@@ -37,6 +38,16 @@ bool meanOf(double weight, std::span<const double> sums, std::span<float> out);
 /// reported.
 bool saveBrickMap(const std::string& name, const PointCloud&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
 bool isBrickMap(const std::string& path);
+/// What the directory of one says.
+struct BrickFacts {
+    std::vector<Channel> channels;
+    size_t levels = 0, bricks = 0; ///< bricks: of all levels
+    uint64_t points = 0;           ///< of the finest level
+    Vec3 corner;                   ///< of the cube about the cloud
+    float side = 0;
+};
+/// Nothing: an error was reported.
+std::optional<BrickFacts> brickFacts(const std::string& path, Diagnostics&);
 /// Opens one: reads what lies before the bricks. These are read when lookups meet them, and those longest not met are forgotten
 /// beyond `cacheBytes`. Null: an error was reported.
 std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostics&, const SourcePlace& = {},

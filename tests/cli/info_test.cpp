@@ -83,6 +83,79 @@ TEST_F(Info, ShadersInTheOrderOfTheSearch) {
     EXPECT_TRUE(names.count("spotlight") && names.count("fog") && !names.count("surface")); // methods are no shaders
 }
 
+TEST_F(Info, PicturesMapsAndParts) {
+    write("s.rib", "Format 16 12 1\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nHider \"path\"\nWorldBegin\nColor [.25 .5 .75]\n"
+                   "Surface \"constant\"\nPolygon \"P\" [-9 -9 1 -9 9 1 9 9 1 9 -9 1]\nWorldEnd\n");
+    run("render --progress none --samples 0:2 s.rib");
+    const Json picture = Json::parse(run("info --json a.exr"));
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_EQ(picture["kind"], "picture");
+    EXPECT_EQ(picture["size"], Json({16, 12}));
+    ASSERT_EQ(picture["channel"].size(), 4u);
+    EXPECT_EQ(picture["channel"][2]["name"], "b");
+    EXPECT_EQ(picture["channel"][2]["max"], .75);
+    EXPECT_EQ(picture["metadata"]["spp"], "2");
+    EXPECT_NE(run("info ./a.exr").find("\n  channel g, min 0.5, max 0.5, mean 0.5\n"), std::string::npos);
+    const Json part = Json::parse(run("info --json a.exr.part"));
+    EXPECT_EQ(part["kind"], "part of a render");
+    EXPECT_EQ(part["samples"], Json({"0:2"}));
+    run("maketx --mode periodic a.exr m.tx");
+    const Json map = Json::parse(run("info --json m.tx"));
+    EXPECT_EQ(map["kind"], "map, Plain Texture");
+    EXPECT_EQ(map["levels"], 5); // 16, 8, 4, 2, 1
+    EXPECT_EQ(map["metadata"]["wrapmodes"], "periodic,periodic");
+    write("broken.exr", "no picture at all");
+    EXPECT_EQ(run("info broken.exr"), "");
+    EXPECT_EQ(status, 3);
+    EXPECT_NE(errors().find("cannot read \"broken.exr\""), std::string::npos) << errors();
+}
+
+TEST_F(Info, ScenesAndModels) {
+    write("s.rib",
+          "Format 20 10 1\nDisplay \"x.exr\" \"openexr\" \"rgba\"\nFrameBegin 7\nWorldBegin\nLightSource \"pointlight\" 1\n"
+          "Surface \"plastic\"\nSphere 1 -1 1 360\nSphere 1 -1 1 360\nObjectBegin 1\nDisk 0 1 360\nObjectEnd\n"
+          "ObjectInstance 1\nObjectInstance 1\nWorldEnd\nFrameEnd\n");
+    const Json scene = Json::parse(run("info --json s.rib"));
+    EXPECT_EQ(status, 0) << errors();
+    EXPECT_EQ(scene["kind"], "scene");
+    ASSERT_EQ(scene["frame"].size(), 1u);
+    const Json& frame = scene["frame"][0];
+    EXPECT_EQ(frame["number"], 7);
+    EXPECT_EQ(frame["size"], Json({20, 10}));
+    EXPECT_EQ(frame["primitives"], (Json{{"Disk", 1}, {"Sphere", 2}}));
+    EXPECT_EQ(frame["objects"]["instances"], 2);
+    EXPECT_EQ(frame["lights"], (Json{{"pointlight", 1}}));
+    EXPECT_NE(run("info s.rib").find("\n    primitives Disk 1, Sphere 2\n"), std::string::npos) << run("info s.rib");
+    write("m.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3\nf 1 3 4\n");
+    const Json model = Json::parse(run("info --json m.obj"));
+    EXPECT_EQ(model["kind"], "model");
+    EXPECT_EQ(model["points"], 4);
+    EXPECT_EQ(model["faces"], 2);
+    EXPECT_EQ(model["to"], Json({2., 3., 0.}));
+}
+
+// What commands find is one object, with their messages beside it.
+TEST_F(Info, JsonHoldsDiagnostics) {
+    write("s.rib", "Format 4 4 1\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nWorldBegin\nSurface \"constant\"\n"
+                   "Polygon \"P\" [-9 -9 1 -9 9 1 9 9 1 9 -9 1]\nWorldEnd\n");
+    run("render --progress none s.rib");
+    const Json same = Json::parse(run("diff --json a.exr a.exr"));
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(same["within"], true);
+    EXPECT_EQ(same["all"]["max"], 0);
+    EXPECT_EQ(same["diagnostics"], Json::array());
+    const Json none = Json::parse(run("diff --json a.exr none.exr"));
+    EXPECT_EQ(status, 3);
+    EXPECT_EQ(none["diagnostics"][0]["severity"], "error");
+    EXPECT_EQ(errors(), "");
+    EXPECT_EQ(Json::parse(run("eval --json '1 + 1'"))["numbers"], Json({2.}));
+    EXPECT_EQ(Json::parse(run("eval --json 'nothing'"))["ok"], false);
+    EXPECT_EQ(Json::parse(run("probe --json --spp 2 s.rib 0,0,1 0,0,-1"))["spp"], 2);
+    EXPECT_EQ(Json::parse(run("ptc --json info none.ptc"))["files"], Json::array());
+    EXPECT_EQ(Json::parse(run("merge --json none.part -o b.exr"))["merged"], false);
+    EXPECT_TRUE(Json::parse(run("compile --json none.sl"))["diagnostics"].is_array());
+}
+
 // What the page calls "Not drawn yet" is what the program reports, and nothing else.
 TEST_F(Info, WhatIsNotDrawnIsCalledSo) {
     for (const Json& r : Json::parse(run("info --json --requests"))) {

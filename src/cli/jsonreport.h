@@ -1,0 +1,17 @@
+// What --json prints: one object with what the command found, and its messages under "diagnostics".
+#pragma once
+#include "base/diagnostics.h"
+#include <nlohmann/json.hpp>
+
+namespace alpenglow::cli {
+
+/// Everything that a message says; places count from 1, columns and lengths in bytes.
+nlohmann::ordered_json diagnosticJson(const Diagnostic&);
+
+/// With `json` a handler that adds warnings and errors to `said`, which outlives it; else printer().
+Diagnostics::Handler printerOr(bool json, nlohmann::ordered_json& said);
+
+/// Prints the object to standard output, with `said` as its "diagnostics".
+void printReport(nlohmann::ordered_json found, nlohmann::ordered_json said);
+
+} // namespace alpenglow::cli

@@ -104,7 +104,7 @@ TEST(SlProject, TextureMatrixWithATurn) {
 TEST(SlProject, TheMaterialHasThem) {
     const auto at = [](int x, int y, int c) { return float((5 * x + 3 * y + 7 * c) % 16) / 16; };
     const std::string map = writeMap("slp5.exr", 8, 8, at);
-    const std::string lit = "LightSource \"ambientlight\" 1\n";
+    const std::string lit = "LightSource \"distantlight\" 1 \"from\" [0 0 0] \"to\" [0 0 1]\n";
     const auto value = [&](const std::string& parameters, const std::string& more) {
         Scene s("WorldBegin\n" + lit + "Surface \"slmaterial\" \"string texturename\" [" + map +
                     "] \"string filter\" \"nearest\" " + parameters + "\n" + "Polygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2] " +
@@ -112,7 +112,7 @@ TEST(SlProject, TheMaterialHasThem) {
                 withShaders(Hider::Path));
         return s.estimate(rayTo({0, 0, 0}, {0, 0, 2}), 64);
     };
-    // (s, t) is (2.5, 3.5) / 8 everywhere, (s2, t2) is (6.5, 1.5) / 8. Under even light of 1 the albedo is seen.
+    // (s, t) is (2.5, 3.5) / 8 everywhere, (s2, t2) is (6.5, 1.5) / 8. Under light of 1 along the normal the albedo is seen.
     const std::string first = "\"varying float s\" [.3125 .3125 .3125 .3125] \"varying float t\" [.4375 .4375 .4375 .4375]";
     const std::string second = " \"varying float s2\" [.8125 .8125 .8125 .8125] \"varying float t2\" [.1875 .1875 .1875 .1875]";
     for (int k = 0; k < 3; ++k) {

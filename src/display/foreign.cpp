@@ -144,7 +144,7 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
 const ForeignModule& pictureModule() {
     static const ForeignModule m{
         "libalpenglow_pictures.so", "ALPENGLOW_PICTURES", "OpenImageIO (libopenimageio2.4)",
-        "it is in none of the formats that are read here (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, zfile, "
+        "it is in none of the formats that are read here (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, KTX, zfile, "
         "Pixar's native textures)"};
     return m;
 }

@@ -92,13 +92,14 @@ static std::optional<Image> decodeAs(std::span<const uint8_t> b, const DecodeCon
         if (starts({0x2f, 0x08, 0x67, 0xab}) || starts({0xab, 0x67, 0x08, 0x2f})) return decodeZfile(b, ctx);
         if (starts({'#', '?'})) return decodeRadiance(b, ctx);
         if (starts({0xfa, 0xce}) || starts({0xce, 0xfa})) return decodePixar(b, ctx);
+        if (looksLikeKtx(b)) return decodeKtx(b, ctx);
         if (looksLikeTarga(b)) return decodeTarga(b, ctx); // last: it has nothing of its own to be known by
         if (ctx.file) return readForeign(pictureModule(), ctx.name, ctx);
     } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);
     }
-    return ctx.refuse(
-        "it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, zfile, Pixar's native textures)");
+    return ctx.refuse("it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, KTX, zfile, "
+                      "Pixar's native textures)");
 }
 
 std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::string& name, Diagnostics& diags,

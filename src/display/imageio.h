@@ -1,4 +1,4 @@
-// Reading and writing pictures: OpenEXR, TIFF, PNG, JPEG; reading only: Radiance, Targa, zfiles, Pixar's
+// Reading and writing pictures: OpenEXR, TIFF, PNG, JPEG; reading only: Radiance, Targa, KTX, zfiles, Pixar's
 // native textures, and through a module (display/foreign.h) whatever OpenImageIO reads.
 #pragma once
 #include "base/file.h"

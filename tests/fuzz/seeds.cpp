@@ -23,6 +23,20 @@ Bytes shadowMap() {
     return Bytes(b.begin(), b.end());
 }
 
+/// A KTX2 picture of 8 x 4 pixels, of one level.
+Bytes ktx2(unsigned vulkanFormat) {
+    Bytes b("\xabKTX 20\xbb\r\n\x1a\n", 12);
+    const auto put = [&](unsigned v, int bytes) {
+        for (int i = 0; i < bytes; ++i) b.push_back(char(v >> (8 * i) & 255));
+    };
+    const unsigned size = vulkanFormat == 23 ? 96 : vulkanFormat == 109 ? 512 : vulkanFormat == 131 ? 16 : 32;
+    for (const unsigned v : {vulkanFormat, 1u, 8u, 4u, 0u, 0u, 1u, 1u, 0u}) put(v, 4);
+    b += Bytes(32, '\0');
+    put(104, 8), put(size, 8), put(size, 8);
+    for (unsigned i = 0; i < size; ++i) b.push_back(char(i * 37 + 5));
+    return b;
+}
+
 display::Image smallPicture(int channels) {
     display::Image m = display::makeImage(20, 12, display::defaultChannels(channels));
     for (size_t i = 0; i < m.data.size(); ++i) m.data[i] = float(i * 7 % 256) / 255;
@@ -69,6 +83,7 @@ void makePictures() {
             putFile(name(".tx"), Bytes(b.begin(), b.end()));
         }
     putFile(name(".shd"), shadowMap());
+    for (const int format : {23, 109, 131, 137, 141, 143, 145}) putFile(name(".ktx"), ktx2(unsigned(format)));
 }
 
 const char* const partScene =

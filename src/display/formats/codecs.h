@@ -28,6 +28,9 @@ std::optional<Image> decodeZfile(Bytes, const DecodeContext&);
 std::optional<Image> decodeRadiance(Bytes, const DecodeContext&);
 std::optional<Image> decodePixar(Bytes, const DecodeContext&);
 std::optional<Image> decodeTarga(Bytes, const DecodeContext&);
+std::optional<Image> decodeKtx(Bytes, const DecodeContext&);
+/// Whether a file begins as KTX or KTX2 does.
+bool looksLikeKtx(Bytes);
 /// Whether a file may be a Targa picture, by its header, which looksLikeTarga() has read whole then.
 bool looksLikeTarga(Bytes);
 

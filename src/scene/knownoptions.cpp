@@ -123,6 +123,9 @@ constexpr OptionDescription kOptions[] = {
      "and raytrace the numbers of the file (colour.md)."},
     {"texture:enable_gaussian", "", "", "", Ignored, kPrman},
     {"texture:enable_lerp", "", "", "", Ignored, kPrman},
+    {"texture:maxanisotropy", "float", "", "16", Used,
+     "How many times longer than wide the footprint of texture() and environment() may be, at least 1: a longer one is widened, "
+     "which blurs. Without it only the number of probes, 32, limits the length."},
     {"texture:missing", "color", "", "[1 0 1]", Used,
      "What texture() and environment() give of a map that cannot be read; without it the call's \"fill\", else 0."},
     {"trace:approximation", "", "", "", Ignored, kDelight},

@@ -6,7 +6,8 @@ namespace alpenglow::rsl {
 namespace {
 
 std::vector<OptionalParameter> filterParameters() {
-    return {{kS, "filter", false, "\"gaussian\"", "box, triangle, gaussian, catmull-rom"},
+    return {{kS, "filter", false, "\"gaussian\"",
+             "a pixel filter: box, triangle, gaussian, disk, catmull-rom, mitchell, sinc, bessel, ..."},
             {kF, "width", false, "1", "multiplies the filter size in s and t"},
             {kF, "swidth", false, "1", "multiplies the filter size in s"},
             {kF, "twidth", false, "1", "multiplies the filter size in t"},

@@ -50,31 +50,8 @@ Footprint Footprint::sides(float dsdx, float dtdx, float dsdy, float dtdy) {
     return {dsdx * dsdx + dsdy * dsdy, dsdx * dtdx + dsdy * dtdy, dtdx * dtdx + dtdy * dtdy};
 }
 
-void filteredLookup(const Texture& tex, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o,
-                    Wrap swrap, Wrap twrap, float* out, float* slopes, float* curves) {
-    for (int c = 0; c < count; ++c) out[c] = 0;
-    float *ds = slopes, *dt = slopes ? slopes + count : nullptr;
-    float *dss = curves, *dst = curves ? curves + count : nullptr, *dtt = curves ? curves + 2 * count : nullptr;
-    if (slopes) std::fill_n(slopes, 2 * count, 0.0f);
-    if (curves) std::fill_n(curves, 3 * count, 0.0f);
-    int skip = first < -count ? count : first < 0 ? -first : 0; // a negative channel exists as little as one beyond the last
-    int present = first < -count ? 0 : std::clamp(int(tex.channels.size()) - (first + skip), 0, count - skip);
-    for (int c = 0; c < count; ++c)
-        if (c < skip || c >= skip + present) out[c] = o.fill;
-    if (!present) return;
-    first += skip;
-    out += skip;
-    if (slopes) {
-        ds += skip;
-        dt += skip;
-    }
-    if (curves) {
-        dss += skip;
-        dst += skip;
-        dtt += skip;
-    }
-    count = present;
-    float W = float(tex.width()), H = float(tex.height());
+/// The footprint as an ellipse, with what the options do to it.
+static Ellipse ellipseOf(const Footprint& fp, const LookupOptions& o, float W, float H) {
     // Squared widths in texels of level 0. A footprint beyond a thousand maps is the average of all.
     constexpr float most = 1e6f;
     float sw = finiteOr(o.swidth, 1), tw = finiteOr(o.twidth, 1), sb = finiteOr(o.sblur, 0), tb = finiteOr(o.tblur, 0);
@@ -83,60 +60,77 @@ void filteredLookup(const Texture& tex, int first, int count, float s, float t, 
     float st = finiteOr(fp.st * sw * tw, 0), bound = std::sqrt(ss * tt);
     st = std::clamp(st, -bound, bound);
     float a = ss * W * W, b = st * W * H, c = tt * H * H;
-    // Eigenvalues: squared widths along the axes of the ellipse; (ax, ay): the major axis.
+    // Eigenvalues: squared widths along the axes of the ellipse.
+    Ellipse e;
     float mean = (a + c) / 2, diff = (a - c) / 2, root = std::sqrt(diff * diff + b * b);
-    float major = mean + root, minor = std::max(0.0f, mean - root);
+    e.major = mean + root, e.minor = std::max(std::max(0.0f, mean - root), e.major * o.squeeze);
     float ax = diff >= 0 ? diff + root : std::fabs(b), ay = diff >= 0 ? b : (b < 0 ? diff - root : root - diff);
     float al = std::sqrt(ax * ax + ay * ay);
-    if (al > 0) {
-        ax /= al;
-        ay /= al;
-    } else {
-        ax = 1;
-        ay = 0;
-    }
+    if (al > 0) e.x = ax / al, e.y = ay / al;
+    float widest = std::max(ss, tt);
+    if (widest > 0) e.across = std::max(0.0f, (ss * tt - st * st) / widest);
+    return e;
+}
 
+LevelBlend blendOf(float u, int last) {
+    // Level l and part f of the next, so that the variances blend to the one wanted: 4^l (1 + 3f) = u^2. No logarithm.
+    int exponent = 0;
+    float mantissa = 2 * std::frexp(u, &exponent), f = (mantissa * mantissa - 1) / 3;
+    return {std::clamp(exponent - 1, 0, last), exponent - 1 >= last ? 0 : f};
+}
+
+void Sums::add(const Texture& tex, const LevelBlend& b, float s, float t, Wrap swrap, Wrap twrap, float weight) const {
+    const auto each = [&](const auto& f) {
+        f(tex.levels[size_t(b.level)], weight * (1 - b.next));
+        if (b.next > 0) f(tex.levels[size_t(b.level + 1)], weight * b.next);
+    };
+    each([&](const Level& l, float w) { l.addBilinear(s, t, swrap, twrap, first, count, w, out, asLight); });
+    if (dss) each([&](const Level& l, float w) { l.addCurves(s, t, swrap, twrap, first, count, w, dss, dst, dtt, asLight); });
+    if (ds) each([&](const Level& l, float w) { l.addSlopes(s, t, swrap, twrap, first, count, w, ds, dt, asLight); });
+}
+
+/// A lookup by a filter that is known by its variance.
+static void probedLookup(const Texture& tex, float s, float t, const Ellipse& e, Filter filter, Wrap swrap, Wrap twrap,
+                         const Sums& sums) {
+    const float W = float(tex.width()), H = float(tex.height());
     // Trilinear interpolation at texel size u has variance u^2/4 (box 1/12 + tent 1/6). u: that of the filter across the minor
     // axis, at least a texel, and large enough for the probes to cover the major axis without gaps.
     constexpr float cap = float(limits::kTextureTaps);
-    float v = varianceOf(o.filter);
-    float u = std::max({1.0f, 2 * std::sqrt(v * minor), std::sqrt(12 * v * major / (cap * cap + 2))});
+    float v = varianceOf(filter);
+    float u = std::max({1.0f, 2 * std::sqrt(v * e.minor), std::sqrt(12 * v * e.major / (cap * cap + 2))});
     // A footprint that covers the map in every direction means the whole map, not its edges again and again: from half a map (k)
     // on, the level goes to the last, continuously.
-    float widest = std::max(ss, tt), k = widest > 0 ? 2 * std::sqrt(v * std::max(0.0f, (ss * tt - st * st) / widest)) : 0.0f;
+    float k = 2 * std::sqrt(v * e.across);
     if (k > 0.5f) u = std::max(u, std::max(W, H) * (2 * k - 1));
-    float spread = std::max(0.0f, v * major - u * u / 4); // variance left to the probes
+    float spread = std::max(0.0f, v * e.major - u * u / 4); // variance left to the probes
     // n uniform probes at distance d have variance d^2 (n^2 - 1) / 12; d <= u. Tails of the smooth weights take 1.53 times the
     // length.
-    float length = std::sqrt(12 * spread) * (o.filter == Filter::Box ? 1.0f : 1.53f);
+    float length = std::sqrt(12 * spread) * (filter == Filter::Box ? 1.0f : 1.53f);
     const int n = std::clamp(int(std::ceil(std::sqrt(1 + (length / u) * (length / u)) - 0.25f)), 1, limits::kTextureTaps);
-    const float *positions = allProbes().position[int(o.filter)][n - 1], *weights = allProbes().weight[int(o.filter)][n - 1];
-    float deviation = std::sqrt(spread), dx = ax * deviation / W, dy = ay * deviation / H;
+    const float *positions = allProbes().position[int(filter)][n - 1], *weights = allProbes().weight[int(filter)][n - 1];
+    float deviation = std::sqrt(spread), dx = e.x * deviation / W, dy = e.y * deviation / H;
+    const LevelBlend blend = blendOf(u, int(tex.levels.size()) - 1);
+    for (int i = 0; i < n; ++i) sums.add(tex, blend, s + positions[i] * dx, t + positions[i] * dy, swrap, twrap, weights[i]);
+}
 
-    // Level l and part f of the next, so that the variances blend to the one wanted: 4^l (1 + 3f) = u^2. No logarithm.
-    int exponent = 0, last = int(tex.levels.size()) - 1;
-    float mantissa = 2 * std::frexp(u, &exponent), f = (mantissa * mantissa - 1) / 3;
-    int l = std::clamp(exponent - 1, 0, last);
-    if (exponent - 1 >= last) f = 0;
-    for (int i = 0; i < n; ++i) {
-        float ps = s + positions[i] * dx, pt = t + positions[i] * dy;
-        tex.levels[size_t(l)].addBilinear(ps, pt, swrap, twrap, first, count, weights[i] * (1 - f), out, o.asLight);
-        if (f > 0) tex.levels[size_t(l + 1)].addBilinear(ps, pt, swrap, twrap, first, count, weights[i] * f, out, o.asLight);
-        if (curves) {
-            tex.levels[size_t(l)].addCurves(ps, pt, swrap, twrap, first, count, weights[i] * (1 - f), dss, dst, dtt, o.asLight);
-            if (f > 0)
-                tex.levels[size_t(l + 1)].addCurves(ps, pt, swrap, twrap, first, count, weights[i] * f, dss, dst, dtt, o.asLight);
-        }
-        if (!slopes) continue;
-        tex.levels[size_t(l)].addSlopes(ps, pt, swrap, twrap, first, count, weights[i] * (1 - f), ds, dt, o.asLight);
-        if (f > 0) tex.levels[size_t(l + 1)].addSlopes(ps, pt, swrap, twrap, first, count, weights[i] * f, ds, dt, o.asLight);
-    }
-    for (int i = 0; slopes && i < count; ++i) { // between infinite texels there is no slope
-        ds[i] = finiteOr(ds[i], 0);
-        dt[i] = finiteOr(dt[i], 0);
-    }
-    for (int i = 0; curves && i < count; ++i)
-        for (float* d : {dss, dst, dtt}) d[i] = finiteOr(d[i], 0);
+void filteredLookup(const Texture& tex, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o,
+                    Wrap swrap, Wrap twrap, float* out, float* slopes, float* curves) {
+    for (int c = 0; c < count; ++c) out[c] = 0;
+    if (slopes) std::fill_n(slopes, 2 * count, 0.0f);
+    if (curves) std::fill_n(curves, 3 * count, 0.0f);
+    int skip = first < -count ? count : first < 0 ? -first : 0; // a negative channel exists as little as one beyond the last
+    int present = first < -count ? 0 : std::clamp(int(tex.channels.size()) - (first + skip), 0, count - skip);
+    for (int c = 0; c < count; ++c)
+        if (c < skip || c >= skip + present) out[c] = o.fill;
+    if (!present) return;
+    const auto run = [&](float* from, int number) { return from ? from + number * count + skip : nullptr; };
+    const Sums sums{out + skip,     run(slopes, 0), run(slopes, 1), run(curves, 0), run(curves, 1),
+                    run(curves, 2), first + skip,   present,        o.asLight};
+    const Ellipse e = ellipseOf(fp, o, float(tex.width()), float(tex.height()));
+    (hasShape(o.filter) ? shapedLookup : probedLookup)(tex, s, t, e, o.filter, swrap, twrap, sums);
+    for (int i = 0; i < present; ++i) // between infinite texels there is no slope
+        for (float* d : {sums.ds, sums.dt, sums.dss, sums.dst, sums.dtt})
+            if (d) d[i] = finiteOr(d[i], 0);
 }
 
 void lookup(Handle h, int first, int count, float s, float t, const Footprint& fp, const LookupOptions& o, float* out,
@@ -196,9 +190,26 @@ void LookupLanes::set(const LookupOptions& o) {
         fill[i] = o.fill;
         filter[i] = o.filter;
     }
+    squeeze = o.squeeze;
 }
 
 namespace {
+
+/// Lanes whose filters have a shape: one by one. They leave the mask.
+void lookUpShaped(const Texture& tex, int first, int count, bool asLight, LookupLanes& l) {
+    for (uint32_t left = l.mask; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        if (!hasShape(l.filter[i])) continue;
+        LookupOptions o;
+        o.swidth = l.swidth[i], o.twidth = l.twidth[i], o.sblur = l.sblur[i], o.tblur = l.tblur[i];
+        o.filter = l.filter[i], o.fill = l.fill[i], o.squeeze = l.squeeze, o.asLight = asLight;
+        float found[4] = {};
+        filteredLookup(tex, first, count, l.s[i], l.t[i], Footprint::sides(l.dsdx[i], l.dtdx[i], l.dsdy[i], l.dtdy[i]), o,
+                       tex.swrap, tex.twrap, found);
+        for (int c = 0; c < count; ++c) l.out[c][i] = found[c];
+        l.mask &= ~(uint32_t(1) << i);
+    }
+}
 
 /// Those of a mask that lie in one map that has levels.
 void lookInOne(const Texture& tex, int first, int count, bool asLight, LookupLanes& l, LookUpLanes look) {
@@ -249,7 +260,13 @@ LookUpLanes widestLanes() {
 
 void lookup2DLanes(Handle h, int first, int count, bool asLight, LookupLanes& l) {
     const LookUpLanes look = widestLanes();
-    if (h && !h->levels.empty()) return lookInOne(*h, first, count, asLight, l, look);
+    if (h && !h->levels.empty()) {
+        const uint32_t all = l.mask;
+        lookUpShaped(*h, first, count, asLight, l);
+        if (l.mask) lookInOne(*h, first, count, asLight, l, look);
+        l.mask = all;
+        return;
+    }
     if (h && h->kind != Kind::Cube && !h->tiles.empty()) { // tile by tile; each lane's place on its own
         const uint32_t all = l.mask;
         const Texture* tiles[LookupLanes::kLanes] = {};

@@ -11,6 +11,31 @@ inline constexpr const char* kEightBits = "8 bits";
 /// "colorspace" of a map whose numbers are light.
 inline constexpr const char* kLight = "light";
 
+/// A footprint in texels of level 0: squared widths along the axes of its ellipse, and the unit vector of the longer.
+struct Ellipse {
+    float major = 0, minor = 0, x = 1, y = 0;
+    float across = 0; ///< squared width across its longer side, in maps
+};
+
+/// The levels that interpolation at texel size u >= 1 blends: `level`, and of the next the part `next`.
+struct LevelBlend {
+    int level = 0;
+    float next = 0;
+};
+LevelBlend blendOf(float u, int last);
+
+/// What a lookup gets: all channels are present. Slopes (ds, dt) and curves may be null.
+struct Sums {
+    float *out, *ds, *dt, *dss, *dst, *dtt;
+    int first, count;
+    bool asLight;
+    /// Adds weight times the map at (s, t), interpolated in and between levels.
+    void add(const Texture&, const LevelBlend&, float s, float t, Wrap swrap, Wrap twrap, float weight) const;
+};
+
+/// A lookup by a filter that has a shape. kernels.cpp
+void shapedLookup(const Texture&, float s, float t, const Ellipse&, Filter, Wrap swrap, Wrap twrap, const Sums&);
+
 /// lookup() on one map that has levels, with wrap modes that may differ from the map's own. `slopes`, `curves`: as for
 /// lookup(), or null.
 void filteredLookup(const Texture&, int first, int count, float s, float t, const Footprint&, const LookupOptions&, Wrap swrap,

@@ -7,8 +7,11 @@ namespace alpenglow::texture {
 
 struct LookupOptions;
 
-/// Lookup filters. Negative-lobed ones of RISpec are taken as Box, the sharpest without ringing.
-enum class Filter { Box, Triangle, Gaussian };
+/// Lookup filters. The first three are known by their variances; the others are summed by their shapes (texture/kernels.h), which
+/// lanes leave to filteredLookup().
+enum class Filter { Box, Triangle, Gaussian, Disk, CatmullRom, SeparableCatmullRom, Mitchell, Sinc, Lanczos, Bessel };
+inline constexpr int kFilters = int(Filter::Bessel) + 1;
+inline constexpr bool hasShape(Filter f) { return int(f) > int(Filter::Gaussian); }
 
 /// Sixteen lookups in one map, or fewer. Each gives the bits that lookup2D() would.
 struct LookupLanes {
@@ -17,6 +20,7 @@ struct LookupLanes {
     alignas(64) float s[kLanes], t[kLanes], dsdx[kLanes], dtdx[kLanes], dsdy[kLanes], dtdy[kLanes];
     alignas(64) float swidth[kLanes], twidth[kLanes], sblur[kLanes], tblur[kLanes], fill[kLanes]; ///< as in LookupOptions
     Filter filter[kLanes];
+    float squeeze = 0;                ///< as in LookupOptions, of all lanes
     alignas(64) float out[4][kLanes]; ///< channels first, first + 1, ... of each lane of the mask
     /// All lanes take these options.
     void set(const LookupOptions&);

@@ -195,6 +195,13 @@ void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int
     }
 }
 
+void Level::addTexel(int x, int y, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum, bool asLight) const {
+    const int i = placed(x, width, swrap), j = placed(y, height, twrap);
+    if (i < 0 || j < 0) return;
+    const size_t at = (size_t(j) * size_t(width) + size_t(i)) * size_t(channels) + size_t(first);
+    for (int c = 0; c < count; ++c) sum[c] += weight * texel(at + size_t(c), first + c, asLight);
+}
+
 void Level::addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt,
                       bool asLight) const {
     const auto valueAt = [&](int x, int y, int c) {

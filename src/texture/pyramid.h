@@ -79,6 +79,8 @@ struct Level {
     /// centres are at ((i + 1/2) / width, (j + 1/2) / height); row 0 is t = 0, the top. s and t may be anything, also not finite.
     void addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum,
                      bool asLight = false) const;
+    /// Adds weight times the channels of texel (x, y) of an endless map: also beyond the sides, by the wrap modes.
+    void addTexel(int x, int y, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum, bool asLight) const;
     /// Adds weight times the slopes of the same channels by s and by t (change over the whole map) to ds[0..count) and
     /// dt[0..count): what addBilinear would give half a texel further, less what it would give half a texel before. So slopes go
     /// on from texel to texel without a jump; they are exact on ramps, and exactly 0 where the map is flat.

@@ -134,12 +134,22 @@ size_t Texture::bytes() const {
 }
 
 std::optional<Filter> filterByName(std::string_view n) {
-    for (const char* k :
-         {"box", "disk", "point", "catmull-rom", "separable-catmull-rom", "mitchell", "lanczos", "sinc", "bessel"})
-        if (n == k) return Filter::Box;
-    if (n == "triangle") return Filter::Triangle;
-    for (const char* k : {"gaussian", "b-spline", "blackman-harris", "radial-bspline"})
-        if (n == k) return Filter::Gaussian;
+    constexpr std::pair<const char*, Filter> kNames[] = {{"box", Filter::Box},
+                                                         {"point", Filter::Box},
+                                                         {"triangle", Filter::Triangle},
+                                                         {"gaussian", Filter::Gaussian},
+                                                         {"b-spline", Filter::Gaussian},
+                                                         {"blackman-harris", Filter::Gaussian},
+                                                         {"radial-bspline", Filter::Gaussian},
+                                                         {"disk", Filter::Disk},
+                                                         {"catmull-rom", Filter::CatmullRom},
+                                                         {"separable-catmull-rom", Filter::SeparableCatmullRom},
+                                                         {"mitchell", Filter::Mitchell},
+                                                         {"sinc", Filter::Sinc},
+                                                         {"lanczos", Filter::Lanczos},
+                                                         {"bessel", Filter::Bessel}};
+    for (const auto& [name, filter] : kNames)
+        if (n == name) return filter;
     return {};
 }
 

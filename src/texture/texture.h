@@ -7,9 +7,10 @@
 // Filtering: the footprint is the parallelogram of the derivatives, as a matrix of squared widths; blur adds to it in quadrature
 // (convolution of boxes). Probes with trilinear interpolation lie along the major axis so that the variance of the whole kernel
 // is that of the filter over the footprint; the minor axis chooses the level. A kernel is never narrower than bilinear
-// interpolation. Slopes of a lookup: of the same probes and levels, each the central difference over one texel of its level; so
-// they are smooth across texels, as coarse as the value, and those of a map that is seen from afar fade as its value does. Not
-// done: separate treatment of parallelogram and ellipse; sharpening (negative lobes) in lookups.
+// interpolation. Filters with a shape (kernels.h) are sums of probes over the footprint's ellipse. Slopes of a lookup: of the
+// same probes and levels, each the central difference over one texel of its level; so they are smooth across texels, as coarse as
+// the value, and those of a map that is seen from afar fade as its value does. Not done: separate treatment of parallelogram and
+// ellipse.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/file.h"
@@ -70,6 +71,7 @@ struct LookupOptions {
     float sblur = 0, tblur = 0;   ///< as a fraction of the map
     Filter filter = Filter::Gaussian;
     bool asLight = false; ///< colours of maps whose numbers are a curve of light: as light (TextureSettings::light)
+    float squeeze = 0;    ///< 1 / n^2: the footprint is widened until its sides are at most n to 1; 0: any
     float fill = 0;       ///< value of channels that the map does not have
     float lerp = 0;       ///< accepted; levels are always interpolated, a switch would show as an edge
 };
@@ -154,6 +156,7 @@ struct TextureSettings {
     std::optional<Color> missing{};   ///< of maps that cannot be read; nothing: lookups give their fill value
     /// Bytes that maps hold in memory; what is more lies in scratch files. 0: a quarter of what the machine has.
     size_t memory = 0;
+    float squeeze = 0; ///< of lookups: LookupOptions::squeeze
 };
 
 /// The maps of a render. Thread safe.

@@ -270,6 +270,7 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
     if (!s.strings.empty()) t->name = s.strings[0];
     t->computed = t->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
     t->count = s.resultKinds.empty() ? 0 : std::min(rsl::ir::components(s.resultKinds[0]), 3);
+    t->options.squeeze = world.textures_->settings().squeeze;
     t->options.asLight = t->count == 3; // what is read as a float is data: a height, an opacity, a mask
     t->slopes = std::min(i.resultRowCount - t->count, 27);
     t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
@@ -288,7 +289,7 @@ Diagnostic unknownFilter(const std::string& name, const std::string& op, const S
             Rie::BadToken,
             place,
             op + "(): there is no filter \"" + name + "\"; \"gaussian\" is used",
-            "filters of maps are box, triangle, gaussian and those of RISpec that are near one of them",
+            "filters of maps have the names of pixel filters",
             {}};
 }
 

@@ -158,6 +158,12 @@ static texture::TextureSettings mapSettings(const scene::Options& o, const Setti
                                .reads = settings.reads};
     if (const auto i = o.values.find("texture:missing"); i != o.values.end() && i->second.numbers.size() >= 3)
         t.missing = Color(i->second.numbers[0], i->second.numbers[1], i->second.numbers[2]);
+    if (const auto i = o.values.find("texture:maxanisotropy"); i != o.values.end() && !i->second.numbers.empty()) {
+        if (const float most = i->second.numbers[0]; most >= 1) t.squeeze = 1 / (most * most);
+        else
+            d.report(Severity::Error, Rie::Range, i->second.place,
+                     "Option \"texture\" \"maxanisotropy\" is a number, at least 1; footprints stay as they are");
+    }
     if (const auto i = o.values.find("limits:texturememory"); i != o.values.end() && !i->second.numbers.empty()) {
         const double kilobytes = double(i->second.numbers[0]);
         if (kilobytes >= 1 && kilobytes < 1e15) t.memory = size_t(kilobytes) * 1024;

@@ -29,6 +29,7 @@ struct Footprints {
     float size() { return std::exp2(number(-16, 3)); }
     void fill(LookupLanes& l) {
         l.mask = random() & 0xffff;
+        l.squeeze = random() % 2 ? 0 : 1 / (1 + number(0, 90));
         constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
         for (int i = 0; i < LookupLanes::kLanes; ++i) {
             l.s[i] = number(-3, 3), l.t[i] = number(-3, 3);
@@ -37,7 +38,7 @@ struct Footprints {
             l.dsdy[i] = b * number(-1, 1), l.dtdy[i] = b * number(-1, 1);
             l.swidth[i] = number(0, 2), l.twidth[i] = number(0, 2);
             l.sblur[i] = random() % 3 ? 0 : size(), l.tblur[i] = random() % 3 ? 0 : size();
-            l.filter[i] = Filter(random() % 3);
+            l.filter[i] = Filter(random() % 5 ? random() % 3 : random() % unsigned(kFilters));
             l.fill[i] = number(0, 1);
             if (random() % 40 == 0) l.dsdx[i] = inf;
             if (random() % 40 == 0) l.s[i] = random() % 2 ? nan : -inf;
@@ -60,7 +61,7 @@ void compare(Handle h, int first, int count, bool asLight, LookupLanes l) {
         if (l.mask >> i & 1) {
             LookupOptions o;
             o.swidth = l.swidth[i], o.twidth = l.twidth[i], o.sblur = l.sblur[i], o.tblur = l.tblur[i];
-            o.filter = l.filter[i], o.fill = l.fill[i], o.asLight = asLight;
+            o.filter = l.filter[i], o.fill = l.fill[i], o.asLight = asLight, o.squeeze = l.squeeze;
             lookup2D(h, first, count, l.s[i], l.t[i], l.dsdx[i], l.dtdx[i], l.dsdy[i], l.dtdy[i], o, v);
         }
         for (int c = 0; c < count; ++c)

@@ -19,8 +19,8 @@ struct Looked {
     Color color;
     std::string said;
 };
-Looked looked(const std::string& before, const std::string& surface) {
-    Scene s(before + "WorldBegin\n" + surface + "\n" + kSquare + "WorldEnd\n");
+Looked looked(const std::string& before, const std::string& surface, int errors = 0) {
+    Scene s(before + "WorldBegin\n" + surface + "\n" + kSquare + "WorldEnd\n", {}, errors);
     const Color c = s.one(rayTo({0, 0, 0}, {.2f, .3f, 2}));
     return {c, s.messages()};
 }
@@ -90,6 +90,23 @@ TEST(TextureMaps, InformationAboutMaps) {
     const Looked l = looked("Translate 0 0 1\n", "Surface \"told\" \"string map\" [\"" + shaderFolder() + "/told.exr\"]");
     EXPECT_EQ(l.said, "");
     expectColor(l.color, {3, 5.25f, 7 + 80 + 600 + .5f}, 1e-4f);
+}
+
+// Bars along s: a footprint that is long in t sees one of them, until it is widened as far as it is long.
+TEST(TextureMaps, FootprintsAreWidenedAsTheOptionSays) {
+    const std::string map =
+        writeMap("bars.exr", 64, 64, [](int x, int, int) { return x / 8 % 2 ? 1.f : 0.f; }, "periodic,periodic");
+    writeShader("bars", "surface bars(string map = \"\";) { Oi = 1; float c = 12 / 64, h = .002;\n"
+                        "    Ci = color texture(map, c - h, .3, c + h, .3, c - h, .7, c + h, .7); }\n");
+    const std::string surface = "Surface \"bars\" \"string map\" [" + map + "]";
+    EXPECT_GT(looked("", surface).color.x, .95f);
+    EXPECT_GT(looked("Option \"texture\" \"float maxanisotropy\" 16\n", surface).color.x, .9f);
+    const Looked one = looked("Option \"texture\" \"float maxanisotropy\" 1\n", surface);
+    EXPECT_NEAR(one.color.x, .5f, .06f);
+    EXPECT_EQ(one.said, "");
+    const Looked wrong = looked("Option \"texture\" \"float maxanisotropy\" 0\n", surface, 1);
+    EXPECT_GT(wrong.color.x, .95f);
+    EXPECT_NE(wrong.said.find("\"maxanisotropy\" is a number, at least 1"), std::string::npos) << wrong.said;
 }
 
 // A lookup whose slopes somebody wants takes another way than one without: its value is the same.

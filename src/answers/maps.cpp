@@ -281,6 +281,7 @@ void answerTextureInfo(Answers& answers, const ServiceCall& call) {
             i = {{}, {std::string(texture::nameOf(info->swrap)) + "," + texture::nameOf(info->twrap)}, true};
         else if (field == "gamma") i.numbers = {info->gamma};
         else if (field == "facecount") i.numbers = {float(info->faces)};
+        else if (field == "hasalpha") i.numbers = {info->alpha ? 1.f : 0.f};
         else if (field == "format") i = {{}, {formatOf(*info)}, true};
         else return;
         call.answer(lane, Told(i));

@@ -12,6 +12,10 @@ OrderedJson frameJson(const FrameStats& f) {
     j["pictures"] = OrderedJson::array();
     for (const FrameStats::Picture& p : f.pictures)
         j["pictures"].push_back({{"file", p.file}, {"type", p.type}, {"channels", p.channels}});
+    j["textures"] = OrderedJson::array();
+    for (const FrameStats::Texture& t : f.textures)
+        j["textures"].push_back(
+            {{"file", t.file}, {"fileBytes", t.fileBytes}, {"memoryBytes", t.memoryBytes}, {"scratchBytes", t.scratchBytes}});
     j.update(OrderedJson::parse(toJson(f.figures)));
     return j;
 }

@@ -17,6 +17,11 @@ struct FrameStats {
         std::vector<std::string> channels;
     };
     std::vector<Picture> pictures; ///< those that were written
+    struct Texture {
+        std::string file;
+        uint64_t fileBytes = 0, memoryBytes = 0, scratchBytes = 0;
+    };
+    std::vector<Texture> textures; ///< maps that were read, by name
     RenderStats figures;           ///< of this frame alone
 };
 

@@ -435,6 +435,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.shading.affineKernels = facts.affine;
     stats_.shading.suspendingKernels = facts.suspending;
     stats_.shading.cacheHits = facts.cacheHits;
+    for (const auto& m : f.world->mapsRead()) f.told.textures.push_back({m.path, m.bytes, m.memory, m.scratch});
     if (c.overLimit)
         diagnostics_.report(Severity::Error, Rie::Limit, {},
                             std::to_string(c.overLimit) +

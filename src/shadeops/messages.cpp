@@ -76,12 +76,12 @@ std::vector<Shadeop> messageShadeops() {
             "float: the largest "
             "components of the weights that trace() was given on its way, multiplied.");
     list.back().examples = {{"rayinfo(\"depth\", x) + x", "1", "float x = 0;", "the camera sees the point"}};
-    Shadeop& textureinfo = add(
-        "textureinfo", query("textureinfo", "string texture, string field"), Lowering::Service, kAnyContext,
-        "About a texture: \"resolution\" float[2], \"type\" string, \"channels\" float, \"bitsperchannel\" float, "
-        "\"format\" string, \"wrapmodes\" string, \"gamma\" float, \"facecount\" float; \"viewingmatrix\" "
-        "matrix from \"current\" space to the camera of a shadow map, \"projectionmatrix\" to its picture, x -1..1 and y 1..-1; "
-        "\"exists\" with a literal 0 as value: 1 if the file is there and valid.");
+    Shadeop& textureinfo =
+        add("textureinfo", query("textureinfo", "string texture, string field"), Lowering::Service, kAnyContext,
+            "About a texture: \"resolution\" float[2], \"type\" string, \"channels\" float, \"bitsperchannel\" float, \"format\" "
+            "string, \"wrapmodes\" string, \"gamma\" float, \"facecount\" float, \"hasalpha\" float (1: it has a channel a); "
+            "\"viewingmatrix\" matrix from \"current\" space to the camera of a shadow map, \"projectionmatrix\" to its picture, "
+            "x -1..1 and y 1..-1; \"exists\" with a literal 0 as value: 1 if the file is there and valid.");
     list.back().examples = {{"textureinfo(\"none.tex\", \"channels\", x)", "0", "float x = 3;"}};
     textureinfo.derivative = DerivativeRule::Zero; // of a map
     textureinfo.signatures = textureinfo.signatures + sigs({{"float textureinfo(string texture, string field; float none)"}});

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 
 namespace alpenglow::texture {
@@ -405,6 +406,7 @@ std::optional<TextureInfo> TextureSystem::info(Handle h) const {
     i.twrap = t.twrap;
     if (t.gamma > 0) i.gamma = t.gamma;
     i.faces = h->kind == Kind::Cube ? 6 : 0;
+    i.alpha = std::find(t.channels.begin(), t.channels.end(), "a") != t.channels.end();
     i.viewing = t.worldToCamera;
     if (t.worldToNDC) i.projection = *t.worldToNDC * inverse(display::screenToNDC());
     return i;
@@ -416,6 +418,20 @@ size_t TextureSystem::bytes() const {
     for (auto& [path, e] : byPath_)
         if (e->texture) n += e->texture->bytes();
     return n + scratchBytes();
+}
+
+std::vector<TextureSystem::File> TextureSystem::files() const {
+    std::lock_guard lock(mutex_);
+    std::vector<File> all;
+    for (const auto& [path, e] : byPath_) {
+        if (!e->texture) continue;
+        const Texture& t = *e->texture;
+        std::error_code none; // a file that has gone meanwhile has no size
+        const auto size = std::filesystem::file_size(path, none);
+        all.push_back({path, none ? 0 : size_t(size), t.bytes(), t.scratch ? t.scratch->size() : 0});
+        for (const auto& [number, face] : t.tiles) all.back().scratch += face->scratch ? face->scratch->size() : 0;
+    }
+    return all;
 }
 
 void TextureSystem::forget() {

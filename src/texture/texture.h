@@ -141,6 +141,7 @@ struct TextureInfo {
     Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;
     float gamma = 1;                           ///< file value = light ^ gamma, as the file declares it
     int faces = 0;                             ///< 6: a cube map
+    bool alpha = false;                        ///< one of the channels is opacity, "a"
     std::optional<Matrix> viewing, projection; ///< world to camera, world to screen (x -1..1, y 1..-1) of the map
 };
 
@@ -178,6 +179,13 @@ public:
     /// Memory that maps hold, in bytes, and how many of them lie in pages of scratch files.
     size_t bytes() const;
     size_t scratchBytes() const;
+    /// The files that were read, by name: bytes of each on the disk, of its map in memory, and of the levels that lie in a
+    /// scratch file instead.
+    struct File {
+        std::string path;
+        size_t bytes = 0, memory = 0, scratch = 0;
+    };
+    std::vector<File> files() const;
     /// What they may hold (TextureSettings::memory).
     size_t memoryLimit() const { return limit_; }
     /// Gives pages of scratch files back when there are more than the limit allows. To be called now and then while maps are

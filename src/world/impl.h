@@ -38,6 +38,7 @@ public:
     const scene::Frame& frame() const override { return *frame_; }
     const Settings& settings() const override { return settings_; }
     Facts facts() const override { return facts_; }
+    std::vector<MapRead> mapsRead() const override;
     PhotonStore* photons() const override { return photons_.get(); }
     std::vector<int> outputWidths() const override { return outputWidths_; }
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }

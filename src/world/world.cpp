@@ -174,6 +174,12 @@ static texture::TextureSettings mapSettings(const scene::Options& o, const Setti
     return t;
 }
 
+std::vector<World::MapRead> WorldImpl::mapsRead() const {
+    std::vector<MapRead> all;
+    for (const auto& f : textures_->files()) all.push_back({f.path, f.bytes, f.memory, f.scratch});
+    return all;
+}
+
 /// Tells emitters where rays meet their shapes.
 static void takeDiced(WorldImpl& w, const std::vector<uint32_t>& visibility) {
     const auto seenThrough = [&](const geometry::Shape& s) { // what lies behind it shines as well

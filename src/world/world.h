@@ -29,6 +29,12 @@ public:
         size_t shapes = 0, before = 0; ///< before: those that are not wholly behind the camera
     };
     virtual Facts facts() const = 0;
+    /// The maps that were read, by name: bytes of the file, of its map in memory, and of levels in a scratch file.
+    struct MapRead {
+        std::string path;
+        size_t bytes = 0, memory = 0, scratch = 0;
+    };
+    virtual std::vector<MapRead> mapsRead() const { return {}; }
     /// Floats per AOV in Settings::outputs: what the shaders that give it have, arrays with all their elements.
     virtual std::vector<int> outputWidths() const = 0;
     /// Those of Settings::outputs that no shader of the frame gives and that are no predefined variable: they are 0 everywhere.

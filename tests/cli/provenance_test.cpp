@@ -28,7 +28,7 @@ Display "b.png" "png" "rgb"
 Display "+c.png" "png" "N"
 WorldBegin
 Translate 0 0 6
-Surface "matte"
+Surface "paintedplastic" "texturename" ["skin.tga"]
 Sphere 1 -1 1 360
 WorldEnd
 FrameEnd
@@ -39,6 +39,9 @@ protected:
     void SetUp() override {
         CommandFolder::SetUp();
         write("f.rib", kFrames);
+        std::string tga(18, '\0'); // true colour, two pixels of 24 bits
+        tga[2] = 2, tga[12] = 2, tga[14] = 1, tga[16] = 24;
+        write("skin.tga", tga + "bgrBGR");
     }
     std::string run(const std::string& arguments) { return CommandFolder::run(arguments, "2>err"); }
     std::string text(const std::string& name) const { return textOf(dir / name); }
@@ -156,6 +159,12 @@ TEST_F(Provenance, StatisticsFrameByFrame) {
     EXPECT_EQ(a["pictures"][0]["channels"], Json({"r", "g", "b", "a", "N.x", "N.y", "N.z"}));
     ASSERT_EQ(b["pictures"].size(), 2u);
     EXPECT_EQ(b["pictures"][1]["file"], "c.png");
+    EXPECT_EQ(a["textures"], Json::array());
+    ASSERT_EQ(b["textures"].size(), 1u);
+    EXPECT_EQ(b["textures"][0]["file"], "skin.tga");
+    EXPECT_EQ(b["textures"][0]["fileBytes"], 18 + 6);
+    EXPECT_GE(b["textures"][0]["memoryBytes"], 6 + 12) << "codes of two pixels, and numbers of one";
+    EXPECT_EQ(b["textures"][0]["scratchBytes"], 0);
     EXPECT_EQ(a["rays"]["camera"], 16 * 12 * 8);
     EXPECT_EQ(j["rays"]["camera"], 2 * 16 * 12 * 8) << "the run has the sums";
     EXPECT_GT(double(a["coverage"]), double(b["coverage"])) << "each frame its own";

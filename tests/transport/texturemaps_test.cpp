@@ -92,6 +92,20 @@ TEST(TextureMaps, InformationAboutMaps) {
     expectColor(l.color, {3, 5.25f, 7 + 80 + 600 + .5f}, 1e-4f);
 }
 
+TEST(TextureMaps, OpacityIsAChannelCalledA) {
+    writeShader("clear",
+                "surface clear(string map = \"\";) { Oi = 1; float a = 7; float found = textureinfo(map, \"hasalpha\", a); "
+                "Ci = color(a, found, 0); }\n");
+    for (const int channels : {1, 2, 3, 4}) { // y, y a, r g b, r g b a
+        Diagnostics d;
+        display::WriteOptions o;
+        o.policy = {shaderFolder(), false, -1};
+        ASSERT_TRUE(display::writeImage("clear.exr", display::makeImage(2, 2, display::defaultChannels(channels)), o, d));
+        const Looked l = looked("", "Surface \"clear\" \"string map\" [\"" + shaderFolder() + "/clear.exr\"]");
+        expectColor(l.color, {channels % 2 ? 0.f : 1.f, 1, 0});
+    }
+}
+
 // Bars along s: a footprint that is long in t sees one of them, until it is widened as far as it is long.
 TEST(TextureMaps, FootprintsAreWidenedAsTheOptionSays) {
     const std::string map =

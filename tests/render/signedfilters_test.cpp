@@ -211,7 +211,7 @@ Engine evenEngine() {
                 w->settings_ = s;
                 return w;
             },
-            [](std::shared_ptr<const transport::World>, Diagnostics&) -> std::unique_ptr<Tracer> {
+            [](const std::shared_ptr<const transport::World>&, Diagnostics&) -> std::unique_ptr<Tracer> {
                 return std::make_unique<EvenTracer>();
             }};
 }

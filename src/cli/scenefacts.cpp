@@ -65,8 +65,8 @@ Facts frameFacts(const scene::Frame& f) {
     return j;
 }
 
-/// Keeps what is told of the frames, not the frames.
-struct Teller final : scene::FrameConsumer {
+/// Counts what each frame holds, then drops the frame.
+struct FrameCounter final : scene::FrameConsumer {
     Facts frames = Facts::array(), made = Facts::array();
     void render(std::shared_ptr<const scene::Frame> f) override { frames.push_back(frameFacts(*f)); }
     void makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList&,
@@ -86,7 +86,7 @@ bool namedAsScene(const std::string& file) {
 }
 
 bool addScene(Facts& facts, const std::string& file, Diagnostics& d) {
-    Teller teller;
+    FrameCounter teller;
     ri::ReaderOptions options;
     options.allowRead = false;
     options.defers = true;

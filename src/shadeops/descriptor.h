@@ -76,7 +76,7 @@ struct Shadeop {
     DerivativeRule derivative = DerivativeRule::Jet;
     bool pure = true;       ///< same arguments, same result, no effect: may be folded, merged, removed
     bool outOfLine = false; ///< large (noise): called, not inlined
-    int widest = 64;        ///< the most points at once that the runtime has it for: large ones would take minutes to compile
+    int widest = 64;        ///< the most lanes whose runtime has it: large ones take 30 s to compile at 32 lanes
     Bias bias = Bias::Unbiased;
     std::string biasReason;
     std::string section; ///< "Mathematics", "Noise", ... as in rsl.md chapter 10

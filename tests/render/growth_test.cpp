@@ -1,4 +1,5 @@
 // Pictures of hidden and raytrace while they grow: what is there is what it will be, and more and more is there.
+#include "plain_world.h"
 #include "render/renderer.h"
 #include "render/watcher.h"
 #include "scene/scene.h"
@@ -15,20 +16,6 @@ namespace {
 
 using namespace alpenglow;
 using namespace alpenglow::render;
-
-struct SlowWorld final : transport::World {
-    std::shared_ptr<const scene::Frame> frame_;
-    transport::Settings settings_;
-    const scene::Frame& frame() const override { return *frame_; }
-    const transport::Settings& settings() const override { return settings_; }
-    Facts facts() const override { return {}; }
-    void flushPrints(bool) const override {}
-    std::vector<int> outputWidths() const override { return std::vector<int>(settings_.outputs.size(), 1); }
-    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
-                   const StopFlag*) const override {
-        return true;
-    }
-};
 
 /// A wave that no two samples have the same of; 25 milliseconds a call.
 struct SlowTracer final : Tracer {
@@ -109,14 +96,7 @@ size_t watch(const Case& c, Looker& looker) {
     RenderSettings s;
     s.threads = 3;
     s.watcher = &looker;
-    Engine e;
-    e.build = [](std::shared_ptr<const scene::Frame> f, const transport::Settings& of, Diagnostics&) {
-        auto w = std::make_shared<SlowWorld>();
-        w->frame_ = std::move(f);
-        w->settings_ = of;
-        return w;
-    };
-    e.tracer = [](const std::shared_ptr<const transport::World>&, Diagnostics&) { return std::make_unique<SlowTracer>(); };
+    const Engine e = test::plainEngine([](const transport::World&) { return std::make_unique<SlowTracer>(); });
     Diagnostics diags;
     Progress progress(ProgressMode::None);
     Renderer r(s, e, diags, progress);

@@ -1,5 +1,6 @@
 // The renderer over a scene of closed forms in the engine's place: an emitter whose colour is the place on the image plane.
 #include "display/imageio.h"
+#include "plain_world.h"
 #include "render/filmpicture.h"
 #include "render/partfile.h"
 #include "render/renderer.h"
@@ -17,13 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct FakeWorld final : transport::World {
-    std::shared_ptr<const scene::Frame> frame_;
-    transport::Settings settings_;
-    const scene::Frame& frame() const override { return *frame_; }
-    const transport::Settings& settings() const override { return settings_; }
-    Facts facts() const override { return {}; }
-    void flushPrints(bool) const override {}
+struct FakeWorld final : test::PlainWorld {
     std::vector<int> outputWidths() const override {
         std::vector<int> w;
         for (const std::string& o : settings_.outputs) w.push_back(o == "depthish" ? 1 : 3);
@@ -62,17 +57,11 @@ struct FakeTracer final : Tracer {
 };
 
 Engine fakeEngine() {
-    return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics&) {
-                auto w = std::make_shared<FakeWorld>();
-                w->frame_ = std::move(f);
-                w->settings_ = s;
-                return w;
-            },
-            [](const std::shared_ptr<const transport::World>& w, Diagnostics&) -> std::unique_ptr<Tracer> {
-                auto t = std::make_unique<FakeTracer>();
-                t->outputs = w->settings().outputs;
-                return t;
-            }};
+    return test::plainEngine<FakeWorld>([](const transport::World& w) {
+        auto t = std::make_unique<FakeTracer>();
+        t->outputs = w.settings().outputs;
+        return t;
+    });
 }
 
 struct Folder {

@@ -1,6 +1,7 @@
 // Pixel filters with negative parts under `path`: what does not vary stays as it is, and an edge is what the filter makes of it.
 #include "base/sampler.h"
 #include "display/imageio.h"
+#include "plain_world.h"
 #include "render/filtersampler.h"
 #include "render/noise.h"
 #include "render/partfile.h"
@@ -174,21 +175,7 @@ TEST(SignedFilters, PartsAndFilesKeepTheSums) {
 
 namespace {
 
-/// A world of one colour.
-struct EvenWorld final : transport::World {
-    std::shared_ptr<const scene::Frame> frame_;
-    transport::Settings settings_;
-    const scene::Frame& frame() const override { return *frame_; }
-    const transport::Settings& settings() const override { return settings_; }
-    Facts facts() const override { return {}; }
-    void flushPrints(bool) const override {}
-    std::vector<int> outputWidths() const override { return std::vector<int>(settings_.outputs.size(), 3); }
-    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
-                   const StopFlag*) const override {
-        return true;
-    }
-};
-
+/// One colour everywhere.
 struct EvenTracer final : Tracer {
     transport::Counters counts;
     bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
@@ -203,18 +190,6 @@ struct EvenTracer final : Tracer {
     }
     const transport::Counters& counters() const override { return counts; }
 };
-
-Engine evenEngine() {
-    return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics&) {
-                auto w = std::make_shared<EvenWorld>();
-                w->frame_ = std::move(f);
-                w->settings_ = s;
-                return w;
-            },
-            [](const std::shared_ptr<const transport::World>&, Diagnostics&) -> std::unique_ptr<Tracer> {
-                return std::make_unique<EvenTracer>();
-            }};
-}
 
 } // namespace
 
@@ -236,7 +211,8 @@ TEST(SignedFilters, RendersOfAnEvenWorldAreEven) {
                 s.threads = threads;
                 Diagnostics diags;
                 Progress progress{ProgressMode::None};
-                Renderer renderer(s, evenEngine(), diags, progress, {});
+                Renderer renderer(s, test::plainEngine([](const transport::World&) { return std::make_unique<EvenTracer>(); }),
+                                  diags, progress, {});
                 renderer.override(f->options);
                 renderer.render(f);
                 EXPECT_EQ(diags.errors(), 0);

@@ -1,5 +1,6 @@
 // Adaptive sampling (must of T9): which pixels get more samples has no bearing on what their mean is expected to be, and the
 // errors that are reported stay true. Whole renders of known pictures, whose engine is a function of the sample's numbers.
+#include "../render/plain_world.h"
 #include "render/adaptive.h"
 #include "render/noise.h"
 #include "render/partfile.h"
@@ -30,20 +31,6 @@ float known(int x, Vec2 a, Vec2 b) {
     return a.x < b.x ? 2.f : 0.f;
 }
 
-struct KnownWorld final : transport::World {
-    std::shared_ptr<const scene::Frame> frame_;
-    transport::Settings settings_;
-    const scene::Frame& frame() const override { return *frame_; }
-    const transport::Settings& settings() const override { return settings_; }
-    Facts facts() const override { return {}; }
-    void flushPrints(bool) const override {}
-    std::vector<int> outputWidths() const override { return {}; }
-    bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
-                   const StopFlag*) const override {
-        return true;
-    }
-};
-
 struct KnownTracer final : Tracer {
     uint64_t seed = 0;
     transport::Counters counts;
@@ -61,17 +48,11 @@ struct KnownTracer final : Tracer {
 };
 
 Engine knownEngine() {
-    return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics&) {
-                auto w = std::make_shared<KnownWorld>();
-                w->frame_ = std::move(f);
-                w->settings_ = s;
-                return w;
-            },
-            [](const std::shared_ptr<const transport::World>& w, Diagnostics&) -> std::unique_ptr<Tracer> {
-                auto t = std::make_unique<KnownTracer>();
-                t->seed = w->settings().seed;
-                return t;
-            }};
+    return render::test::plainEngine([](const transport::World& w) {
+        auto t = std::make_unique<KnownTracer>();
+        t->seed = w.settings().seed;
+        return t;
+    });
 }
 
 /// What many renders of 64 samples a pixel on average show; the two tests below ask the same ones.

@@ -87,3 +87,13 @@ function(quick target)
     endif()
   endif()
 endfunction()
+
+# seldom_run(target): the target's code takes no share of a render's time that one would see, so that less inlining, which takes a quarter
+# to two fifths off its compilation, costs nothing (bench/RESULTS.md, "Builds").
+set(quick_options -O1)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  list(APPEND quick_options "SHELL:-mllvm -inline-threshold=25")
+endif()
+function(seldom_run target)
+  target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:${quick_options}>")
+endfunction()

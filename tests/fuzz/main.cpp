@@ -268,7 +268,7 @@ int main(int argc, char** argv) {
     if (a.selfTest) return selfTest();
     if (a.check) {
         if (std::getenv("ALPENGLOW_NIGHTLY") && a.seconds <= 0) a.seconds = 600;
-        if (a.seconds <= 0 && a.runs == 0) a.runs = 200;
+        if (a.seconds <= 0 && a.runs == 0) a.runs = 120;
     } else if (a.seconds <= 0 && a.runs == 0) a.seconds = 60;
     return run(a);
 }

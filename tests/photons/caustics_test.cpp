@@ -319,9 +319,9 @@ TEST(Caustics, NarrowLobesTogetherAsPathsAlone) {
                rayTo({.3f, .6f, 1.4f}, {.1f, 0, .1f}), .05}}) {
         Scene s(world(c.scene), path());
         const Moments plain = s.estimate(c.ray, samples(60000));
-        const uint32_t count = nightly() ? 100 : 40;
+        const uint32_t count = nightly() ? 100 : 24;
         passes(s, count, 10000, .06f, {.width = .1f});
-        expectSame(estimate(s, c.ray, count, nightly() ? 100 : 40), plain, (nightly() ? 1 : 2) * c.precision, c.name);
+        expectSame(estimate(s, c.ray, count, nightly() ? 100 : 24), plain, (nightly() ? 1 : 2) * c.precision, c.name);
     }
 }
 
@@ -365,9 +365,9 @@ TEST(Caustics, NarrowLobesAsTheirShadersAndDepthsSay) {
           Case{"no second ray", ball(depth(1) + "Surface \"plainglass\""), down, .08}}) {
         Scene s(world(c.scene), path());
         const Moments plain = s.estimate(c.ray, samples(60000));
-        const uint32_t count = nightly() ? 100 : 40;
+        const uint32_t count = nightly() ? 100 : 24;
         passes(s, count, 10000, .06f, {.width = .1f});
-        expectSame(estimate(s, c.ray, count, nightly() ? 100 : 40), plain, (nightly() ? 1 : 2) * c.precision, c.name);
+        expectSame(estimate(s, c.ray, count, nightly() ? 100 : 24), plain, (nightly() ? 1 : 2) * c.precision, c.name);
     }
 }
 

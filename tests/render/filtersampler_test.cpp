@@ -24,7 +24,7 @@ std::string name(const PixelFilter& f) {
     return std::string(filterName(f.kind)) + " " + std::to_string(f.xw) + " " + std::to_string(f.yw);
 }
 
-constexpr int kGrid = 16, kFine = 32; // cells, and midpoints per cell and axis
+constexpr int kGrid = 16, kFine = 16; // cells, and midpoints per cell and axis
 
 // Integral of g(x, y, f(x, y)) over each cell of the support.
 template <class G> std::vector<double> cells(const PixelFilter& f, G g) {
@@ -81,7 +81,7 @@ TEST(FilterSampler, DensityIsTheFilter) {
 }
 
 TEST(FilterSampler, ChiSquare) {
-    const int n = samples(100'000, 1'000'000);
+    const int n = samples(50'000, 1'000'000);
     for (const PixelFilter& f : filters()) {
         FilterSampler s(f);
         std::vector<double> expected = cells(f, [&](double, double, double v) { return std::fabs(v) * n; });
@@ -110,7 +110,7 @@ TEST(FilterSampler, WeightedMeansAreFilteredValues) {
     for (const PixelFilter& f : filters()) {
         FilterSampler s(f);
         double one = 0, xx = 0, yy = 0, step = 0;
-        const int n = 500;
+        const int n = 300;
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
                 FilterSample p = s.sample({float((i + 0.5) / n), float((j + 0.5) / n)});

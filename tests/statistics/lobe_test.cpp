@@ -226,7 +226,7 @@ TEST_P(LobeT1, SamplersFollowTheirDensities) {
     int tested = 0;
     auto all = cases();
     for (size_t ci = size_t(GetParam()) * (nightly() ? 1 : 5); ci < all.size(); ci += stride)
-        tested += followsItsDensity(all[ci], ci, samples(100000, 1000000));
+        tested += followsItsDensity(all[ci], ci, samples(60000, 1000000));
     EXPECT_GT(tested, nightly() ? 120 : 10);
 }
 INSTANTIATE_TEST_SUITE_P(Quarters, LobeT1, ::testing::Range(0, 4));
@@ -250,7 +250,7 @@ TEST_P(DistributionT1, SamplersFollowTheirDensities) {
     for (size_t ci = 0; ci < all.size(); ++ci) {
         const size_t viewer = ci / kDistributionCases, of = ci % kDistributionCases;
         if (!(nightly() ? viewer % 4 == of : viewer % 18 == (of * 5 + 2) % 18)) continue;
-        tested += followsItsDensity(all[ci], ci, samples(400000, 2000000));
+        tested += followsItsDensity(all[ci], ci, samples(200000, 2000000));
         above += dot(all[ci].p.axis, all[ci].p.wo) > 0;
     }
     EXPECT_GE(above, int(nightly() ? all.size() / 8 : kDistributionCases));

@@ -152,7 +152,7 @@ TEST(Emitters, ManyShapes) {
     for (const int mode : {0, 2}) {
         Scene s(lit(lamp("\"slrect\" 1 \"float intensity\" 40", light + balls)), of(mode));
         Counters c;
-        const int n = samples(100'000);
+        const int n = samples(40'000);
         const Moments m = s.estimate(kView, n, &c);
         expectMean(m, want, .02, "mode " + std::to_string(mode));
         EXPECT_LE(double(c.shadow) / n, 1.01); // one sample a vertex
@@ -186,7 +186,7 @@ TEST(Emitters, TenThousandLamps) {
     // 8 KB a lamp with its shape, shaders and attributes; the lists alone took 400 KB each when they were lists.
     if (!kSanitized) EXPECT_LT(resident() - before, n * 20e3); // what is freed stays there for a while
     Counters c;
-    const int count = samples(20'000);
+    const int count = samples(10'000);
     expectMean(s.estimate(kView, count, &c), want, .02, "sum of all");
     EXPECT_LE(double(c.shadow) / count, limits::kLightsSampled + 1.5);
     std::vector<CameraRay> rays{kView};
@@ -212,7 +212,7 @@ TEST(Emitters, TheTreeAgainstEvenChoice) {
     for (int k = 0; k < 12; ++k) {
         const CameraRay view =
             rayTo({float(k) * 2 - 11 + .3f, .4f, float(k % 5) * 3 - 6}, {float(k) * 2 - 11, 0, float(k % 5) * 3 - 6});
-        const int n = samples(3000);
+        const int n = samples(2000);
         const auto timed = [&](Scene& s, double& time) {
             const clock_t begin = clock();
             const Moments m = s.estimate(view, n);

@@ -74,7 +74,7 @@ TEST_F(Subsurface, TheHalfSpaceOfTheTableIsThatOfACount) {
     // A count that reflects at the surface and walks on with a fresh distance: distances forget.
     for (const double index : {1., 1.3, 1.5, .8})
         for (const double albedo : {.3, .9}) {
-            const int n = samples(100000, 400000); // finds .006, nightly .003
+            const int n = samples(40000, 400000); // finds .01, nightly .003
             EXPECT_NEAR(HalfSpace(index).reflectance(albedo), counted(albedo, index, n), 3.5 * .5 / std::sqrt(double(n)))
                 << index << " " << albedo;
         }
@@ -137,7 +137,7 @@ TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
     for (const char* shader : {"coloured", "waits"})
         for (const Hider h : {Hider::Hidden, Hider::Path}) {
             Scene s(world(kAbove + "Surface \"" + std::string(shader) + "\" \"color r\" [.2 .5 .9] " + kFloor), withShaders(h));
-            const Moments m = s.estimate(kView, h == Hider::Path ? samples(10000) : 1500);
+            const Moments m = s.estimate(kView, h == Hider::Path ? samples(4000) : 600);
             int k = 0;
             for (const double r : {.2, .5, .9}) {
                 EXPECT_NEAR(m.mean(k), .5 * r, kZ * m.se(k) + 2e-5) << shader << int(h) << k;
@@ -150,7 +150,7 @@ TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
                   "\"float refractionindex\" 1.5 Surface \"plain\" " +
                   kFloor),
             withShaders(Hider::Path));
-    const Moments m = s.estimate(kView, samples(10000));
+    const Moments m = s.estimate(kView, samples(4000));
     int k = 0;
     for (const double r : {.2, .5, .9}) {
         EXPECT_NEAR(m.mean(k), .5 * r, kZ * m.se(k) + 2e-5);

@@ -3,7 +3,7 @@ room(ri DEPS scene base TBB::tbb ZLIB::ZLIB ${CMAKE_DL_LIBS})
 target_include_directories(ri PRIVATE ${CMAKE_SOURCE_DIR}/include)
 # Libraries of procedurals (DynamicLoad) find the C binding in whatever program has this room.
 target_link_options(ri INTERFACE "LINKER:--export-dynamic-symbol=Ri*")
-room_tests(ri DEPS ri)
+room_tests(ri DEPS ri geometry)
 # Such libraries, built as anyone would build one: one header, nothing linked.
 if(TARGET test_ri)
   foreach(library facets hollow stranger_calls)

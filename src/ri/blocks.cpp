@@ -214,6 +214,7 @@ void Interpreter::worldEnd(Block& b) {
     handles_ = std::move(b.handles);
     systems_ = std::move(b.systems);
     objectIndex_.clear();
+    sharedArchives_.clear();
     if (!frameWanted()) return consumer.passOver(frame->options);
     if (settings.overrides) settings.overrides(frame->options);
     consumer.render(std::move(frame));
@@ -222,14 +223,18 @@ void Interpreter::worldEnd(Block& b) {
 }
 
 void Interpreter::objectBegin(const Call& call) {
-    if (!begin(BlockKind::Object, call)) return;
+    if (begin(BlockKind::Object, call)) beginObject(call.text(0));
+}
+
+ObjectRef Interpreter::beginObject(const std::string& handle) {
     Block& b = blocks_.back();
     b.object = std::make_shared<StoredObject>();
-    b.object->object.handle = call.text(0);
+    b.object->object.handle = handle;
     b.object->serial = ++objectSerial_;
     b.object->world = inWorld() ? worldSerial_ : 0;
     b.object->lights = lights_.size();
     state.ctm = scene::Transform(); // an object has a space of its own
+    return b.object;
 }
 
 /// Goes a block of a solid down in the path that primitives keep.

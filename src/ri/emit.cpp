@@ -209,13 +209,17 @@ void Interpreter::instance(const Call& call) {
                       "ObjectInstance outside WorldBegin and WorldEnd is not drawn");
         return;
     }
-    auto [slot, fresh] = objectIndex_.try_emplace(i->second->serial, int(frame_->objects.size()));
-    if (fresh) frame_->objects.push_back(forThisWorld(*i->second));
+    place(*i->second, call.place);
+}
+
+void Interpreter::place(const StoredObject& object, const SourcePlace& where) {
+    auto [slot, fresh] = objectIndex_.try_emplace(object.serial, int(frame_->objects.size()));
+    if (fresh) frame_->objects.push_back(forThisWorld(object));
     scene::Instance n;
     n.object = slot->second;
     n.toWorld = state.ctm;
     n.attributes = snapshot();
-    n.place = call.place;
+    n.place = where;
     frame_->instances.push_back(std::move(n));
 }
 

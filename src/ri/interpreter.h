@@ -10,6 +10,7 @@
 #include "ri/reader.h"
 #include "ri/reporter.h"
 #include "ri/requests/request.h"
+#include "ri/sharedarchives.h"
 #include "ri/shelf.h"
 #include "ri/source.h"
 #include "scene/scene.h"
@@ -90,6 +91,8 @@ public:
     void end(BlockKind kind, const Call& call);
     void worldBegin(const Call& call);
     void objectBegin(const Call& call);
+    /// Makes the block that has just begun an object, which is in a space of its own.
+    ObjectRef beginObject(const std::string& handle);
     void beginSolid(scene::SolidOperation operation, const Call& call);
     void beginMotion(const Call& call);
     void endMotion(const Call& call);
@@ -104,6 +107,8 @@ public:
     void illuminate(const Call& call);
     void emit(scene::Primitive primitive, const Call& call);
     void instance(const Call& call);
+    /// An instance of an object, here.
+    void place(const StoredObject& object, const SourcePlace& where);
 
     /// The polygons of a file as primitives of this place, with these constants beside the file's own variables.
     void drawModel(const std::string& name, const Call& call, const scene::ParamList& constants);
@@ -211,6 +216,14 @@ private:
     /// Makes what is in a procedural, here and now.
     void makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                  const Call& call);
+    // sharedarchives.cpp
+    /// Whether an archive that is read here may be an instance, or the object of later ones.
+    bool mayShare(const std::string& name) const;
+    /// Whether a DelayedReadArchive is an instance of what was read before: then that is placed here.
+    bool instanceOfArchive(const std::string& name, const Call& call);
+    /// Reads a DelayedReadArchive; from the second time under the same attributes on as an object.
+    void readDelayed(const std::string& name, const Call& call);
+    void learn(SharedArchive& of, const std::string& file);
     // unmade.cpp
     /// Whether a procedural may wait until a ray comes to its bound; then it is put into the frame as one that is not yet made.
     bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
@@ -287,7 +300,8 @@ private:
     NamedSystems worldCameraSystems_;                                   ///< those of before WorldBegin, to camera
     std::map<std::string, GraphicsState> resources_;
     std::map<std::string, ObjectRef> objects_;
-    std::map<size_t, int> objectIndex_; ///< serial -> index in this frame
+    std::map<size_t, int> objectIndex_;                   ///< serial -> index in this frame
+    std::map<std::string, SharedArchive> sharedArchives_; ///< of the open world, by ArchiveShelf::Found::key
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

@@ -245,7 +245,8 @@ void Interpreter::procedural(const std::string& kind, const std::vector<std::str
         const char* what = archive ? "archive" : kind == "DynamicLoad" ? "library" : "program";
         return reporter.error(Rie::MissingData, call.place, fmt::format("{}: the {} has no name", call.request->name, what));
     }
-    if (detailOf(bound) >= 0 && !waits(kind, arguments, bound, call)) makeNow(kind, arguments, bound, call);
+    if (detailOf(bound) < 0 || (archive && instanceOfArchive(arguments[0], call)) || waits(kind, arguments, bound, call)) return;
+    makeNow(kind, arguments, bound, call);
 }
 
 void Interpreter::makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
@@ -253,9 +254,7 @@ void Interpreter::makeNow(const std::string& kind, const std::vector<std::string
     const std::string data = arguments.size() > 1 ? arguments[1] : "";
     if (kind == "DynamicLoad") return runLibrary(arguments[0], data, bound, call);
     if (kind == "RunProgram") return runProgram(arguments[0], data, bound, call);
-    if (!begin(BlockKind::Attribute, call)) return;
-    readArchive(arguments[0], call.place);
-    end(BlockKind::Attribute, call);
+    readDelayed(arguments[0], call);
 }
 
 } // namespace alpenglow::ri

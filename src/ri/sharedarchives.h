@@ -1,0 +1,25 @@
+// What an interpreter keeps of the archives that a world reads by DelayedReadArchive.
+#pragma once
+#include "scene/fwd.h"
+#include "scene/primitive.h"
+#include <map>
+#include <memory>
+
+namespace alpenglow::ri {
+
+struct StoredObject;
+
+/// An archive, by the attributes around the calls that read it.
+struct SharedArchive {
+    bool known = false;    ///< the two below are
+    bool shapes = false;   ///< there is nothing in it but shapes and their attributes
+    bool settings = false; ///< there are attributes in it
+    struct Under {
+        scene::AttributesRef attributes; ///< keeps them alive, since they are the key
+        int reads = 0;
+        std::shared_ptr<StoredObject> object; ///< from the second time on
+    };
+    std::map<const scene::Attributes*, Under> under; ///< null: whatever attributes, where there are none in it
+};
+
+} // namespace alpenglow::ri

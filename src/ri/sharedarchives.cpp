@@ -10,34 +10,34 @@ namespace alpenglow::ri {
 namespace {
 
 /// Requests that make shapes or place them, and depend on nothing outside of an object but attributes.
-constexpr std::string_view kShapes[] = {"Polygon",   "GeneralPolygon", "PointsPolygons", "PointsGeneralPolygons",
-                                        "Patch",     "PatchMesh",      "NuPatch",        "SubdivisionMesh",
-                                        "Sphere",    "Cone",           "Cylinder",       "HierarchicalSubdivisionMesh",
-                                        "Torus",     "Disk",           "Hyperboloid",    "Paraboloid",
-                                        "Points",    "Curves",         "Blobby",         "Translate",
-                                        "Rotate",    "Scale",          "Skew",           "ConcatTransform",
-                                        "version",   "AttributeEnd",   "AttributeBegin", "TransformBegin",
-                                        "MotionEnd", "TransformEnd",   "MotionBegin",    "Geometry"};
+constexpr std::string_view kShapeRequests[] = {"Polygon",   "GeneralPolygon", "PointsPolygons", "PointsGeneralPolygons",
+                                               "Patch",     "PatchMesh",      "NuPatch",        "SubdivisionMesh",
+                                               "Sphere",    "Cone",           "Cylinder",       "HierarchicalSubdivisionMesh",
+                                               "Torus",     "Disk",           "Hyperboloid",    "Paraboloid",
+                                               "Points",    "Curves",         "Blobby",         "Translate",
+                                               "Rotate",    "Scale",          "Skew",           "ConcatTransform",
+                                               "version",   "AttributeEnd",   "AttributeBegin", "TransformBegin",
+                                               "MotionEnd", "TransformEnd",   "MotionBegin",    "Geometry"};
 
 /// Requests that set an attribute to what they say, whatever it was before.
-constexpr std::string_view kSettings[] = {"Color",
-                                          "Opacity",
-                                          "Surface",
-                                          "Displacement",
-                                          "Interior",
-                                          "Exterior",
-                                          "Matte",
-                                          "TrimCurve",
-                                          "Sides",
-                                          "ShadingRate",
-                                          "Basis",
-                                          "Atmosphere",
-                                          "Declare",
-                                          "Attribute",
-                                          "Bound",
-                                          "TextureCoordinates",
-                                          "GeometricRepresentation",
-                                          "ShadingInterpolation"};
+constexpr std::string_view kSettingRequests[] = {"Color",
+                                                 "Opacity",
+                                                 "Surface",
+                                                 "Displacement",
+                                                 "Interior",
+                                                 "Exterior",
+                                                 "Matte",
+                                                 "TrimCurve",
+                                                 "Sides",
+                                                 "ShadingRate",
+                                                 "Basis",
+                                                 "Atmosphere",
+                                                 "Declare",
+                                                 "Attribute",
+                                                 "Bound",
+                                                 "TextureCoordinates",
+                                                 "GeometricRepresentation",
+                                                 "ShadingInterpolation"};
 
 template <size_t N> bool among(const std::string_view (&names)[N], const std::string_view& name) {
     return std::find(std::begin(names), std::end(names), name) != std::end(names);
@@ -54,8 +54,8 @@ void Interpreter::learn(SharedArchive& of, const std::string& file) {
     if (!archive) return;
     for (const Call& c : archive->calls) {
         const std::string_view name = c.request->name;
-        if (among(kShapes, name)) continue;
-        if (!among(kSettings, name) || (name == "Attribute" && c.text(0) == "grouping")) return;
+        if (among(kShapeRequests, name)) continue;
+        if (!among(kSettingRequests, name) || (name == "Attribute" && c.text(0) == "grouping")) return;
         of.settings = true;
     }
     of.shapes = true;

@@ -39,6 +39,7 @@ public:
     }
     double area() const override { return areas().empty() ? 0 : areas().back(); }
     SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const override;
+    bool facesRays() const override { return fromRay_; }
     double sampleDensity(const SurfacePoint&) const override;
     Vec3 velocity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;

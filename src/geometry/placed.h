@@ -105,6 +105,7 @@ public:
     void sampleFromAt(const Vec3& from, double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const;
     double sampleDensity(const SurfacePoint&) const override;
     double turnedDensity(const SurfacePoint&, const Vec3& from) const override;
+    bool facesRays() const override { return geometry_->facesRays(); }
     void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const override;
     const std::string& stringValue(int var, const SurfacePoint& at) const override { return geometry_->stringValue(var, at); }
     /// The geometry is diced by diceShapes(), once for all its places.

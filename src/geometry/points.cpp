@@ -67,6 +67,7 @@ public:
     SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const override;
     double sampleDensity(const SurfacePoint&) const override;
     double turnedDensity(const SurfacePoint&, const Vec3& from) const override;
+    bool facesRays() const override { return kind_ != PointKind::Ball && !normal_ && source_.facing == Facing::Ray; }
     Vec3 velocity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
@@ -108,7 +109,6 @@ private:
     SurfacePoint pointFrom(uint32_t prim, double u, double v, const Vec3d& from, float time) const;
     SurfacePoint discFrom(uint32_t prim, double radius, double angle, const Vec3d& from, float time) const;
     const std::vector<double>& areas() const;
-    bool fromRay() const { return kind_ != PointKind::Ball && !normal_ && source_.facing == Facing::Ray; }
 
     PointKind kind_;
     uint32_t count_ = 0;
@@ -271,7 +271,7 @@ int Points::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     const Vec3d w = near + d * step;
     if (kind_ == PointKind::Disc && !(dot(w, w) <= r * r)) return 0;
     double x = 0, y = 0;
-    if (fromRay()) {
+    if (facesRays()) {
         packDirection(n, x, y);
         n = unpackDirection(x, y);
     }
@@ -311,10 +311,10 @@ LocalPoint Points::place(const Now& now, const Vec3d& n, double u, double v) con
 
 SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) const {
     const Now now = nowAt(prim, time);
-    const double x = fromRay() ? std::floor(0.5 * b1) : 0, y = fromRay() ? std::floor(0.5 * b2) : 0, u = b1 - 2 * x,
+    const double x = facesRays() ? std::floor(0.5 * b1) : 0, y = facesRays() ? std::floor(0.5 * b2) : 0, u = b1 - 2 * x,
                  v = b2 - 2 * y;
     const double side = orientation_;
-    const LocalPoint o = place(now, fromRay() ? unpackDirection(x, y) : facing(now, backward_), u, v);
+    const LocalPoint o = place(now, facesRays() ? unpackDirection(x, y) : facing(now, backward_), u, v);
     const Matrix& m = toCamera();
     LocalPoint q{transformPoint(m, o.P),
                  transformVector(m, o.Pu),
@@ -344,7 +344,7 @@ SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) co
     p.b2 = v;
     p.time = time;
     // What leaves a disc that faces the ray must not meet the same disc, now turned elsewhere.
-    p.pError = 2 * roundingError(p.P) + (fromRay() ? 0.26f * std::max(length(p.dPdu), length(p.dPdv)) : 0);
+    p.pError = 2 * roundingError(p.P) + (facesRays() ? 0.26f * std::max(length(p.dPdu), length(p.dPdv)) : 0);
     finishPoint(p, true);
     if (kind_ != PointKind::Square) p.dsdu = p.dsdv = p.dtdu = p.dtdv = 0;
     if (kind_ == PointKind::Ball) p.N = p.n;
@@ -353,7 +353,7 @@ SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) co
 
 SurfacePoint Points::pointFrom(uint32_t prim, double u, double v, const Vec3d& from, float time) const {
     double x = 0, y = 0;
-    if (fromRay()) {
+    if (facesRays()) {
         const Now now = nowAt(prim, time);
         const Vec3d eye = transformPoint(toObject_, from);
         Vec3d to = eye - now.centre;
@@ -384,7 +384,7 @@ SurfacePoint Points::discFrom(uint32_t prim, double part, double angle, const Ve
 }
 
 double Points::turnedDensity(const SurfacePoint& p, const Vec3& from) const {
-    if (!fromRay() || kind_ == PointKind::Ball) return 1;
+    if (!facesRays() || kind_ == PointKind::Ball) return 1;
     const Now now = nowAt(p.prim, p.time);
     const Vec3d eye = transformPoint(toObject_, Vec3d(from)), P = transformPoint(toObject_, Vec3d(p.P));
     const double far = length(now.centre - eye), way = length(P - eye);
@@ -400,7 +400,7 @@ Vec3 Points::velocity(const SurfacePoint& at) const {
     if (k + 1 >= keys()) return Vec3(0.f);
     return slopeOf(k, way, [&](double w) {
         const Now now = nowAt(at.prim, k, w);
-        if (fromRay()) return transformPoint(toCamera(), now.centre);
+        if (facesRays()) return transformPoint(toCamera(), now.centre);
         return transformPoint(toCamera(), place(now, facing(now, backward_), at.b1, at.b2).P);
     });
 }
@@ -432,7 +432,7 @@ SurfacePoint Points::sampleFromAt(const Vec3& whence, double xi1, double xi2, fl
     if (kind_ == PointKind::Square) return pointFrom(uint32_t(i), x, xi2, from, time);
     if (kind_ == PointKind::Ball)
         return pointFrom(uint32_t(i), xi2, exact::asin(std::clamp(2 * x - 1, -1.0, 1.0)) / kPi + 0.5, from, time);
-    if (fromRay()) return discFrom(uint32_t(i), std::sqrt(x), 2 * kPi * xi2, from, time);
+    if (facesRays()) return discFrom(uint32_t(i), std::sqrt(x), 2 * kPi * xi2, from, time);
     const auto [s, c] = exact::sinCos(2 * kPi * xi2);
     const double r = 0.5 * std::sqrt(x);
     return pointFrom(uint32_t(i), 0.5 + r * c, 0.5 + r * s, from, time);

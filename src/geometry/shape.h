@@ -191,6 +191,8 @@ public:
     virtual void sampleFrom(const Vec3& /*from*/, double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
         sampleArea(xi1, xi2, out, needs);
     }
+    /// Curves and points without a side of their own that turn to whatever ray comes (Facing::Ray).
+    virtual bool facesRays() const { return false; }
     /// Density per unit area with which sampleArea gives this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons;
     /// 0 where the surface is degenerate.
     virtual double sampleDensity(const SurfacePoint&) const = 0;

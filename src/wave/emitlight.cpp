@@ -24,12 +24,14 @@ Vec3 onDisc(const EmissionPlan& plan, const Vec3& dir, Vec2 u) {
     return plan.centre - dir * (plan.radius * 1.001f) + b.t * (r * d.x) + b.u * (r * d.y);
 }
 
-/// From an emitter: by area, and by the cosine to the side that was drawn. A light of mean samples has no radiance; it sends the
-/// same from each point as a point light would.
+/// From an emitter: by area, and by the cosine to the side that was drawn. What turns to rays shows every direction its front:
+/// a direction comes first, and then a point as it is seen from there. A light of mean samples has no radiance; it sends the same
+/// from each point as a point light would.
 void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionStart& s) {
     const Emitter& emitter = *l.light->emitter;
     float perArea = 0;
-    s.shape = emitter.samplePoint(s.drawn.place, s.drawn.choose, s.drawn.time, s.surface, perArea);
+    const Vec3 even = evenDirection(s.drawn.way);
+    s.shape = emitter.samplePoint(s.drawn.place, s.drawn.choose, s.drawn.time, even, s.surface, perArea);
     if (!(perArea > 0) || !std::isfinite(perArea)) return;
     if (world.accel_->hasSolids() &&
         !world.accel_->keeps(world.numberOfShape_.at(s.shape), meetsAt(s.surface), meetsNormal(s.surface), s.drawn.time))
@@ -37,8 +39,12 @@ void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionSta
     const Vec3& n = meetsNormal(s.surface);
     s.front = s.drawn.side < l.front;
     if (l.light->mean) {
-        s.dir = evenDirection(s.drawn.way);
+        s.dir = even;
         s.factor = 4 * kPiF * kPiF / (perArea * float(emitter.area()));
+    } else if (s.shape->facesRays()) {
+        s.dir = even;
+        s.front = true;
+        s.factor = 4 * kPiF * std::fabs(dot(n, even)) / perArea;
     } else {
         if (!s.front && s.shape->oneSided()) return;
         s.dir = Basis(s.front ? n : -n).toWorld(sampleCosine(s.drawn.way));

@@ -216,11 +216,17 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
-const geometry::Shape* Emitter::samplePoint(Vec2 u, float choose, float time, geometry::SurfacePoint& point,
+const geometry::Shape* Emitter::samplePoint(Vec2 u, float choose, float time, const Vec3& toward, geometry::SurfacePoint& point,
                                             float& perArea) const {
+    constexpr float kFar = 1e6f; // of the shape's size: from there all rays to it are parallel but for rounding
     const Entry& e = entryAt(choose);
     bool there = true;
+    const auto eye = [&] {
+        const geometry::Bounds b = e.shape->bounds();
+        return (b.lo + b.hi) * .5f + toward * (kFar * length(b.hi - b.lo));
+    };
     if (e.facets >= 0) there = place(e, {}, u, time, point, geometry::kNeedAll);
+    else if (e.shape->facesRays()) there = place(e, eye(), u, time, point, geometry::kNeedAll);
     else if (e.shape->placed()) e.shape->sampleAreaAt(u.x, u.y, time, point, geometry::kNeedAll);
     else e.shape->sampleArea(u.x, u.y, point, geometry::kNeedAll);
     perArea = there ? float(e.share * density(e, point)) : 0;

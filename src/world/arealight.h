@@ -50,8 +50,9 @@ public:
     bool sampleSurface(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
                        uint32_t needs = geometry::kNeedAll) const;
     /// A point of the light that nobody looks at, and its shape; perArea: its density, per unit of area, 0 for a point that is
-    /// cut away. Only when not empty.
-    const geometry::Shape* samplePoint(Vec2 u, float choose, float time, geometry::SurfacePoint& point, float& perArea) const;
+    /// cut away. toward: what turns to rays faces those that leave it along this. Only when not empty.
+    const geometry::Shape* samplePoint(Vec2 u, float choose, float time, const Vec3& toward, geometry::SurfacePoint& point,
+                                       float& perArea) const;
     /// Density per steradian with which sample() gives this hit as seen from `from`; 0 for shapes of other lights.
     float pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const;
 

@@ -78,6 +78,60 @@ TEST(Emission, PowerOfLights) {
     }
 }
 
+// What turns to rays shines in all directions: a disc shows each its whole area, a square too, and a ribbon its area times the
+// sine of the angle to its axis. Power and the mean square of each coordinate of a direction, both with the ribbon along y.
+TEST(Emission, OfWhatTurnsToRays) {
+    writeShader("white5", "light white5() { illuminate(P, N, PI / 2) Cl = 5; }\n");
+    struct Case {
+        const char* lamp;
+        double power, along; ///< along: mean square of y
+    };
+    const double pi = kPi;
+    for (const Case& c : {Case{"Points \"P\" [0 0 0] \"constantwidth\" .2", 5 * 4 * pi * pi * .01, 1. / 3},
+                          Case{"Points \"P\" [0 0 0] \"constantwidth\" .2 \"string type\" \"patch\"", 5 * 4 * pi * .04, 1. / 3},
+                          Case{"Curves \"linear\" [2] \"nonperiodic\" \"P\" [0 -.1 0 0 .1 0] \"constantwidth\" .02",
+                               5 * pi * pi * .2 * .02, .25}}) {
+        Scene s("Hider \"path\"\n" +
+                    world("AttributeBegin AreaLightSource \"white5\" 1 Surface \"constant\" Color 0 0 0 Sides 1\n" +
+                          std::string(c.lamp) + " AttributeEnd\nIlluminate 1 1\n" + kBall),
+                path());
+        const int n = 40000;
+        Moments squares;
+        double sum = 0;
+        for (const StoredPhoton& p : emitted(s, n)) {
+            if (p.photon.bounces != 0) continue;
+            const Vec3 d = p.photon.P / 5;
+            sum += double(p.photon.power.x);
+            squares.add(p.photon.power.x * float(n) * d * d);
+        }
+        EXPECT_NEAR(sum, c.power, .01 * c.power) << c.lamp;
+        for (int k = 0; k < 3; ++k) {
+            const double want = (k == 1 ? c.along : (1 - c.along) / 2) * c.power;
+            EXPECT_LE(std::fabs(squares.mean(k) - want), kZ * squares.se(k)) << c.lamp << ", " << k;
+        }
+    }
+}
+
+// A disc that turns to rays looks like a ball of its radius: light samples find pi L (r / h)^2 below it, and photons bring to a
+// floor, within rho, pi L r^2 2 pi (1 - h / sqrt(h^2 + rho^2)).
+TEST(Emission, FloorBelowABillboard) {
+    writeShader("white5", "light white5() { illuminate(P, N, PI / 2) Cl = 5; }\n");
+    const std::string lamp = "AttributeBegin AreaLightSource \"white5\" 1 Surface \"constant\" Color 0 0 0 Points \"P\" [0 2 0] "
+                             "\"constantwidth\" 1 AttributeEnd\nIlluminate 1 1\n";
+    Scene s("Hider \"path\"\n" + world(lamp + "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor), path());
+    const double h = 2, r = .5, pi = kPi;
+    expectMean(s.estimate(kView, 4000), 5 * r * r / (h * h), .01, "light samples");
+    const int n = 200000;
+    const std::vector<StoredPhoton> all = emitted(s, n);
+    for (const double rho : {.5, 2., 6.}) {
+        double sum = 0, one = 0;
+        for (const StoredPhoton& p : all)
+            if (const Vec3 at = p.photon.P; std::hypot(double(at.x), double(at.z)) < rho) sum += one = double(p.photon.power.x);
+        const double want = pi * 5 * r * r * 2 * pi * (1 - h / std::hypot(h, rho));
+        EXPECT_NEAR(sum, want, kZ * std::sqrt(want * one)) << rho;
+    }
+}
+
 // A ball of radius 1 that a displacement makes one of radius 1.5 sends pi L A of the latter, from where it is: none starts within
 // it. Its facets have .3 % less area.
 TEST(Emission, DisplacedLamp) {

@@ -157,6 +157,10 @@ void BakeLog::settle(File& f) {
     f.pending.clear();
 }
 
+bool BakeLog::pending() const {
+    return std::any_of(files_.begin(), files_.end(), [](const auto& f) { return !f.second.entries.empty(); });
+}
+
 void BakeLog::discard() {
     const std::lock_guard lock(mutex_);
     for (auto& [name, f] : files_) {

@@ -41,6 +41,8 @@ public:
     /// Puts what was added since the last call behind what was there, in the order of the keys. Of points of grids the samples
     /// are averaged. What was added twice, bit by bit, is kept once: points may be shaded again. Nobody adds meanwhile.
     void settle();
+    /// Whether anything was added since the last settle(). Nobody adds meanwhile.
+    bool pending() const;
     /// Forgets what was added since the last settle(): the samples were void.
     void discard();
     /// Settles, and writes all files but those that somebody else writes; then the log is empty. False: an error was reported for

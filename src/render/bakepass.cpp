@@ -8,9 +8,10 @@ namespace alpenglow::render {
 namespace {
 constexpr size_t kAtOnce = 1u << 16;      ///< points whose samples wait for their mean, at most
 constexpr size_t kSamplesWait = 1u << 22; ///< and these samples
+constexpr size_t kAsked = 16;             ///< corners, and middles, that say whether a shape bakes at all
 constexpr size_t kRays = 256;             ///< of one trace(): their shaders may send thousands
 
-/// Traces all samples of some points.
+/// Traces all samples of some points. False: it was stopped.
 bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::vector<int>& numbers, uint32_t samples,
                  const transport::CameraRay& pixel) {
     const auto work = [&](int worker, size_t task) {
@@ -23,9 +24,24 @@ bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::v
             if (!job.trace(worker, rays, results)) return;
         }
     };
-    const bool whole = job.team.run((points.size() + kRays - 1) / kRays, &job.halt, work, [&](size_t) { job.pollStop(); });
-    transport::settleBakes(*job.world, whole);
-    return whole;
+    return job.team.run((points.size() + kRays - 1) / kRays, &job.halt, work, [&](size_t) { job.pollStop(); });
+}
+
+/// Whether no point of a shape bakes, if a few say it for all.
+bool noneBakes(Job& job, uint32_t shape, const std::vector<shading::GridPoint>& all, const transport::CameraRay& pixel) {
+    if (!transport::bakesAllOrNone(*job.world, shape)) return false;
+    std::vector<shading::GridPoint> few;
+    std::vector<int> numbers;
+    for (const bool corner : {true, false})
+        for (size_t i = 0, n = 0; i < all.size() && n < kAsked; ++i) {
+            if (all[i].corner != corner) continue;
+            few.push_back(all[i]);
+            numbers.push_back(int(i));
+            ++n;
+        }
+    const bool whole = tracePoints(job, few, numbers, 1, pixel), none = !transport::bakedNow(*job.world);
+    transport::settleBakes(*job.world, false);
+    return whole && none;
 }
 
 } // namespace
@@ -38,13 +54,17 @@ bool bakeGrids(Job& job, uint32_t samples) {
     bool whole = true;
     const size_t most = std::clamp(kSamplesWait / std::max<size_t>(samples, 1), 16 * kRays, kAtOnce);
     const auto flush = [&] {
-        if (!points.empty()) whole = whole && tracePoints(job, points, numbers, samples, pixel);
+        if (!points.empty()) {
+            whole = whole && tracePoints(job, points, numbers, samples, pixel);
+            transport::settleBakes(*job.world, whole);
+        }
         points.clear();
         numbers.clear();
     };
     for (const uint32_t shape : transport::bakedShapes(*job.world)) {
         all.clear();
         transport::bakedPoints(*job.world, shape, all);
+        if (noneBakes(job, shape, all, pixel)) continue;
         for (size_t i = 0; i < all.size() && whole; ++i) {
             points.push_back(all[i]);
             numbers.push_back(int(i));

@@ -45,6 +45,20 @@ std::vector<uint32_t> bakedShapes(const World& world) {
     return all;
 }
 
+bool bakesAllOrNone(const World& world, uint32_t shape) {
+    const WorldImpl& w = implOf(world);
+    const SurfaceBinding& b = w.bindings_[size_t(w.bindingOf_[shape])];
+    const auto varies = [](const BoundKernel& k) {
+        return std::any_of(k.sites.begin(), k.sites.end(),
+                           [](const SiteInfo& s) { return s.cloud && s.cloud->writes && !s.cloud->steady; });
+    };
+    for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS})
+        if (varies(*k)) return false;
+    bool others = bakesAt(b.atmosphere.kernel);
+    w.eachLight(b.lights, [&](int l) { return others |= bakesAt(w.lights_[size_t(l)].kernel); });
+    return !others;
+}
+
 void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPoint>& to) {
     const WorldImpl& w = implOf(world);
     const size_t before = to.size();
@@ -83,6 +97,8 @@ CameraRay rayTo(const World& world, shading::GridPoint& point, int number, const
     r.grid = &point;
     return r;
 }
+
+bool bakedNow(const World& world) { return implOf(world).clouds_->baked.pending(); }
 
 void settleBakes(const World& world, bool keep) {
     clouds::BakeLog& log = implOf(world).clouds_->baked;

@@ -1,4 +1,5 @@
 #include "world/cloudsite.h"
+#include "rsl/front/protocol.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"
 
@@ -92,7 +93,7 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
         for (size_t a = 0; a < s.argKinds.size(); begin += rsl::ir::components(s.argKinds[a++])) argument[begin] = a;
         for (const std::string& name : s.names) { // in the order of the call
             const int r = row(name.c_str());
-            if (isOption(name)) continue;
+            if (isOption(name) || name == rsl::kPairSteady) continue;
             const size_t a = r < 0 ? s.argKinds.size() : argument.at(r);
             if (i.text.count(name) || (r >= 0 && s.argKinds[a] == rsl::ir::Kind::String)) noteString(name, l.place, world);
             if (r < 0 || s.argKinds[a] == rsl::ir::Kind::String) continue;
@@ -116,6 +117,7 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
         ++l.width;
     }
     c->writes = i.kind != SiteKind::Texture3d && (c->computed || !c->name.empty());
+    c->steady = i.text.count(rsl::kPairSteady) > 0;
     if (c->writes) {
         world.clouds_->bakes = true;
         world.clouds_->centres |= c->centres >= 0;

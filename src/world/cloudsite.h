@@ -10,6 +10,7 @@ struct CloudSite {
     std::string name;            ///< of the file; "" where `computed`, or there is none
     bool computed = false;       ///< each point names its file, in row 0
     bool writes = false;         ///< bake(), bake3d() with a name: without one they do nothing
+    bool steady = false;         ///< of what writes: all points of a primitive reach it, or none
     int point = -1, normal = -1; ///< bake3d(), texture3d()
     int s = -1, t = -1;          ///< bake()
     int du = -1, dv = -1;        ///< texture3d(): steps of P from one sample to the next

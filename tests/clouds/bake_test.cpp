@@ -63,6 +63,42 @@ protected:
     }
 };
 
+// A call behind a condition that is false for the whole primitive: no more than a few points are shaded for it, and none is
+// written. Where it is true all are, and so is what only some points reach.
+TEST_F(Bake, BehindConditions) {
+    const auto points = [&](const std::string& parameters, const std::string& before, const std::string& condition) {
+        write("baker.sl", "surface baker(" + parameters + ") { " + before + " Oi = 1; Ci = Cs; if (" + condition +
+                              ") bake3d(\"b.ptc\", \"\", P, N, \"interpolate\", 1); }\n");
+        write("a.rib", header("a.exr") + "Option \"user\" \"string pass\" \"beauty\" \"float kind\" 2\n" + begin +
+                           "Attribute \"user\" \"string pass\" \"beauty\" \"float kind\" 2\n" + ball);
+        std::filesystem::remove(dir / "b.ptc");
+        quiet("render --stats a.json a.rib");
+        const std::string stats = bytes("a.json");
+        return std::atoi(stats.c_str() + stats.find("\"points\":") + 9);
+    };
+    const int none = points("", "", "0");
+    const std::tuple<const char*, const char*, const char*> never[] = {
+        {"float bake = .3;", "", "bake > .5"},
+        {"float bakes[2] = {.3, .4};", "", "bakes[1] > .5"},
+        {"float a = 3; float b = 4;", "uniform float c = sqrt(a * a + b * b);", "c > 6"},
+        {"", "uniform float k = 0; attribute(\"user:kind\", k);", "k == 1"},
+        {"", "uniform string s = \"\"; option(\"user:pass\", s); uniform float bake = 0; if (s == \"point\") bake = 1;",
+         "bake == 1"},
+        {"", "uniform string s = \"\"; rayinfo(\"type\", s);", "s == \"diffuse\""}};
+    for (const auto& [parameters, before, condition] : never) {
+        EXPECT_LE(points(parameters, before, condition), none + 40) << condition;
+        EXPECT_FALSE(std::filesystem::exists(dir / "b.ptc")) << condition;
+    }
+    EXPECT_GT(points("", "", "1"), 2 * none);
+    const std::string all = bytes("b.ptc");
+    EXPECT_FALSE(all.empty());
+    points("float bake = .7;", "", "bake > .5");
+    EXPECT_EQ(bytes("b.ptc"), all);
+    EXPECT_GT(points("", "", "v > .9"), 2 * none); // where the few points may not be
+    EXPECT_LT(bytes("b.ptc").size(), all.size() / 2);
+    EXPECT_GT(cloud("b.ptc").size(), 10u);
+}
+
 // All of the ball, its far side too: places, normals, values and the area of the surface.
 TEST_F(Bake, WholeSpheres) {
     writeShader("baker", "point p = transform(\"world\", P); normal n = normalize(N); float ok = bake3d(\"ball.ptc\", \"\", P, "

@@ -138,6 +138,7 @@ inline constexpr char kPairHighlight[] = "__highlight";   ///< a loop over light
 /// An indirectdiffuse() beside diffuse() or loops over lights, and such a diffuse() of a kernel that waits: each brings its part
 /// of the light.
 inline constexpr char kPairApart[] = "__apart";
+inline constexpr char kPairSteady[] = "__steady";   ///< a bake() that all points of a primitive reach, or none
 inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes the answer is uniform
 
 /// ir::Site::resultNames of a query: its answer, and before that of an array of open length how long it is.

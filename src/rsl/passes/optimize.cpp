@@ -15,6 +15,7 @@
 #include "rsl/passes/outline.h"
 #include "rsl/passes/promote.h"
 #include "rsl/passes/slope.h"
+#include "rsl/passes/steadybakes.h"
 #include "rsl/passes/unroll.h"
 #include "rsl/passes/unused_results.h"
 #include <algorithm>
@@ -139,6 +140,7 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
         if (options.optimize > 0) clean(k);
     }
     tellApart(k);
+    markSteadyBakes(k);
     if (k.kind == ShaderKind::Surface)
         forEach(k.body, [&](const Inst* i) {
             if (i->op != Op::Output || k.outputs[static_cast<size_t>(i->index)].name != "Oi") return;

@@ -191,7 +191,46 @@ TEST(PlausibleSamples, EmissionOfAPrimitive) {
     }
 }
 
-// A surface that says what it sends, and reads what lights do not have: it is no light.
+// Of what is sent Cs has its part, as each primitive and each of its points has it: the light below two squares side by side, by
+// the form factor of a rectangle above a corner of which the point lies.
+TEST(PlausibleSamples, EmissionAsThePrimitiveIsColoured) {
+    writeShader("white", "surface white() { Oi = Os; Ci = Os * diffuse(normalize(N)); }\n");
+    writeShader("dark", "surface dark() { Oi = 1; Ci = 0; }\n");
+    writeShader("tinted", "class tinted(float intensity = 1;) {\n"
+                          "    color sent() { return intensity * Cs; }\n"
+                          "    public void prelighting(output color Ci, Oi) { emit(sent() * comp(Os, 0)); }\n"
+                          "    public void surface(output color Ci, Oi) { Ci = intensity * Cs; Oi = 1; }\n}\n");
+    const auto corner = [](double x, double y) {
+        const double a = std::hypot(2, x), b = std::hypot(2, y);
+        return (x / a * std::atan(y / a) + y / b * std::atan(x / b)) / (2 * M_PI);
+    };
+    const double below = 4 * corner(.5, .5), beside = 2 * (corner(1.5, .5) - corner(.5, .5));
+    const auto lamp = [](const std::string& shape) {
+        return "AttributeBegin\nAreaLightSource \"tinted\" 1 \"intensity\" 4\nSurface \"dark\"\nColor .25 .5 1\nOpacity .5 .5 "
+               ".5\n" +
+               shape + "\nAttributeEnd\nIlluminate 1 1\nSurface \"white\"\n" + kFloor;
+    };
+    for (const Hider h : {Hider::Hidden, Hider::Path}) {
+        const Moments faces =
+            of(lamp("PointsPolygons [4 4] [0 1 4 5 1 2 3 4] \"P\" [-.5 2 -.5  .5 2 -.5  1.5 2 -.5  1.5 2 .5  .5 2 .5  -.5 2 .5] "
+                    "\"uniform color Cs\" [1 0 .5  0 1 .5]"),
+               20000, h);
+        const double want[] = {2 * below, 2 * beside, below + beside};
+        for (int k = 0; k < 3; ++k)
+            EXPECT_LE(std::fabs(faces.mean(k) - want[k]), kZ * faces.se(k) + 1e-6)
+                << k << ": " << faces.mean(k) << ' ' << want[k];
+        EXPECT_LE(faces.se(0), .01 * want[0]);
+        const std::string square = "Polygon \"P\" [-.5 2 -.5  .5 2 -.5  .5 2 .5  -.5 2 .5] ";
+        const Moments across = of(lamp(square + "\"varying color Cs\" [0 1 0  1 1 0  1 1 1  0 1 1]"), 20000, h);
+        for (const int k : {0, 2}) // opposite points add up to one
+            EXPECT_LE(std::fabs(across.mean(k) - below), kZ * across.se(k)) << k;
+        const Moments plain = of(lamp(square), 8000, h);
+        expectMean(plain, .5 * below, .02, "Color");
+        EXPECT_NEAR(plain.mean(2) / plain.mean(0), 4, 1e-5);
+    }
+}
+
+// A surface that says what it sends shows it without being a light.
 TEST(PlausibleSamples, EmissionOfASurface) {
     writeShader("shining", "class shining(float intensity = 1;) {\n"
                            "    color sent() { return intensity * Cs; }\n"

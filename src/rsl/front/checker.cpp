@@ -1,6 +1,7 @@
 #include "rsl/front/checker.h"
 #include "base/limits.h"
 #include "rsl/front/clone.h"
+#include "rsl/front/protocol.h"
 #include <algorithm>
 #include <utility>
 
@@ -152,7 +153,12 @@ Symbol* Checker::global(const std::string& name) {
         }
         return nullptr;
     };
-    if (kind_) return find(*kind_);
+    if (kind_) {
+        if (Symbol* s = find(*kind_)) return s;
+        // What a class sends by emit() is said for the surface of the primitive that shines.
+        const bool emits = *kind_ == ShaderKind::Light && shaderParameters_.contains(kEmits);
+        return emits && (name == "Cs" || name == "Os") ? find(ShaderKind::Surface) : nullptr;
+    }
     for (int k = 0; k < 6; ++k)
         if (Symbol* s = find(ShaderKind(k))) return s;
     return nullptr;

@@ -7,9 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <map>
-#include <set>
-#include <span>
 #include <string>
 
 namespace alpenglow::rsl::front {
@@ -89,9 +86,8 @@ bool setsZero(const Tokens& t, size_t open) {
 struct Found {
     size_t light = 0;
     bool generates = false, surface = false;
-    bool shadows = false, casts = false;                          ///< it has shadowSamples(); that calls areashadow()
-    std::vector<size_t> emits;                                    ///< calls of emit() in prelighting(), which has two parameters
-    std::map<std::string_view, std::pair<size_t, size_t>> bodies; ///< of all methods
+    bool shadows = false, casts = false; ///< it has shadowSamples(); that calls areashadow()
+    std::vector<size_t> emits;           ///< calls of emit() in prelighting(), which has two parameters
     bool domain =
         false; ///< generateSamples() has a parameter that lights of PRMan call so; layers of materials call theirs otherwise
 };
@@ -117,7 +113,6 @@ Found methodsOf(const Tokens& t, size_t body, size_t end) {
         if (t[k].is("}")) --depth;
         if (depth != 0 || !t[k + 2].is("(")) continue;
         const size_t last = behind(t, k + 2);
-        if (t[k + 1].kind == Tok::Identifier && last < end && t[last].is("{")) f.bodies[t[k + 1].text] = {last, behind(t, last)};
         if (!t[k].is("void")) continue;
         if (t[k + 1].is("generateSamples")) { // (string; __radiancesample[])
             bool samples = false;
@@ -140,27 +135,6 @@ Found methodsOf(const Tokens& t, size_t body, size_t end) {
         for (std::string_view o : kOthers) f.surface |= t[k + 1].is(o);
     }
     return f;
-}
-
-/// Whether prelighting(), or a method that it calls, reads what only surfaces have ("Cs"): it is no light then.
-bool emitsAsSurface(const Tokens& t, const Found& f) {
-    const auto surfaces = globalVariables(ShaderKind::Surface), lights = globalVariables(ShaderKind::Light);
-    const auto has = [](std::span<const GlobalVariable> all, std::string_view name) {
-        return std::any_of(all.begin(), all.end(), [&](const GlobalVariable& g) { return name == g.name; });
-    };
-    std::set<std::string_view> seen = {"prelighting"};
-    std::vector<std::string_view> open = {"prelighting"};
-    while (!open.empty()) {
-        const auto [begin, end] = f.bodies.at(open.back());
-        open.pop_back();
-        for (size_t i = begin; i < end; ++i) {
-            if (t[i].kind != Tok::Identifier) continue;
-            if (t[i + 1].is("(")) {
-                if (f.bodies.contains(t[i].text) && seen.insert(t[i].text).second) open.push_back(t[i].text);
-            } else if (has(surfaces, t[i].text) && !has(lights, t[i].text) && !t[i].is("Ci") && !t[i].is("Oi")) return true;
-        }
-    }
-    return false;
 }
 
 std::string replaced(std::string text, const std::string& word, const std::string& by) {
@@ -233,7 +207,7 @@ void addSampledLights(SourceSet& sources, Preprocessed& p) {
         const size_t end = behind(t, body);
         if (end == t.size()) continue; // brackets that do not close, which the parser reports
         const Found f = methodsOf(t, body, end);
-        if (!f.light && !f.generates && !f.emits.empty() && !emitsAsSurface(t, f)) {
+        if (!f.light && !f.generates && !f.emits.empty()) {
             insert(i + 3, tokensOf(sources, kEmits));
             insert(body + 1, tokensOf(sources, kEmission));
             for (const size_t call : f.emits) {

@@ -160,6 +160,23 @@ auto displacedSphere = [](double u, double v) {
 auto displacedSaddle = [](double u, double v) { return saddle(u, v) + unitNormal(saddle, u, v) * height(u, v); };
 const char* kWaves = "Displacement \"waves\"\n";
 
+// What is linear over a micropolygon of du by dv differs by what follows from its slopes, and lies in the middle.
+TEST(GridBounds, OfAMicropolygon) {
+    writeShader("bounds", "surface bounds() { float a = 3 * u - 2 * v; Oi = 1; Ci = color((gridmax(u) - gridmin(u)) / du,\n"
+                          "(gridmax(a) - gridmin(a)) / (3 * du + 2 * dv), (gridmin(a) + gridmax(a)) / (2 * a)); }\n");
+    CameraRay ray = rayTo({.3f, .8f, -.4f}, {.1f, 0, -.2f});
+    ray.width = .002f;
+    for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        Settings settings;
+        settings.hider = h;
+        const Color c =
+            Scene("WorldBegin\nSurface \"bounds\"\nPatch \"bilinear\" \"P\" [-1 0 -2  3 0 -2  -1 0 1  3 0 1]\nWorldEnd\n",
+                  settings)
+                .one(ray);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], 1, 1e-3) << int(h) << ' ' << k;
+    }
+}
+
 TEST(Derivatives, PlainNormals) {
     writeShaders();
     expectNormals(sphereRib("", "shownormal"), sphere, {0, 0, 0}, {0, 0, 4}, "sphere", 1e-5);

@@ -107,12 +107,10 @@ std::vector<Shadeop> messageShadeops() {
         "agree. In a co-shader or a light \"light:\" or \"local:\" before the name keep it there, out of sight of displays.");
     list.back().examples = {{"x", "2 2 2", "color x = 0; outputchannel(\"glow\", color(2)); readaov(\"glow\", x);"}};
     add("gridmin", sigs({{"float gridmin(float value)"}, {"void gridmin(float value)"}}), Lowering::Special, kNoImager,
-        "Smallest value over the micropolygon of the point, du by dv about it: value - (abs(Du(value)) * du + abs(Dv(value)) * "
-        "dv) / "
-        "2. A hit is a grid of this one micropolygon, so that nothing depends on what else is shaded.");
+        "Smallest value over the micropolygon of the point, du by dv: minus half of what Du() and Dv() say it changes by.");
     list.back().examples = {{"gridmin(u)", "0"}};
     add("gridmax", sigs({{"float gridmax(float value)"}, {"void gridmax(float value)"}}), Lowering::Special, kNoImager,
-        "Largest value over the micropolygon of the point: as gridmin(), with plus for minus.");
+        "Largest value over the micropolygon of the point, as gridmin(): plus half of what it changes by.");
     list.back().examples = {{"gridmax(u)", "1"}};
     add("getshader", sigs({{"shader getshader(string handle)"}}), Lowering::Special, kAnyContext,
         "Co-shader by its handle; null if absent.");

@@ -24,6 +24,8 @@ struct LightCall {
     const LitSurface* lit = nullptr;
     const std::vector<char>* inMedium = nullptr; ///< by query: a medium lies before the emitter, and not its atmosphere
     std::vector<float>* values = nullptr;        ///< gets BoundLight::values: valueWidth numbers a query
+    std::span<const int> more;                   ///< further outputs of `kernel`,
+    std::vector<float>* moreValues = nullptr;    ///< and their numbers, query by query
 };
 
 /// How far shadow rays go to a light sample, and the radius of the disk there that they go to; 0: to a point.

@@ -12,6 +12,7 @@ constexpr int kProbes = 64;       ///< of a light whose power is measured
 constexpr double kUnlearned = .1; ///< of the photons go where nothing was found, so that all is found in the end
 
 bool mayEmit(const BoundLight& l, bool sky) {
+    if (l.kernel && l.photons) return true;
     if (!l.kernel || l.kind == LightKind::Ambient || (l.kind == LightKind::Environment && !sky)) return false;
     return l.kind != LightKind::Area || (l.emitter && !l.emitter->empty());
 }
@@ -31,7 +32,7 @@ EmissionPlan::EmissionPlan(Engine& e, bool all, bool sky) : world_(e.world()) {
         Light light;
         light.light = &l;
         light.number = int(i);
-        if (l.kind == LightKind::Point && !findPlace(e, light)) continue;
+        if (l.kind == LightKind::Point && !l.photons && !findPlace(e, light)) continue;
         measure(e, light);
         lights_.push_back(std::move(light));
     }
@@ -92,7 +93,7 @@ bool EmissionPlan::findPlace(Engine& e, Light& l) {
 void EmissionPlan::measure(Engine& e, Light& l) {
     std::vector<EmissionStart> starts;
     const render::Sampler numbers(0x6d656173757265ull, l.number & 0xffffff, l.number >> 24);
-    const bool area = l.light->kind == LightKind::Area && !l.light->mean;
+    const bool area = l.light->kind == LightKind::Area && !l.light->mean && !l.light->photons;
     for (uint32_t k = 0; k < kProbes; ++k) {
         EmissionDraw d = draw(render::SampleNumbers(numbers, k));
         d.light = 0;
@@ -101,6 +102,8 @@ void EmissionPlan::measure(Engine& e, Light& l) {
     }
     l.front = .5f;
     startPhotons(e, *this, l, starts);
+    for (const EmissionStart& s : starts) l.pdf += double(s.pdf) / kProbes;
+    if (l.light->photons) startPhotons(e, *this, l, starts);
     for (EmissionStart& s : starts) s.length = radius;
     const std::vector<Color> power = emittedPower(e, l, starts);
     double sum = 0, front = 0;
@@ -127,6 +130,7 @@ void EmissionPlan::share() {
 
 EmissionDraw EmissionPlan::draw(const render::SampleNumbers& n) const {
     EmissionDraw d;
+    d.numbers = n;
     if (!lights_.empty()) {
         const float u = n.get1(0, kUseLight, 0);
         const auto at =
@@ -181,7 +185,7 @@ void EmissionPlan::learn(std::span<const StoredPhoton> stored, const PhotonJob& 
         Light& l = lights_[i];
         l.share = kUnlearned * l.share + (1 - kUnlearned) * ofLight[i] / all;
         l.until = until += l.share;
-        if (!(ofLight[i] > 0)) continue;
+        if (!(ofLight[i] > 0) || l.light->photons) continue;
         l.guide.assign(size_t(kBins) * kBins, 0);
         l.rows.assign(kBins, 0);
         double mean = 0;

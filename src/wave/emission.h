@@ -10,6 +10,8 @@ struct EmissionStart {
     Vec3 origin, dir;               ///< dir: unit; zero: this draw brings nothing
     geometry::SurfacePoint surface; ///< Area
     const geometry::Shape* shape = nullptr;
+    Color power{0};     ///< BoundLight::photons
+    float pdf = 0;      ///< and what generatePhoton() says of it
     float factor = 0;   ///< of what the light's kernel says, before `length`
     float length = 0;   ///< of the way to what it meets first; 0: nothing
     float kept = 1;     ///< LightValue::kept() of rays of highlights, where the photon arrives first

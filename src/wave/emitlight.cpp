@@ -105,9 +105,47 @@ void startMoving(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light&
     for (size_t i = 0; i < starts.size(); ++i) starts[i].origin = q[i].Ps - v[i].L;
 }
 
+/// From a class light with generatePhoton(): as it says. Its power is a radiance times an area, so pi of it in all directions,
+/// and photons of a light differ by power over pdf.
+void startGenerated(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+    std::vector<shading::PathSample> samples(starts.size());
+    std::vector<PathRay> rays(starts.size());
+    std::vector<ShadePoint> q(starts.size());
+    for (size_t i = 0; i < starts.size(); ++i) {
+        samples[i].numbers = starts[i].drawn.numbers;
+        rays[i].sample = &samples[i];
+        q[i].ray = &rays[i];
+        q[i].Ps = plan.centre;
+        q[i].shutter = e.world().shadesAtOpen_ ? 0 : starts[i].drawn.time;
+        e.world().tellTime(q[i]);
+        q[i].P = Vec3(transformPoint(l.light->instance->toCurrentAt(q[i].shutter), {0, 0, 0}));
+        q[i].N = Vec3();
+    }
+    std::vector<LightValue> v(q.size());
+    std::vector<float> given;
+    LightCall call;
+    call.kernel = &l.light->photons;
+    call.more = l.light->photonOutputs;
+    call.moreValues = &given;
+    e.evaluateLight(*l.light, q, v, call);
+    for (size_t i = 0; i < starts.size(); ++i) {
+        EmissionStart& s = starts[i];
+        const float* n = given.data() + 10 * i;
+        const Vec3 from(n[0], n[1], n[2]), way(n[3], n[4], n[5]);
+        const float far = length(way);
+        s.pdf = n[9] > 0 && std::isfinite(n[9]) ? n[9] : 0;
+        s.power = {std::max(n[6], 0.f), std::max(n[7], 0.f), std::max(n[8], 0.f)};
+        if (!(far > 0) || !std::isfinite(far) || !std::isfinite(length(from)) || !(s.pdf > 0) || !isFinite(s.power)) continue;
+        s.origin = from;
+        s.dir = way / far;
+        s.factor = kPiF * float(l.pdf / s.pdf) / s.drawn.chance;
+    }
+}
+
 } // namespace
 
 void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+    if (l.light->photons) return startGenerated(e, plan, l, starts);
     const bool moves = l.light->kind == LightKind::Point && l.light->instance->moving;
     if (l.light->kind == LightKind::Distant) startDistant(e, plan, l, starts);
     if (moves) startMoving(e, plan, l, starts);
@@ -134,6 +172,11 @@ void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light
 }
 
 std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+    if (l.light->photons) {
+        std::vector<Color> given;
+        for (const EmissionStart& s : starts) given.push_back(s.length > 0 ? s.power * s.factor : Color(0));
+        return given;
+    }
     std::vector<ShadePoint> q;
     std::vector<size_t> of;
     for (size_t i = 0; i < starts.size(); ++i) {

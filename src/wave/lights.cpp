@@ -288,6 +288,9 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
         if (light.shadowRadius >= 0)
             takeShadowSays(v, light, b.value(light.shadowRadius, 0, int(i)),
                            light.shadowSamples < 0 ? 1 : b.value(light.shadowSamples, 0, int(i)));
+        for (const int o : call.more)
+            for (int r = 0; r < rsl::ir::components(bound.kernel->outputs()[size_t(o)].kind); ++r)
+                call.moreValues->push_back(b.value(o, r, int(i)));
         if (call.values) {
             float* to = call.values->data() + i * size_t(light.valueWidth);
             for (const BoundLight::Value& value : light.values)

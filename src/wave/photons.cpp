@@ -103,7 +103,8 @@ Color Engine::goesOn(const BatchContext& c, int i) const {
 
 /// The volumes in which a photon begins; null: none.
 const shading::Media* Engine::aboutLight(const EmissionPlan::Light& l, const EmissionStart& s) {
-    if (world_->media_.empty() || (l.light->kind != LightKind::Point && l.light->kind != LightKind::Area)) return nullptr;
+    const bool placed = l.light->photons || l.light->kind == LightKind::Point || l.light->kind == LightKind::Area;
+    if (world_->media_.empty() || !placed) return nullptr;
     return kept(mediaAbout(*world_, s.origin, world_->shadesAtOpen_ ? 0 : s.drawn.time));
 }
 

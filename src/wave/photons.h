@@ -14,7 +14,8 @@ struct EmissionDraw {
     float chance = 0;      ///< with which this light was drawn
     Vec2 place, way, cone; ///< each evenly in the square; `way` is guided
     float choose = 0, side = 0, time = 0;
-    float density = 1; ///< of `way`
+    float density = 1;                                          ///< of `way`
+    render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0}; ///< all of the photon's, for random() of shaders
 };
 
 /// Which lights emit photons, and how many of all each gets: in proportion to power, or to what was found to arrive.
@@ -27,6 +28,7 @@ public:
         double power = 0;            ///< luminance, about
         double share = 0, until = 0; ///< of the photons; sum up to and with this one
         Vec3 place;                  ///< LightKind::Point
+        double pdf = 0;              ///< BoundLight::photons: mean of what generatePhoton() says
         float front = .5f;           ///< Area: of its photons, those that leave on the side of n
         std::vector<float> guide;    ///< kBins x kBins: densities of `way` by row; empty: even
         std::vector<float> rows;     ///< of the guide: share of each row of bins

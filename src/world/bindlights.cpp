@@ -106,28 +106,49 @@ void setLightKind(BoundLight& part, const std::string& block, bool area, bool pa
 
 } // namespace
 
+static constexpr const char* kPhotonNames[] = {rsl::kPhotonFrom, rsl::kPhotonWay, rsl::kPhotonPower, rsl::kPhotonPdf};
+
+static bool givesPhotons(const std::string& name) {
+    return std::any_of(std::begin(kPhotonNames), std::end(kPhotonNames), [&](const char* n) { return name == n; });
+}
+
 /// The kernel of a light, with its output parameters and what it gives to the outputs of surfaces.
-BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, Diagnostics& d) {
+BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, bool photons, Diagnostics& d) {
     BoundKernel k;
     std::vector<std::string> extra, outputs;
+    bool sends = false;
     for (const char* name : {rsl::kNonDiffuse, rsl::kNonSpecular, kShadowRadius, kShadowSamples})
         for (const auto& p : light.program->parameters())
             if (p.name == name) extra.push_back(OutputName::parameterOf(name).text());
     for (const auto& p : light.program->parameters())
-        if (const std::string name = OutputName::parameterOf(p.name).text();
-            p.output && p.type.base != rsl::Base::String && std::find(extra.begin(), extra.end(), name) == extra.end())
+        if (givesPhotons(p.name)) sends = true;
+        else if (const std::string name = OutputName::parameterOf(p.name).text();
+                 p.output && p.type.base != rsl::Base::String && std::find(extra.begin(), extra.end(), name) == extra.end())
             extra.push_back(name);
     // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
     for (const OutputName& name : wanted_)
         if (givesChannel(light, name)) addOutput(light, name, extra);
-    if (!extra.empty()) {
+    for (const char* name : kPhotonNames)
+        if (photons) extra.push_back(OutputName::parameterOf(name).text());
+    if (!extra.empty() || sends) { // the kernel of its photons has its outputs, and more behind them
         outputs = {"L", "Cl", "Ol", "lit"};
         outputs.insert(outputs.end(), extra.begin(), extra.end());
     }
     k = kernel(light, outputs, {}, false, false, d);
-    if (k && !extra.empty() && k.kernel->facts().blocks.size() != 1) // more outputs than was thought
+    if (k && !outputs.empty() && k.kernel->facts().blocks.size() != 1) // more outputs than was thought
         k = kernel(light, outputsOf(k.kernel->facts(), extra), {}, false, false, d);
     return k;
+}
+
+void WorldImpl::bindPhotons(BoundLight& l, Diagnostics& d) {
+    const auto& all = l.instance->program->parameters();
+    if (std::none_of(all.begin(), all.end(), [](const auto& p) { return givesPhotons(p.name); })) return;
+    l.photons = lightKernel(*l.instance, true, d);
+    if (!l.photons) return;
+    const auto& outputs = l.photons.kernel->outputs();
+    for (size_t i = 0; i < outputs.size(); ++i)
+        for (int n = 0; n < 4; ++n)
+            if (OutputName::parse(outputs[i].name) == OutputName::parameterOf(kPhotonNames[n])) l.photonOutputs[n] = int(i);
 }
 
 /// Where the outputs of one statement of a light lie, and its values.
@@ -185,7 +206,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
         l.samples = 0;
         l.instance = source.shader ? instance(*source.shader, rsl::ShaderKind::Light, d) : nullptr;
         if (source.attributes) l.instance = withCoShaders(l.instance, source.attributes->coshaders, d);
-        if (l.instance) l.kernel = lightKernel(*l.instance, d);
+        if (l.instance) l.kernel = lightKernel(*l.instance, false, d);
         if (!l.kernel) {
             lights_[li] = std::move(l);
             continue;
@@ -212,6 +233,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
             if (part.outCl < 0) continue;
             setLightKind(part, blocks[k], area, path, d);
             if (k == 0) {
+                bindPhotons(part, d);
                 lights_[li] = std::move(part);
             } else {
                 lights_[li].parts.push_back(int(lights_.size()));

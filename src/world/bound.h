@@ -55,6 +55,10 @@ struct BoundLight {
     /// Of a light that sends through generateSamples(): where in `values` the ways and the light of its samples begin; -1:
     /// another light.
     int sentL = -1, sentCl = -1;
+    /// Of a class light with generatePhoton(): `kernel` with four more outputs, which these are: where a photon begins, its
+    /// direction, power and density. Null: another light.
+    BoundKernel photons;
+    int photonOutputs[4] = {};
     bool shadows = false; ///< outside of path: its light is traced (Attribute "light" "shadows" "on")
     /// Kernels for strings that a surface sends: by SiteInfo::sentKey of the loop.
     std::map<std::string, BoundKernel> variants;

@@ -89,7 +89,9 @@ public:
     /// Says by light and binding what is to be known of points, when all kernels are bound.
     void setPointNeeds();
     void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;
-    BoundKernel lightKernel(const ShaderInstance&, Diagnostics&);
+    /// photons: with what its generatePhoton() gives.
+    BoundKernel lightKernel(const ShaderInstance&, bool photons, Diagnostics&);
+    void bindPhotons(BoundLight&, Diagnostics&);
     void bindLightOutputs(BoundLight&, int block);
     /// Fills lights_; visibility: kinds of rays that can meet a shape.
     void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);

@@ -197,6 +197,55 @@ TEST(Emission, LightsAsTheirShadersSay) {
     EXPECT_NEAR(powerOf(emitted(s, 200000), 0), want, .01 * want);
 }
 
+// A class light that says by generatePhoton() where photons begin: a square of radiance 6 and area 2 sends pi L A about its
+// normal, by the cosine, and nothing else of the light is asked. Where the density varies, each photon brings power over density.
+TEST(Emission, AsGeneratePhotonSays) {
+    writeShader("photonsquare", R"(#include <stdrsl/AreaSampler.h>
+    class photonsquare(float intensity = 3; color lightcolor = 1) {
+        public void light(output vector L; output color Cl) { L = 0; Cl = 0; }
+        public void generateSamples(string integrationdomain; output __radiancesample samples[]) {
+            stdrsl_AreaSampler sampler;
+            sampler->generateSamples(Ps, "rect", 4, samples);
+        }
+        public void generatePhoton(output point origin; output vector direction; output color power; output float pdf) {
+            stdrsl_AreaSampler sampler;
+            float ss, tt, size;
+            sampler->generatePhoton("rect", 1, origin, direction, ss, tt, size);
+            power = intensity * lightcolor * size;
+            pdf = intensity * size;
+        }
+    })");
+    writeShader("photonpair", R"(class photonpair() {
+        public void light(output vector L; output color Cl) { illuminate(point "shader" (0, 0, 0)) Cl = 1000; }
+        public void generatePhoton(output point origin; output vector direction; output color power; output float pdf) {
+            origin = point "shader" (0, 0, 0);
+            pdf = random() < .75 ? 3 : 1;
+            direction = vector "world" (0, pdf - 2, 0);
+            power = pdf * color(1, .5, 0);
+        }
+    })");
+    const int n = 40000;
+    const double power = 6 * kPi * 2;
+    Scene s(
+        world("TransformBegin\nTranslate .5 1 -.5\nRotate 90 1 0 0\nScale 2 1 1\nLightSource \"photonsquare\" 1 \"intensity\" 6 "
+              "\"lightcolor\" [1 .5 0]\nTransformEnd\n" +
+              kBall),
+        path());
+    const auto all = emitted(s, n);
+    EXPECT_NEAR(powerOf(all, 0), power, 1e-4 * power);
+    EXPECT_NEAR(powerOf(all, 0, 1), power / 2, 1e-4 * power);
+    EXPECT_EQ(powerOf(all, 0, 2), 0);
+    Moments cosine;
+    for (const StoredPhoton& p : all)
+        if (p.photon.bounces == 0) cosine.add(Color(p.photon.direction().y));
+    EXPECT_LE(std::fabs(std::fabs(cosine.mean()) - 2. / 3), kZ * cosine.se());
+    Scene pair(world("LightSource \"photonpair\" 1\n" + kBall), path());
+    double up = 0, down = 0;
+    for (const StoredPhoton& p : emitted(pair, n))
+        if (p.photon.bounces == 0) (p.photon.P.y > 0 ? up : down) += double(p.photon.power.x);
+    EXPECT_NEAR(up / (up + down), .75, 4.5 * std::sqrt(.75 * .25 / n));
+}
+
 // Only lights that say so, as soon as one does; lights without a place send none.
 TEST(Emission, WhichLights) {
     const std::string other = "LightSource \"pointlight\" 2 \"float intensity\" 100 \"point from\" [1 1 1]\n";

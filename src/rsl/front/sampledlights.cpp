@@ -1,7 +1,7 @@
 // Class lights of PRMan that send their light through generateSamples(). Before anything is parsed they get a method light() that
 // asks for the samples and puts each into two outputs, from which light loops take a turn for each (transport:
 // BoundLight::sentL). And classes that say what they send by emit() in prelighting(): they get a light() that sends it from the
-// surface of a primitive.
+// surface of a primitive. What generatePhoton() gives is four more outputs, of which only kernels are made that send photons.
 #include "base/limits.h"
 #include "rsl/front/prelude.h"
 #include <algorithm>
@@ -24,6 +24,7 @@ constexpr const char* kOnly = "uniform float __sentOnly = 1;";
 // luminance, for both.
 constexpr const char* kLight = R"(
     public void light(output vector L; output color Cl) {
+        PHOTON
         __radiancesample sent[];
         generateSamples("sphere", sent);
         SHADOWED
@@ -57,6 +58,11 @@ constexpr const char* kLight = R"(
     }
 )";
 
+// rsl::kPhotonFrom and its like
+constexpr const char* kPhotonOutputs = "output varying point __photonFrom = 0; output varying vector __photonWay = 0; "
+                                       "output varying color __photonPower = 0; output varying float __photonPdf = 0;";
+constexpr const char* kPhoton = "generatePhoton(__photonFrom, __photonWay, __photonPower, __photonPdf);";
+
 constexpr const char* kEmits = "uniform float __emits = 1;"; // rsl::kEmits
 constexpr const char* kEmission = "varying color __emitted = 0;";
 constexpr const char* kEmittingLight = R"(
@@ -86,6 +92,7 @@ bool setsZero(const Tokens& t, size_t open) {
 struct Found {
     size_t light = 0;
     bool generates = false, surface = false;
+    bool photons = false;                ///< generatePhoton() with four parameters
     bool shadows = false, casts = false; ///< it has shadowSamples(); that calls areashadow()
     std::vector<size_t> emits;           ///< calls of emit() in prelighting(), which has two parameters
     bool domain =
@@ -123,6 +130,7 @@ Found methodsOf(const Tokens& t, size_t body, size_t end) {
             f.generates |= samples && separators(t, k + 3, last) == 1;
         }
         if (t[k + 1].is("light")) f.light = k + 1;
+        f.photons |= t[k + 1].is("generatePhoton") && separators(t, k + 3, last) == 3;
         const size_t close = last < end && t[last].is("{") ? behind(t, last) : last;
         if (t[k + 1].is("shadowSamples")) {
             f.shadows = true;
@@ -188,8 +196,8 @@ void readLitPoints(Preprocessed& p) {
 }
 
 void addSampledLights(SourceSet& sources, Preprocessed& p) {
-    if (std::none_of(p.tokens.begin(), p.tokens.end(), [](const Token& t) { return t.is("generateSamples") || t.is("emit"); }))
-        return;
+    const auto means = [](const Token& t) { return t.is("generateSamples") || t.is("generatePhoton") || t.is("emit"); };
+    if (std::none_of(p.tokens.begin(), p.tokens.end(), means)) return;
     Tokens& t = p.tokens;
     Tokens out;
     std::vector<std::pair<size_t, size_t>> moved; // from this token on, so many more: the places of annotations
@@ -221,11 +229,19 @@ void addSampledLights(SourceSet& sources, Preprocessed& p) {
             i = end - 1;
             continue;
         }
-        if (!f.generates || (f.light ? !setsZero(t, f.light + 1) : f.surface || !f.domain)) continue;
+        const std::string photons = f.photons ? kPhotonOutputs : "", photon = f.photons ? kPhoton : "";
+        if (!f.generates || (f.light ? !setsZero(t, f.light + 1) : f.surface || !f.domain)) {
+            if (!f.light || !f.photons || !t[behind(t, f.light + 1)].is("{")) continue;
+            insert(i + 3, tokensOf(sources, photons));
+            insert(behind(t, f.light + 1) + 1, tokensOf(sources, photon));
+            i = end - 1;
+            continue;
+        }
         if (f.light) t[f.light].text = kReplacedLight;
         insert(i + 3,
-               tokensOf(sources, std::string(kSentOutputs) + (f.shadows && !f.casts ? kShadows : "") + (f.light ? kOnly : "")));
-        insert(end - 1, tokensOf(sources, replaced(kLight, "SHADOWED", f.casts ? "shadowSamples(sent);" : "")));
+               tokensOf(sources, kSentOutputs + photons + (f.shadows && !f.casts ? kShadows : "") + (f.light ? kOnly : "")));
+        insert(end - 1, tokensOf(sources, replaced(replaced(kLight, "PHOTON", photon), "SHADOWED",
+                                                   f.casts ? "shadowSamples(sent);" : "")));
         i = end - 1;
     }
     if (done == 0) return;

@@ -246,6 +246,18 @@ void Batch::tell(const Batch& displaced) {
     }
 }
 
+void Batch::give(std::string_view parameter, int point, std::span<const float> value) {
+    const size_t stride = size_t(call_.stride);
+    for (const BatchPlan::Source& s : plan_->inputs_) {
+        if (s.from != BatchPlan::From::Parameter || s.scalar || s.name.name != parameter) continue;
+        if (s.elements != 1 || size_t(s.components) != value.size()) return; // a value of another type
+        float* row = storage_.get() + s.firstRow * stride + size_t(point);
+        for (int c = 0; c < s.components; ++c)
+            for (int part = 0; part < s.parts; ++part) row[size_t(c * s.parts + part) * stride] = part ? 0 : value[size_t(c)];
+        return;
+    }
+}
+
 void Batch::fillVariables(std::span<const ShadePoint> points) {
     // Some points at a time for all variables: their structures then come from memory once.
     constexpr size_t kTogether = 32;

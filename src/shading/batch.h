@@ -115,6 +115,8 @@ public:
 
     /// Fills the inputs that the displacement shader gives from the outputs of its run at the same points, derivatives too.
     void tell(const Batch& displaced);
+    /// Gives a varying parameter that has so many components another value at a point, without slope.
+    void give(std::string_view parameter, int point, std::span<const float> value);
 
     rsl::KernelCall& call() { return call_; }
     const rsl::CompiledKernel& kernel() const { return *kernel_; }

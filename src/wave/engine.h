@@ -155,6 +155,8 @@ public:
     std::unordered_map<const scene::Attributes*, OfShape> ofShapes_;
     // gatherloop.cpp
     /// What the shaders at a hit give to the gather whose ray met it; `point` of a batch that has run.
+    /// Parameters at points that rays of gathers have met, as these have sent them.
+    void takeSent(BatchContext&) const;
     void tellGather(const BatchContext&, int point, struct GatherSent&);
     std::unordered_map<TargetId, GatherSent*> gathered_; ///< rays of gathers that ask shaders, by target
     // shadowrays.cpp

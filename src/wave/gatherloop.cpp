@@ -254,7 +254,9 @@ void sendMet(const Asking& a, std::span<GatherMet> met, int begin, int end, int 
             sent.quiet = true;
             sent.asked = uint16_t(std::clamp(turns, int(sent.asked), 0xffff));
         }
-        out.push_back({sent, m.row, a.e.world().shapes_[m.hit.shape].get(), &g, sent.quiet, false});
+        out.push_back({sent, m.row, a.e.world().shapes_[m.hit.shape].get(), &g, sent.quiet, false, {}});
+        for (const GatherSite::Sent& s : g.sent)
+            for (int k = 0; k < s.size; ++k) out.back().values.push_back(a.f(s.row + k));
     }
 }
 
@@ -360,6 +362,18 @@ GatherRows& castGather(Engine& e, BatchContext& c, const SiteInfo& s, int first,
         else castRays(a, g, begin, end, count, asked[size_t(lane)], sent);
     }
     return g;
+}
+
+void Engine::takeSent(BatchContext& c) const {
+    for (size_t i = 0; i < c.targets.size(); ++i) {
+        const auto asks = gathered_.find(c.targets[i]);
+        if (asks == gathered_.end()) continue;
+        const float* value = asks->second->values.data();
+        for (const GatherSite::Sent& s : asks->second->site->sent) {
+            c.batch->give(s.parameter, int(i), {value, size_t(s.size)});
+            value += s.size;
+        }
+    }
 }
 
 void Engine::tellGather(const BatchContext& c, int point, GatherSent& sent) {

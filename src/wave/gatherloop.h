@@ -12,8 +12,9 @@ struct GatherSent {
     float* row = nullptr; ///< of GatherRows
     const geometry::Shape* met = nullptr;
     const GatherSite* site = nullptr;
-    bool quiet = false; ///< its light and opacity are told already
-    bool told = false;  ///< the shaders at the hit have run
+    bool quiet = false;        ///< its light and opacity are told already
+    bool told = false;         ///< the shaders at the hit have run
+    std::vector<float> values; ///< of GatherSite::sent, one after the other
 };
 
 /// Makes the rays of one request of a gather and finds what they meet; those whose hits must be shaded go to `sent`. `in`: rows

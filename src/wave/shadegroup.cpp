@@ -175,6 +175,7 @@ void Engine::shadeGroup(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     if (photonTrace_ && kernel.facts().suspends) return photonsByModel(*c, sched);
     fillBatch(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
+    if (!gathered_.empty()) takeSent(*c);
     auto aside = asides(*c, sched);
     if (c->binding->moveS) moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
     int n = int(c->points.size());

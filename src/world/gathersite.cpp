@@ -1,6 +1,7 @@
 #include "world/gathersite.h"
 #include "rsl/front/protocol.h"
 #include "rsl/front/visit.h"
+#include <algorithm>
 #include <cstdlib>
 
 namespace alpenglow::transport {
@@ -138,21 +139,44 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
             if (!g->cosine && d->second != "uniform")
                 told(i, "the distribution \"" + d->second + "\" is not known; uniform is taken", "uniform, cosine");
         }
+        g->sent.clear();
+        for (const auto& [name, row] : i.named) {
+            if (!name.starts_with(rsl::kSendSurface)) continue;
+            int begin = 0, size = 0;
+            for (const rsl::ir::Kind kind : i.site->argKinds) {
+                if (begin == row) size = rsl::ir::components(kind);
+                begin += rsl::ir::components(kind);
+            }
+            g->sent.push_back({name.substr(std::string_view(rsl::kSendSurface).size()), row, size});
+        }
         if (const auto t = i.named.find("othreshold"); t != i.named.end()) g->threshold = t->second;
     }
 }
 
-void gatheredNames(const rsl::Program& p, std::set<std::string>& surface, std::set<std::string>& displacement) {
+std::vector<std::string> GatheredNames::withSent(std::vector<std::string> varying, const ShaderInstance& shader) const {
+    for (const auto& p : shader.program->parameters()) {
+        const bool number = p.type.base != rsl::Base::String && p.type.base != rsl::Base::Matrix && !p.type.array && !p.open;
+        if (number && sent.contains(p.name) && std::find(varying.begin(), varying.end(), p.name) == varying.end())
+            varying.push_back(p.name);
+    }
+    std::sort(varying.begin(), varying.end());
+    return varying;
+}
+
+void gatheredNames(const rsl::Program& p, GatheredNames& all) {
+    const auto take = [&](const std::string& name) {
+        if (name.starts_with(rsl::kSendSurface)) all.sent.insert(name.substr(std::string_view(rsl::kSendSurface).size()));
+        if (const auto known = meaning(name))
+            if (known->first == Of::Surface || known->first == Of::Displacement)
+                (known->first == Of::Surface ? all.surface : all.displacement).insert(known->second);
+    };
     const auto in = [&](const rsl::StmtPtr& body) {
         if (!body) return;
         rsl::front::everyStmt(
             *body,
             [&](const rsl::Stmt& s) {
                 if (s.kind != rsl::StmtKind::Gather) return;
-                for (const rsl::NamedArg& a : s.pairs)
-                    if (const auto known = meaning(a.name))
-                        if (known->first == Of::Surface || known->first == Of::Displacement)
-                            (known->first == Of::Surface ? surface : displacement).insert(known->second);
+                for (const rsl::NamedArg& a : s.pairs) take(a.name);
             },
             [](const rsl::Expr&) {});
     };

@@ -36,6 +36,12 @@ struct GatherSite {
     bool cosine = false; ///< "distribution"; else uniform
     int threshold = -1;  ///< row of "othreshold"
     std::vector<Output> outputs;
+    /// Values for parameters of the surface shaders that are met: rows of arguments.
+    struct Sent {
+        std::string parameter;
+        int row, size;
+    };
+    std::vector<Sent> sent;
     int width = 1;                               ///< rows of a ray: whether it hit, then the outputs
     bool shades = false;                         ///< shaders must run where a ray hits
     bool light = false;                          ///< and what arrives from there counts
@@ -46,7 +52,15 @@ struct GatherSite {
 /// Fills SiteInfo::gather of the sites of a kernel.
 void linkGathers(BoundKernel&, const rsl::CompiledKernel&, WorldImpl&);
 
-/// Names that the gathers of a file of shaders ask surfaces and displacements for ("x" of "surface:x", "displacement:x").
-void gatheredNames(const rsl::Program&, std::set<std::string>& surface, std::set<std::string>& displacement);
+/// What the gathers of shaders name.
+struct GatheredNames {
+    std::set<std::string> surface, displacement; ///< "x" of "surface:x", "displacement:x"
+    std::set<std::string> sent;                  ///< "x" of "send:surface:x": parameters, which differ from ray to ray then
+    /// Names of varying parameters of a shader, with those that values are sent to.
+    std::vector<std::string> withSent(std::vector<std::string> varying, const ShaderInstance&) const;
+};
+
+/// Adds those of a file of shaders.
+void gatheredNames(const rsl::Program&, GatheredNames&);
 
 } // namespace alpenglow::transport

@@ -126,9 +126,9 @@ void SurfaceBinder::findGathers() {
     std::set<const rsl::Program*> seen;
     const auto look = [&](const InstanceRef& i) {
         if (!i || !i->program) return;
-        if (seen.insert(&i->program->program()).second) gatheredNames(i->program->program(), gathered_, gatheredDisplacements_);
+        if (seen.insert(&i->program->program()).second) gatheredNames(i->program->program(), gathered_);
         for (const rsl::CoShader& c : i->coShaders)
-            if (c.program && seen.insert(c.program).second) gatheredNames(*c.program, gathered_, gatheredDisplacements_);
+            if (c.program && seen.insert(c.program).second) gatheredNames(*c.program, gathered_);
     };
     const scene::Attributes* last = nullptr;
     for (const auto& shape : world_.shapes_) {
@@ -225,7 +225,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
         b.displacement =
             quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, diced), a.coshaders, diagnostics_));
     b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
-    const Names varying = varyingOf(*shape, *b.surface);
+    const Names varying = gathered_.withSent(varyingOf(*shape, *b.surface), *b.surface);
     const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
     const Names atmosphereVarying = b.atmosphere.shader ? varyingOf(*shape, *b.atmosphere.shader) : Names{};
     b.interior = volumeOf(a.interior, *shape);
@@ -288,8 +288,8 @@ SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
     std::set<std::string> asked;
     if (path_)
         asked.insert(world_.lightMessages_.begin(),
-                     world_.lightMessages_.end());    // lighting shadeops: lights run when the surface's kernel is done
-    asked.insert(gathered_.begin(), gathered_.end()); // gathers run when the surface's kernel is done, too
+                     world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
+    asked.insert(gathered_.surface.begin(), gathered_.surface.end()); // gathers run when the surface's kernel is done, too
     const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
     for (const auto& p : b.surface->program->parameters())
         if (p.output && (all || asked.count(p.name))) outputs.push_back(OutputName::parameterOf(p.name).text());
@@ -370,7 +370,7 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
     if (!b.displacement || b.displacementS.kernel->facts().suspends) return;
     std::set<std::string> asked;
     asked = world_.lightDisplacements_;
-    asked.insert(gatheredDisplacements_.begin(), gatheredDisplacements_.end());
+    asked.insert(gathered_.displacement.begin(), gathered_.displacement.end());
     bool all = asked.erase("") > 0;
     all |= questions(b.surfaceS, "displacement", asked);
     all |= b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked);

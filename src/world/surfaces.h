@@ -1,5 +1,6 @@
 // Shapes bound to what shades them: shaders, kernels, lights. What may be shaded together shares a binding.
 #pragma once
+#include "world/gathersite.h"
 #include "world/impl.h"
 #include "world/outputs.h"
 #include <map>
@@ -78,7 +79,7 @@ private:
     std::map<std::pair<const void*, std::string>, InstanceRef>
         volumes_; ///< by the shader as the scene gave it and what overrides it
     std::map<std::string, int> bindingByKey_;
-    std::set<std::string> gathered_, gatheredDisplacements_; ///< names of outputs that gathers ask for
+    GatheredNames gathered_;
     std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
         bindingOfAttributes_; ///< of the last shape that had them
     std::map<std::vector<const void*>, int> programs_;

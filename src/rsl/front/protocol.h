@@ -154,6 +154,7 @@ inline constexpr char kGroup[] = "__group"; ///< of a light: the name of its gro
 inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
 /// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
 inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";
+inline constexpr char kSendSurface[] = "send:surface:"; ///< a pair of gather: a value for a parameter of the surfaces it meets
 /// Of a class light with generatePhoton(): what it gives, if it is asked for.
 inline constexpr char kPhotonFrom[] = "__photonFrom", kPhotonWay[] = "__photonWay", kPhotonPower[] = "__photonPower",
                       kPhotonPdf[] = "__photonPdf";

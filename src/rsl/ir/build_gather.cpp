@@ -63,8 +63,8 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
             g.outputs.push_back({receiver(g.turn, *p.value, p.name), flag});
             continue;
         }
-        if (p.name.rfind("send:", 0) == 0) {
-            warn(p.place, "gather sends nothing to what it meets: \"" + p.name + "\" is ignored");
+        if (p.name.starts_with("send:")) {
+            send(g.site, g.args, p);
             continue;
         }
         if (!isInput(p.name) || p.value->type.array) continue; // front/lint_calls.cpp says it
@@ -85,6 +85,19 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     g.site.resultKinds = {Kind::Float};
     g.site.resultNames = {""};
     return g;
+}
+
+/// A value for a parameter of the surface shaders that the rays meet.
+void Builder::send(Site& site, std::vector<Inst*>& args, const NamedArg& p) {
+    const bool fits = !p.value->type.array && p.value->type.base != Base::String && p.value->type.base != Base::Matrix;
+    if (!p.name.starts_with(kSendSurface) || !fits) {
+        warn(p.place, "gather sends numbers, colours and points to parameters of surfaces, \"send:surface:NAME\": \"" + p.name +
+                          "\" is ignored");
+        return;
+    }
+    site.names.push_back(p.name);
+    site.pairStrings.emplace_back();
+    addArgument(site, args, expr(*p.value), p.value->type);
 }
 
 std::set<int> Builder::assignedByGather(const Stmt& s) {

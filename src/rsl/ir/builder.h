@@ -81,6 +81,7 @@ private:
     void turns(std::set<int>& assigned, bool jumps, const Turns&, const Place&);
     static bool jumps(const Stmt&);
     void gather(const Stmt&); // build_gather.cpp
+    void send(Site&, std::vector<Inst*>& args, const NamedArg&);
     std::set<int> assignedByGather(const Stmt&);
     int gathers_ = 0; ///< built so far
     struct GatherCall;

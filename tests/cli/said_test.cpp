@@ -300,6 +300,37 @@ TEST_F(Said, LoopsWithoutEnd) {
     EXPECT_EQ(image->pixel(7, 0)[0], 3 / 1e7f);
 }
 
+TEST_F(Said, NestedLoopsWithoutEndHaveATotal) {
+    // 1,000 turns inside and one of its own make 1,001 of each turn outside: 9,990 of them are fewer than ten million.
+    for (const char* lanes : {"4", "16"}) {
+        EXPECT_EQ(run(std::string("eval --lanes ") + lanes +
+                      " --setup 'float n = 0, i;\nwhile (1 < 2) {\n n += 1; for (i = 0; i < 1000; i += 1) n += 0; }' n"),
+                  "9991\n");
+        EXPECT_EQ(status, 1);
+        EXPECT_EQ(times("this loop is left"), 1) << errors();
+        EXPECT_EQ(times("expression:3:"), 1) << errors();
+    }
+    // Three deep, and a function that loops: the outermost loop is the one that is named.
+    run("eval --setup 'float n = 0, i, j; while (1 < 2)\n for (i = 0; i < 1e6; i += 1) for (j = 0; j < 1e6; j += 1) n = j;' n");
+    EXPECT_EQ(status, 1);
+    EXPECT_EQ(times("this loop is left"), 1) << errors();
+    // Points that leave keep what they have, those beside them go on: 2 turns by 3.
+    write("nest.sl", "surface nest()\n{\n    float n = 0, x = 0, i;\n    while (u < .5 || n < 2) {\n        n += 1;\n"
+                     "        for (i = 0; i < 3 + 996 * step(u, .5); i += 1) x += 1;\n    }\n    Ci = n; Oi = x;\n}\n");
+    for (const char* lanes : {"4", "16"}) {
+        run(std::string("shade --patch nest.sl -o ") + lanes + ".exr --format 8x2 --lanes " + lanes);
+        EXPECT_EQ(status, 1);
+        EXPECT_EQ(times("nest.sl:4:"), 1) << errors();
+    }
+    run("diff 4.exr 16.exr");
+    EXPECT_EQ(status, 0);
+    alpenglow::Diagnostics d;
+    const auto image = alpenglow::display::readImage((dir / "4.exr").string(), d);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->pixel(0, 0)[0], 10'000); // 999 and 1 a turn
+    EXPECT_EQ(image->pixel(7, 0)[0], 2);
+}
+
 TEST_F(Said, ABallByDefault) {
     write("look.sl",
           "surface look(color tint = 1; string words = \"\";) { normal n = normalize(N); Oi = Os; Ci = tint * diffuse(n); }\n");

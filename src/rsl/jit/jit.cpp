@@ -7,7 +7,7 @@ namespace alpenglow::rsl::jit {
 namespace {
 
 // Raised whenever the generated code changes for the same IR, or the IR for the same source.
-constexpr const char* kVersion = "alpenglow-jit-8";
+constexpr const char* kVersion = "alpenglow-jit-9";
 
 struct SymbolSets {
     std::set<std::string> zeroDerivative;

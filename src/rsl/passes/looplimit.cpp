@@ -11,7 +11,8 @@ void limitLoops(Kernel& k) {
         Site s;
         s.op = "complaint";
         s.strings = {"this loop is left after " + std::to_string(limits::kLoopTurns) +
-                     " turns at one point, with the values that its variables have then; its condition does not become false"};
+                     " turns at one point, those of loops inside of it counted, with the values that its variables have then; "
+                     "its condition does not become false"};
         s.place = i->place;
         i->site = int(k.sites.size());
         k.sites.push_back(std::move(s));

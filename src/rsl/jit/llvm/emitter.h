@@ -85,6 +85,11 @@ private:
     void emitIf(const ir::Inst*);
     int cost(const ir::Region&) const;
     void emitLoop(const ir::Inst*);
+    llvm::Value* withinTurns(const ir::Inst* loop, bool varying, llvm::BasicBlock* exit);
+    void allowTurn(const ir::Inst* loop, llvm::Value* turn, llvm::BasicBlock* inside, llvm::BasicBlock* exit);
+    void keepLeft(const ir::Inst* loop, llvm::Value* running, const std::vector<Val>& before, std::vector<Val>& next);
+    llvm::Value* spent();
+    void spend(llvm::Value* turns, llvm::Value* mask);
     void emitLightLoop(const ir::Inst*);
     llvm::Value* any(llvm::Value* mask);
     llvm::Value* stopped();
@@ -156,6 +161,9 @@ private:
     llvm::BasicBlock* entryBlock_ = nullptr;
     llvm::Value *call_ = nullptr, *first_ = nullptr, *first64_ = nullptr, *mask_ = nullptr, *stop_ = nullptr, *stride_ = nullptr;
     llvm::Value *in_ = nullptr, *out_ = nullptr, *stringIds_ = nullptr, *n_ = nullptr;
+    llvm::Value* turns_ =
+        nullptr;    ///< lanes of integers in memory: what nested loops have turned; functions get it from their caller
+    int loops_ = 0; ///< around the place of emission, a function's callers taken as one
     llvm::Value* memory_ = nullptr; ///< of arrays that the stack has no room for; functions get it from their caller
     bool rootMask_ = true;          ///< the mask is that of the strip: lanes beyond n may be overwritten
     // Scratch rows: arguments and results of runtime calls (promoted to registers), of services (escape).

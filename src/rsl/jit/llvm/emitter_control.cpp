@@ -25,6 +25,14 @@ void leavingFlags(const ir::Region& test, const Inst* condition, std::vector<siz
             if (test.params[k] == condition->args[0]) flags.push_back(k);
 }
 
+/// Whether other loops may turn inside of a loop.
+bool nests(const Inst* loop) {
+    for (const ir::Region& r : loop->regions)
+        for (const Inst* i : r.body)
+            if (i->op == Op::Loop || i->op == Op::Call || nests(i)) return true;
+    return false;
+}
+
 Kind resultKind(const Inst* i, int index) { return i->results.empty() ? i->kind : i->results[size_t(index)]; }
 
 } // namespace
@@ -155,6 +163,64 @@ void Emitter::emitIf(const Inst* i) {
     for (size_t k = 0; k < count; k++) define(i, int(k), selectLanes(cond, a[k], c[k]));
 }
 
+/// The lanes whose loops have made all the turns that one run of a shader may make.
+Value* Emitter::spent() { return b_.CreateICmpUGE(b_.CreateLoad(vi_, turns_), lanes(b_.getInt32(limits::kLoopTurns)), "spent"); }
+
+void Emitter::spend(Value* turns, Value* mask) {
+    Value* more = b_.CreateSelect(mask, lanes(turns), llvm::Constant::getNullValue(vi_));
+    b_.CreateStore(b_.CreateAdd(b_.CreateLoad(vi_, turns_), more), turns_);
+}
+
+/// Before a turn of a loop that has loops inside: lanes that have turned too often leave it, from a loop whose control is uniform
+/// all at once when each has. The outermost loop says so. Gives the lanes that go on, to which the mask is set.
+Value* Emitter::withinTurns(const Inst* loop, bool varying, BasicBlock* exit) {
+    Value* before = mask_;
+    Value* over = b_.CreateAnd(before, spent());
+    Value* left = b_.CreateAnd(before, b_.CreateNot(over));
+    BasicBlock *from = b_.GetInsertBlock(), *some = block("spent"), *on = block("within");
+    b_.CreateCondBr(varying ? any(over) : b_.CreateNot(any(left)), some, on);
+    b_.SetInsertPoint(some);
+    if (loops_ == 0) {
+        mask_ = over;
+        callService(loop->site, nullptr, nullptr);
+    }
+    BasicBlock* said = b_.GetInsertBlock();
+    if (varying) b_.CreateCondBr(any(left), on, exit);
+    else b_.CreateBr(exit);
+    b_.SetInsertPoint(on);
+    mask_ = before;
+    if (varying) {
+        auto* going = b_.CreatePHI(vm_, 2, "going");
+        going->addIncoming(before, from);
+        going->addIncoming(left, said);
+        mask_ = going;
+    }
+    spend(b_.getInt32(1), mask_);
+    return mask_;
+}
+
+/// The limit of one loop by itself.
+void Emitter::allowTurn(const Inst* loop, Value* turn, BasicBlock* inside, BasicBlock* exit) {
+    BasicBlock* endless = block("endless");
+    b_.CreateCondBr(b_.CreateICmpULT(turn, b_.getInt32(limits::kLoopTurns)), inside, endless);
+    b_.SetInsertPoint(endless);
+    callService(loop->site, nullptr, nullptr);
+    b_.CreateBr(exit);
+}
+
+/// Lanes that left keep what they had, where anyone will ask for it, and whatever comes where nobody will.
+void Emitter::keepLeft(const Inst* loop, Value* running, const std::vector<Val>& before, std::vector<Val>& next) {
+    const ir::Region &test = loop->regions[0], &body = loop->regions[1];
+    std::vector<size_t> flags; // set in lanes that leave: `while (!flag && ...)`
+    leavingFlags(test, test.yields[0], flags);
+    for (size_t k = 0; k < next.size(); k++) {
+        if (!shapes_.used(loop, int(k))) {
+            for (size_t f : flags)
+                if (f != k) next[k] = dropDead(next[k], before[k], next[f][0].v);
+        } else if (body.yields[k] != body.params[k]) next[k] = keepLanes(running, next[k], before[k]);
+    }
+}
+
 void Emitter::emitLoop(const Inst* i) {
     const ir::Region &test = i->regions[0], &body = i->regions[1];
     const size_t count = test.params.size();
@@ -169,10 +235,15 @@ void Emitter::emitLoop(const Inst* i) {
     }
     BasicBlock* before = b_.GetInsertBlock();
     BasicBlock *head = block("loop"), *inside = block("body"), *exit = block("exit");
+    // A loop with loops inside counts each of its turns, the innermost one what it has made when it is left.
+    const bool nest = i->site >= 0 && nests(i), counts = i->site >= 0 && !nest && loops_ > 0;
+    Value* start = counts && varying ? b_.CreateAnd(mask_, b_.CreateNot(spent())) : mask_;
     b_.CreateBr(head);
     b_.SetInsertPoint(head);
     Value* outer = mask_;
     const bool outerRoot = rootMask_;
+    llvm::PHINode* made = counts && varying ? b_.CreatePHI(vi_, 2, "made") : nullptr;
+    if (made) made->addIncoming(llvm::Constant::getNullValue(vi_), before);
     llvm::PHINode* live = varying ? b_.CreatePHI(vm_, 2, "live") : nullptr;
     for (size_t k = 0; k < count; k++) {
         phi[k] = phis(kind[k], shape[k]);
@@ -184,11 +255,13 @@ void Emitter::emitLoop(const Inst* i) {
     llvm::PHINode* turn = i->site >= 0 ? b_.CreatePHI(i32_, 2, "turn") : nullptr;
     if (turn) turn->addIncoming(b_.getInt32(0), before);
     if (varying) {
-        live->addIncoming(outer, before);
+        live->addIncoming(start, before);
         mask_ = live;
         rootMask_ = false;
     }
+    ++loops_;
     region(test);
+    --loops_;
     Value* go = value(test.yields[0])[0].v;
     Value* running = nullptr;
     if (varying) {
@@ -202,33 +275,27 @@ void Emitter::emitLoop(const Inst* i) {
     if (varying) mask_ = running;
     BasicBlock* allowed = turn ? block("allowed") : inside;
     b_.CreateCondBr(stopped(), exit, allowed);
-    if (turn) {
-        BasicBlock* endless = block("endless");
-        b_.SetInsertPoint(allowed);
-        b_.CreateCondBr(b_.CreateICmpULT(turn, b_.getInt32(limits::kLoopTurns)), inside, endless);
-        b_.SetInsertPoint(endless);
-        callService(i->site, nullptr, nullptr);
-        b_.CreateBr(exit);
-    }
+    b_.SetInsertPoint(allowed);
+    if (turn) allowTurn(i, turn, inside, exit);
     b_.SetInsertPoint(inside);
+    if (nest) {
+        Value* going = withinTurns(i, varying, exit);
+        if (varying) running = going;
+    }
+    ++loops_;
     region(body);
+    --loops_;
     std::vector<Val> next(count);
     for (size_t k = 0; k < count; k++) { next[k] = conform(value(body.yields[k]), kind[k], shape[k]); }
-    std::vector<size_t> flags; // set in lanes that leave: `while (!flag && ...)`
-    if (varying) leavingFlags(test, test.yields[0], flags);
-    for (size_t k = 0; k < count; k++) {
-        // Lanes that left keep what they had, where anyone will ask for it, and whatever comes where nobody will.
-        if (varying && !shapes_.used(i, int(k)))
-            for (size_t f : flags)
-                if (f != k) next[k] = dropDead(next[k], phi[k], next[f][0].v);
-        if (varying && body.yields[k] != body.params[k] && shapes_.used(i, int(k))) next[k] = keepLanes(running, next[k], phi[k]);
-    }
+    if (varying) keepLeft(i, running, phi, next);
     BasicBlock* latch = b_.GetInsertBlock();
     if (turn) turn->addIncoming(b_.CreateAdd(turn, b_.getInt32(1)), latch);
+    if (made) made->addIncoming(b_.CreateSub(made, b_.CreateSExt(running, vi_)), latch);
     b_.CreateBr(head);
     for (size_t k = 0; k < count; k++) addIncoming(phi[k], next[k], latch);
     if (varying) live->addIncoming(running, latch);
     b_.SetInsertPoint(exit);
+    if (counts) spend(made ? (Value*)made : (Value*)turn, outer);
     mask_ = outer;
     rootMask_ = outerRoot;
     for (size_t k = 0; k < count; k++) define(i, int(k), phi[k]);

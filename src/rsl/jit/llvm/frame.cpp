@@ -38,6 +38,7 @@ void Emitter::beginFunction(Function* f) {
         s.place = b_.CreateAlloca(vf_, nullptr, "scratch");
         s.rows = 0;
     }
+    turns_ = b_.CreateAlloca(vi_, nullptr, "turns");
 }
 
 void Emitter::finishScratch() {
@@ -69,6 +70,7 @@ void Emitter::setMask(Value* first) {
     Value* left = b_.CreateSub(n_, first);
     mask_ = b_.CreateICmpSLT(llvm::ConstantVector::get(lane), lanes(left), "mask");
     rootMask_ = true;
+    b_.CreateStore(llvm::Constant::getNullValue(vi_), turns_);
 }
 
 void Emitter::emitLoopKernel() {

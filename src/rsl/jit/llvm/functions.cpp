@@ -17,7 +17,9 @@ Emitter::Emitter(const Emitter& caller, const Shapes& shapes)
     : request_(caller.request_), kernel_(caller.kernel_), shapes_(shapes), width_(caller.width_), module_(caller.module_),
       runtime_(caller.runtime_), context_(caller.context_), b_(context_), entry_(context_), f32_(caller.f32_), i1_(caller.i1_),
       i32_(caller.i32_), i64_(caller.i64_), ptr_(caller.ptr_), void_(caller.void_), vf_(caller.vf_), vi_(caller.vi_),
-      vm_(caller.vm_), shared_(caller.shared_), wrapCalls_(caller.wrapCalls_) {}
+      vm_(caller.vm_), shared_(caller.shared_), wrapCalls_(caller.wrapCalls_) {
+    loops_ = 1; // whoever calls may be in a loop
+}
 
 Emitter::Slot Emitter::slot(const Jet& j) const {
     uint8_t parts = 0;
@@ -59,8 +61,8 @@ Jet Emitter::receive(Kind k, const Slot& s, const std::function<Value*()>& next)
 Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slot>>& arguments) {
     std::string key = std::to_string(f->id);
     std::vector<Shape> shapes;
-    std::vector<llvm::Type*> types = {ptr_, i32_, vi_,
-                                      ptr_}; // the kernel's call, the strip's first point, the mask, local memory
+    std::vector<llvm::Type*> types = {ptr_, i32_, vi_, ptr_,
+                                      ptr_}; // the kernel's call, first point of the strip, mask, local memory, turns
     const ir::Region& body = f->regions[0];
     for (size_t a = 0; a < arguments.size(); a++) {
         Shape shape;
@@ -84,12 +86,12 @@ Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slo
     e.first64_ = e.b_.CreateSExt(e.first_, i64_);
     e.mask_ = e.b_.CreateICmpNE(draft->getArg(2), llvm::Constant::getNullValue(vi_), "mask");
     e.rootMask_ = false;
-    e.memory_ = draft->getArg(3);
+    e.memory_ = draft->getArg(3), e.turns_ = draft->getArg(4);
     e.entryBlock_ = e.b_.GetInsertBlock();
     e.entry_.SetInsertPoint(e.entryBlock_);
     llvm::BasicBlock* start = e.block("body");
     e.b_.SetInsertPoint(start);
-    unsigned at = 4;
+    unsigned at = 5;
     const auto next = [&]() -> Value* { return draft->getArg(at++); };
     for (size_t a = 0; a < arguments.size(); a++) {
         Val v;
@@ -150,7 +152,7 @@ void Emitter::call(const Inst* i) {
     const ir::Region& body = f->regions[0];
     std::vector<std::vector<Slot>> arguments;
     Value* mask = b_.CreateSExt(mask_, vi_);
-    std::vector<Value*> values = {call_, first_, mask, memory_};
+    std::vector<Value*> values = {call_, first_, mask, memory_, turns_};
     for (size_t a = 0; a < body.params.size(); a++) {
         const uint8_t wanted = partsOfOrder(body.params[a]->order);
         arguments.emplace_back();

@@ -128,10 +128,17 @@ std::string pictureOptions(const RenderSettings& s) {
     return all;
 }
 
+/// A display that -o leaves: one behind the first whose file holds more than the picture. Parts hold what the one picture needs.
+static bool isBeside(const scene::Display& d, const scene::Options& o, const RenderSettings& s) {
+    if (s.output.empty() || s.output == "-" || s.samples || s.part || &d == &o.displays.front()) return false;
+    const display::DriverDescriptor* driver = display::findDriver(d.type);
+    return (!driver || driver->writes) && d.mode != "rgb" && d.mode != "rgba" && d.mode != "a";
+}
+
 std::vector<NamedDisplay> displaysOf(const scene::Options& o, const RenderSettings& settings, bool pictures) {
     std::vector<NamedDisplay> all;
     for (const scene::Display& d : o.displays)
-        if (pictures || isMap(d)) all.push_back({d, false});
+        if (pictures || isMap(d) || isBeside(d, o, settings)) all.push_back({d, false});
     for (const scene::Display& d : settings.displays) {
         all.push_back({d, true});
         all.back().display.name = isNumbered(o) ? numberedName(d.name, o.frameNumber) : withFrame(d.name, o.frameNumber);

@@ -36,7 +36,7 @@ struct NamedDisplay {
     bool user = false; ///< by --display: it may lie anywhere
 };
 /// The scene's displays and those of --display, numbers of frames put in; "ri.pic" when there are none. `pictures` false: only
-/// maps, and those of --display.
+/// maps, those of --display and, beside the picture of -o, those behind the first that hold other outputs.
 std::vector<NamedDisplay> displaysOf(const scene::Options&, const RenderSettings&, bool pictures = true);
 
 /// The files that a run has written or will write. Not thread safe.

@@ -40,6 +40,18 @@ protected:
 
 } // namespace
 
+// -o is the picture; what else the scene asks for is written beside it.
+TEST_F(Outputs, OneNamedPictureLeavesOtherOutputs) {
+    scene("s.rib", "Display \"f.exr\" \"openexr\" \"rgba\"\nDisplay \"+n.exr\" \"openexr\" \"N\"\n"
+                   "Display \"+b.png\" \"png\" \"rgb\"\nHider \"path\"");
+    EXPECT_EQ(render("--noise .5 -o o.exr s.rib"), 0) << err;
+    EXPECT_TRUE(has("o.exr") && has("n.exr")) << err;
+    EXPECT_FALSE(has("f.exr") || has("b.png"));
+    fs::remove(dir / "n.exr");
+    EXPECT_EQ(render("--samples 0:2 -o p.exr s.rib"), 0) << err; // a part: merge makes one picture of it
+    EXPECT_FALSE(has("n.exr"));
+}
+
 TEST_F(Outputs, DisplaysOfOneFileAreBothWritten) {
     scene("s.rib", "Display \"f.exr\" \"openexr\" \"rgba\"\nDisplay \"+./f.exr\" \"openexr\" \"z\"");
     EXPECT_EQ(render("s.rib"), 0) << err;

@@ -33,10 +33,11 @@ Moments of(const std::string& surface, const std::string& scene, Hider h = Hider
 TEST(GatherSends, ToParameters) {
     writeShader(
         "hears",
-        "surface hears(float level = .25; color tint = color(1, .5, .25); point at = 0; float other = 7;) {\n"
+        "surface hears(float level = 9; color tint = color(1, .5, .25); point at = 0; float other = 7;) {\n"
         "    point p = transform(\"world\", at); Oi = Os; Ci = Oi * level * tint + color(0, 0, ycomp(p)) + other - 7; }\n");
     const auto scene = [](const char* colour) {
-        return std::string("AttributeBegin Surface \"hears\" ") + colour + " Sphere 2 -2 2 360 AttributeEnd\n";
+        return std::string("AttributeBegin Surface \"hears\" ") + colour +
+               " Sphere 2 -2 2 360 \"constant float level\" .25 AttributeEnd\n";
     };
     const std::string sent = "gather(\"\", P, up, PI / 2, 64, \"surface:Ci\", c, \"send:surface:level\", 2 * g + 1, "
                              "\"send:surface:tint\", color(g, 1, 0), \"send:surface:at\", point \"world\" (0, .5, 0), "

@@ -299,11 +299,9 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
          "-o", s.output,
          std::string("Write the picture to FILE instead of the scene's displays; the extension chooses the format (") +
              display::kPictureExtensions +
-             "). Depth and shadow maps stay, and so do further displays of other outputs (\"+n.exr\" \"openexr\" \"N\"), but "
-             "not beside --samples, --part and standard output. # or %04d in the name becomes the number of the frame; in a "
-             "scene of several "
-             "frames a name without it gets the number before the extension. - is standard output: PNG, or the format of the "
-             "scene's first display (openexr, tiff, jpeg), frames one after the other")
+             "). Depth and shadow maps stay, and further displays of other outputs. # or %04d in the name becomes the number of "
+             "the frame; in a scene of several frames a name without it gets the number before the extension. - is standard "
+             "output: PNG, or the format of the scene's first display (openexr, tiff, jpeg), frames one after the other")
         ->type_name("FILE")
         ->group("Pictures");
     c->add_option("--display", a->displays,

@@ -49,6 +49,7 @@ std::vector<Shadeop> textureShadeops();
 std::vector<Shadeop> raytracingShadeops();
 std::vector<Shadeop> bmrtShadeops();
 std::vector<Shadeop> publishedShadeops();
+std::vector<Shadeop> facetShadeops();
 std::vector<Shadeop> plausibleShadeops();
 
 /// What must be there besides the point of `alpenglow eval` (Example::when), where several shadeops need the same.

@@ -42,6 +42,7 @@ struct AnswerMemo {
     std::map<std::pair<int32_t, int>, LightParameter> ofLights;                         ///< by name and light
     std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<Told>> ofShaders; ///< toldBy()
     std::map<std::tuple<int32_t, int, const scene::Attributes*, const SurfaceBinding*>, std::optional<Told>> attributes;
+    std::unordered_map<const scene::Primitive*, std::optional<Told>> boxes; ///< kObjectBox of those that were asked about
     std::unordered_map<int32_t, std::optional<Told>> options;
     std::unordered_map<int32_t, bool> pointAttributes;                                ///< ofPoint() of a name
     std::unordered_map<const scene::Attributes*, std::pair<float, float>> shadowBias; ///< Attribute "shadow": bias0, bias1

@@ -1,6 +1,7 @@
 // What shaders tell each other: parameters and outputs of the shaders of a primitive, of lights and volumes; attributes.
 #include "answers/answers.h"
 #include "scene/scene.h"
+#include "world/objectbox.h"
 
 namespace alpenglow::transport {
 
@@ -254,6 +255,13 @@ void answerAttribute(Answers& answers, const ServiceCall& q) {
                 if (!i) i = ofThePrimitive(w, p, name, b);
                 if (i) known->second = Told(*i);
             }
+            if (known->second) q.answer(lane, *known->second);
+            return;
+        }
+        if (!self && !imager && p.shape && name == kObjectBox) { // one of a million points takes no time for each question
+            const auto [known, fresh] = memo.boxes.try_emplace(p.shape->source().primitive.get());
+            if (fresh)
+                if (const auto box = ofThePrimitive(w, p, name, nullptr)) known->second = Told(*box);
             if (known->second) q.answer(lane, *known->second);
             return;
         }

@@ -44,6 +44,9 @@ constexpr OptionDescription kAttributes[] = {
     {"displacementbound:sphere", "float", "0", "0.1", Used,
      "The farthest that displacement moves a point. More than that is drawn as well, with a warning that names the distance."},
     {"geometry:backfacing", "int", "", "", Ignored, "only attribute() reads it: 1 where the back of the surface is seen"},
+    {"geometry:boundingbox", "float[6]", "", "", Ignored,
+     "only attribute() reads it: xmin xmax ymin ymax zmin zmax of the primitive in object space, of its points and before "
+     "displacement, for textures that are to fit it. Quadrics count as if they turned about whole."},
     {"geometry:frontfacing", "int", "", "", Ignored, "only attribute() reads it: 1 where the front of the surface is seen"},
     {"geometry:geometricnormal", "int", "", "", Ignored, "only attribute() reads it: the normal of the geometry"},
     {"grouping:membership", "string", "\"\"", "\"+leaves\"", Used,

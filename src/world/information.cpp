@@ -1,6 +1,7 @@
 #include "world/information.h"
 #include "base/version.h"
 #include "scene/scene.h"
+#include "world/objectbox.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
@@ -111,6 +112,11 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
         if (name == "geometry:backfacing") return number(back);
         if (name == "geometry:frontfacing") return number(!back);
         if (name == "geometry:geometricnormal") return Information{{p->surface.n.x, p->surface.n.y, p->surface.n.z}, {}, false};
+        if (name == kObjectBox) {
+            const auto box = objectBox(*p->shape->source().primitive);
+            if (!box) return std::nullopt;
+            return Information{{box->begin(), box->end()}, {}, false};
+        }
         if (name == "diffusedepth") return number(p->ray ? float(p->ray->diffuseBounces) : 0.f);
     }
     if (b && name == "shaderdisplacementbound:sphere") return shaderBound(*b, false);
@@ -124,8 +130,8 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
 }
 
 bool ofPoint(const std::string& name) {
-    for (const char* n :
-         {"Ri:Transformation", "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal", "diffusedepth"})
+    for (const char* n : {"Ri:Transformation", "geometry:backfacing", "geometry:frontfacing", "geometry:geometricnormal",
+                          kObjectBox, "diffusedepth"})
         if (name == n) return true;
     return false;
 }

@@ -1,5 +1,6 @@
 // attribute(), option() and rayinfo() in rendered scenes, by every name that the reference has (rsl.md 11, Tables 6.20 and 6.21).
 #include "transport/floorscene.h"
+#include "world/objectbox.h"
 
 namespace attributes_test {
 
@@ -142,6 +143,43 @@ TEST(Attributes, Sides) {
     EXPECT_EQ(front.y + back.y, 1);
     EXPECT_EQ(asked("attribute", "float", "geometry:frontfacing", "ReverseOrientation\n", "v, 0").y, back.y);
     EXPECT_EQ(asked("attribute", "normal", "geometry:geometricnormal", "", "abs(ycomp(v)), xcomp(v)"), Color(1, 1, 0));
+}
+
+// The box is that of the primitive's own space, whatever turns it; of what moves, that of all times.
+TEST(Attributes, BoxOfThePrimitive) {
+    const auto box = [](const std::string& before, int k) {
+        const std::string n = std::to_string(k);
+        return asked("attribute", "float[6]", "geometry:boundingbox", before, "v[" + n + "], v[" + std::to_string(k + 1) + "]");
+    };
+    EXPECT_EQ(box("", 0), Color(1, -60, 60));
+    EXPECT_EQ(box("Rotate 30 0 1 0\n", 2), Color(1, 0, 0));
+    EXPECT_EQ(box("Rotate 30 0 1 0\n", 4), Color(1, -60, 60));
+    const struct {
+        const char* kind;
+        std::vector<float> numbers;
+        float zmin, zmax, x;
+    } quadrics[] = {{"Sphere", {2, -1, 5, 90}, -1, 2, 2},
+                    {"Cone", {3, -.5f, 360}, 0, 3, .5f},
+                    {"Cylinder", {1.5f, -2, 1, 360}, -2, 1, 1.5f},
+                    {"Hyperboloid", {3, 4, -1, .25f, 0, 2, 360}, -1, 2, 5},
+                    {"Paraboloid", {1, .5f, 2, 360}, .5f, 2, 1},
+                    {"Disk", {.25f, 4, 360}, .25f, .25f, 4},
+                    {"Torus", {2, .5f, 0, 360, 360}, -.5f, .5f, 2.5f}};
+    for (const auto& q : quadrics) {
+        scene::Primitive p;
+        p.kind = q.kind;
+        p.numbers = q.numbers;
+        EXPECT_EQ(objectBox(p), (std::array<float, 6>{-q.x, q.x, -q.x, q.x, q.zmin, q.zmax})) << q.kind;
+    }
+    scene::Primitive p;
+    p.kind = "Sphere";
+    p.numbers = {1, -1, 1, 360};
+    p.motionKeys.push_back(std::make_shared<scene::Primitive>(p));
+    p.motionKeys[0]->numbers = {3, -2, 1, 360};
+    EXPECT_EQ(objectBox(p), (std::array<float, 6>{-3, 3, -3, 3, -2, 1}));
+    p = {};
+    p.kind = "Blobby";
+    EXPECT_FALSE(objectBox(p));
 }
 
 // The sizes that shaders give add up; the displacement shader names the space.

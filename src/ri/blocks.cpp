@@ -135,6 +135,9 @@ void Interpreter::pop() {
             systems_ = std::move(b.systems);
         }
         break;
+    case BlockKind::Attribute:
+        noteEnded(b);
+        break;
     default:
         break;
     }
@@ -215,8 +218,9 @@ void Interpreter::worldEnd(Block& b) {
     systems_ = std::move(b.systems);
     objectIndex_.clear();
     sharedArchives_.clear();
-    if (!frameWanted()) return consumer.passOver(frame->options);
+    if (!frameWanted()) return ended_.clear(), consumer.passOver(frame->options);
     if (settings.overrides) settings.overrides(frame->options);
+    sayUnlit(*frame);
     consumer.render(std::move(frame));
     waiting_.clear();
     partsWithin_ = 0;

@@ -302,6 +302,9 @@ private:
     std::map<std::string, ObjectRef> objects_;
     std::map<size_t, int> objectIndex_;                   ///< serial -> index in this frame
     std::map<std::string, SharedArchive> sharedArchives_; ///< of the open world, by ArchiveShelf::Found::key
+    void noteEnded(const Block&);                         // unlit.cpp
+    void sayUnlit(const scene::Frame&);
+    std::set<int> ended_; ///< lights of this world that an AttributeEnd has ended
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

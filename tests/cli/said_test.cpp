@@ -272,6 +272,28 @@ TEST_F(Said, PicturesWithNothingInThem) {
     }
 }
 
+TEST_F(Said, ALightThatEndsBeforeAnythingIsLit) {
+    const std::string look =
+                          "Projection \"perspective\" \"fov\" 40\nFormat 8 8 1\nPixelSamples 1 1\nTranslate 0 0 5\nWorldBegin\n"
+                          "LightSource \"distantlight\" 1\nSurface \"matte\"\n",
+                      ball = "Sphere 1 -1 1 360\nWorldEnd\n",
+                      block = "AttributeBegin\nTranslate 0 3 0\nLightSource \"pointlight\" 2\nAttributeEnd\n";
+    const auto said = [&](const std::string& inside) {
+        write("s.rib", look + inside + ball);
+        run("render --progress none -o s.png s.rib");
+        return times("light \"pointlight\" shines on nothing");
+    };
+    EXPECT_EQ(said(block), 1) << errors();
+    EXPECT_TRUE(says("s.rib:10:")) << errors();
+    EXPECT_EQ(said(block + "Illuminate 2 1\n"), 0) << errors();
+    EXPECT_EQ(said("LightSource \"pointlight\" 2\nIlluminate 2 0\n"), 0) << errors(); // switched off
+    EXPECT_EQ(said("AttributeBegin\nLightSource \"pointlight\" 2\nDisk 0 1 360\nAttributeEnd\n"), 0) << errors();
+    EXPECT_EQ(said("ObjectBegin 1\nSphere 1 -1 1 360\nObjectEnd\nAttributeBegin\nLightSource \"pointlight\" 2\n"
+                   "ObjectInstance 1\nAttributeEnd\n"),
+              0)
+        << errors();
+}
+
 TEST_F(Said, LoopsWithoutEnd) {
     // Each turn adds 1; floats hold ten million exactly.
     for (const char* lanes : {"4", "8", "16"}) {

@@ -59,7 +59,8 @@ NormalsSay normalsSay(const Shape& s, Diagnostics& diag) {
                             : c.back > c.front        ? NormalsSay::Back
                                                       : NormalsSay::Front;
     Diagnostic d;
-    d.severity = Severity::Info;
+    // Copies that leave out a face or two are let be; a model of which more than a third is dark is broken.
+    d.severity = says == NormalsSay::Nothing && all > 0 ? Severity::Warning : Severity::Info;
     d.place = s.place();
     if (10 * few > all) {
         d.message = s.kind() + ": \"N\" lies on the front of some faces and on the back of others (" + std::to_string(few) +

@@ -294,6 +294,16 @@ TEST_F(Said, ALightThatEndsBeforeAnythingIsLit) {
         << errors();
 }
 
+TEST_F(Said, NormalsOnBothSides) {
+    write("s.rib", "Projection \"perspective\" \"fov\" 40\nFormat 8 8 1\nPixelSamples 1 1\nTranslate 0 0 5\nWorldBegin\n"
+                   "LightSource \"distantlight\" 1\nSurface \"matte\"\n"
+                   "PointsPolygons [3 3] [0 1 2 0 2 3] \"P\" [-1 -1 0  -1 1 0  1 1 0  1 -1 0] "
+                   "\"facevarying normal N\" [0 0 1 0 0 1 0 0 1  0 0 -1 0 0 -1 0 0 -1]\nWorldEnd\n");
+    run("render --progress none -o s.png s.rib");
+    EXPECT_TRUE(says("s.rib:8:")) << errors();
+    EXPECT_TRUE(says("on the front of some faces and on the back of others (1 of 2 places looked at)")) << errors();
+}
+
 TEST_F(Said, LoopsWithoutEnd) {
     // Each turn adds 1; floats hold ten million exactly.
     for (const char* lanes : {"4", "8", "16"}) {

@@ -6,7 +6,8 @@
      uscale, vscale, rotation (degrees), uoffset, voffset: the texture matrix of both; bumpscale: of heights
      wrapu, wrapv: repeat, mirror or clamp; filter: nearest, bilinear or mip: of texturename
      uvindex: 1 takes the second set of coordinates, s2 and t2, which the primitive has as varying or facevarying float
-     stack: slices, "s%03d.png", in place of texturename, over the box from boxmin to boxmax in object space
+     stack: slices, "s%03d.png", in place of texturename, over the box from boxmin to boxmax in object space, or over that of
+       the primitive where autobox is 1
    Under Hider "path" diffuse() and trace() are the estimators: they sample lights and lobe, weight both, play roulette. Ball: Surface "slmaterial" "color diffusecolor" [.6 .25 .1] */
 #include "slproject.h"
 surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, emissive = 0;
@@ -14,7 +15,8 @@ surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, 
                    string texturename = "", fresnel = "schlick", bumpname = "", bumptype = "", stack = "";
                    float uscale = 1, vscale = 1, rotation = 0, uoffset = 0, voffset = 0, bumpscale = 1, uvindex = 0;
                    string wrapu = "repeat", wrapv = "repeat", filter = "mip"; varying float s2 = 0, t2 = 0;
-                   point boxmin = point(-1, -1, -1), boxmax = point(1, 1, 1);) {
+                   point boxmin = point(-1, -1, -1), boxmax = point(1, 1, 1);
+                   float autobox = 0;) {
     normal Nn = normalize(N);
     float su = 0, sv = 0;
     if (uvindex == 1) slTransform(s2, 1 - t2, uscale, vscale, rotation, uoffset, voffset, su, sv);
@@ -31,7 +33,7 @@ surface slmaterial(color diffusecolor = 1, specularcolor = 0, transmissive = 0, 
             if (texturename != "")
                 albedo *= slTexture2D(texturename, su, sv, wrapu, wrapv, filter);
             if (stack != "")
-                albedo *= slTexture3D(stack, P, boxmin, boxmax);
+                albedo *= (autobox == 1) ? slTexture3D(stack, P) : slTexture3D(stack, P, boxmin, boxmax);
             normal Nf = faceforward(Nn, In);
             Ci += albedo * diffuse(Nf);
         } else if (specularcolor != zero) {

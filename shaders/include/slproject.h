@@ -83,6 +83,19 @@ color slTexture3D(string stack; point p, lo, hi)
     vector g;
     return slTexture3D(stack, p, lo, hi, a, g);
 }
+/* The same over the box of the primitive that is shaded. Of a side without length the middle is taken. */
+color slTexture3D(string stack; point p)
+{
+    uniform float b[6] = {-1, 1, -1, 1, -1, 1};
+    uniform float i;
+    attribute("geometry:boundingbox", b);
+    for (i = 0; i < 6; i += 2)
+        if (b[i] == b[i + 1]) {
+            b[i] -= .5;
+            b[i + 1] += .5;
+        }
+    return slTexture3D(stack, p, point(b[0], b[2], b[4]), point(b[1], b[3], b[5]));
+}
 
 /* Six pictures, "sky_<FACE>.png" with px nx py ny pz nz, or a cube map of maketx. The direction is one of world space. */
 color slTextureCube(string faces; vector direction) { return color environment(faces, direction); }

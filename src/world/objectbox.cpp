@@ -1,4 +1,5 @@
 #include "world/objectbox.h"
+#include "base/exact.h"
 #include <algorithm>
 #include <cmath>
 
@@ -34,7 +35,7 @@ void addQuadric(const scene::Primitive& p, Box& box) {
     } else if (p.kind == "Cylinder" || p.kind == "Paraboloid") {
         box.turn(n(0), n(1), n(2));
     } else if (p.kind == "Hyperboloid") {
-        box.turn(std::max(std::hypot(n(0), n(1)), std::hypot(n(3), n(4))), n(2), n(5));
+        box.turn(std::max(exact::hypot(n(0), n(1)), exact::hypot(n(3), n(4))), n(2), n(5));
     } else if (p.kind == "Disk") {
         box.turn(n(1), n(0), n(0));
     } else if (p.kind == "Torus") {

@@ -139,6 +139,8 @@ TEST(SlProject, StacksOverABox) {
                        "g); Ci = color(a, xcomp(g), 0);",
                        stack),
                {.5f, 0, 0}, "grey into alpha");
+    // The square is seen at (.2, .3, 2) and reaches from -1 to 1; of its third side, which has no length, the middle is taken.
+    expectNear(valueOf("Ci = slTexture3D(map, P);", stack), {.6f, .65f, .5f}, "of the primitive");
 }
 
 TEST(SlProject, SixFacesByDirection) {

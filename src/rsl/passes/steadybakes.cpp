@@ -93,7 +93,7 @@ private:
         case Op::Input:
         case Op::ArrayInput: {
             const Input& in = k_.inputs[static_cast<size_t>(i->index)];
-            return in.constant && in.name.starts_with("param:");
+            return in.constant && InputName::parse(in.name).kind == InputName::Kind::Parameter;
         }
         case Op::Service:
             return asks(i) && argsSteady(i);

@@ -96,6 +96,14 @@ public:
         return at->second;
     }
 
+    /// Tells the store what texture3d() has found in a map, where that is news: no lock otherwise.
+    void noteLookup(const clouds::CloudMap* map, bool found, const ServiceCall& call) {
+        char& known = lookedUp_[map];
+        if (known > char(found)) return;
+        known = char(1 + found);
+        world_->clouds_->noteLookup(map, found, call.place());
+    }
+
     /// The same for point-based shadeops. `light`: they want what its points send. With `shear` it lives until trimOctrees().
     const clouds::PointOctree* octreeOf(int32_t id, bool light, const std::optional<clouds::Shear>& shear,
                                         const ServiceCall& call) {
@@ -209,6 +217,7 @@ private:
     std::unordered_map<texture::Handle, const texture::SkyDirections*> skyOf_;
     std::unordered_map<int32_t, const photons::PhotonMap*> photonMaps_; ///< by interned name
     std::unordered_map<int32_t, const clouds::CloudMap*> clouds_;       ///< by interned name
+    std::unordered_map<const clouds::CloudMap*, char> lookedUp_; ///< 1: the store knows that it was; 2: that something is there
     std::unordered_map<int64_t, const clouds::PointOctree*> octrees_;
     std::map<std::pair<int64_t, clouds::Shear>, std::shared_ptr<const clouds::PointOctree>> shearedOctrees_;
     std::unordered_map<int32_t, const ptex::Texture*> ptex_; ///< by interned name

@@ -170,7 +170,9 @@ void answerTexture3d(Answers& answers, const ServiceCall& call) {
         if (!std::isfinite(dot(q.P, Vec3(1))) || !(q.radius >= 0)) return;
         q.radius = std::min(q.radius, 1e18f);
         found.assign(size_t(map->width()), 0.f);
-        if (!map->lookup(q, found)) return;
+        const bool there = map->lookup(q, found);
+        answers.noteLookup(map, there, call);
+        if (!there) return;
         for (size_t k = 0; k < s.parts.size(); ++k) {
             const int from = known->second[k], n = clouds::sizeOf(s.parts[k].type);
             if (from < 0) continue;

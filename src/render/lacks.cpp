@@ -49,6 +49,15 @@ void sayMissingOutputs(const OutputPlan& plan, const transport::World& world, Di
         }
 }
 
+void sayEmptyClouds(const Job& job, Diagnostics& diags) {
+    const Camera& c = job.camera;
+    if (job.interrupted || !job.world || c.window().width() < c.width() || c.window().height() < c.height()) return;
+    for (const auto& [name, place] : job.world->cloudsFoundEmpty())
+        warn(diags, place, "texture3d(): \"" + name + "\" has no point near any place that was looked up",
+             "alpenglow ptc info tells where its points are; \"coordsystem\" must name the space in which they were baked, and "
+             "normals must fit");
+}
+
 void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& diags) {
     const Camera& c = job.camera;
     if (job.interrupted || job.shone || !job.world || !job.plan.needs(Source::Ci) || c.window().width() < c.width() ||

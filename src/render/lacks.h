@@ -11,4 +11,8 @@ void sayMissingOutputs(const OutputPlan&, const transport::World&, Diagnostics&)
 /// Nothing of pictures without colour, of parts of a picture, and of what was interrupted.
 void sayEmptyPicture(const Job&, const scene::Frame&, Diagnostics&);
 
+/// A warning when the frame is done for each point cloud in which texture3d() found nothing at any point. Nothing of parts of a
+/// picture and of what was interrupted.
+void sayEmptyClouds(const Job&, Diagnostics&);
+
 } // namespace alpenglow::render

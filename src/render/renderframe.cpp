@@ -429,7 +429,10 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.paths += double(c.paths);
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
     stats_.nonFinite += f.nonFinite;
-    if (!settings_.pixel) sayEmptyPicture(job, *f.frame, diagnostics_);
+    if (!settings_.pixel) {
+        sayEmptyPicture(job, *f.frame, diagnostics_);
+        sayEmptyClouds(job, diagnostics_);
+    }
     const transport::World::Facts facts = f.world->facts(); // kernels may be compiled while rendering
     stats_.shading.kernels = facts.kernels;
     stats_.shading.affineKernels = facts.affine;

@@ -3,6 +3,7 @@
 #include "clouds/cloudfile.h"
 #include "clouds/limits.h"
 #include "texture/volume.h"
+#include <tuple>
 
 namespace alpenglow::transport {
 
@@ -28,6 +29,24 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
     if (const auto path = pathOf(name, place))
         at->second = texture::holdsVolume(*path) ? volume() : clouds::openMap(*path, diagnostics_, place);
     return at->second.get();
+}
+
+void CloudStore::noteLookup(const clouds::CloudMap* map, bool found, const SourcePlace& place) {
+    std::lock_guard lock(mutex_);
+    const auto [at, fresh] = asked_.try_emplace(map, Asked{found, place});
+    if (fresh) return;
+    at->second.found |= found;
+    const auto order = [](const SourcePlace& p) { return std::tie(p.file, p.line, p.column); };
+    if (order(place) < order(at->second.place)) at->second.place = place;
+}
+
+std::vector<std::pair<std::string, SourcePlace>> CloudStore::foundNothing() {
+    std::lock_guard lock(mutex_);
+    std::vector<std::pair<std::string, SourcePlace>> all;
+    for (const auto& [name, map] : maps_)
+        if (const auto of = asked_.find(map.get()); map && of != asked_.end() && !of->second.found)
+            all.emplace_back(name, of->second.place);
+    return all;
 }
 
 std::shared_ptr<const clouds::PointOctree>

@@ -20,6 +20,12 @@ public:
     std::shared_ptr<const clouds::PointOctree> octree(const std::string& name, bool light,
                                                       const std::optional<clouds::Shear>& shear, const SourcePlace&);
 
+    /// Notes that texture3d() has asked a map, and whether it has found anything there. Thread safe.
+    void noteLookup(const clouds::CloudMap*, bool found, const SourcePlace&);
+    /// The maps in which texture3d() has found nothing wherever it asked, by name, each with the first of its calls in the order
+    /// of files and lines.
+    std::vector<std::pair<std::string, SourcePlace>> foundNothing();
+
     clouds::BakeLog baked;
     /// Some kernel of a surface bakes; some of these calls may want middles of micropolygons. While the world is made.
     bool bakes = false, centres = false;
@@ -32,6 +38,11 @@ private:
     Diagnostics& diagnostics_;
     std::mutex mutex_;
     std::map<std::string, std::shared_ptr<const clouds::CloudMap>> maps_; ///< null: none
+    struct Asked {
+        bool found = false;
+        SourcePlace place;
+    };
+    std::map<const clouds::CloudMap*, Asked> asked_; ///< by texture3d()
     using OctreeKey = std::tuple<std::string, bool, std::optional<clouds::Shear>>;
     std::map<OctreeKey, std::shared_ptr<const clouds::PointOctree>> octrees_; ///< null: none
     size_t sheared_ = 0;                                                      ///< of these

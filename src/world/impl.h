@@ -42,6 +42,7 @@ public:
     PhotonStore* photons() const override { return photons_.get(); }
     std::vector<int> outputWidths() const override { return outputWidths_; }
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
+    std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const override;
     std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool interpolates() const override { return interpolates_; }

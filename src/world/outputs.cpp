@@ -1,5 +1,6 @@
 // Outputs of shaders as displays ask for them: which there are, and how many numbers each has.
 #include "world/outputs.h"
+#include "world/cloudstore.h"
 #include "world/impl.h"
 
 namespace alpenglow::transport {
@@ -93,6 +94,10 @@ std::set<const ShaderInstance*> WorldImpl::givers() const {
     for (const BoundLight& l : lights_)
         if (l.instance) shaders.insert(l.instance.get());
     return shaders;
+}
+
+std::vector<std::pair<std::string, SourcePlace>> WorldImpl::cloudsFoundEmpty() const {
+    return clouds_ ? clouds_->foundNothing() : std::vector<std::pair<std::string, SourcePlace>>();
 }
 
 std::vector<std::string> WorldImpl::knownOutputs() const {

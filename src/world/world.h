@@ -40,6 +40,8 @@ public:
     /// Those of Settings::outputs that no shader of the frame gives and that are no predefined variable: they are 0 everywhere.
     /// None where the frame has no primitives.
     virtual std::vector<std::string> missingOutputs() const { return {}; }
+    /// Point clouds and their like in which texture3d() has found nothing at any point until now, with the place of a call.
+    virtual std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const { return {}; }
     /// The photon maps of the frame (photonstore.h).
     virtual PhotonStore* photons() const { return nullptr; }
     /// What could be named instead: predefined variables and the outputs of the frame's shaders.

@@ -280,6 +280,25 @@ TEST_F(PointScenes, WhatCannotBeReadIsSaidOnce) {
     }
 }
 
+// A cloud that lies elsewhere gives 0: that is said once, but not where some point finds something, nor of a part of a picture.
+TEST_F(PointScenes, NothingFoundIsSaidOnce) {
+    Diagnostics d;
+    clouds::saveCloud((dir / "flat.ptc").string(), clouds::test::square(4), {dir.string(), true, -1}, d);
+    shader("looks", "float dz = 0;",
+           "float a = 0; texture3d(\"flat.ptc\", P + vector(0, 0, dz), normal(0, 0, 0), \"x\", a); Ci = a + 1;");
+    const auto said = [&](const std::string& dz, const std::string& format = "") {
+        write("s.rib", header("a.exr", 8) + format + camera + "WorldBegin\nSides 2\nSurface \"looks\" \"dz\" " + dz +
+                           "\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\nWorldEnd\n");
+        return run("render s.rib", "2>&1");
+    };
+    const std::string word = "has no point near any place", far = said("1000"), line = "looks.sl:1:";
+    EXPECT_NE(far.find(line), std::string::npos) << far;
+    EXPECT_NE(far.find(word), std::string::npos) << far;
+    EXPECT_EQ(far.find(word), far.rfind(word)) << far;
+    EXPECT_EQ(said("0").find(word), std::string::npos);
+    EXPECT_EQ(said("1000", "CropWindow 0 .5 0 1\n").find(word), std::string::npos);
+}
+
 // Names of clouds in other ways, and in another space: the plane is the same wherever the file has it.
 TEST_F(PointScenes, SpacesAndSeveralClouds) {
     write("lit.sl", "surface lit() { Oi = 1; Ci = 1; bake3d(\"w.ptc\", \"\", P, normalize(N), \"interpolate\", 1, "

@@ -88,8 +88,8 @@ function(quick target)
   endif()
 endfunction()
 
-# seldom_run(target): the target's code takes no share of a render's time that one would see, so that less inlining, which takes a quarter
-# to two fifths off its compilation, costs nothing (bench/RESULTS.md, "Builds").
+# seldom_run(target): for targets whose code takes little of a render's time. Less inlining takes a quarter to two fifths off their
+# compilation (bench/RESULTS.md, "Building").
 set(quick_options -O1)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   list(APPEND quick_options "SHELL:-mllvm -inline-threshold=25")

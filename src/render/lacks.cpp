@@ -22,14 +22,6 @@ std::string unseenHint(size_t shapes, size_t before) {
            " before it, outside the picture or hidden from it by Attribute \"visibility\" or Sides 1";
 }
 
-/// The first primitive whose normals lie on the backs of its faces, as it was said when it was made (geometry/given_normals.cpp).
-std::string normalsSaid(const Diagnostics& diags) {
-    for (const Diagnostic& d : diags.all())
-        if (d.message.find("\"N\" lies on the ") != std::string::npos)
-            return " (" + d.place.file + ":" + std::to_string(d.place.line) + ": " + d.message + ")";
-    return "";
-}
-
 } // namespace
 
 void sayMissingOutputs(const OutputPlan& plan, const transport::World& world, Diagnostics& diags) {
@@ -78,8 +70,8 @@ void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& dia
              "the picture is black: surfaces are seen, but " +
                  (lights == 1 ? "the light does" : "the " + counted(lights, "light") + " do") + " not show on them",
              "check that the lights are on where the surfaces are made (AttributeEnd ends a light), that they reach them, that "
-             "normals which primitives give lie on the sides that are seen" +
-                 normalsSaid(diags) + ", and what the shaders do with their light");
+             "normals which primitives give lie on the sides that are seen (a warning names primitives with many that do not, -v "
+             "those with few), and what the shaders do with their light");
 }
 
 } // namespace alpenglow::render

@@ -224,6 +224,9 @@ private:
     /// Reads a DelayedReadArchive; from the second time under the same attributes on as an object.
     void readDelayed(const std::string& name, const Call& call);
     void learn(SharedArchive& of, const std::string& file);
+    // unlit.cpp
+    void noteEnded(const Block&);
+    void sayUnlit(const scene::Frame&);
     // unmade.cpp
     /// Whether a procedural may wait until a ray comes to its bound; then it is put into the frame as one that is not yet made.
     bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
@@ -302,9 +305,7 @@ private:
     std::map<std::string, ObjectRef> objects_;
     std::map<size_t, int> objectIndex_;                   ///< serial -> index in this frame
     std::map<std::string, SharedArchive> sharedArchives_; ///< of the open world, by ArchiveShelf::Found::key
-    void noteEnded(const Block&);                         // unlit.cpp
-    void sayUnlit(const scene::Frame&);
-    std::set<int> ended_; ///< lights of this world that an AttributeEnd has ended
+    std::set<int> ended_;                                 ///< lights of this world that an AttributeEnd has ended
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

@@ -155,7 +155,7 @@ Symbol* Checker::global(const std::string& name) {
     };
     if (kind_) {
         if (Symbol* s = find(*kind_)) return s;
-        // What a class sends by emit() is said for the surface of the primitive that shines.
+        // emit() in a class: Cs and Os are those of the primitive that emits the light.
         const bool emits = *kind_ == ShaderKind::Light && shaderParameters_.contains(kEmits);
         return emits && (name == "Cs" || name == "Os") ? find(ShaderKind::Surface) : nullptr;
     }

@@ -1,5 +1,5 @@
 // gather: its rays, what they tell, its turns, and closed forms that it shares with trace(), diffuse() and indirectdiffuse().
-#include "transport/floorscene.h"
+#include "transport/gatherscene.h"
 #include "transport/maps.h"
 #include <cmath>
 
@@ -8,22 +8,10 @@ namespace gather_test {
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
+using namespace alpenglow::transport::gatherscene;
 
 namespace {
 
-constexpr Hider kAll[] = {Hider::Hidden, Hider::Raytrace, Hider::Path};
-const std::string kSeen = "Attribute \"visibility\" \"integer transmission\" 1 \"integer diffuse\" 1 \"integer specular\" 1\n";
-const std::string kSmall = "Polygon \"P\" [-.01 0 -.01  -.01 0 .01  .01 0 .01  .01 0 -.01]\n";
-const CameraRay kNear = rayTo({.03f, .08f, -.04f}, {0, 0, 0});
-
-/// A surface that runs `body` and shows `value`.
-std::string runs(const std::string& name, const std::string& body, const std::string& value, const std::string& functions = "") {
-    writeShader(name, functions + "surface " + name +
-                          "() { vector up = vector \"world\" (0, 1, 0), aside = vector \"world\" (1, 0, 0), d = 0; point o = 0; "
-                          "color c = 0, sum = 0; float f = 0, g = 0, hits = 0, misses = 0; string text = \"none\";\n" +
-                          body + "\nCi = " + value + "; Oi = 1; }\n");
-    return "Surface \"" + name + "\"\n";
-}
 std::string ball(double r, const std::string& what) {
     const std::string s = std::to_string(r);
     return "AttributeBegin Surface \"constant\" " + what + " Sphere " + s + " -" + s + " " + s + " 360 AttributeEnd\n";

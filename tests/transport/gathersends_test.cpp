@@ -1,27 +1,14 @@
 // gather with "send:surface:NAME": values for parameters of the surfaces that its rays meet.
-#include "transport/floorscene.h"
+#include "transport/gatherscene.h"
 
 namespace gathersends_test {
 
 using namespace alpenglow;
 using namespace alpenglow::transport;
 using namespace alpenglow::transport::testing;
+using namespace alpenglow::transport::gatherscene;
 
 namespace {
-
-constexpr Hider kAll[] = {Hider::Hidden, Hider::Raytrace, Hider::Path};
-const std::string kSeen = "Attribute \"visibility\" \"integer transmission\" 1 \"integer diffuse\" 1 \"integer specular\" 1\n";
-const std::string kSmall = "Polygon \"P\" [-.01 0 -.01  -.01 0 .01  .01 0 .01  .01 0 -.01]\n";
-const CameraRay kNear = rayTo({.03f, .08f, -.04f}, {0, 0, 0});
-
-/// A surface that runs `body` and shows `value`.
-std::string runs(const std::string& name, const std::string& body, const std::string& value, const std::string& functions = "") {
-    writeShader(name, functions + "surface " + name +
-                          "() { vector up = vector \"world\" (0, 1, 0), aside = vector \"world\" (1, 0, 0), d = 0; point o = 0; "
-                          "color c = 0, sum = 0; float f = 0, g = 0, hits = 0, misses = 0; string text = \"none\";\n" +
-                          body + "\nCi = " + value + "; Oi = 1; }\n");
-    return "Surface \"" + name + "\"\n";
-}
 
 Moments of(const std::string& surface, const std::string& scene, Hider h = Hider::Path, int n = 1) {
     Scene s(world(kSeen + surface + scene), withShaders(h));

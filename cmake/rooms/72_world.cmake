@@ -1,1 +1,1 @@
-room(world DEPS lobes clouds photons ptex shading)
+room(world DEPS lobes integrator clouds photons ptex shading)

@@ -1,1 +1,2 @@
 room(answers DEPS world)
+room_tests(integrator DEPS integrator answers)

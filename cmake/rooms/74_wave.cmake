@@ -1,1 +1,1 @@
-room(wave DEPS answers)
+room(wave DEPS answers integrator)

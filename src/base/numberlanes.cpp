@@ -12,13 +12,15 @@ DrawNumbers drawNumbers(int lanes) {
     return lanes == 4 ? drawNumbers4 : lanes == 8 && v3 ? drawNumbers8 : lanes == 16 && v4 ? drawNumbers16 : nullptr;
 }
 
-void NumberRows::draw() {
+void drawBlocks(std::span<NumberBlock> blocks) {
     static const DrawNumbers widest = [] {
         for (int lanes : {16, 8})
             if (const DrawNumbers d = drawNumbers(lanes)) return d;
         return drawNumbers(4);
     }();
-    if (count_) widest(blocks_.data(), (count_ + kSize - 1) / kSize);
+    if (!blocks.empty()) widest(blocks.data(), blocks.size());
 }
+
+void NumberRows::draw() { drawBlocks(std::span(blocks_).first((count_ + kSize - 1) / kSize)); }
 
 } // namespace alpenglow::render

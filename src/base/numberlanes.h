@@ -3,6 +3,7 @@
 #pragma once
 #include "base/numberblock.h"
 #include "base/sampler.h"
+#include <span>
 #include <vector>
 
 namespace alpenglow::render {
@@ -37,5 +38,8 @@ private:
     std::vector<NumberBlock> blocks_;
     size_t count_ = 0;
 };
+
+/// Draws the numbers of whole blocks, by the widest lanes that this processor has.
+void drawBlocks(std::span<NumberBlock>);
 
 } // namespace alpenglow::render

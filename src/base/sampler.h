@@ -82,9 +82,14 @@ public:
         return r;
     }
 
+    /// The key of this sample for NumberBlock: a stream is its site twice, with kSingle added for one number.
+    static constexpr uint32_t kSingle = 1;
+    uint32_t low() const { return low_; }
+    uint32_t high() const { return high_; }
+    uint32_t index() const { return index_; }
+
 private:
     friend class NumberRows; // numberlanes.h
-    static constexpr uint32_t kSingle = 1;
     uint32_t low_, high_;
     uint32_t index_; ///< of the sample in its replica
 };

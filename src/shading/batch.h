@@ -125,6 +125,10 @@ public:
     int output(std::string_view name) const { return plan_->output(name); }
     int output(const rsl::OutputName& name) const { return plan_->output(name); }
     float value(int output, int component, int point) const { return out_[output][size_t(component) * call_.stride + point]; }
+    /// A component of an output, by point.
+    std::span<const float> row(int output, int component) const {
+        return {out_[size_t(output)] + size_t(component) * size_t(call_.stride), size_t(call_.n)};
+    }
     Color color(int output, int point) const {
         return {value(output, 0, point), value(output, 1, point), value(output, 2, point)};
     }

@@ -37,6 +37,7 @@ struct BatchContext : KernelRun {
     std::vector<Haze> haze;                 ///< by point; only where a volume lies before some point
     std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
     std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
+    bool opaque = false;       ///< nothing goes on behind any point; false: perhaps
     std::vector<uint8_t> ownShadows; ///< of a light, by lit point: LightValue::ownShadow; empty: of none
     std::exception_ptr failure;      ///< of a callback while the kernel ran: exceptions cannot pass generated code
     /// After each run of the kernel: throws what a callback threw.

@@ -91,6 +91,19 @@ void Gather::choosePoint(size_t point) {
     passes_[point] = behind > 0 && total > behind ? float(behind / total) : 1;
 }
 
+void Engine::tellScaled(const SurfaceBinding& b, bool more) {
+    if (!(more ? tamed_ : tamedClear_).insert(b.surface.get()).second) return;
+    diagnostics().reportOnce((more ? "energy:" : "energyclear:") + b.surface->name,
+                             {more ? Severity::Warning : Severity::Info,
+                              Rie::NoError,
+                              b.surface->place,
+                              "shader \"" + b.surface->name + "\" reflects" +
+                                  (more ? "" : ", together with what comes through it,") +
+                                  " more light than it receives; its indirect light is scaled down to what it receives",
+                              "--unbiased leaves it as it is",
+                              {}});
+}
+
 /// What is reflected and what comes through is at most what arrives.
 float Gather::energyScale(size_t point, const Color& reflected, const Color& clear) {
     float scale = 1;
@@ -98,17 +111,7 @@ float Gather::energyScale(size_t point, const Color& reflected, const Color& cle
         if (reflected[k] + clear[k] > 1 && reflected[k] > 0) scale = std::min(scale, (1 - clear[k]) / reflected[k]);
     const bool more = maxComponent(reflected) > 1; // by itself: else a highlight on what is clear, say, which is common
     const SurfaceBinding& b = world_.bindings_[size_t(c_->bindings[point])];
-    if (scale < 0.999f &&
-        (more ? e_.tamed_ : e_.tamedClear_).insert(b.surface.get()).second) // beyond rounding; said once a shader
-        e_.diagnostics().reportOnce((more ? "energy:" : "energyclear:") + b.surface->name,
-                                    {more ? Severity::Warning : Severity::Info,
-                                     Rie::NoError,
-                                     b.surface->place,
-                                     "shader \"" + b.surface->name + "\" reflects" +
-                                         (more ? "" : ", together with what comes through it,") +
-                                         " more light than it receives; its indirect light is scaled down to what it receives",
-                                     "--unbiased leaves it as it is",
-                                     {}});
+    if (scale < 0.999f) e_.tellScaled(b, more);
     return scale;
 }
 

@@ -1,5 +1,6 @@
 // The engine of a thread: calls of trace(), and what rays and batches share.
 #include "base/memory.h"
+#include "wave/blockvertices.h"
 #include "wave/gather.h"
 #include "wave/medium.h"
 #include <algorithm>
@@ -20,6 +21,7 @@ void Counters::operator+=(const Counters& o) {
     transmission += o.transmission;
     shadow += o.shadow;
     points += o.points;
+    inBlocks += o.inBlocks;
     batches += o.batches;
     lanesUsed += o.lanesUsed;
     lanesRun += o.lanesRun;
@@ -39,6 +41,8 @@ Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
       seed_(world_->settings_.seed), rules_(world_->settings_), answers_(*world_, d, this) {
     noSample_.numbers = render::SampleNumbers(render::Sampler(seed_, 0, 0), 0);
     prepareLightPaths();
+    for (const int l : world_->skies_) ambientLights_ |= world_->lights_[size_t(l)].kind == LightKind::Ambient;
+    blockVertices_ = std::make_unique<BlockVertices>(*this);
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
     if (std::any_of(world_->media_.begin(), world_->media_.end(), event)) {
         flightsInMedia_ = std::make_unique<MediumFlights>();
@@ -117,6 +121,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->flown.clear();
     c->clear.clear();
     c->passes.clear();
+    c->opaque = false;
     c->requestSite = -1;
     pool_.push_back(std::move(c));
 }

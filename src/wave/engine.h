@@ -228,7 +228,9 @@ public:
     struct AskedLobe {
         int lobe, record, lane;
     };
-    void requestPairs(BatchContext&, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched&); // shadegroup.cpp
+    void requestPairs(BatchContext&, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched&,
+                      bool lobesToo = true); // shadegroup.cpp
+    bool ambientLights_ = false;             ///< some light answers ambient()
     /// A pair of an output that shares no lobe of Ci, or not in all components.
     struct AskedAside {
         BatchContext* run;
@@ -268,6 +270,8 @@ public:
     Vec3 leave(const BatchContext&, size_t point, const Vec3& w) const;
     /// What outputs of the surface are now, for lights that ask; of a kernel that waits they stay as they were at the call.
     void tellOutputs(LitValues&, const BatchContext&, size_t point) const;
+    /// Says once a shader that its indirect light is scaled down. more: it reflects more than it receives by itself.
+    void tellScaled(const SurfaceBinding&, bool more);
     /// Gathers light over `lobes` (gather.h).
     void gather(BatchContext&, Sched&);
     /// The environment map of a trace() in direction w (unit, current space).
@@ -393,6 +397,7 @@ private:
     std::deque<shading::Media> media_;
     friend class KernelStrip;
     friend class Gather;
+    friend class BlockVertices;
     friend class MediumFlights;
     friend class Walks;
     std::unique_ptr<FlightEvent> flightsInMedia_; ///< where the world has media that scatter, or priorities
@@ -404,6 +409,7 @@ private:
     void giveBack(std::shared_ptr<BatchContext>); ///< kept when nobody else has it
     std::vector<std::shared_ptr<BatchContext>> pool_;
     std::unique_ptr<class Gather> gather_; ///< its memory is used again
+    std::unique_ptr<class BlockVertices> blockVertices_;
     std::vector<accel::Ray> rays_, shadowRays_;
     std::vector<accel::Hit> hits_;
     std::vector<geometry::HitRef> run_;

@@ -103,7 +103,7 @@ private:
     int lightSamples(const LobeVertex&) const;
     int want(const BoundLight&, std::span<const std::pair<int, float>> chosen, int first);
     void placeWanted();
-    bool place(ShadePoint&, Emitter::Sample&, size_t point, const BoundLight&, size_t& number) const;
+    bool place(ShadePoint&, Emitter::Sample&, const BoundLight&, size_t& number) const;
     void queriesByWidth(size_t point, const BoundLight&);
     void askLights(const BoundKernel* shared);
 

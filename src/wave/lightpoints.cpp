@@ -1,8 +1,8 @@
 // Stage light: every light for every point with lobes that want it, a kernel call a light. Of many lights some are chosen at each
 // point (manylights.cpp), and those of one program share a call.
 #include "wave/gather.h"
+#include "wave/lightsample.h"
 #include "world/emitterfootprint.h"
-#include "world/skytable.h"
 
 namespace alpenglow::transport {
 
@@ -143,9 +143,8 @@ int Gather::want(const BoundLight& light, std::span<const std::pair<int, float>>
             wanted_.push_back({&light, point, chance, {k, count}});
             const Random random = e_.random(ray).draw(uint32_t(k), uint32_t(count));
             const uint32_t vertex = light.kind == LightKind::Area || light.sky ? lightVertex(size_t(point)) : ray.vertex;
-            if (light.kind == LightKind::Area || light.sky || (light.cone && rules_.pickOne))
-                numbers_.askPair(random.numbers(), vertex, use, 0);
-            if (light.kind == LightKind::Area && light.emitter->chooses()) numbers_.askOne(random.numbers(), vertex, use, 0);
+            if (takesPair(light, rules_.pickOne)) numbers_.askPair(random.numbers(), vertex, use, 0);
+            if (takesChoice(light)) numbers_.askOne(random.numbers(), vertex, use, 0);
         }
     }
     return most;
@@ -163,17 +162,8 @@ void Gather::placeWanted() {
         if (of != std::exchange(last, of)) wide = light.kind == LightKind::Area && usesFootprint(light);
         const ShadePoint& lit = c_->points[size_t(point)];
         ShadePoint& p = queries_.add(point, light, chance, draw);
-        p.Ps = lit.P;
-        p.lit = &lit.surface;
-        p.Ns = lit.N;
-        p.viewI = p.I = lit.I;
-        p.E = lit.E;
-        p.du = lit.du;
-        p.dv = lit.dv;
-        p.time = lit.time;
-        p.shutter = lit.shutter;
-        p.ray = lit.ray;
-        if (!place(p, queries_.drawn.back(), size_t(point), light, number)) {
+        tellLit(p, lit);
+        if (!place(p, queries_.drawn.back(), light, number)) {
             queries_.dropLast();
         } else if (wide) {
             queriesByWidth(size_t(point), light);
@@ -183,40 +173,11 @@ void Gather::placeWanted() {
 }
 
 /// The point of the light; false: this draw brings nothing. `number`: the next of numbers_.
-bool Gather::place(ShadePoint& p, Emitter::Sample& s, size_t point, const BoundLight& light, size_t& number) const {
-    if (light.kind == LightKind::Area) {
-        const Vec2 u = numbers_.pair(number++);
-        const float choose = light.emitter->chooses() ? numbers_.one(number++) : 0;
-        if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)
-                         : light.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light.pointNeeds)))
-            return false;
-        if (world_.accel_->hasSolids() &&
-            !world_.accel_->keeps(world_.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter))
-            return false; // what a solid leaves of a lamp
-        p.shape = s.shape;
-        p.P = meetsAt(p.surface);
-        p.N = p.surface.n;
-        return true;
-    }
-    p.shape = nullptr;
-    p.surface = c_->points[point].surface;
-    if (light.sky) {
-        if (!light.sky->sample(numbers_.pair(number++), s.direction, s.pdf)) return false;
-        s.shape = nullptr;
-        s.visibility = ~0u;
-        p.P = p.Ps + s.direction;
-        p.N = -s.direction;
-        p.Ci = Color(0);
-        return true;
-    }
-    p.N = Vec3();
-    const ShaderInstance& of = *light.instance;
-    Matrix moved;
-    const auto& m = of.moving ? (moved = of.toCurrentAt(p.shutter)).m : of.toCurrent.m; // transformPoint() of the origin
-    const Vec3d at(m[3][0], m[3][1], m[3][2]);
-    p.P = Vec3(m[3][3] == 1 || m[3][3] == 0 ? at : at / m[3][3]);
-    p.Ci = light.cone && rules_.pickOne ? coneNumbers(numbers_.pair(number++)) : Color(0);
-    return true;
+bool Gather::place(ShadePoint& p, Emitter::Sample& s, const BoundLight& light, size_t& number) const {
+    LightNumbers u;
+    if (takesPair(light, rules_.pickOne)) u.pair = numbers_.pair(number++);
+    if (takesChoice(light)) u.choose = numbers_.one(number++);
+    return placeLightSample(world_, light, u, rules_.pickOne, p, s);
 }
 
 /// Makes of the query that was added last one for each width that lobes of its point see the emitter with.

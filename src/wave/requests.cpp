@@ -4,6 +4,7 @@
 #include "shadeops/distributions.h"
 #include "texture/lookup.h"
 #include "wave/gather.h"
+#include "world/blocksite.h"
 #include "world/raysets.h"
 #include <bit>
 
@@ -19,7 +20,7 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
     m.roughnessv = t.roughnessv >= 0 ? f(t.roughnessv) : m.roughness;
     if (t.udir >= 0) m.udir = triple(t.udir);
     if (t.absorption >= 0) m.absorption = triple(t.absorption);
-    m.eta = Color(kind.name == "glass-ggx" ? 1.5f : kind.name == "hair" ? 1.55f : 0.f);
+    m.eta = Color(defaultEta(kind));
     for (size_t k = 0; k < t.eta.size() && k < 2; ++k)
         (k ? m.k : m.eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
     for (int row : t.lobes) m.lobes.push_back(f(row));

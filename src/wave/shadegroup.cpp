@@ -1,7 +1,7 @@
 // Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what
 // it asked for.
 #include "base/direction.h"
-#include "wave/engine.h"
+#include "wave/blockvertices.h"
 #include "world/outputs.h"
 #include <algorithm>
 
@@ -14,6 +14,14 @@ Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
     if (l > 0 && std::isfinite(l)) return onSeenSide(p.N, p, dir) * (1 / l);
     const Vec3 n = directionOr(p.N, {});
     return dot(n, n) > 0 ? onSeenSide(n, p, dir) : n;
+}
+/// Whether nothing goes on behind any point.
+bool isOpaque(const shading::Batch& b) {
+    const int oi = b.plan().Oi;
+    for (int k = 0; k < 3 && oi >= 0; ++k)
+        for (const float o : b.row(oi, k))
+            if (o != 1) return false;
+    return true;
 }
 } // namespace
 
@@ -141,7 +149,7 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
             }
         }
         const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
-        const Color clear = chance > 0 ? goesOn(c, i) : Color(0);
+        const Color clear = chance > 0 && !c.opaque ? goesOn(c, i) : Color(0);
         if (maxComponent(clear) > 0)
             passThrough(binding, ray, c.targets[i], c.points[i], clear, chance, asked.empty() ? 0 : asked[size_t(i - first)],
                         sched);
@@ -196,6 +204,15 @@ void Engine::shadeGroup(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     const bool media = !world_->media_.empty();
     bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(),
                                      [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
+    if (!hazy && aside.empty() && isOpaque(*c->batch) && blockVertices_->takes(*c) && blockVertices_->run(*c, sched)) {
+        counters.inBlocks += uint64_t(n);
+        requestPairs(*c, std::vector<Color>(size_t(n), Color(1)), nullptr, sched, false);
+        if (!ambients_.empty()) gatherAmbient(*c);
+        flushShadows(sched);
+        c->opaque = true;
+        finishStrip(*c, 0, n, sched);
+        return;
+    }
     std::vector<Color> slope(n, Color(1));
     if (hazy && !photonTrace_) {
         hazeOfBatch(*c, 0, n, media || !c->emits.empty() || lightPaths_);
@@ -217,13 +234,18 @@ void Engine::shadeGroup(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     followAsides(rest, aside, sched);
 }
 
-/// What the pairs of a kernel that did not wait ask for. `slope`: by point. `asked`: gets the lobes; may be null.
-void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched& sched) {
+/// What the pairs of a kernel that did not wait ask for. `slope`: by point. `asked`: gets the lobes; may be null. lobesToo:
+/// false: all but lobes.
+void Engine::requestPairs(BatchContext& c, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched& sched,
+                          bool lobesToo) {
     const int n = int(c.points.size());
     std::vector<uint32_t>& occurrence = occurrence_;
     occurrence.assign(c.emits.empty() ? 0 : c.bound->sites.size() * size_t(n), 0);
     for (const EmitRecord& e : c.emits) {
         const SiteInfo& s = c.bound->sites[e.site];
+        if (s.kind == SiteKind::Ambient ? !ambientLights_
+                                        : !lobesToo && !asksShadows(s.kind) && s.kind != SiteKind::LightVisibility)
+            continue;
         const float* rows = c.arena.data() + e.offset;
         for (int lane = 0; lane < e.lanes; ++lane) {
             int point = e.first + lane;

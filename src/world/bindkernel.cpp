@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 #include "shadeops/distributions.h"
 #include "shadeops/specular.h"
+#include "world/blocksite.h"
 #include "world/cloudsite.h"
 #include "world/gathersite.h"
 #include "world/photonattributes.h"
@@ -471,6 +472,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
             i.occlusion = occlusionSite(i, s, *world);
             i.trace = traceSite(i, s, *k, *world);
         }
+        if (path) i.block = blockSite(i);
         b.sites.push_back(std::move(i));
     }
     linkGathers(b, *k, *world);
@@ -478,6 +480,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     world->footprints_ |= b.plan->usesFootprint();
     for (const SiteInfo& i : b.sites) world->footprints_ |= i.rays && i.rays->base >= 0; // "samplebase" is a part of it
     b.kernel = std::move(k);
+    b.blocks = asksBlocks(b);
     return b;
 }
 

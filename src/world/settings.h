@@ -34,6 +34,7 @@ struct Settings {
     bool mixedOnly = false;  ///< build V everywhere (tests: it has the same bits as S)
     bool bsdfOnly = false;   ///< no light sampling, emission counts in full (tests, T6)
     bool lightOnly = false;  ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
+    bool blocks = true;      ///< vertices of lobes alone are followed 16 at a time (tests: one by one they have the same bits)
     bool evenLights = false; ///< many lights: each is as likely to be sampled as any other (tests, measurements)
     MediumSampling mediumSampling = MediumSampling::Both;
     std::vector<std::string> shaderPaths, texturePaths;

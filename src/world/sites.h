@@ -1,6 +1,7 @@
 // What the call sites of a kernel mean, worked out when the kernel is bound, so that no name is compared while it runs.
 #pragma once
 #include "accel/accel.h"
+#include "integrator/blocks.h"
 #include "lobes/lobe.h"
 #include "rsl/compiler.h"
 #include "rsl/front/protocol.h"
@@ -225,7 +226,8 @@ struct SiteInfo {
         int row, size;
     };
     std::vector<Output> outputs;
-    int32_t label = 0; ///< of its rays: interned, for rayinfo()
+    int32_t label = 0;                          ///< of its rays: interned, for rayinfo()
+    std::shared_ptr<const LobeArguments> block; ///< a lobe that whole blocks of points can ask for; null: point by point
 };
 
 /// How many rows the argument of a call has that begins at `row`.
@@ -237,7 +239,8 @@ struct BoundKernel {
     std::shared_ptr<const shading::BatchPlan> plan;
     std::vector<SiteInfo> sites;
     bool mixed = false;
-    bool path = false; ///< lobe shadeops are requests; else they are answered at once
+    bool path = false;   ///< lobe shadeops are requests; else they are answered at once
+    bool blocks = false; ///< all that it asks for are lobes with SiteInfo::block
     explicit operator bool() const { return kernel != nullptr; }
 };
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);

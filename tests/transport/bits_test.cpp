@@ -154,6 +154,9 @@ void expectSameBits(const std::string& rib, const std::vector<CameraRay>& rays, 
     Settings mixedOnly = settings;
     mixedOnly.mixedOnly = true;
     EXPECT_EQ(differences(whole, bitsOf(Scene(rib, mixedOnly).trace(rays))), 0u) << "build V";
+    Settings single = settings;
+    single.blocks = false;
+    EXPECT_EQ(differences(whole, bitsOf(Scene(rib, single).trace(rays))), 0u) << "points one by one";
 }
 
 /// A primitive, and the same one at the end of the shutter, of as many pieces.

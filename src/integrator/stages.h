@@ -1,0 +1,47 @@
+// The stages that work on blocks of points (blocks.h), at 4, 8 and 16 lanes; the processor chooses once. Every width gives the
+// same bits: a stage works point by point, never on two of them, in a fixed order of operations.
+//
+//   request     what calls ask for: rows of lobes                    reads VertexBlock, the call's arguments; writes LobeBlock
+//   select      which lobe is followed with which chance             reads LobeBlock; writes LobeBlock::chosen, energyScale
+//   aim         shadow rays to samples of a light                    reads VertexBlock, LightBlock; writes ShadowBlock
+//   contribute  what a lobe gives back of that light                 reads all of these; writes ShadowBlock::light
+//   pick        the lobe that chance decides for                     reads LobeBlock; writes ScatterBlock
+//   take        what was drawn of one lobe, to its points            reads LobeBlock; writes ScatterBlock
+//   name        the random number keys of the next vertices          reads VertexBlock; writes ScatterBlock::vertex
+//   extend      the next rays: throughput, roulette, origin          reads VertexBlock, ScatterBlock; writes ScatterBlock
+#pragma once
+#include "integrator/blocks.h"
+
+namespace alpenglow::transport {
+
+struct Stages {
+    /// Fills the rows that `needs` (LobeNeed) names for points of `asked` and LobeBlock::asked, weights included, with those
+    /// whose weight is not 0. Returns the points that one by one must be looked at: numbers that are not finite, directions whose
+    /// square no float holds, rays that do not start at the point.
+    Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
+    /// LobeBlock::chosen and VertexBlock::energyScale. `lighting`: bit i, site i is of a lighting shadeop. Returns points whose
+    /// chances are not finite; `scaled`: gets those whose energyScale is below .999.
+    Lanes (*select)(VertexBlock&, LobeBlock* const* sites, int count, uint32_t lighting, const SelectRules&, Lanes* scaled);
+    void (*aim)(const VertexBlock&, const LightBlock&, ShadowBlock&);
+    /// value: of the lobe toward the light, kValueRows. Returns the points where something arrives; `failed`: gets those where
+    /// the lobe's value is not a number.
+    Lanes (*contribute)(const VertexBlock&, const LobeBlock&, bool diffuse, const LightBlock&, const float* value, ShadowBlock&,
+                        Lanes* failed);
+    /// number: a row, 0 to 1.
+    void (*pick)(const VertexBlock&, const LobeBlock* const* sites, int count, const float* number, ScatterBlock&);
+    /// Of points whose lobe is this one: `drawn` (kDrawnRows) to directions; `value` (kValueRows; null: of lobes that are single
+    /// directions) to colours and densities. Two calls, the first with `drawn` alone.
+    void (*takeDirections)(const LobeBlock&, int site, bool lighting, const float* drawn, ScatterBlock&);
+    void (*takeValues)(const LobeBlock&, int site, const float* value, ScatterBlock&);
+    /// key: by site, the call site's number.
+    void (*name)(const VertexBlock&, const uint32_t* key, ScatterBlock&);
+    /// roulette: chance ends paths, by ScatterBlock::dice. Returns points whose throughput is not finite.
+    Lanes (*extend)(const VertexBlock&, bool roulette, ScatterBlock&);
+};
+
+/// The stages at 4, 8 or 16 lanes; null where this processor cannot run that.
+const Stages* stages(int lanes);
+/// The widest that this processor runs.
+const Stages& stages();
+
+} // namespace alpenglow::transport

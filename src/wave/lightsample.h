@@ -1,0 +1,21 @@
+// A sample of a light for a shaded point: where on the light it lies, and the point that the light's kernel runs at.
+#pragma once
+#include "wave/rays.h"
+
+namespace alpenglow::transport {
+
+/// The random numbers of a sample.
+struct LightNumbers {
+    Vec2 pair;
+    float choose = 0; ///< of emitters that choose among shapes
+};
+/// Whether a light takes LightNumbers::pair. `path`: under that hider, where cones are sampled.
+inline bool takesPair(const BoundLight& l, bool path) { return l.kind == LightKind::Area || l.sky || (l.cone && path); }
+inline bool takesChoice(const BoundLight& l) { return l.kind == LightKind::Area && l.emitter->chooses(); }
+
+/// What a light is told of the point that it lights.
+void tellLit(ShadePoint& query, const ShadePoint& lit);
+/// The point of the light, for a query that tellLit() has filled. False: this draw brings nothing.
+bool placeLightSample(const WorldImpl&, const BoundLight&, const LightNumbers&, bool path, ShadePoint& query, Emitter::Sample&);
+
+} // namespace alpenglow::transport

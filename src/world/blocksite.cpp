@@ -1,0 +1,87 @@
+#include "world/blocksite.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+namespace {
+/// Whether a call asks for lobes.
+bool asksLobes(SiteKind k) {
+    return k == SiteKind::Diffuse || k == SiteKind::Specular || k == SiteKind::Phong || k == SiteKind::Trace ||
+           k == SiteKind::Subsurface || k == SiteKind::Gather;
+}
+
+/// Whether a trace() has parameters that only request() of the engine knows.
+bool isPlainTrace(const SiteInfo& s) {
+    const TraceSite& t = *s.trace;
+    const RaySite& r = *s.rays;
+    const bool rays = r.fixed && r.bias < 0 && r.maxDistance < 0 && r.maxHit < 0 && r.base < 0 && s.rowLights < 0;
+    return rays && t.weight < 0 && t.distribution < 0 && !t.map && !t.sums && !t.onlyLights && !t.hemisphere && !t.apart &&
+           !t.axis && !t.openness && t.fade.strength < 0 && t.records.call == 0;
+}
+
+/// Where the numbers of a distribution lie: those of DistributionParams, row by row.
+void bindDistribution(const SiteInfo& s, LobeArguments& a) {
+    const TraceSite& t = *s.trace;
+    a.surface = true;
+    std::fill(std::begin(a.rows), std::end(a.rows), -1);
+    const auto row = [&](int lobeRow, int from, int count) {
+        for (int k = 0; k < count && from >= 0; ++k) a.rows[lobeRow - kRowRoughness + k] = from + k;
+    };
+    row(kRowRoughness, t.roughness, 1);
+    row(kRowRoughnessV, t.roughnessv >= 0 ? t.roughnessv : t.roughness, 1);
+    row(kRowUdir, t.udir, 3);
+    row(kRowAbsorption, t.absorption, 3);
+    for (int k = 0; k < 3; ++k) a.numbers[kRowEta - kRowRoughness + k] = defaultEta(*s.lobe);
+    for (size_t k = 0; k < t.eta.size() && k < 2; ++k)
+        for (int q = 0; q < 3; ++q) row((k ? kRowK : kRowEta) + q, t.eta[k].first + (t.eta[k].second == 1 ? 0 : q), 1);
+    a.numbers[kRowPart - kRowRoughness] = float(t.part);
+    const int count = std::min(int(t.lobes.size()), kMostLobeNumbers);
+    a.numbers[kRowCount - kRowRoughness] = float(count);
+    for (int k = 0; k < count; ++k) row(kRowLobes + k, t.lobes[size_t(k)], 1);
+}
+} // namespace
+
+float defaultEta(const LobeKind& k) { return k.name == "glass-ggx" ? 1.5f : k.name == "hair" ? 1.55f : 0.f; }
+
+std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
+    if (!s.lobe || (s.lobe->distribution && s.kind != SiteKind::Trace)) return nullptr;
+    LobeArguments a;
+    a.needsWo = (lobeLanes(1).lobes[s.lobe->index].needs & kNeedsWo) != 0;
+    switch (s.kind) {
+    case SiteKind::Diffuse:
+        if (s.trace) return nullptr;
+        a.axis = s.rows[0];
+        break;
+    case SiteKind::Specular:
+    case SiteKind::Phong:
+        a.axis = s.rows[0];
+        a.wo = s.rows[1];
+        a.a = s.rows[2];
+        if (s.kind == SiteKind::Specular) a.perRow = s.exponent;
+        break;
+    case SiteKind::Trace:
+        if (!isPlainTrace(s)) return nullptr;
+        a.traces = true;
+        a.from = s.rows[0];
+        a.axis = s.rows[1];
+        a.wo = s.rowWo;
+        a.horizon = s.rowHorizon;
+        a.samples = s.rays->samples;
+        if (s.lobe->distribution) bindDistribution(s, a);
+        a.a = s.lobe->name == "slphong" ? s.rowExponent : s.rowCone;
+        a.otherwise = s.lobe->name == "slphong" ? 1000 : 0;
+        break;
+    default:
+        return nullptr;
+    }
+    return std::make_shared<LobeArguments>(a);
+}
+
+bool asksBlocks(const BoundKernel& b) {
+    if (!b.path || b.kernel->facts().suspends) return false;
+    for (const SiteInfo& s : b.sites)
+        if (asksLobes(s.kind) && !s.block) return false;
+    return true;
+}
+
+} // namespace alpenglow::transport

@@ -73,12 +73,13 @@ TEST(Blocks, HaveTheBitsOfSinglePoints) {
 })");
     writeShader("facets", R"(surface facets() {
     normal n = faceforward(normalize(N), I);
-    Ci = .4 * diffuse(n) + .5 * trace(P, vector n, "distribution", "ggx", "wo", -I, "roughness", .3, "eta", color(.2, .9, 1.1), "k", 3)
+    Ci = .4 * diffuse(n)
+         + .5 * trace(P, vector n, "distribution", "ggx", "wo", -I, "roughness", .3, "eta", color(.2, .9, 1.1), "k", 3)
          + .2 * trace(P, vector n, "distribution", "oren-nayar", "roughness", .5);
 })");
     for (const char* shader :
          {"\"matte\"", "\"plastic\"", "\"glossy\"", "\"facets\"", "\"slmaterial\"",
-          "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1] \"float shininess\" 40",
+          "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1] \"float shininess\" 9",
           "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5"}) {
         const std::string rib = roomOf(shader);
         const Traced one = trace(rib, false), all = trace(rib, true), narrow = trace(rib, true, 4);

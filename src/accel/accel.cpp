@@ -54,6 +54,8 @@ bool Accel::Impl::readyDirect() {
             triangles.add({m.P[i[0]], m.P[i[1]], m.P[i[2]], s, p});
         }
     }
+    for (const ShapeRef& s : shapes) anyOneSided |= s->oneSided();
+    readyBlocks();
     return direct = true;
 }
 
@@ -179,11 +181,13 @@ bool Accel::occluded(const Ray& r) const { return impl_->occludedOne(r); }
 
 void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
     if (!impl_->direct) return impl_->walkNearest(rays, hits);
+    if (rays.size() > 1 && impl_->takesBlocks()) return impl_->nearestInBlocks(rays, hits);
     for (size_t i = 0; i < rays.size(); ++i) impl_->intersectOne(rays[i], hits[i]);
 }
 
 void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> out) const {
     if (!impl_->direct) return impl_->walkAny(rays, out);
+    if (rays.size() > 1 && impl_->takesBlocks()) return impl_->anyInBlocks(rays, out);
     for (size_t i = 0; i < rays.size(); ++i) out[i] = impl_->occludedOne(rays[i]);
 }
 

@@ -1,5 +1,6 @@
 #include "accel/direct.h"
 #include "accel/accel.h"
+#include "accel/directblock.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -34,6 +35,22 @@ void DirectTriangles::add(const Triangle& t) {
     rows_.u0[lane] = float(-dot(u, a));
     rows_.v0[lane] = float(-dot(v, a));
     rows_.slope[lane] = float(2 * (length(u) + length(v)));
+}
+
+void DirectTriangles::tell(DirectScene& to) const {
+    static_assert(DirectScene::kTriangles == kMost);
+    to.triangles = int(size_);
+    to.extent = extent_;
+    for (size_t k = 0; k < size_; ++k) {
+        for (int q = 0; q < 3; ++q) {
+            to.n[q][k] = rows_.n[q][k], to.u[q][k] = rows_.u[q][k], to.v[q][k] = rows_.v[q][k];
+            to.planeN[q][k] = planes_[k].n[q];
+            to.corner[k][q] = triangles_[k].a[q], to.corner[k][3 + q] = triangles_[k].b[q],
+            to.corner[k][6 + q] = triangles_[k].c[q];
+        }
+        to.d[k] = rows_.d[k], to.u0[k] = rows_.u0[k], to.v0[k] = rows_.v0[k], to.slope[k] = rows_.slope[k];
+        to.planeD[k] = planes_[k].d;
+    }
 }
 
 template <int Lanes> struct DirectTriangles::Search {

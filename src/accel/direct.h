@@ -8,6 +8,7 @@
 namespace alpenglow::accel {
 
 struct Ray;
+struct DirectScene;
 
 class DirectTriangles {
 public:
@@ -20,6 +21,7 @@ public:
     void add(const Triangle&);
     size_t size() const { return size_; }
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
+    void tell(DirectScene&) const; ///< all of them, for searches in blocks (accel/directblock.h)
 
     /// Below where the ray meets triangle i, in its lengths of dir; for those in `candidates`.
     static constexpr size_t kWidest = 16, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;

@@ -2,6 +2,7 @@
 #pragma once
 #include "accel/accel.h"
 #include "accel/direct.h"
+#include "accel/directblock.h"
 #include "accel/solids.h"
 #include "accel/tree.h"
 #include "geometry/placed.h"
@@ -83,6 +84,15 @@ struct Accel::Impl {
     void refuse(Diagnostics&);
     static void sayBeyond(const Tree&, const Shape& first, Diagnostics&);
     void meetDirect(Query&) const;
+    /// The same over blocks of rays. directblock.cpp
+    std::shared_ptr<const DirectScene> blockScene; ///< null: the scene has a tree
+    bool anyOneSided = false;                      ///< some shape of it
+    void readyBlocks();
+    bool takesBlocks() const;
+    bool beginsPlainly(const Ray&) const;
+    uint32_t loadBlock(std::span<const Ray>, DirectRays&) const;
+    void nearestInBlocks(std::span<const Ray>, std::span<Hit>) const;
+    void anyInBlocks(std::span<const Ray>, std::span<uint8_t>) const;
 
     bool visible(const Ray& r, uint32_t s) const {
         return (visibility[s] & r.mask) != 0 && (!r.only || r.only[s]) &&

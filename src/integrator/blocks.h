@@ -19,10 +19,13 @@ struct alignas(64) VertexBlock {
     Row bias;        ///< > 0: rays start so far from P along their direction, Attribute "trace" "bias"; 0: by `error`
     Row I[3];        ///< incident vector, of any length
     Row weight[3];   ///< throughput of the ray that came here
+    Row clear[3];    ///< what of light from behind comes through, 0 to 1; counts where `through` is set
     Row energyScale; ///< by select(): of indirect light that lighting shadeops ask for; 1 where they reflect at most all light
+    Row passes;      ///< by select() and pick(): the chance with which the ray goes on behind the point; 1: beside all others
     int32_t bounces[kBlock];
     uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: render::NumberBlock
     Lanes points = 0;
+    bool through = false; ///< something comes through at some point
 };
 
 /// What a call site of a kernel asks for at the points of a block: a lobe each.
@@ -31,12 +34,14 @@ struct alignas(64) LobeBlock {
     Row lobe[kLobeRows]; ///< LobeRow
     Row chosen;          ///< by select(): the chance that its ray is followed
     Lanes asked = 0;
+    Lanes lights = 0; ///< points whose lobe samples lights
 };
 
 /// Where a call's arguments lie: numbers of rows behind the weight, `stride` floats apart; -1: the call does not give it.
 struct LobeArguments {
     int axis = -1, wo = -1, horizon = -1, a = -1;
     int from = -1;        ///< trace(): where its ray starts
+    int lights = -1;      ///< trace(): "samplearealights"; points that say no are looked at one by one
     int samples = -1;     ///< trace(): how many rays it asks for; more than kMostSamples are reported point by point
     float otherwise = 0;  ///< `a` where there is no row
     float perRow = 0;     ///< > 0: `a` is this over the row
@@ -84,7 +89,13 @@ struct alignas(64) ScatterBlock {
 
 /// How select() weighs lobes.
 struct SelectRules {
+    uint32_t lighting = 0; ///< bit i: site i is of a lighting shadeop
     bool unbiased = false; ///< lobes may give back more than they receive
+};
+/// What select() has found out besides: points where lobes give back too much by themselves, or with what comes through; and
+/// those whose chances are not finite.
+struct Selected {
+    Lanes bright = 0, brightWithClear = 0, failed = 0;
 };
 
 } // namespace alpenglow::transport

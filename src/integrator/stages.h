@@ -19,16 +19,17 @@ struct Stages {
     /// whose weight is not 0. Returns the points that one by one must be looked at: numbers that are not finite, directions whose
     /// square no float holds, rays that do not start at the point.
     Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
-    /// LobeBlock::chosen and VertexBlock::energyScale. `lighting`: bit i, site i is of a lighting shadeop. Returns points whose
-    /// chances are not finite; `scaled`: gets those whose energyScale is below .999.
-    Lanes (*select)(VertexBlock&, LobeBlock* const* sites, int count, uint32_t lighting, const SelectRules&, Lanes* scaled);
+    /// LobeBlock::chosen, VertexBlock::energyScale and passes.
+    Selected (*select)(VertexBlock&, LobeBlock* const* sites, int count, const SelectRules&);
     void (*aim)(const VertexBlock&, const LightBlock&, ShadowBlock&);
-    /// value: of the lobe toward the light, kValueRows. Returns the points where something arrives; `failed`: gets those where
-    /// the lobe's value is not a number.
-    Lanes (*contribute)(const VertexBlock&, const LobeBlock&, bool diffuse, const LightBlock&, const float* value, ShadowBlock&,
-                        Lanes* failed);
+    /// For points of LobeBlock::lights and LightBlock::asked. kept: a row, what the lobe takes of the light; met: points from
+    /// where its rays could meet the light; ahead: only where the way to the emitter is along its direction. value: of the lobe
+    /// toward the light, kValueRows. Returns the points where something arrives; `failed`: gets those where the value is not a
+    /// number.
+    Lanes (*contribute)(const VertexBlock&, const LobeBlock&, const LightBlock&, const float* kept, Lanes met, bool ahead,
+                        const float* value, ShadowBlock&, Lanes* failed);
     /// number: a row, 0 to 1.
-    void (*pick)(const VertexBlock&, const LobeBlock* const* sites, int count, const float* number, ScatterBlock&);
+    void (*pick)(VertexBlock&, const LobeBlock* const* sites, int count, const float* number, ScatterBlock&);
     /// Of points whose lobe is this one: `drawn` (kDrawnRows) to directions; `value` (kValueRows; null: of lobes that are single
     /// directions) to colours and densities. Two calls, the first with `drawn` alone.
     void (*takeDirections)(const LobeBlock&, int site, bool lighting, const float* drawn, ScatterBlock&);

@@ -9,10 +9,13 @@ namespace alpenglow::transport {
 
 void BlockVertices::light(BatchContext& c) {
     const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
-    if (std::all_of(lit_.begin(), lit_.end(), [](Lanes l) { return l == 0; })) return;
     for (const int number : list.sampled) {
         const BoundLight& light = world_.lights_[size_t(number)];
         if (!light.importance) continue; // rays alone find it
+        lit_.assign(blocks_, 0);
+        for (size_t k = 0; k < count_; ++k)
+            for (size_t b = 0; b < blocks_ && samples(sites_[k], light); ++b) lit_[b] |= sites_[k].lobes[b].lights;
+        if (std::all_of(lit_.begin(), lit_.end(), [](Lanes l) { return l == 0; })) continue;
         sampleLight(light, c);
         if (asked_.empty()) continue;
         values_.assign(asked_.size(), {});
@@ -20,6 +23,12 @@ void BlockVertices::light(BatchContext& c) {
         takeValues(light, c);
         connect(light, c);
     }
+}
+
+/// Whether lobes of a site ask a light for samples. trace() knows emitters and skies, and not those that are illuminance's.
+bool BlockVertices::samples(const Site& s, const BoundLight& light) {
+    if (!s.lights || s.lighting) return s.lights;
+    return (light.kind == LightKind::Area || light.sky) && light.strategy != LightStrategy::Illuminance;
 }
 
 /// The numbers of a stream (NumberBlock) at all points.
@@ -111,14 +120,16 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
     for (size_t k = 0; k < count_; ++k) {
         Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
-        const Lanes asked = lobe.asked & l.asked & lit_[b];
-        if (!s.lighting || !asked) continue;
+        const Lanes asked = lobe.lights & l.asked;
+        if (!asked || !samples(s, of)) continue;
         s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
         Lanes failed = 0;
-        Lanes some = stages_.contribute(vertices_[b], lobe, s.diffuse, l, value_[0], shadow_, &failed);
-        for (failed &= lit_[b]; failed; failed &= failed - 1)
+        const float* kept = !s.lighting ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
+        Lanes some = stages_.contribute(vertices_[b], lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting,
+                                        value_[0], shadow_, &failed);
+        for (; failed; failed &= failed - 1)
             e_.notFinite(c, c.rays[b * kBlock + size_t(std::countr_zero(failed))], uint32_t(s.number));
-        for (some &= lit_[b]; some; some &= some - 1) {
+        for (; some; some &= some - 1) {
             const int lane = std::countr_zero(some);
             const size_t point = b * kBlock + size_t(lane);
             const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};

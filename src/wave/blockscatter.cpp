@@ -7,10 +7,13 @@
 namespace alpenglow::transport {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
-    if (count_ > 1) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_);
+    const bool chooses = count_ > 1 || !c.clear.empty();
+    if (chooses) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_);
     pairs_.resize(1);
     for (size_t b = 0; b < blocks_; ++b) {
-        stages_.pick(vertices_[b], lobesOf(b).data(), int(count_), count_ > 1 ? choices_[b].x : nullptr, next_);
+        stages_.pick(vertices_[b], lobesOf(b).data(), int(count_), chooses ? choices_[b].x : nullptr, next_);
+        for (size_t i = b * kBlock; i < std::min(points_, (b + 1) * kBlock) && !c.clear.empty(); ++i)
+            c.passes[i] = vertices_[b].passes[i % kBlock];
         drawDirections(b);
         if (next_.goes) sendRays(b, c, sched);
     }
@@ -106,7 +109,7 @@ void BlockVertices::sendRay(size_t b, int lane, BatchContext& c, Sched& sched) {
         extra.indirect = energy;
         r.extra = e_.newExtra(extra);
     }
-    const bool sampled = s.lighting && !single; // then an emitter that it meets counts with the weight of both
+    const bool sampled = s.lights && !single; // then an emitter that it meets counts with the weight of both
     r.lobePdf = sampled ? next_.pdf[lane] * s.lobes[b].chosen[lane] : -1;
     r.lobeOrigin = p.P;
     r.lobeBinding = sampled ? c.bindings[point] : -1;

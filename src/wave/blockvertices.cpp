@@ -11,6 +11,7 @@ Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) -
 } // namespace
 
 BlockVertices::BlockVertices(Engine& e) : e_(e), world_(e.world()), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+    std::fill_n(whole_, kBlock, 1.f);
     const Settings& s = world_.settings_;
     const bool rules = e.rules().pickOne && e.rules().lightsAtRequests && !s.localRoulette && !s.lightOnly && s.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
@@ -50,6 +51,7 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
         VertexBlock& v = vertices_[b];
         const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
         v.points = firstPoints(n);
+        v.through = !c.clear.empty();
         for (size_t k = 0; k < size_t(kBlock); ++k) {
             const size_t i = first + std::min(k, n - 1); // the last point again
             const ShadePoint& p = c.points[i];
@@ -63,6 +65,7 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
                 v.n[q][k] = p.surface.n[q];
                 v.I[q][k] = p.I[q];
                 v.weight[q][k] = r.weight[q];
+                v.clear[q][k] = v.through ? c.clear[i][q] : 0;
             }
             v.error[k] = p.surface.pError;
             v.bias[k] = s.bias;
@@ -106,12 +109,12 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.info = &c.bound->sites[size_t(number)];
     s.lanes = &lanes_.lobes[s.info->lobe->index];
     s.lighting = s.info->kind != SiteKind::Trace;
-    s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind
-             : s.lighting                      ? &kSpecularKind
-                                               : e_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label});
+    s.lights = s.lighting || s.info->rowLights >= 0;
+    if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;
+    else s.rays = e_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, false});
     s.diffuse = s.rays->type == RayType::Diffuse;
     s.lobes.resize(std::max(s.lobes.size(), blocks_));
-    for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = 0;
+    for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = 0;
     s.narrow.clear();
 }
 
@@ -153,7 +156,6 @@ bool BlockVertices::requestOf(Site& s, const EmitRecord& e, const BatchContext& 
 }
 
 void BlockVertices::prepare() {
-    lit_.assign(blocks_, 0);
     for (size_t k = 0; k < count_; ++k) {
         Site& s = sites_[k];
         for (size_t b = 0; b < blocks_; ++b) {
@@ -163,7 +165,7 @@ void BlockVertices::prepare() {
                 continue;
             }
             s.lanes->prepare(l.lobe[0], l.asked);
-            for (int i = 0; s.lighting && i < kBlock; ++i) lit_[b] |= Lanes((l.asked >> i & 1) && l.lobe[kRowDelta][i] == 0) << i;
+            for (int i = 0; s.lights && i < kBlock; ++i) l.lights |= Lanes((l.asked >> i & 1) && l.lobe[kRowDelta][i] == 0) << i;
         }
     }
 }
@@ -175,15 +177,17 @@ std::span<LobeBlock*> BlockVertices::lobesOf(size_t b) {
 }
 
 bool BlockVertices::select(const BatchContext& c) {
-    uint32_t lighting = 0;
-    for (size_t k = 0; k < count_; ++k) lighting |= uint32_t(sites_[k].lighting) << k;
-    std::vector<Lanes> scaled(blocks_);
+    SelectRules rules{0, world_.settings_.unbiased};
+    for (size_t k = 0; k < count_; ++k) rules.lighting |= uint32_t(sites_[k].lighting) << k;
+    std::vector<Selected> found(blocks_);
+    for (size_t b = 0; b < blocks_; ++b) {
+        found[b] = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);
+        if (found[b].failed & vertices_[b].points) return false;
+    }
     for (size_t b = 0; b < blocks_; ++b)
-        if (stages_.select(vertices_[b], lobesOf(b).data(), int(count_), lighting, {world_.settings_.unbiased}, &scaled[b]))
-            return false;
-    for (size_t b = 0; b < blocks_; ++b)
-        for (Lanes left = scaled[b]; left; left &= left - 1)
-            e_.tellScaled(world_.bindings_[size_t(c.bindings[b * kBlock + size_t(std::countr_zero(left))])], true);
+        for (const bool more : {true, false})
+            for (Lanes left = more ? found[b].bright : found[b].brightWithClear; left; left &= left - 1)
+                e_.tellScaled(world_.bindings_[size_t(c.bindings[b * kBlock + size_t(std::countr_zero(left))])], more);
     return true;
 }
 

@@ -23,7 +23,8 @@ private:
         const SiteInfo* info = nullptr;
         const LobeLanes* lanes = nullptr;
         const RayKind* rays = nullptr;
-        bool lighting = false; ///< a lighting shadeop: its lobe samples lights
+        bool lighting = false; ///< a lighting shadeop
+        bool lights = false;   ///< its lobe samples lights
         bool diffuse = false;  ///< of its rays
         std::vector<LobeBlock> lobes;
         std::vector<float> narrow; ///< of kernels with strips below a block: arguments, by block
@@ -47,6 +48,7 @@ private:
 
     // blocklights.cpp
     void light(BatchContext&);
+    static bool samples(const Site&, const BoundLight&);
     void sampleLight(const BoundLight&, BatchContext&);
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&);
     void takeValues(const BoundLight&, const BatchContext&);
@@ -80,6 +82,7 @@ private:
     std::vector<int32_t> queryAt_; ///< by point: in asked_
     ScatterBlock next_{};
     ShadowBlock shadow_{};
+    alignas(64) Row whole_; ///< 1
     alignas(64) float value_[kValueRows][kBlock] = {};
     alignas(64) float drawn_[kDrawnRows][kBlock] = {};
 };

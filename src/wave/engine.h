@@ -289,6 +289,7 @@ public:
     const Rules& rules() const { return rules_; }
     Diagnostics& diagnostics() { return diagnostics_; }
     void fillBatch(BatchContext&); // shadegroup.cpp
+    void tellClear(BatchContext&);
     void shadeGroup(const std::shared_ptr<BatchContext>&, Sched&);
     void takeDisplacement(BatchContext&); // displace.cpp
     /// Runs the displacement shader at the points of a batch (all of one binding); null where it waits for rays. displacement.cpp

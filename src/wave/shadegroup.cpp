@@ -204,14 +204,16 @@ void Engine::shadeGroup(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     const bool media = !world_->media_.empty();
     bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(),
                                      [&](int b) { return world_->bindings_[size_t(b)].atmosphere.shader != nullptr; });
-    if (!hazy && aside.empty() && isOpaque(*c->batch) && blockVertices_->takes(*c) && blockVertices_->run(*c, sched)) {
-        counters.inBlocks += uint64_t(n);
-        requestPairs(*c, std::vector<Color>(size_t(n), Color(1)), nullptr, sched, false);
-        if (!ambients_.empty()) gatherAmbient(*c);
-        flushShadows(sched);
-        c->opaque = true;
-        finishStrip(*c, 0, n, sched);
-        return;
+    if (!hazy && aside.empty() && blockVertices_->takes(*c)) {
+        c->opaque = isOpaque(*c->batch);
+        if (!c->opaque) tellClear(*c);
+        if (blockVertices_->run(*c, sched)) {
+            counters.inBlocks += uint64_t(n);
+            requestPairs(*c, std::vector<Color>(size_t(n), Color(1)), nullptr, sched, false);
+            if (!ambients_.empty()) gatherAmbient(*c);
+            flushShadows(sched);
+            return finishStrip(*c, 0, n, sched);
+        }
     }
     std::vector<Color> slope(n, Color(1));
     if (hazy && !photonTrace_) {
@@ -222,16 +224,19 @@ void Engine::shadeGroup(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     std::vector<AskedLobe> asked; // only where outputs share lobes
     requestPairs(*c, slope, aside.empty() ? nullptr : &asked, sched);
     if (photonTrace_) takeModels(*c, false);
-    if (world_->settings_.hider == Hider::Path) {
-        c->clear.resize(size_t(n));
-        for (int i = 0; i < n; ++i) c->clear[size_t(i)] = clearAt(*c, i);
-        c->passes.assign(size_t(n), 1.f);
-    }
+    if (world_->settings_.hider == Hider::Path) tellClear(*c);
     const auto rest = shareLight(*c, asked, aside, sched);
     gather(*c, sched);
     flushShadows(sched);
     finishStrip(*c, 0, n, sched);
     followAsides(rest, aside, sched);
+}
+
+/// What comes through at each point, which decides which ray goes on.
+void Engine::tellClear(BatchContext& c) {
+    c.clear.resize(c.points.size());
+    for (size_t i = 0; i < c.points.size(); ++i) c.clear[i] = clearAt(c, int(i));
+    c.passes.assign(c.points.size(), 1.f);
 }
 
 /// What the pairs of a kernel that did not wait ask for. `slope`: by point. `asked`: gets the lobes; may be null. lobesToo:

@@ -14,7 +14,9 @@ bool asksLobes(SiteKind k) {
 bool isPlainTrace(const SiteInfo& s) {
     const TraceSite& t = *s.trace;
     const RaySite& r = *s.rays;
-    const bool rays = r.fixed && r.bias < 0 && r.maxDistance < 0 && r.maxHit < 0 && r.base < 0 && s.rowLights < 0;
+    const bool rays = r.fixed && r.bias < 0 && r.maxDistance < 0 && r.maxHit < 0 && r.base < 0;
+    const shading::RaySet& set = r.set; // of shadow rays, too
+    if (s.rowLights >= 0 && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default)) return false;
     return rays && t.weight < 0 && t.distribution < 0 && !t.map && !t.sums && !t.onlyLights && !t.hemisphere && !t.apart &&
            !t.axis && !t.openness && t.fade.strength < 0 && t.records.call == 0;
 }
@@ -67,6 +69,7 @@ std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
         a.wo = s.rowWo;
         a.horizon = s.rowHorizon;
         a.samples = s.rays->samples;
+        a.lights = s.rowLights;
         if (s.lobe->distribution) bindDistribution(s, a);
         a.a = s.lobe->name == "slphong" ? s.rowExponent : s.rowCone;
         a.otherwise = s.lobe->name == "slphong" ? 1000 : 0;

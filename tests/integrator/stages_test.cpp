@@ -107,42 +107,66 @@ TEST(Stages, RequestsAreThoseOfOnePoint) {
     }
 }
 
+/// The chances at point i, and what they leave to the ray behind it: light comes through there.
+struct Chances {
+    std::vector<float> chosen;
+    float passes = 1, scale = 1;
+};
+Chances chancesOf(const VertexBlock& v, const std::vector<LobeBlock>& lobes, int i) {
+    Chances c;
+    const Color clear = v.through ? at(v.clear, i) : Color(0), left = absolute(at(v.weight, i));
+    const bool competes = v.bounces[i] > 0 && maxComponent(clear) > 0;
+    const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
+    Color sum(0);
+    int asked = 0;
+    for (size_t k = 0; k < lobes.size(); ++k) {
+        const bool asks = lobes[k].asked >> i & 1;
+        const Color w = absolute(at(lobes[k].weight, i));
+        c.chosen.push_back(asks ? worth(w) * lobes[k].lobe[kRowAlbedo][i] : 0);
+        if (asks && k % 2 == 0) sum += w * lobes[k].lobe[kRowAlbedo][i];
+        asked += asks;
+    }
+    for (int q = 0; q < 3; ++q)
+        if (sum[q] + clear[q] > 1 && sum[q] > 0) c.scale = std::min(c.scale, (1 - clear[q]) / sum[q]);
+    const float behind = competes ? worth(clear) : 0;
+    double total = behind;
+    for (size_t k = 0; k < lobes.size(); ++k) {
+        if (behind > 0 && k % 2 == 0) c.chosen[k] *= std::max(c.scale, 1 / 32.f);
+        total += c.chosen[k];
+    }
+    for (float& x : c.chosen) x = asked == 1 && behind == 0 ? x > 0 : total > 0 ? float(x / total) : 0;
+    if (behind > 0 && total > behind) c.passes = float(behind / total);
+    return c;
+}
+
 TEST(Stages, SelectsByWhatLobesGiveBack) {
     Draws d;
+    size_t passing = 0;
     for (int turn = 0; turn < 300; ++turn) {
-        const VertexBlock before = vertices(d);
-        const int count = 1 + turn % 4;
+        VertexBlock before = vertices(d);
+        before.through = turn % 3 == 0;
+        for (int i = 0; i < kBlock; ++i) put(before.clear, i, d.rarely() ? Color(0) : Color(d.one(), d.one(), d.one()));
         std::vector<LobeBlock> lobes;
-        for (int k = 0; k < count; ++k) lobes.push_back(lobe(d, false));
+        for (int k = 0; k < 1 + turn % 4; ++k) lobes.push_back(lobe(d, false));
         for (const Stages* s : widths()) {
             VertexBlock v = before;
             std::vector<LobeBlock> mine = lobes;
             std::vector<LobeBlock*> sites;
             for (LobeBlock& l : mine) sites.push_back(&l);
-            Lanes scaled = 0;
-            EXPECT_EQ(s->select(v, sites.data(), count, 0b0101, {}, &scaled), 0u);
+            const Selected found = s->select(v, sites.data(), int(sites.size()), {0b0101, false});
+            EXPECT_EQ(found.failed, 0u);
             for (int i = 0; i < kBlock; ++i) {
-                Color sum(0);
-                double total = 0;
-                std::vector<float> worth;
-                for (int k = 0; k < count; ++k) {
-                    const LobeBlock& l = lobes[size_t(k)];
-                    const Color w = absolute(at(l.weight, i));
-                    worth.push_back(l.asked >> i & 1 ? luminance(w) * l.lobe[kRowAlbedo][i] : 0);
-                    total += worth.back();
-                    if ((l.asked >> i & 1) && k % 2 == 0) sum += w * l.lobe[kRowAlbedo][i];
-                }
-                for (int k = 0; k < count; ++k)
-                    EXPECT_TRUE(same(mine[size_t(k)].chosen[i], total > 0 ? float(worth[size_t(k)] / total) : 0.f))
-                        << k << " of " << count;
-                float scale = 1;
-                for (int q = 0; q < 3; ++q)
-                    if (sum[q] > 1) scale = std::min(scale, 1 / sum[q]);
-                EXPECT_TRUE(same(v.energyScale[i], scale));
-                EXPECT_EQ(scaled >> i & 1, scale < .999f && (v.points >> i & 1));
+                const Chances c = chancesOf(before, lobes, i);
+                for (size_t k = 0; k < lobes.size(); ++k)
+                    EXPECT_TRUE(same(mine[k].chosen[i], c.chosen[k])) << k << " of " << lobes.size();
+                EXPECT_TRUE(same(v.energyScale[i], c.scale));
+                EXPECT_TRUE(same(v.passes[i], c.passes));
+                EXPECT_EQ((found.bright | found.brightWithClear) >> i & 1, c.scale < .999f && (v.points >> i & 1));
+                passing += c.passes < 1;
             }
         }
     }
+    EXPECT_GT(passing, 500u);
 }
 
 TEST(Stages, ShadowRaysStopBeforeTheEmitter) {
@@ -152,7 +176,8 @@ TEST(Stages, ShadowRaysStopBeforeTheEmitter) {
         LightBlock l{};
         l.emitter = turn % 2, l.met = turn % 3 == 0, l.asked = Lanes(d.random()) & 0xffffu;
         l.metDiffuse = Lanes(d.random()) & 0xffffu;
-        const LobeBlock b = lobe(d, false);
+        LobeBlock b = lobe(d, false);
+        b.lights = b.asked;
         alignas(64) float value[kValueRows][kBlock];
         for (int i = 0; i < kBlock; ++i) {
             put(l.w, i, normalize(d.vector(1)));
@@ -168,7 +193,7 @@ TEST(Stages, ShadowRaysStopBeforeTheEmitter) {
             Lanes failed = 1;
             LobeBlock chosen = b;
             for (float& c : chosen.chosen) c = .25f;
-            const Lanes some = s->contribute(v, chosen, true, l, value[0], to, &failed);
+            const Lanes some = s->contribute(v, chosen, l, l.keptDiffuse, l.metDiffuse, turn % 5 == 0, value[0], to, &failed);
             EXPECT_EQ(failed, 0u);
             for (int i = 0; i < kBlock; ++i) {
                 const Vec3 w = at(l.w, i), from = leave(v, i, w), way = at(l.end, i) - from;
@@ -176,7 +201,8 @@ TEST(Stages, ShadowRaysStopBeforeTheEmitter) {
                 EXPECT_TRUE(same(at(to.direction, i), l.emitter ? normalizeOr(way, w) : w));
                 EXPECT_TRUE(same(to.length[i], l.emitter ? length(way) * (1 - 1e-6f) : l.far[i]));
                 const float fcos = value[kRowFcos][i], pdf = value[kRowPdf][i];
-                EXPECT_EQ(some >> i & 1, (b.asked & l.asked) >> i & 1 && fcos > 0);
+                const bool ahead = turn % 5 || !l.emitter || dot(way, w) > 0;
+                EXPECT_EQ(some >> i & 1, (b.lights & l.asked) >> i & 1 && fcos > 0 && ahead);
                 if (!(some >> i & 1)) continue;
                 Color c = at(b.weight, i) * at(v.weight, i) * at(l.Cl, i);
                 c *= Color(value[0][i], value[1][i], value[2][i]) / fcos;
@@ -193,15 +219,18 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
     Draws d;
     const uint32_t keys[] = {7, 900, 13};
     for (int turn = 0; turn < 300; ++turn) {
-        const VertexBlock v = vertices(d);
+        VertexBlock v = vertices(d);
         const int count = 1 + turn % 3;
+        v.through = turn % 4 == 0;
+        for (float& p : v.passes) p = v.through && d.rarely() ? d.one() : 1;
         std::vector<LobeBlock> lobes;
         for (int k = 0; k < count; ++k) lobes.push_back(lobe(d, k == 1));
         alignas(64) float number[kBlock], drawn[kDrawnRows][kBlock], value[kValueRows][kBlock], dice[kBlock];
         for (int i = 0; i < kBlock; ++i) {
             float total = 0; // chances of the lobes of a point sum up to 1
             for (LobeBlock& l : lobes) total += l.chosen[i] = l.asked >> i & 1 ? d.one() : 0;
-            for (LobeBlock& l : lobes) l.chosen[i] = total > 0 ? l.chosen[i] / total : 0;
+            for (LobeBlock& l : lobes)
+                l.chosen[i] = total > 0 ? l.chosen[i] / total * (v.passes[i] < 1 ? 1 - v.passes[i] : 1) : 0;
             number[i] = d.one(), dice[i] = d.one();
             put(drawn, i, normalize(d.vector(1)));
             drawn[kRowDrawn][i] = !d.rarely();
@@ -212,7 +241,8 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
         for (const LobeBlock& l : lobes) sites.push_back(&l);
         for (const Stages* s : widths()) {
             ScatterBlock to{};
-            s->pick(v, sites.data(), count, number, to);
+            VertexBlock after = v;
+            s->pick(after, sites.data(), count, number, to);
             for (int k = 0; k < count; ++k) s->takeDirections(lobes[size_t(k)], k, k == 0, drawn[0], to);
             for (int k = 0; k < count; ++k) s->takeValues(lobes[size_t(k)], k, value[0], to);
             s->name(v, keys, to);
@@ -227,9 +257,10 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
                     const LobeBlock& l = lobes[size_t(k)];
                     if (!(l.asked & v.points & (1u << i)) || !(l.chosen[i] > 0)) continue;
                     sum += l.chosen[i];
-                    if (picked < 0 && (number[i] < sum || k == last || asked == 1)) picked = k;
+                    if (picked < 0 && (number[i] < sum || (!(v.passes[i] < 1) && (k == last || asked == 1)))) picked = k;
                 }
                 ASSERT_EQ(to.site[i], picked);
+                EXPECT_EQ(after.passes[i], v.passes[i] < 1 && picked >= 0 ? 0 : v.passes[i]);
                 if (picked < 0 || drawn[kRowDrawn][i] == 0) {
                     EXPECT_FALSE(to.goes >> i & 1);
                     continue;

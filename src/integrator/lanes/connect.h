@@ -20,27 +20,28 @@ static void aimShadowRays(const VertexBlock& v, const LightBlock& l, ShadowBlock
     }
 }
 
-static Lanes contributeLight(const VertexBlock& v, const LobeBlock& lobe, bool diffuse, const LightBlock& l, const float* value,
-                             ShadowBlock& to, Lanes* failed) {
+static Lanes contributeLight(const VertexBlock& v, const LobeBlock& lobe, const LightBlock& l, const float* kept, Lanes met,
+                             bool ahead, const float* value, ShadowBlock& to, Lanes* failed) {
     Lanes some = 0;
     *failed = 0;
-    const Lanes asked = lobe.asked & l.asked, met = diffuse ? l.metDiffuse : l.metSpecular;
+    const Lanes asked = lobe.lights & l.asked;
     for (int at = 0; at < kBlock; at += kW) {
-        const vm mask = maskFrom(asked, at);
         const vf fcos = load(value + kRowFcos * kBlock + at), pdf = load(value + kRowPdf * kBlock + at);
-        const vf kept = load((diffuse ? l.keptDiffuse : l.keptSpecular) + at), density = load(l.density + at);
+        const vf part = load(kept + at), density = load(l.density + at);
+        vm mask = maskFrom(asked, at);
+        *failed |= bitsFrom(mask & (fcos != fcos), at);
+        if (ahead && l.emitter) mask &= dot(load3(l.end, at) - load3(to.origin, at), load3(l.w, at)) > 0;
         V3 c = load3(lobe.weight, at) * load3(v.weight, at) * load3(l.Cl, at);
         c = c * (load3(value + kRowColour * kBlock + at, kBlock) / fcos);
         if (l.met) { // `other`: the density with which the lobe's own ray would have come here
             const vf chosen = load(lobe.chosen + at);
             const vf other = select(maskFrom(met, at) & (chosen > 0), pdf * chosen, vf(0));
-            c = c * (kept * fcos / density * misWeight(density, other));
+            c = c * (part * fcos / density * misWeight(density, other));
         } else {
-            c = c * (kept * vf(float(3.14159265358979323846)) * fcos / density);
+            c = c * (part * vf(float(3.14159265358979323846)) * fcos / density);
         }
         store3(to.light, at, c);
         some |= bitsFrom(mask & (fcos > 0), at);
-        *failed |= bitsFrom(mask & (fcos != fcos), at);
     }
     return some;
 }

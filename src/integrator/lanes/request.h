@@ -53,6 +53,7 @@ static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const fl
         store3(to.weight, at, w);
         giveDirections(v, a, rows, stride, at, to, usual);
         if (a.from >= 0) usual &= ~startsElsewhere(v, rows + a.from * stride, stride, at);
+        if (a.lights >= 0) usual &= load(rows + a.lights * stride + at) != 0;
         if (a.samples >= 0) usual &= load(rows + a.samples * stride + at) <= vf(kMostSamples);
         if (a.surface) giveSurface(a, rows, stride, at, to);
         vf x(a.otherwise);
@@ -68,56 +69,84 @@ static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const fl
     return odd;
 }
 
-/// What lobes give back of even light, and the factor that leaves at most what arrives.
-AL_INLINE vf energyScaleOf(const V3& reflected, const SelectRules& rules) {
+/// The factor that leaves of what lobes give back at most what arrives and does not come through.
+AL_INLINE vf energyScaleOf(const V3& reflected, const V3& clear, const SelectRules& rules) {
     vf scale(1);
     if (rules.unbiased) return scale;
-    const vf channels[] = {reflected.x, reflected.y, reflected.z};
-    for (const vf r : channels) {
-        const vf least = vf(1) / r;
-        scale = select((r > 1) & (least < scale), least, scale);
+    const vf given[] = {reflected.x, reflected.y, reflected.z}, through[] = {clear.x, clear.y, clear.z};
+    for (int k = 0; k < 3; ++k) {
+        const vf least = (vf(1) - through[k]) / given[k];
+        scale = select((given[k] + through[k] > 1) & (given[k] > 0) & (least < scale), least, scale);
     }
     return scale;
 }
 
-static Lanes selectLobes(VertexBlock& v, LobeBlock* const* sites, int count, uint32_t lighting, const SelectRules& rules,
-                         Lanes* scaled) {
-    Lanes bad = 0;
-    *scaled = 0;
-    for (int at = 0; at < kBlock; at += kW) {
-        V3 sum{vf(0), vf(0), vf(0)};
-        vd total(0);
-        for (int s = 0; s < count; ++s) {
-            LobeBlock& l = *sites[s];
-            const vm mask = maskFrom(l.asked, at);
-            const V3 weight = absolute(load3(l.weight, at));
-            const vf albedo = load(l.lobe[kRowAlbedo] + at), worth = luminance(weight) * albedo;
-            if (lighting >> s & 1) {
-                const V3 given = weight * albedo;
-                sum = choose(mask, sum + given, sum);
-            }
-            const vf chosen = select(mask & ~(worth < 0), worth, vf(0));
-            bad |= bitsFrom(mask & ~finite(worth), at);
-            total += __builtin_convertvector(chosen, vd);
+/// A ray that is to bring nothing of surfaces still brings the light of lights: its lobe keeps this part of its chance.
+inline constexpr float kLeastScale = 1 / 32.f;
+
+/// What a share of the throughput is worth: where rays behind the surface compete, by what the way here has left of each channel.
+AL_INLINE vf worthOf(const V3& share, const V3& left, vm competes) {
+    return select(competes, dot(share, left) / vf(3), luminance(share));
+}
+
+AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules, int at,
+                           Selected& found) {
+    V3 sum{vf(0), vf(0), vf(0)}, clear = sum;
+    vm competes(0);
+    const V3 left = absolute(load3(v.weight, at));
+    if (v.through) {
+        clear = load3(v.clear, at);
+        competes = (loadInt(v.bounces + at) > 0) & (maxComponent(clear) > 0);
+    }
+    vi lobes(0);
+    for (int s = 0; s < count; ++s) {
+        LobeBlock& l = *sites[s];
+        const vm mask = maskFrom(l.asked, at);
+        const V3 weight = absolute(load3(l.weight, at));
+        const vf albedo = load(l.lobe[kRowAlbedo] + at), worth = worthOf(weight, left, competes) * albedo;
+        if (rules.lighting >> s & 1) sum = choose(mask, sum + weight * albedo, sum);
+        found.failed |= bitsFrom(mask & ~finite(worth), at);
+        store(l.chosen + at, select(mask & ~(worth < 0), worth, vf(0)));
+        lobes -= mask;
+    }
+    const vf scale = energyScaleOf(sum, clear, rules);
+    store(v.energyScale + at, scale);
+    const vm more = maxComponent(sum) > 1;
+    found.bright |= bitsFrom((scale < vf(.999f)) & more, at) & v.points;
+    found.brightWithClear |= bitsFrom((scale < vf(.999f)) & ~more, at) & v.points;
+    const vf behind = v.through ? select(competes, worthOf(clear, left, competes), vf(0)) : vf(0);
+    vd total = __builtin_convertvector(behind, vd);
+    for (int s = 0; s < count; ++s) {
+        LobeBlock& l = *sites[s];
+        vf chosen = load(l.chosen + at);
+        if (v.through && (rules.lighting >> s & 1)) {
+            const vf least = select(scale < vf(kLeastScale), vf(kLeastScale), scale);
+            chosen = select(behind > 0, chosen * least, chosen);
             store(l.chosen + at, chosen);
         }
-        for (int s = 0; s < count; ++s) {
-            LobeBlock& l = *sites[s];
-            const vf chosen = load(l.chosen + at);
-            if (count == 1) {
-                store(l.chosen + at, select(chosen > 0, vf(1), vf(0)));
-                continue;
-            }
-            const vd c = __builtin_convertvector(chosen, vd);
-            const vf share = __builtin_convertvector(c / total, vf);
-            const vm alone = __builtin_convertvector(total == c, vi), none = __builtin_convertvector(~(total > 0), vi);
-            store(l.chosen + at, select(none, vf(0), select(alone, vf(1), share)));
-        }
-        const vf scale = energyScaleOf(sum, rules);
-        store(v.energyScale + at, scale);
-        *scaled |= bitsFrom(scale < vf(.999f), at) & v.points;
+        total += __builtin_convertvector(chosen, vd);
     }
-    return bad;
+    for (int s = 0; s < count; ++s) {
+        LobeBlock& l = *sites[s];
+        const vf chosen = load(l.chosen + at);
+        const vm alone = (lobes == 1) & (behind == 0);
+        vf share = select(chosen > 0, vf(1), vf(0));
+        if (count > 1 || v.through) {
+            const vd c = __builtin_convertvector(chosen, vd);
+            const vm whole = __builtin_convertvector(total == c, vi), none = __builtin_convertvector(~(total > 0), vi);
+            share = select(alone, share, select(none, vf(0), select(whole, vf(1), __builtin_convertvector(c / total, vf))));
+        }
+        store(l.chosen + at, share);
+    }
+    const vd passes = __builtin_convertvector(behind, vd) / total;
+    const vm some = (behind > 0) & __builtin_convertvector(total > __builtin_convertvector(behind, vd), vi);
+    store(v.passes + at, v.through ? select(some, __builtin_convertvector(passes, vf), vf(1)) : vf(1));
+}
+
+static Selected selectLobes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules) {
+    Selected found;
+    for (int at = 0; at < kBlock; at += kW) selectLanes(v, sites, count, rules, at, found);
+    return found;
 }
 
 } // namespace alpenglow::transport::AL_NAMESPACE

@@ -4,7 +4,7 @@
 
 namespace alpenglow::transport::AL_NAMESPACE {
 
-static void pickLobe(const VertexBlock& v, const LobeBlock* const* sites, int count, const float* number, ScatterBlock& to) {
+static void pickLobe(VertexBlock& v, const LobeBlock* const* sites, int count, const float* number, ScatterBlock& to) {
     to.goes = to.single = 0;
     for (int at = 0; at < kBlock; at += kW) {
         vi last(-1), site(-1), lobes(0);
@@ -13,20 +13,22 @@ static void pickLobe(const VertexBlock& v, const LobeBlock* const* sites, int co
             last = mask ? vi(s) : last;
             lobes -= mask;
         }
-        const vf u = count > 1 ? load(number + at) : vf(0);
+        const vf passes = load(v.passes + at), u = count > 1 || v.through ? load(number + at) : vf(0);
+        const vm mayPass = passes < 1; // then lobes have the rest of the chance
         vf sum(0), scale(1);
         vm taken(0);
         for (int s = 0; s < count; ++s) {
             const vf chosen = load(sites[s]->chosen + at);
             const vm mask = maskFrom(sites[s]->asked & v.points, at) & (chosen > 0);
             sum = select(mask, sum + chosen, sum);
-            const vm takes = mask & ~taken & (~(u >= sum) | (last == s) | (lobes == 1));
+            const vm takes = mask & ~taken & (~(u >= sum) | (~mayPass & ((last == s) | (lobes == 1))));
             taken |= takes;
             site = takes ? vi(s) : site;
             scale = select(takes, vf(1) / chosen, scale);
         }
         store(to.site + at, site);
         store(to.scale + at, scale);
+        store(v.passes + at, select(mayPass & taken, vf(0), passes));
     }
 }
 

@@ -208,8 +208,8 @@ public:
     /// Takes from `out`, by ray, what the media leave of light.
     void dim(std::span<const MediumPart>, std::span<const ShadowRay>, std::span<Color> out);
     // manylights.cpp
-    /// Probability that a light is among those that are sampled at a point of the binding at `at`.
-    float chanceOf(int light, int binding, const Vec3& at) const;
+    /// Probability that a light is among those that are sampled at a point of the binding at `at`, after so many bounces.
+    float chanceOf(int light, int binding, const Vec3& at, int bounces) const;
     // raysets.cpp
     /// For one call. f: a row of its arguments; from: the shape whose shader calls, or null, whose Attribute "grouping"
     /// "tracesubset" holds where no subset is given. Also tells the type and the label of the rays.

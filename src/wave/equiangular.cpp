@@ -42,7 +42,7 @@ float MediumFlights::shareOfDistance(const Engine& e, const FreeFlight& f, const
     const auto q = Equiangular::of(f, l, how);
     if (!q || !e.rules().lightsAtRequests) return 1;
     if (how == MediumSampling::Equiangular) return 0;
-    const float chance = e.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f));
+    const float chance = e.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f), 0);
     return misWeight(float(f.density(f.t)), float(q->density(f.t) * chance));
 }
 

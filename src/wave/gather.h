@@ -97,6 +97,7 @@ private:
 
     // lightpoints.cpp
     void light(Sched&);
+    bool choose(const WorldImpl::LightList&, const std::vector<int>& on, std::vector<int>& touched);
     void lightOf(const BoundLight&, std::span<const std::pair<int, float>> chosen, const BoundKernel* shared, Sched&);
     void askWanted(const BoundKernel* shared, Sched&);
     bool samples(const LobeVertex&, const BoundLight&) const;

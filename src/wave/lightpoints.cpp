@@ -73,35 +73,45 @@ void Gather::lightOf(const BoundLight& light, std::span<const std::pair<int, flo
     }
 }
 
-void Gather::light(Sched& sched) {
-    const SurfaceBinding& binding = world_.bindings_[size_t(c_->bindings[0])]; // the batch shares its list
-    const WorldImpl::LightList& list = world_.lightLists_[size_t(binding.lightList)];
-    const std::vector<int>& on = world_.sampledOf(list);
-    const LightChooser& chooser = world_.chooserOf(list);
-    const bool many = rules_.pickOne && !chooser.empty();
-    std::vector<int>& touched = chosen_; // places in the list, of lights that some point asks for
+/// Fills chosenAt_: of each light that points ask for these points, or, where all ask for all, of the first entry. True: by light.
+bool Gather::choose(const WorldImpl::LightList& list, const std::vector<int>& on, std::vector<int>& touched) {
+    const bool many = rules_.pickOne && !(world_.chooserOf(list).empty() && list.deeper.empty());
     touched.clear();
-    if (many) {
-        chosenAt_.resize(std::max(chosenAt_.size(), on.size()));
-        LightChooser::Chosen chosen;
-        for (size_t point = 0; point < c_->points.size(); ++point) {
-            if (begin_[point] == begin_[point + 1]) continue;
-            const float u = e_.random(c_->rays[point]).one(lightVertex(point), kChooseLight, 0);
-            chooser.choose(c_->points[point].P, u, chosen);
-            for (auto [i, chance] : chosen) {
-                if (list.ofAll && !list.lights.contains(on[size_t(i)])) continue;
-                if (chosenAt_[size_t(i)].empty()) touched.push_back(i);
-                chosenAt_[size_t(i)].push_back({int(point), chance});
-            }
-        }
-        std::sort(touched.begin(), touched.end());
-    } else {
+    if (!many) {
         chosenAt_.resize(std::max<size_t>(chosenAt_.size(), 1));
         for (size_t point = 0; point < c_->points.size(); ++point)
             if (begin_[point] != begin_[point + 1]) chosenAt_[0].push_back({int(point), 1.f});
         for (size_t k = 0; k < on.size() && !chosenAt_[0].empty(); ++k)
             if (!list.ofAll || list.lights.contains(on[k])) touched.push_back(int(k));
+        return false;
     }
+    chosenAt_.resize(std::max(chosenAt_.size(), on.size()));
+    LightChooser::Chosen chosen;
+    for (size_t point = 0; point < c_->points.size(); ++point) {
+        if (begin_[point] == begin_[point + 1]) continue;
+        const LightChooser& chooser = world_.chooserAt(list, c_->rays[point].bounces);
+        if (chooser.empty()) {
+            chosen.clear();
+            for (size_t k = 0; k < on.size(); ++k) chosen.push_back({int(k), 1.f});
+        } else {
+            chooser.choose(c_->points[point].P, e_.random(c_->rays[point]).one(lightVertex(point), kChooseLight, 0), chosen);
+        }
+        for (auto [i, chance] : chosen) {
+            if (list.ofAll && !list.lights.contains(on[size_t(i)])) continue;
+            if (chosenAt_[size_t(i)].empty()) touched.push_back(i);
+            chosenAt_[size_t(i)].push_back({int(point), chance});
+        }
+    }
+    std::sort(touched.begin(), touched.end());
+    return true;
+}
+
+void Gather::light(Sched& sched) {
+    const SurfaceBinding& binding = world_.bindings_[size_t(c_->bindings[0])]; // the batch shares its list
+    const WorldImpl::LightList& list = world_.lightLists_[size_t(binding.lightList)];
+    const std::vector<int>& on = world_.sampledOf(list);
+    std::vector<int>& touched = chosen_; // places in the list, of lights that some point asks for
+    const bool many = choose(list, on, touched);
     // Lights of one program that share a kernel call come together (WorldImpl::lightGroups_), the others one by one.
     std::vector<std::vector<int>>& grouped = ofGroup_; // places in the list
     grouped.resize(world_.lightGroups_.size());
@@ -246,9 +256,9 @@ void Gather::askLights(const BoundKernel* shared) {
             e_.answers().keepChannels(*c_, light, q.point[k], values.data() + k * width);
 }
 
-float Engine::chanceOf(int light, int binding, const Vec3& from) const {
+float Engine::chanceOf(int light, int binding, const Vec3& from, int bounces) const {
     const WorldImpl::LightList& list = world_->lightLists_[size_t(world_->bindings_[size_t(binding)].lightList)];
-    const LightChooser& chooser = world_->chooserOf(list);
+    const LightChooser& chooser = world_->chooserAt(list, bounces);
     if (chooser.empty()) return 1;
     const std::vector<int>& on = world_->sampledOf(list);
     const auto at = std::lower_bound(on.begin(), on.end(), light);

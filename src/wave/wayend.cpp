@@ -108,7 +108,7 @@ void Engine::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
                 float weight = weighed ? value[i].kept(r.type()) : 1.f;
                 if (l.sky && r.lobePdf >= 0) { // its lobe has sampled this sky
                     float pdf = l.sky->pdf(r.dir);
-                    if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(number, r.lobeBinding, r.lobeOrigin);
+                    if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(number, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                     weight *= world_->settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
                 }
                 const Color light = r.weight * value[i].Cl * weight;
@@ -162,7 +162,7 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             float weight = 1;
             if (r.lobePdf >= 0 && light.emitter && light.importance) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
-                if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin);
+                if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             if (const FreeFlight& flown = extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)

@@ -232,16 +232,21 @@ public:
         /// Those that get samples, in order. With `ofAll`: not listed, they are those of allSampled_ that are in `lights`.
         std::vector<int> sampled;
         LightChooser chooser; ///< over `sampled`; empty where each of them is sampled at every vertex
+        LightChooser deeper;  ///< the same behind the first vertex of a path, where fewer are sampled; empty where `chooser` is
         bool ofAll = false;
     };
     std::vector<LightList> lightLists_; ///< by SurfaceBinding::lightList
     /// Where lists would take too much room together, the later ones share one list and its chooser.
     std::vector<int> allSampled_;
-    LightChooser allChooser_;
+    LightChooser allChooser_, allDeeper_;
     size_t listed_ = 0; ///< numbers in LightList::sampled of all lists
     bool getsSamples(const BoundLight&) const;
     const std::vector<int>& sampledOf(const LightList& l) const { return l.ofAll ? allSampled_ : l.sampled; }
     const LightChooser& chooserOf(const LightList& l) const { return l.ofAll ? allChooser_ : l.chooser; }
+    /// What chooses lights at a vertex after so many bounces; empty: each is sampled.
+    const LightChooser& chooserAt(const LightList& l, int bounces) const {
+        return bounces == 0 ? chooserOf(l) : l.ofAll ? allDeeper_ : l.deeper;
+    }
     std::vector<int> skies_; ///< what rays see that meet nothing: lights of kind Environment and Ambient
     /// Finds where skies are bright (BoundLight::sky). Before surfaces are bound.
     void tabulateSkies(Evaluator&);

@@ -1,5 +1,5 @@
-// Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many, by
-// LightChooser. What a chosen light gives is divided by the probability of the choice: the mean stays the same.
+// Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many at the first
+// vertex of a path and limits::kLightsSampledDeeper behind it, by LightChooser. What a chosen light gives is divided by the probability of the choice: the mean stays the same.
 #include "world/impl.h"
 
 namespace alpenglow::transport {
@@ -65,7 +65,7 @@ void WorldImpl::makeChoosers(Diagnostics& d) {
         if (hasLobes(b)) asks[size_t(b.lightList)] = 1;
     for (const Medium& m : media_)
         if (m.homogeneous) asks[size_t(bindings_[size_t(m.binding)].lightList)] = 1;
-    const auto chooserOver = [&](const std::vector<int>& lights) {
+    const auto chooserOver = [&](const std::vector<int>& lights, int wanted) {
         std::vector<LightBound> bounds;
         for (int i : lights) {
             const BoundLight& l = lights_[size_t(i)];
@@ -73,16 +73,20 @@ void WorldImpl::makeChoosers(Diagnostics& d) {
                               l.kind == LightKind::Distant || l.kind == LightKind::Environment,
                               settings_.evenLights ? Cone() : l.front});
         }
-        return LightChooser(bounds, limits::kLightsSampled);
+        return LightChooser(bounds, wanted);
     };
+    // Grain shows at the first vertex of a path: behind it fewer do (docs/noise.md). In media rays go by one choice everywhere.
+    const int deeper = media_.empty() ? limits::kLightsSampledDeeper : limits::kLightsSampled;
     bool many = false;
     for (size_t i = 0; i < lightLists_.size(); ++i)
         if (LightList& list = lightLists_[i]; asks[i] && !list.ofAll && list.sampled.size() > size_t(limits::kLightsSampled)) {
-            list.chooser = chooserOver(list.sampled);
+            list.chooser = chooserOver(list.sampled, limits::kLightsSampled);
+            list.deeper = chooserOver(list.sampled, deeper);
             many = true;
         }
     if (allSampled_.size() > size_t(limits::kLightsSampled)) {
-        allChooser_ = chooserOver(allSampled_);
+        allChooser_ = chooserOver(allSampled_, limits::kLightsSampled);
+        allDeeper_ = chooserOver(allSampled_, deeper);
         many = true;
     }
     if (many && settings_.hider == Hider::Path) groupLights(d);

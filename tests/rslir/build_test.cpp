@@ -114,6 +114,42 @@ TEST(Build, DerivativeOrders) {
     EXPECT_NE(ray.messages.find("trace()"), std::string::npos) << ray.messages;
 }
 
+int zeroDivisions(const Compiled& c) {
+    int n = 0;
+    for (size_t at = 0; (at = c.messages.find("division by 0", at)) != std::string::npos; ++at) ++n;
+    return n;
+}
+
+TEST(Build, DivisionByAConstantZeroIsToldAtItsPlace) {
+    const Compiled plain = compile("surface s() {\n  float w = 2 - 2;\n  Ci = Cs / w;\n}");
+    EXPECT_EQ(zeroDivisions(plain), 1) << plain.messages;
+    EXPECT_NE(plain.messages.find("test.sl:3:11: warning"), std::string::npos) << plain.messages;
+    const Compiled constant = compile("surface s() { float w = 2; Ci = w / (w - 2); }");
+    EXPECT_EQ(zeroDivisions(constant), 1) << constant.messages;
+    EXPECT_EQ(constant.count(Op::Div), 0) << constant.text(); // folded all the same
+    const Compiled assigned = compile("float half(float x; float y) { float r = x; r /= y; return r; }\n"
+                                      "surface s() { Ci = half(s, 0); Oi = half(t, 2); }");
+    EXPECT_EQ(zeroDivisions(assigned), 1) << assigned.messages;
+    EXPECT_NE(assigned.messages.find("test.sl:1:47: warning"), std::string::npos) << assigned.messages;
+    const Compiled turn = compile("surface s() { float i, x = 0; for (i = 0; i < 3; i += 1) x += s / i; Ci = x; }");
+    EXPECT_EQ(zeroDivisions(turn), 1) << turn.messages;
+    const Compiled component = compile("surface s() { Ci = Cs / color(1, 0, 1); }");
+    EXPECT_NE(component.messages.find("component of 0"), std::string::npos) << component.messages;
+}
+
+TEST(Build, DivisionByZeroThatIsNeverReachedIsNotTold) {
+    for (const char* body : {"float w = 0; Ci = w == 0 ? Cs : Cs / w;",                     // the other side is taken
+                             "float w = 0; float x = s / w; Ci = Cs;",                      // nobody reads it
+                             "float w = 0; if (w > 0 && s > 0.5) Ci = Cs / w;",             // never
+                             "float i; for (i = 0; i < 3; i += 1) if (i > 0) Ci += s / i;", // not in that turn
+                             "Ci = smoothstep(0.5, 0.5, s);",                               // ours
+                             "Ci = Cs / t;"})
+        EXPECT_EQ(compile(std::string("surface s() { ") + body + " }").messages, "") << body;
+    KernelOptions plain; // without folding it is not known what is reached
+    plain.optimize = 0;
+    EXPECT_EQ(compile("surface s() { float w = 0; if (w > 0) Ci = Cs / w; }", plain).messages, "");
+}
+
 TEST(Build, UnboundedInliningIsAnError) {
     std::string s = "float f0(float x) { return random() + x; }\n";
     for (int n = 1; n < 24; ++n)

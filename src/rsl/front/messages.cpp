@@ -223,6 +223,7 @@ constexpr MessageKind kKinds[] = {
     // code generation
     {"zero-derivative", "the derivative of * is taken as zero"},
     {"zero-derivative", "a derivative of third order is taken as zero"},
+    {"zero-division", "a division by *, which gives 0*"},
     {"spline-points", "a spline needs at least four control points*"},
     {"not-constant", "* that is known when the shader is compiled; *"},
     {"not-constant", "* must be known when the shader is compiled; *"},

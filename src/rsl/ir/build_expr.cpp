@@ -1,5 +1,6 @@
 // Expressions: operators, conversions, spaces, arrays.
 #include "rsl/ir/builder.h"
+#include "rsl/passes/zerodivision.h"
 #include <algorithm>
 #include <cctype>
 
@@ -91,7 +92,8 @@ Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
     case ExprOp::Mul:
         return k == Kind::Matrix ? multiply(a, b) : emit(Op::Mul, k, {a, b});
     case ExprOp::Div:
-        return k == Kind::Matrix ? multiply(a, runtime1("al_inverse", {b}, Kind::Matrix)) : emit(Op::Div, k, {a, b});
+        return k == Kind::Matrix ? multiply(a, runtime1("al_inverse", {b}, Kind::Matrix))
+                                 : emit(Op::Div, k, {a, b}, ownText_ ? 0 : kWrittenDivision);
     case ExprOp::Dot:
         return dot(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
     case ExprOp::Cross:

@@ -1,4 +1,5 @@
 #include "rsl/passes/fold.h"
+#include "rsl/passes/zerodivision.h"
 #include <cmath>
 #include <cstring>
 
@@ -100,6 +101,7 @@ Inst* foldConstants(Leaves& leaves, const Inst* i) {
 
 Inst* simplify(Kernel&, Leaves& leaves, Inst* i) {
     const auto a = [&](size_t n) { return i->args[n]; };
+    if (waitsForWarning(*i)) return nullptr;
     bool allConst = !i->args.empty();
     for (const Inst* x : i->args) allConst = allConst && x->op == Op::Const;
     if (allConst && i->regions.empty())

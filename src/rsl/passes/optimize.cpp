@@ -18,6 +18,7 @@
 #include "rsl/passes/steadybakes.h"
 #include "rsl/passes/unroll.h"
 #include "rsl/passes/unused_results.h"
+#include "rsl/passes/zerodivision.h"
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -114,6 +115,7 @@ std::vector<OutputLight> lightOfOutputs(Kernel& k, const KernelOptions& options)
 
 void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics) {
     simplifyAll(k, options);
+    if (options.optimize > 0 && warnOfZeroDivisions(k, diagnostics) > 0) clean(k);
     orderDerivatives(k, diagnostics); // warns of derivatives of rays while the rays are still there
     if (options.differences) {
         takeDifferences(k);

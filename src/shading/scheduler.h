@@ -12,6 +12,8 @@
 #include "base/limits.h"
 #include "base/stopflag.h"
 #include "base/vec.h"
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -77,7 +79,11 @@ public:
     /// The same for a payload that is made from another and changed in place: good until the next task is spawned.
     Task& spawn(int depth, TargetId target, const Payload& from = {}) {
         ++open_[size_t(target)].pending;
-        if (size_t(depth) >= queues_.size()) queues_.resize(size_t(depth) + 1);
+        if (size_t(depth) >= queues_.size()) {
+            queues_.resize(size_t(depth) + 1);
+            filled_.resize(size_t(depth) / 64 + 1);
+        }
+        filled_[size_t(depth) / 64] |= uint64_t(1) << depth % 64;
         ++queued_;
         auto& chunks = queues_[size_t(depth)];
         if (chunks.empty() || chunks.back().size() >= size_t(sliceRays_)) chunks.push_back(newChunk());
@@ -138,7 +144,7 @@ public:
                 abandon();
                 return false;
             }
-            int rayDepth = queued_ > 0 ? deepestQueue() : -1;
+            int rayDepth = queued_ > 0 ? deepestBelow(queues_.size()) : -1;
             if (!ready_.empty() && ready_.rbegin()->first >= rayDepth) {
                 // All that are ready at this depth go on together, so that what they ask for next is one stream again.
                 for (size_t n = ready_.rbegin()->second.size(); n > 0; --n) resumeOne();
@@ -261,8 +267,9 @@ private:
     /// The deepest tasks. Where no strip waits, a slice that would not be half full gets less deep ones, too.
     void takeSlice(std::vector<Task>& slice, size_t most) {
         slice.clear();
-        for (auto from = queues_.rbegin(); from != queues_.rend() && slice.size() * 2 < most; ++from) {
-            auto& chunks = *from;
+        for (int depth = deepestBelow(queues_.size()); depth >= 0 && slice.size() * 2 < most;
+             depth = deepestBelow(size_t(depth))) {
+            auto& chunks = queues_[size_t(depth)];
             if (!slice.empty() && frameBytes_ > 0) break;
             if (slice.empty() && chunks.size() > 1 && chunks[chunks.size() - 2].size() <= most) // all but the last are full
                 std::swap(chunks[chunks.size() - 2], chunks.back());
@@ -281,12 +288,16 @@ private:
                 chunks.pop_back();
                 if (slice.size() * 2 >= most) break;
             }
+            if (chunks.empty()) filled_[size_t(depth) / 64] &= ~(uint64_t(1) << depth % 64);
         }
     }
-    int deepestQueue() const {
-        for (size_t depth = queues_.size(); depth-- > 0;)
-            if (!queues_[depth].empty()) return int(depth);
-        return -1;
+    /// The deepest queue below `depth` that is not empty; -1: none. A path of ten thousand bounces leaves as many empty ones
+    /// behind.
+    int deepestBelow(size_t depth) const {
+        size_t word = std::min(depth / 64, filled_.size());
+        uint64_t bits = word < filled_.size() ? filled_[word] & ((uint64_t(1) << depth % 64) - 1) : 0;
+        while (bits == 0 && word > 0) bits = filled_[--word];
+        return bits != 0 ? int(word * 64 + 63) - std::countl_zero(bits) : -1;
     }
     void resumeOne() {
         auto last = std::prev(ready_.end()); // strips that become ready meanwhile join behind, at most at this depth
@@ -312,6 +323,7 @@ private:
             for (auto& chunk : chunks) freeChunk(std::move(chunk));
             chunks.clear();
         }
+        std::fill(filled_.begin(), filled_.end(), 0);
         queued_ = 0;
     }
     void abandon() {
@@ -340,6 +352,7 @@ private:
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;
     std::vector<std::vector<std::vector<Task>>> queues_; ///< by depth, in chunks of a slice
+    std::vector<uint64_t> filled_;                       ///< a bit for each depth: whether its queue holds tasks
     std::vector<std::vector<Task>> freeChunks_;
     size_t queued_ = 0;
     std::map<int, std::deque<int>> ready_;

@@ -7,10 +7,28 @@ namespace alpenglow::transport {
 
 namespace {
 
+/// Mean free paths of what is scattered (similarity: (1 - g) of it turns aside) from which hardly any path comes out again.
+constexpr double kDeepInside = 300;
+/// As often a path is scattered so deep inside for certain; at twice the depth half as often.
+constexpr double kScatteredForCertain = 64;
 constexpr int kLeaksSaid = 16; ///< ways out of a medium that has no end there: rounding at an edge makes a few
 
 /// (1 - exp(-x)) / x.
 double meanLeft(double x) { return x < 1e-5 ? 1 - 0.5 * x : (1 - exact::exp(-x)) / x; }
+
+/// The chance that a path of that weight is scattered again. In what absorbs nothing nothing ends it but the way out, which is
+/// too far deep inside: a path is then scattered k times with a chance in proportion to 1 / k, as light that comes back or meets
+/// a lamp after k times falls by k^-1.5, so that both their number and the variance stay bounded.
+double chanceDeepInside(const Homogeneous& h, const Color& weight, float toSurface, int scattered) {
+    const Color sigma = h.extinction(), left = absolute(weight);
+    double least = INFINITY;
+    for (int k = 0; k < 3; ++k)
+        if (left[k] > 1e-3f * maxComponent(left)) least = std::min(least, double(sigma[k]));
+    const double deep = least * toSurface * (1 - std::max(0.f, h.anisotropy));
+    if (!(deep > kDeepInside)) return 1;
+    const double certain = std::max(1., kScatteredForCertain * kDeepInside / deep);
+    return scattered <= certain ? 1 : 1 - 1. / scattered;
+}
 
 void addOpacity(Engine& e, const PathRay& r, const Color& c) { e.results[size_t(r.sample->path)]->opacity += r.weight * c; }
 
@@ -189,6 +207,14 @@ void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<cons
                                       : 0;
         r.vertex = childVertex(f.ray->vertex, kFlight, 0);
         r.counts = r.first = false;
+        if (e.rules().roulette) {
+            const double q = chanceDeepInside(*m.homogeneous, r.weight, f.length, r.scattered + 1);
+            if (q < 1 && e.random(r).one(childVertex(r.vertex, kFlight, 7), kRoulette, 0) >= q) {
+                c->rays.pop_back();
+                continue;
+            }
+            r.weight = r.weight / float(q);
+        }
         c->targets.push_back(f.target);
         c->bindings.push_back(m.binding);
         c->flown.push_back(x.way);

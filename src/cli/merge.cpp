@@ -20,7 +20,11 @@ void addMerge(CLI::App& app, int* status) {
     c->add_option("parts", a->parts, "Pictures with their .part files beside them, or .part files, in any order")
         ->type_name("FILE")
         ->required();
-    c->add_option("-o", a->output, "The picture; without it, those that the scene's displays name")->type_name("FILE");
+    c->add_option(
+         "-o", a->output,
+         "The picture, beside which further displays of other outputs stay as the scene says; without it, those that the scene's "
+         "displays name")
+        ->type_name("FILE");
     c->add_option("--expect", a->expect, "Samples that the parts must hold together: missing or further ones are errors")
         ->type_name("A:B");
     c->add_flag("--allow-write", a->settings.allowWrite, "Let display names lead outside the current folder");

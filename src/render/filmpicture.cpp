@@ -1,6 +1,7 @@
 #include "render/filmpicture.h"
 #include "base/limits.h"
 #include "base/realpath.h"
+#include "display/driver.h"
 #include "render/imagertext.h"
 #include "render/noise.h"
 #include "render/partfile.h"
@@ -111,6 +112,21 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     return writeOutputs(plan, facts, pixels, imager, allowWrite, diags);
 }
 
+/// Puts one picture in the place of those that -o replaces, as displaysOf() has it.
+static void nameOutput(OutputPlan& plan, const std::string& output, Diagnostics& diags) {
+    std::vector<OutputSpec> kept{singleOutput(output, plan.basis, diags)};
+    for (OutputSpec& s : plan.pictures) {
+        const display::DriverDescriptor* driver = display::findDriver(s.type);
+        const bool writes = !driver || driver->writes, first = &s == &plan.pictures.front();
+        const auto all = [&](auto is) { return std::all_of(s.variables.begin(), s.variables.end(), is); };
+        using Source = OutputVariable::Source;
+        const bool plain = all([](const auto& v) { return v.source == Source::Ci || v.source == Source::Alpha; });
+        const bool map = all([](const auto& v) { return v.source == Source::Z; });
+        if (writes && (map || (!first && (s.userFile || !plain)))) kept.push_back(std::move(s));
+    }
+    plan.pictures = std::move(kept);
+}
+
 MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, const MergeSettings& settings,
                           Diagnostics& diags) {
     std::vector<std::string> files;
@@ -130,7 +146,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
     }
     const bool gaps = reportGaps(*film, settings, diags);
     if (!output.empty()) {
-        plan->first.pictures.assign(1, singleOutput(output, plan->first.basis, diags));
+        nameOutput(plan->first, output, diags);
         plan->first.resolve(plan->first.engineWidths, diags);
     }
     Imager imager;

@@ -29,10 +29,10 @@ struct MergeSettings {
     std::optional<SampleRange> expect; ///< the samples that the parts must hold together, no fewer and no more
 };
 /// Adds the films of part files (pictures stand for their sidecars) and writes what one render of all their samples would have
-/// written: `output` (by the rules of -o), or the pictures the parts name when it is empty. The imager is that of the first part;
-/// one that cannot be run (its shader is gone) is an error, and the pictures are written without it. Samples that are missing are
-/// a warning, and an error when they were expected; the pictures are written with a part file beside them, so that the rest can
-/// be added.
+/// written: `output` and what -o leaves beside it, or the pictures the parts name when it is empty. The imager is that of the
+/// first part; one that cannot be run (its shader is gone) is an error, and the pictures are written without it. Samples that are
+/// missing are a warning, and an error when they were expected; the pictures are written with a part file beside them, so that
+/// the rest can be added.
 MergeResult mergePictures(const std::vector<std::string>& parts, const std::string& output, const MergeSettings&, Diagnostics&);
 
 } // namespace alpenglow::render

@@ -128,9 +128,9 @@ std::string pictureOptions(const RenderSettings& s) {
     return all;
 }
 
-/// A display that -o leaves: one behind the first whose file holds more than the picture. Parts hold what the one picture needs.
+/// A display that -o leaves: one behind the first whose file holds more than the picture.
 static bool isBeside(const scene::Display& d, const scene::Options& o, const RenderSettings& s) {
-    if (s.output.empty() || s.output == "-" || s.samples || s.part || &d == &o.displays.front()) return false;
+    if (s.output.empty() || &d == &o.displays.front()) return false;
     const display::DriverDescriptor* driver = display::findDriver(d.type);
     return (!driver || driver->writes) && d.mode != "rgb" && d.mode != "rgba" && d.mode != "a";
 }

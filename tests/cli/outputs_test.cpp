@@ -48,8 +48,23 @@ TEST_F(Outputs, OneNamedPictureLeavesOtherOutputs) {
     EXPECT_TRUE(has("o.exr") && has("n.exr")) << err;
     EXPECT_FALSE(has("f.exr") || has("b.png"));
     fs::remove(dir / "n.exr");
-    EXPECT_EQ(render("--samples 0:2 -o p.exr s.rib"), 0) << err; // a part: merge makes one picture of it
-    EXPECT_FALSE(has("n.exr"));
+    EXPECT_EQ(render("--spp 2 -q -o - s.rib"), 0) << err;
+    EXPECT_TRUE(has("n.exr") && !has("f.exr") && !has("b.png")) << err;
+}
+
+// So do parts, and what is merged of them.
+TEST_F(Outputs, PartsOfANamedPictureHaveOtherOutputs) {
+    scene("s.rib", "Display \"f.exr\" \"openexr\" \"rgba\"\nDisplay \"+n.exr\" \"openexr\" \"N\"\n"
+                   "Display \"+b.png\" \"png\" \"rgb\"\nHider \"path\"");
+    EXPECT_EQ(render("--spp 4 -o o.exr s.rib"), 0) << err;
+    fs::rename(dir / "n.exr", dir / "whole.exr");
+    EXPECT_EQ(render("--samples 0:2 -o p.exr s.rib"), 0) << err;
+    EXPECT_TRUE(has("n.exr")) << err;
+    EXPECT_EQ(render("--spp 4 --part 2/2 -o q.exr s.rib"), 0) << err;
+    EXPECT_EQ(go("merge -o m.exr p.exr q.exr"), 0) << err;
+    EXPECT_EQ(go("diff --tolerance 0 m.exr o.exr"), 0) << err;
+    EXPECT_EQ(go("diff --tolerance 0 n.exr whole.exr"), 0) << err;
+    EXPECT_FALSE(has("f.exr") || has("b.png"));
 }
 
 TEST_F(Outputs, DisplaysOfOneFileAreBothWritten) {

@@ -17,10 +17,10 @@ TEST(DeepMedium, PathsDeepInsideEndThoughNothingIsAbsorbed) {
     // A path could be scattered ten thousand times, whatever the numbers; a chance of 1 / k to be scattered k times makes 10 of
     // them, one of 64 / k makes 64 (1 + log(10000 / 64)).
     for (const auto& [sigma, most] : {std::pair{"2147483648", 30.}, {"1e5", 30.}, {"400", 450.}}) {
-        Scene s(world("LightSource \"pointlight\" 1 \"from\" [0 2 0]\n" +
-                      inside("\"color scattering\" " + "[" + std::string(sigma) + " " + sigma + " " + sigma + "]",
-                             "Sphere 3 -3 3 360\n")),
-                withShaders(Hider::Path));
+        Scene s(
+            world("LightSource \"pointlight\" 1 \"from\" [0 2 0]\n" +
+                  inside("\"color scattering\" [" + std::string(sigma) + " " + sigma + " " + sigma + "]", "Sphere 3 -3 3 360\n")),
+            withShaders(Hider::Path));
         Counters counted;
         s.estimate(rayTo({0, 0, 0}, {0, 0, 1}), 1000, &counted);
         EXPECT_LT(double(counted.diffuse) / 1000, most) << sigma;

@@ -39,9 +39,11 @@ bool noneBakes(Job& job, uint32_t shape, const std::vector<shading::GridPoint>& 
             numbers.push_back(int(i));
             ++n;
         }
+    transport::noteLightsOfBakes(*job.world);
     const bool whole = tracePoints(job, few, numbers, 1, pixel), none = !transport::bakedNow(*job.world);
+    const bool lit = transport::bakingLightsRan(*job.world, shape);
     transport::settleBakes(*job.world, false);
-    return whole && none;
+    return whole && none && lit;
 }
 
 } // namespace

@@ -48,15 +48,34 @@ std::vector<uint32_t> bakedShapes(const World& world) {
 bool bakesAllOrNone(const World& world, uint32_t shape) {
     const WorldImpl& w = implOf(world);
     const SurfaceBinding& b = w.bindings_[size_t(w.bindingOf_[shape])];
-    const auto varies = [](const BoundKernel& k) {
-        return std::any_of(k.sites.begin(), k.sites.end(),
-                           [](const SiteInfo& s) { return s.cloud && s.cloud->writes && !s.cloud->steady; });
+    bool varies = false;
+    const auto look = [&](const BoundKernel& k) {
+        return varies |= std::any_of(k.sites.begin(), k.sites.end(),
+                                     [](const SiteInfo& s) { return s.cloud && s.cloud->writes && !s.cloud->steady; });
     };
-    for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS})
-        if (varies(*k)) return false;
-    bool others = bakesAt(b.atmosphere.kernel);
-    w.eachLight(b.lights, [&](int l) { return others |= bakesAt(w.lights_[size_t(l)].kernel); });
-    return !others;
+    for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) look(*k);
+    w.eachLight(b.lights, [&](int l) {
+        for (const auto& [strings, k] : w.lights_[size_t(l)].variants) look(k);
+        return look(w.lights_[size_t(l)].kernel);
+    });
+    return !varies;
+}
+
+void noteLightsOfBakes(const World& world) {
+    CloudStore& c = *implOf(world).clouds_;
+    c.lightsRan.clear();
+    c.notesLights = true;
+}
+
+bool bakingLightsRan(const World& world, uint32_t shape) {
+    const WorldImpl& w = implOf(world);
+    w.clouds_->notesLights = false;
+    bool missing = false;
+    w.eachLight(w.bindings_[size_t(w.bindingOf_[shape])].lights, [&](int l) {
+        const BoundLight& light = w.lights_[size_t(l)];
+        return missing |= bakesAt(light.kernel) && !w.clouds_->lightsRan.count(&light);
+    });
+    return !missing;
 }
 
 void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPoint>& to) {

@@ -13,8 +13,13 @@ namespace alpenglow::transport {
 bool bakes(const World&);
 /// The shapes with a grid whose surface shaders bake, by number.
 std::vector<uint32_t> bakedShapes(const World&);
-/// Whether all points of such a shape bake, or none of them: where conditions on the way to the calls do not vary over it.
+/// Whether all points of such a shape bake, or none of them: where conditions on the way to the calls do not vary over it. Of
+/// lights, those points at which they are run.
 bool bakesAllOrNone(const World&, uint32_t shape);
+/// Begins to note which lights are run. Nobody traces meanwhile.
+void noteLightsOfBakes(const World&);
+/// Ends that. Whether all lights of a shape that could bake there were run. Nobody traces meanwhile.
+bool bakingLightsRan(const World&, uint32_t shape);
 /// Adds the points of a shape's grid, in their order. Points of solids that bound nothing are left out.
 void bakedPoints(const World&, uint32_t shape, std::vector<shading::GridPoint>&);
 /// A ray from the eye that finds a point, whatever is before it; number: among those of its shape. `pixel`: a ray of the camera,

@@ -275,6 +275,7 @@ void Engine::evaluateLight(const BoundLight& light, std::vector<ShadePoint>& que
         k.run(&c->batch->call());
         c->ran();
     }
+    if (world_->clouds_ && world_->clouds_->notesLights) world_->clouds_->noteLights(light, call.of);
     const auto& b = *c->batch;
     queries.swap(c->points);
     for (size_t i = 0; i < queries.size(); ++i) {

@@ -5,8 +5,12 @@
 #include "clouds/octree.h"
 #include "clouds/shear.h"
 #include "world/mapfiles.h"
+#include <set>
+#include <span>
 
 namespace alpenglow::transport {
+
+struct BoundLight;
 
 class CloudStore {
 public:
@@ -29,6 +33,10 @@ public:
     clouds::BakeLog baked;
     /// Some kernel of a surface bakes; some of these calls may want middles of micropolygons. While the world is made.
     bool bakes = false, centres = false;
+    /// Where it is asked for, which lights were run: a few points say whether a primitive is baked, but only of what ran there.
+    bool notesLights = false;
+    void noteLights(const BoundLight& first, std::span<const BoundLight* const> all);
+    std::set<const BoundLight*> lightsRan;
 
 private:
     std::optional<std::string> pathOf(const std::string& name, const SourcePlace&);

@@ -100,6 +100,47 @@ TEST_F(BakeShaders, Atmospheres) {
         }
 }
 
+// Calls behind a condition that is false for the whole primitive: no more than a few points are shaded for them. Where it is true
+// all are.
+TEST_F(BakeShaders, BehindConditions) {
+    const auto shader = [&](const std::string& condition) {
+        const std::string bakes = "if (" + condition + ") bake3d(\"c.ptc\", \"\", ";
+        write("lamp.sl", "light lamp(float bake = .3;) { " + bakes + "Ps, Ns); solar(vector \"world\" (0, 0, 1), 0) Cl = 1; }\n");
+        write("mist.sl", "volume mist(float bake = .3;) { " + bakes + "P, N); Ci *= .5; }\n");
+    };
+    const auto points = [&](const std::string& hider, const std::string& world) {
+        std::filesystem::remove(dir / "c.ptc");
+        write("a.rib", "Format 24 24 1\nPixelSamples 2 2\nHider \"" + hider +
+                           "\"\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nProjection \"perspective\" \"fov\" 40\nWorldBegin\n" +
+                           world + "\nPolygon \"P\" [-1 -1 4  5 -1 4  5 1 4  -1 1 4]\nWorldEnd\n");
+        run("render -q --stats a.json a.rib", "2>&1");
+        std::ifstream f(dir / "a.json");
+        const std::string stats{std::istreambuf_iterator<char>(f), {}};
+        return std::atoi(stats.c_str() + stats.find("\"points\":") + 9);
+    };
+    for (const char* hider : {"hidden", "path"})
+        for (const std::string world : {"LightSource \"lamp\" 1 Surface \"matte\"", "Atmosphere \"mist\" Surface \"constant\""}) {
+            shader("0");
+            const int none = points(hider, world);
+            shader("bake > .5");
+            EXPECT_LE(points(hider, world), none + 60) << hider << world;
+            EXPECT_FALSE(std::filesystem::exists(dir / "c.ptc")) << hider << world;
+            shader("bake > .2");
+            EXPECT_GT(points(hider, world), none + 60) << hider << world;
+            EXPECT_GT(cloud("c.ptc").size(), 100u) << hider << world;
+            shader("xcomp(transform(\"world\", " + std::string(world[0] == 'L' ? "Ps" : "P") + ")) > 4");
+            points(hider, world); // where the few points may not be
+            EXPECT_GT(cloud("c.ptc").size(), 10u) << hider << world;
+        }
+    // A light that is not run at these few points may bake at others: one that shines on the right part alone.
+    write("lamp.sl",
+          "light lamp(float bake = .3;) { if (bake > .2) bake3d(\"c.ptc\", \"\", Ps, Ns); solar(vector \"world\" (0, 0, 1), 0) "
+          "Cl = 1; }\n");
+    write("part.sl", "surface part() { Oi = 1; Ci = 0; if (xcomp(transform(\"world\", P)) > 4) Ci = diffuse(normalize(N)); }\n");
+    points("hidden", "LightSource \"lamp\" 1 Surface \"part\"");
+    EXPECT_GT(cloud("c.ptc").size(), 10u);
+}
+
 // An imager has no point: that is said.
 TEST_F(BakeShaders, NotImagers) {
     write("stamps.sl",

@@ -23,8 +23,8 @@ void Cache::forget(Part& p, size_t butFor) {
     }
 }
 
-void Cache::keep(const Key& k, const Ref& image) {
-    const size_t own = size_t(&partOf(k) - parts_.data()), bytes = image->values.size() * sizeof(float) + 128;
+void Cache::keep(const Key& k, const Ref& image, size_t tableBytes) {
+    const size_t own = size_t(&partOf(k) - parts_.data()), bytes = image->values.size() * sizeof(float) + tableBytes + 128;
     {
         Part& p = parts_[own];
         std::lock_guard lock(p.mutex);

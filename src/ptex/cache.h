@@ -12,22 +12,26 @@ class Cache {
 public:
     explicit Cache(size_t bytes) : most_(bytes) {}
     using Ref = std::shared_ptr<const Image>;
+    static constexpr uint32_t kWhole = ~0u, kTable = ~1u;
     struct Key {
         uint64_t texture;
         uint32_t face;
         int halvings;
+        uint32_t tile = kWhole; ///< or kTable
         bool operator==(const Key&) const = default;
     };
     uint64_t number() { return next_++; } ///< for Key::texture
     /// Null: it is not here.
     Ref find(const Key&);
-    void keep(const Key&, const Ref&);
+    void keep(const Key&, const Ref&, size_t tableBytes = 0);
 
 private:
     static constexpr size_t kParts = 16;
     struct Hash {
         size_t operator()(const Key& k) const {
-            return size_t(((k.texture * 0x9e3779b97f4a7c15u + k.face) * 31 + uint64_t(k.halvings)) * 0x9e3779b97f4a7c15u >> 13);
+            return size_t(((k.texture * 0x9e3779b97f4a7c15u + k.face) * 31 + uint64_t(k.halvings) + uint64_t(k.tile + 1) * 64) *
+                              0x9e3779b97f4a7c15u >>
+                          13);
         }
     };
     struct Entry {

@@ -2,6 +2,7 @@
 #include "base/exact.h"
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <vector>
 
 namespace alpenglow::ptex {
@@ -37,6 +38,15 @@ struct Shape {
     }
 };
 
+/// A level of a face, whole or by tiles.
+struct Level {
+    uint64_t key;
+    std::shared_ptr<const Image> image; ///< or the latest tile
+    std::shared_ptr<const Tiles> tiles;
+    uint32_t tile = 0; ///< the latest
+    int u, v;
+};
+
 class Filter {
 public:
     Filter(const Texture& t, const Query& q) : texture_(t), head_(t.head()), q_(q), sums_(size_t(head_.channels)) {}
@@ -46,15 +56,15 @@ public:
 private:
     void overQuad();
     void overTriangle();
-    const Image& image(uint32_t face, int halvings);
-    const Image& imageLike(uint32_t face);
+    Level& level(uint32_t face, int halvings);
+    Level& levelLike(uint32_t face);
     bool cross(Place&, int edge) const;
     bool crossTriangle(Place&, int edge) const;
     bool border(Place&, bool u) const;
     Place walk(Place, bool uFirst) const;
     void add(const Place&, float weight);
     void addTriangle(Place, float weight);
-    void addPixel(const Image&, int i, int j, float weight);
+    void addPixel(Level&, int i, int j, float weight);
     int levelFor(const Face&) const;
 
     const Texture& texture_;
@@ -63,7 +73,7 @@ private:
     std::vector<double> sums_;
     double weight_ = 0;
     int ulog_ = 0, vlog_ = 0; ///< of the level that is read
-    std::vector<std::pair<uint64_t, std::shared_ptr<const Image>>> images_;
+    std::deque<Level> levels_;
 };
 
 /// Halvings, so that the footprint is not much wider than a pixel on its narrow side.
@@ -75,19 +85,22 @@ int Filter::levelFor(const Face& f) const {
     return k;
 }
 
-const Image& Filter::image(uint32_t face, int k) {
+Level& Filter::level(uint32_t face, int k) {
     const uint64_t key = uint64_t(face) << 8 | uint64_t(k);
-    for (const auto& [known, image] : images_)
-        if (known == key) return *image;
-    images_.push_back({key, texture_.image(face, k)});
-    return *images_.back().second;
+    for (Level& known : levels_)
+        if (known.key == key) return known;
+    Level l{key, nullptr, texture_.tiles(face, k), 0, 1, 1};
+    if (!l.tiles) l.image = texture_.image(face, k);
+    const Image& sides = l.tiles ? *l.tiles : *l.image;
+    l.u = sides.u, l.v = sides.v;
+    return levels_.emplace_back(std::move(l));
 }
 
 /// Another face, its longer side of as many pixels as that of the level that is read: which of its sides is along u is its own
 /// affair.
-const Image& Filter::imageLike(uint32_t face) {
+Level& Filter::levelLike(uint32_t face) {
     const Face& f = head_.faces[face];
-    return image(face, std::max(0, int(std::max(f.ulog, f.vlog)) - std::max(ulog_, vlog_)));
+    return level(face, std::max(0, int(std::max(f.ulog, f.vlog)) - std::max(ulog_, vlog_)));
 }
 
 /// Where a place along an edge lies: t from its first to its last corner, d beyond it.
@@ -159,8 +172,14 @@ Place Filter::walk(Place p, bool uFirst) const {
     return p;
 }
 
-void Filter::addPixel(const Image& m, int i, int j, float weight) {
-    const float* from = &m.values[(size_t(j) * size_t(m.u) + size_t(i)) * sums_.size()];
+void Filter::addPixel(Level& m, int i, int j, float weight) {
+    size_t at = size_t(j) * size_t(m.u) + size_t(i);
+    if (m.tiles) {
+        at = m.tiles->within(i, j);
+        if (const uint32_t n = m.tiles->numberOf(i, j); n != m.tile || !m.image)
+            m.image = texture_.tile(uint32_t(m.key >> 8), int(m.key & 255), *m.tiles, m.tile = n);
+    }
+    const float* from = &m.image->values[at * sums_.size()];
     for (size_t c = 0; c < sums_.size(); ++c) sums_[c] += double(weight * from[c]);
 }
 
@@ -168,7 +187,7 @@ void Filter::addPixel(const Image& m, int i, int j, float weight) {
 void Filter::add(const Place& p, float weight) {
     weight_ += double(weight);
     if (p.black) return;
-    const Image& m = imageLike(p.face);
+    Level& m = levelLike(p.face);
     const float x = p.u * float(m.u) - .5f, y = p.v * float(m.v) - .5f;
     const int i = int(std::floor(x)), j = int(std::floor(y));
     const float a = x - float(i), b = y - float(j);
@@ -185,7 +204,7 @@ void Filter::overQuad() {
     const Face& f = head_.faces[q_.face];
     const int k = levelFor(f);
     ulog_ = std::max(0, f.ulog - k), vlog_ = std::max(0, f.vlog - k);
-    const Image& m = image(q_.face, k);
+    Level& m = level(q_.face, k);
     const float nu = float(1 << ulog_), nv = float(1 << vlog_), x = q_.u * nu - .5f, y = q_.v * nv - .5f;
     const bool flat = m.u == 1 && m.v == 1 && (ulog_ > 0 || vlog_ > 0); // of one colour
     const Shape su(q_.kernel, q_.wu * nu), sv(q_.kernel, q_.wv * nv);
@@ -238,7 +257,7 @@ void Filter::addTriangle(Place p, float weight) {
         break;
     }
     weight_ += double(weight);
-    const Image& m = imageLike(p.face);
+    Level& m = levelLike(p.face);
     const float n = float(m.u), x = std::clamp(p.u, 0.f, 1.f) * n, y = std::clamp(p.v, 0.f, 1.f) * n;
     const int i = std::clamp(int(x), 0, m.u - 1), j = std::clamp(int(y), 0, m.u - 1);
     if (i + j + 1 >= m.u || x - float(i) + y - float(j) <= 1) { // upright
@@ -266,7 +285,7 @@ void Filter::run() {
     if (q_.kernel == Kernel::Point) {
         ulog_ = head_.faces[q_.face].ulog, vlog_ = head_.faces[q_.face].vlog;
         if (head_.mesh == Mesh::Triangle) return addTriangle({q_.face, q_.u, q_.v}, 1);
-        const Image& m = image(q_.face, 0);
+        Level& m = level(q_.face, 0);
         weight_ = 1;
         return addPixel(m, std::clamp(int(q_.u * float(m.u)), 0, m.u - 1), std::clamp(int(q_.v * float(m.v)), 0, m.v - 1), 1);
     }

@@ -7,9 +7,11 @@ namespace alpenglow::limits {
 
 inline constexpr uint32_t kPtexFaces = 50'000'000;
 inline constexpr int kPtexChannels = 64;
-inline constexpr int kPtexSide = 15;                        ///< logarithm of the pixels along a side of a face
-inline constexpr size_t kPtexFaceNumbers = size_t(1) << 27; ///< of all channels of one face
-inline constexpr size_t kPtexHeadBytes = size_t(1) << 30;   ///< of what is known of all faces: sides, neighbours, means, places
+inline constexpr int kPtexSide = 15;                         ///< logarithm of the pixels along a side of a face
+inline constexpr size_t kPtexFaceNumbers = size_t(1) << 27;  ///< of all channels of one face
+inline constexpr size_t kPtexWholeNumbers = size_t(1) << 20; ///< of a level of a face; larger ones are read by their tiles
+inline constexpr size_t kPtexTiles = size_t(1) << 20;        ///< of a level of a face
+inline constexpr size_t kPtexHeadBytes = size_t(1) << 30;    ///< of what is known of all faces: sides, neighbours, means, places
 inline constexpr size_t kPtexMetas = 1'000'000;
 inline constexpr size_t kPtexMetaBytes = size_t(256) << 20;  ///< of what is in a file beside faces
 inline constexpr size_t kPtexCacheBytes = size_t(256) << 20; ///< of faces that a frame keeps

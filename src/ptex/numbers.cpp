@@ -31,6 +31,29 @@ void fromFloat(Number n, float f, std::vector<uint8_t>& to) {
     }
 }
 
+Face faceOf(const uint8_t* b) {
+    Face f;
+    f.ulog = b[0];
+    f.vlog = b[1];
+    f.constant = b[3] & 1;
+    f.subface = b[3] & 8;
+    for (size_t k = 0; k < 4; ++k) {
+        f.edge[k] = b[2] >> (2 * k) & 3;
+        f.adjacent[k] = int32_t(take<uint32_t>(b + 4 + 4 * k));
+    }
+    return f;
+}
+
+void addUp(size_t size, std::vector<uint8_t>& data) {
+    if (size == 1)
+        for (size_t i = 1; i < data.size(); ++i) data[i] = uint8_t(data[i] + data[i - 1]);
+    if (size == 2)
+        for (size_t i = 2; i < data.size(); i += 2) {
+            const uint16_t v = uint16_t(take<uint16_t>(&data[i]) + take<uint16_t>(&data[i - 2]));
+            data[i] = uint8_t(v), data[i + 1] = uint8_t(v >> 8);
+        }
+}
+
 bool inflated(std::span<const uint8_t> from, size_t size, std::vector<uint8_t>& to) {
     if (size > mostInflated(from.size())) return false;
     to.resize(size);

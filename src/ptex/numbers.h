@@ -24,6 +24,11 @@ void fromFloat(Number, float, std::vector<uint8_t>& to);
 /// Exactly `size` bytes. False: the stream is damaged, or of another size.
 bool inflated(std::span<const uint8_t>, size_t size, std::vector<uint8_t>& to);
 std::vector<uint8_t> deflated(std::span<const uint8_t>);
+/// What the 20 bytes of a face say.
+Face faceOf(const uint8_t*);
+
+/// Whole numbers of so many bytes from their differences; others stay.
+void addUp(size_t size, std::vector<uint8_t>&);
 /// A stream of so many bytes cannot become more than this.
 inline uint64_t mostInflated(uint64_t bytes) { return bytes * 1040 + 1024; }
 

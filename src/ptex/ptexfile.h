@@ -5,6 +5,7 @@
 #include "base/diagnostics.h"
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,16 @@ struct Face {
 struct Image {
     int u = 1, v = 1;
     std::vector<float> values;
+};
+
+/// A level of a face that is read piece by piece: equal rectangles, row by row.
+struct Tiles : Image {        ///< sides of the level; no values
+    int tu = 0, tv = 0;       ///< logarithms of the sides of a piece
+    std::vector<uint64_t> at; ///< where each lies in the file
+    std::vector<uint32_t> headers;
+    /// In which piece a pixel lies, and as the how manieth there.
+    uint32_t numberOf(int i, int j) const { return uint32_t(j >> tv) * uint32_t(u >> tu) + uint32_t(i >> tu); }
+    size_t within(int i, int j) const { return (size_t(j & ((1 << tv) - 1)) << tu) + size_t(i & ((1 << tu) - 1)); }
 };
 
 struct Meta {
@@ -60,6 +71,10 @@ public:
     /// A face with its sides halved so many times, not below one pixel, multiplied with alpha. The mean of it where it cannot be
     /// read, which is reported once.
     virtual std::shared_ptr<const Image> image(uint32_t face, int halvings) const = 0;
+    /// How such a picture lies in the file, if it is too large to be looked at whole and is cut there; else null.
+    virtual std::shared_ptr<const Tiles> tiles(uint32_t face, int halvings) const = 0;
+    /// One of its pieces, as image() has it there.
+    virtual std::shared_ptr<const Image> tile(uint32_t face, int halvings, const Tiles&, uint32_t number) const = 0;
 };
 /// Null: an error was reported.
 std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache>, Diagnostics&,
@@ -72,5 +87,7 @@ bool writeTexture(const std::string& name, Head, const std::vector<Image>& image
 
 /// A picture of half the sides, not below one pixel: means.
 Image halved(const Image&, int channels, Mesh);
+/// The same tile by tile, where pixels are found by `pixel(i, j)`, the first number of one.
+Image halved(const Tiles&, int channels, Mesh, const std::function<const float*(int i, int j)>& pixel);
 
 } // namespace alpenglow::ptex

@@ -15,19 +15,6 @@ namespace {
 
 constexpr size_t kHeader = 64, kExtended = 40, kFaceInfo = 20, kLevelInfo = 16, kBarrier = 8;
 
-Face faceOf(const uint8_t* b) {
-    Face f;
-    f.ulog = b[0];
-    f.vlog = b[1];
-    f.constant = b[3] & 1;
-    f.subface = b[3] & 8;
-    for (size_t k = 0; k < 4; ++k) {
-        f.edge[k] = b[2] >> (2 * k) & 3;
-        f.adjacent[k] = int32_t(take<uint32_t>(b + 4 + 4 * k));
-    }
-    return f;
-}
-
 /// Where the data of a face lie, and how.
 struct Block {
     uint64_t at = 0;
@@ -44,6 +31,8 @@ public:
     std::string open();
     const Head& head() const override { return head_; }
     std::shared_ptr<const Image> image(uint32_t face, int halvings) const override;
+    std::shared_ptr<const Tiles> tiles(uint32_t face, int halvings) const override;
+    std::shared_ptr<const Image> tile(uint32_t face, int halvings, const Tiles&, uint32_t number) const override;
 
 private:
     std::string readHeader();
@@ -59,9 +48,14 @@ private:
     bool unpack(uint64_t at, uint64_t packed, uint64_t size, std::vector<uint8_t>& to) const;
     size_t pixelBytes() const { return sizeOf(head_.number) * size_t(head_.channels); }
     bool decode(const Block&, int ulog, int vlog, std::vector<float>& to) const;
-    bool decodeTiles(std::span<const uint8_t>, int ulog, int vlog, std::vector<float>& to) const;
+    bool readTiles(uint64_t at, uint32_t header, int ulog, int vlog, Tiles&) const;
+    bool decodeTiles(uint64_t at, uint32_t header, int ulog, int vlog, std::vector<float>& to) const;
     bool decodePlain(std::span<const uint8_t>, Encoding, size_t pixels, std::vector<float>& to) const;
+    const Block* blockOf(uint32_t face, int halvings) const;
     Image constantOf(uint32_t face) const;
+    Image halvedOf(uint32_t face, int halvings) const;
+    std::shared_ptr<const Image> makeTile(uint32_t face, int halvings, const Tiles&, uint32_t number) const;
+    void sayDamaged(uint32_t face) const;
     Image make(uint32_t face, int halvings) const;
     void multiply(std::vector<float>&) const;
 
@@ -317,37 +311,44 @@ bool File::decodePlain(std::span<const uint8_t> b, Encoding how, size_t pixels, 
     }
     std::vector<uint8_t> data;
     if (how == kTiled || !inflated(b, pixels * pixelBytes(), data)) return false;
-    if (how == kDifferences && size == 1)
-        for (size_t i = 1; i < data.size(); ++i) data[i] = uint8_t(data[i] + data[i - 1]);
-    if (how == kDifferences && size == 2)
-        for (size_t i = 2; i < data.size(); i += 2) {
-            const uint16_t v = uint16_t(take<uint16_t>(&data[i]) + take<uint16_t>(&data[i - 2]));
-            data[i] = uint8_t(v), data[i + 1] = uint8_t(v >> 8);
-        }
+    if (how == kDifferences) addUp(size, data);
     for (size_t c = 0; c < channels; ++c)
         for (size_t i = 0; i < pixels; ++i) to[i * channels + c] = toFloat(head_.number, &data[(c * pixels + i) * size]);
     return true;
 }
 
-bool File::decodeTiles(std::span<const uint8_t> b, int ulog, int vlog, std::vector<float>& to) const {
-    if (b.size() < 6 || b[0] > ulog || b[1] > vlog) return false;
-    const int tu = b[0], tv = b[1];
-    const size_t across = size_t(1) << (ulog - tu), count = across << (vlog - tv), header = take<uint32_t>(&b[2]);
-    std::vector<uint8_t> headers;
-    if (header > b.size() - 6 || !inflated(b.subspan(6, header), count * 4, headers)) return false;
-    const size_t channels = size_t(head_.channels), row = channels << ulog, part = channels << tu;
-    to.resize(row << vlog);
-    std::vector<float> tile;
-    size_t at = 6 + header;
+/// Where the tiles of a block lie.
+bool File::readTiles(uint64_t at, uint32_t header, int ulog, int vlog, Tiles& t) const {
+    std::vector<uint8_t> b, headers;
+    const uint64_t end = at + blockSize(header);
+    if (blockSize(header) < 6 || !bytes_.read(at, 6, b) || b[0] > ulog || b[1] > vlog) return false;
+    t.u = 1 << ulog, t.v = 1 << vlog, t.tu = b[0], t.tv = b[1];
+    const size_t count = size_t(1) << (ulog + vlog - t.tu - t.tv);
+    const uint64_t packed = take<uint32_t>(&b[2]);
+    if (count > limits::kPtexTiles || packed > blockSize(header) - 6 || !unpack(at + 6, packed, count * 4, headers)) return false;
+    at += 6 + packed;
     for (size_t i = 0; i < count; ++i) {
         const uint32_t h = take<uint32_t>(&headers[4 * i]);
-        if (blockSize(h) > b.size() - at ||
-            !decodePlain(b.subspan(at, blockSize(h)), encodingOf(h), size_t(1) << (tu + tv), tile))
-            return false;
+        if (blockSize(h) > end - at || encodingOf(h) == kTiled) return false;
+        t.at.push_back(at);
+        t.headers.push_back(h);
         at += blockSize(h);
-        for (size_t j = 0; j < size_t(1) << tv; ++j)
+    }
+    return true;
+}
+
+bool File::decodeTiles(uint64_t at, uint32_t header, int ulog, int vlog, std::vector<float>& to) const {
+    Tiles t;
+    if (!readTiles(at, header, ulog, vlog, t)) return false;
+    const size_t across = size_t(1) << (ulog - t.tu), channels = size_t(head_.channels), row = channels << ulog,
+                 part = channels << t.tu;
+    to.resize(row << vlog);
+    std::vector<float> tile;
+    for (size_t i = 0; i < t.at.size(); ++i) {
+        if (!decode({t.at[i], t.headers[i]}, t.tu, t.tv, tile)) return false;
+        for (size_t j = 0; j < size_t(1) << t.tv; ++j)
             std::copy(tile.begin() + long(j * part), tile.begin() + long((j + 1) * part),
-                      to.begin() + long(((i / across << tv) + j) * row + i % across * part));
+                      to.begin() + long(((i / across << t.tv) + j) * row + i % across * part));
     }
     return true;
 }
@@ -356,8 +357,8 @@ bool File::decode(const Block& block, int ulog, int vlog, std::vector<float>& to
     std::vector<uint8_t> b;
     // Of tiles of one pixel more is said than they have.
     if (blockSize(block.header) > ((pixelBytes() + 64) << (ulog + vlog)) + 1024) return false;
+    if (encodingOf(block.header) == kTiled) return decodeTiles(block.at, block.header, ulog, vlog, to);
     if (!bytes_.read(block.at, blockSize(block.header), b)) return false;
-    if (encodingOf(block.header) == kTiled) return decodeTiles(b, ulog, vlog, to);
     return decodePlain(b, encodingOf(block.header), size_t(1) << (ulog + vlog), to);
 }
 
@@ -382,32 +383,90 @@ Image File::constantOf(uint32_t face) const {
     return m;
 }
 
+/// Where a level of a face is stored; null: it is not, or the face is constant.
+const Block* File::blockOf(uint32_t face, int k) const {
+    const Face& f = head_.faces[face];
+    if (f.constant) return nullptr;
+    if (const auto edit = edited_.find(face); k == 0 && edit != edited_.end()) return &edit->second;
+    if (k == 0) return blocks_.empty() ? nullptr : &blocks_[0][face];
+    const bool there = !stale_[face] && size_t(k) < blocks_.size() && place_[face] < blocks_[size_t(k)].size();
+    return there && k <= f.ulog && k <= f.vlog ? &blocks_[size_t(k)][place_[face]] : nullptr;
+}
+
+void File::sayDamaged(uint32_t face) const {
+    diagnostics_.reportOnce("ptex:" + path_ + std::to_string(face),
+                            {Severity::Error,
+                             Rie::BadFile,
+                             {},
+                             "Ptex file \"" + path_ + "\": face " + std::to_string(face) + " is damaged; its mean is shown",
+                             {},
+                             {}});
+}
+
+/// Half of a level. Where that is read by tiles, of two of them at a time: nothing of it is kept.
+Image File::halvedOf(uint32_t face, int halvings) const {
+    const auto t = tiles(face, halvings);
+    if (!t) return halved(*image(face, halvings), head_.channels, head_.mesh);
+    std::pair<uint32_t, std::shared_ptr<const Image>> last[2]; // of triangles those on their heads lie elsewhere
+    return halved(*t, head_.channels, head_.mesh, [&](int i, int j) {
+        const uint32_t n = t->numberOf(i, j);
+        if (!last[0].second || last[0].first != n) std::swap(last[0], last[1]);
+        if (!last[0].second || last[0].first != n) last[0] = {n, makeTile(face, halvings, *t, n)};
+        return &last[0].second->values[t->within(i, j) * size_t(head_.channels)];
+    });
+}
+
 Image File::make(uint32_t face, int halvings) const {
     const Face& f = head_.faces[face];
     const int most = std::max(f.ulog, f.vlog), k = std::min(halvings, most);
-    const auto edit = edited_.find(face);
-    const Block* block = nullptr;
-    if (k == 0 && edit != edited_.end()) block = &edit->second;
-    else if (k == 0 && !blocks_.empty()) block = &blocks_[0][face];
-    else if (k > 0 && !stale_[face] && size_t(k) < blocks_.size() && place_[face] < blocks_[size_t(k)].size() && k <= f.ulog &&
-             k <= f.vlog)
-        block = &blocks_[size_t(k)][place_[face]];
+    const Block* block = blockOf(face, k);
     if (f.constant || (k == 0 && !block)) return constantOf(face);
-    if (!block) return halved(*image(face, k - 1), head_.channels, head_.mesh);
+    if (!block) return halvedOf(face, k - 1);
     Image m{1 << (f.ulog - k), 1 << (f.vlog - k), {}};
     if (!decode(*block, f.ulog - k, f.vlog - k, m.values)) {
-        diagnostics_.reportOnce("ptex:" + path_ + std::to_string(face),
-                                {Severity::Error,
-                                 Rie::BadFile,
-                                 {},
-                                 "Ptex file \"" + path_ + "\": face " + std::to_string(face) + " is damaged; its mean is shown",
-                                 {},
-                                 {}});
+        sayDamaged(face);
         return constantOf(face);
     }
     if (head_.alpha >= 0 && k == 0) multiply(m.values); // coarser ones are stored so
     makeFinite(m.values);
     return m;
+}
+
+std::shared_ptr<const Tiles> File::tiles(uint32_t face, int halvings) const {
+    const Face& f = head_.faces[face];
+    const int u = f.ulog - halvings, v = f.vlog - halvings;
+    if (u < 0 || v < 0 || (size_t(head_.channels) << (u + v)) <= limits::kPtexWholeNumbers) return nullptr;
+    const Block* block = blockOf(face, halvings);
+    if (!block || encodingOf(block->header) != kTiled) return nullptr;
+    const Cache::Key key{number_, face, halvings, Cache::kTable};
+    if (auto known = cache_->find(key)) return std::static_pointer_cast<const Tiles>(known);
+    auto t = std::make_shared<Tiles>();
+    if (!readTiles(block->at, block->header, u, v, *t)) return nullptr; // image() says so
+    cache_->keep(key, t, t->at.size() * (sizeof(uint64_t) + sizeof(uint32_t)));
+    return t;
+}
+
+std::shared_ptr<const Image> File::makeTile(uint32_t face, int halvings, const Tiles& t, uint32_t number) const {
+    auto m = std::make_shared<Image>(Image{1 << t.tu, 1 << t.tv, {}});
+    if (!decode({t.at[number], t.headers[number]}, t.tu, t.tv, m->values)) {
+        sayDamaged(face);
+        const Image mean = constantOf(face);
+        m->values.clear();
+        for (size_t i = 0; i < size_t(1) << (t.tu + t.tv); ++i)
+            m->values.insert(m->values.end(), mean.values.begin(), mean.values.end());
+    } else {
+        if (head_.alpha >= 0 && halvings == 0) multiply(m->values);
+        makeFinite(m->values);
+    }
+    return m;
+}
+
+std::shared_ptr<const Image> File::tile(uint32_t face, int halvings, const Tiles& t, uint32_t number) const {
+    const Cache::Key key{number_, face, halvings, number};
+    if (auto known = cache_->find(key)) return known;
+    auto made = makeTile(face, halvings, t, number);
+    cache_->keep(key, made);
+    return made;
 }
 
 std::shared_ptr<const Image> File::image(uint32_t face, int halvings) const {

@@ -216,35 +216,45 @@ std::vector<uint8_t> Writer::all() {
     return b;
 }
 
+/// By rectangles of bu x bv pixels of what it is made of.
+template <class Pixel> Image halvedBy(const Image& from, int bu, int bv, int channels, Mesh mesh, const Pixel& pixel) {
+    const int u = from.u, v = from.v;
+    Image to{std::max(1, u / 2), std::max(1, v / 2), {}};
+    const size_t n = size_t(channels);
+    to.values.resize(size_t(to.u) * size_t(to.v) * n);
+    const auto at = [&](int i, int j, size_t c) { return pixel(i, j)[c]; };
+    const auto triangle = [&](int i, int j, bool upright, size_t c) {
+        return upright ? at(i, j, c) : at(u - 1 - i, u - 1 - j, c);
+    };
+    const auto mean = [&](int i, int j, size_t c) {
+        const int x = u > 1 ? 2 * i : 0, y = v > 1 ? 2 * j : 0, x1 = std::min(x + 1, u - 1), y1 = std::min(y + 1, v - 1);
+        if (mesh == Mesh::Quad || u < 2) return (at(x, y, c) + at(x1, y, c) + at(x, y1, c) + at(x1, y1, c)) / 4;
+        if (i + j < to.u) // upright: three, and one on its head between them
+            return (triangle(x, y, true, c) + triangle(x + 1, y, true, c) + triangle(x, y + 1, true, c) +
+                    triangle(x, y, false, c)) /
+                   4;
+        const int a = 2 * (to.u - 1 - i), b = 2 * (to.u - 1 - j);
+        return (triangle(a + 1, b + 1, false, c) + triangle(a, b + 1, false, c) + triangle(a + 1, b, false, c) +
+                triangle(a + 1, b + 1, true, c)) /
+               4;
+    };
+    const int du = std::max(1, bu / 2), dv = std::max(1, bv / 2);
+    for (int j0 = 0; j0 < to.v; j0 += dv)
+        for (int i0 = 0; i0 < to.u; i0 += du)
+            for (int j = j0; j < std::min(j0 + dv, to.v); ++j)
+                for (int i = i0; i < std::min(i0 + du, to.u); ++i)
+                    for (size_t c = 0; c < n; ++c) to.values[(size_t(j) * size_t(to.u) + size_t(i)) * n + c] = mean(i, j, c);
+    return to;
+}
 } // namespace
 
 Image halved(const Image& m, int channels, Mesh mesh) {
-    Image to{std::max(1, m.u / 2), std::max(1, m.v / 2), {}};
-    const size_t n = size_t(channels);
-    to.values.resize(size_t(to.u) * size_t(to.v) * n);
-    const auto at = [&](int i, int j, size_t c) { return m.values[(size_t(j) * size_t(m.u) + size_t(i)) * n + c]; };
-    const auto triangle = [&](int i, int j, bool upright, size_t c) {
-        return upright ? at(i, j, c) : at(m.u - 1 - i, m.u - 1 - j, c);
-    };
-    for (int j = 0; j < to.v; ++j)
-        for (int i = 0; i < to.u; ++i)
-            for (size_t c = 0; c < n; ++c) {
-                const int x = m.u > 1 ? 2 * i : 0, y = m.v > 1 ? 2 * j : 0, x1 = std::min(x + 1, m.u - 1),
-                          y1 = std::min(y + 1, m.v - 1);
-                float& v = to.values[(size_t(j) * size_t(to.u) + size_t(i)) * n + c];
-                if (mesh == Mesh::Quad || m.u < 2) v = (at(x, y, c) + at(x1, y, c) + at(x, y1, c) + at(x1, y1, c)) / 4;
-                else if (i + j < to.u) // upright: three, and one on its head between them
-                    v = (triangle(x, y, true, c) + triangle(x + 1, y, true, c) + triangle(x, y + 1, true, c) +
-                         triangle(x, y, false, c)) /
-                        4;
-                else {
-                    const int a = 2 * (to.u - 1 - i), b = 2 * (to.u - 1 - j);
-                    v = (triangle(a + 1, b + 1, false, c) + triangle(a, b + 1, false, c) + triangle(a + 1, b, false, c) +
-                         triangle(a + 1, b + 1, true, c)) /
-                        4;
-                }
-            }
-    return to;
+    return halvedBy(m, m.u, m.v, channels, mesh,
+                    [&](int i, int j) { return &m.values[(size_t(j) * size_t(m.u) + size_t(i)) * size_t(channels)]; });
+}
+
+Image halved(const Tiles& t, int channels, Mesh mesh, const std::function<const float*(int, int)>& pixel) {
+    return halvedBy(t, 1 << t.tu, 1 << t.tv, channels, mesh, pixel);
 }
 
 bool writeTexture(const std::string& name, Head head, const std::vector<Image>& images, const OutputPolicy& policy,

@@ -94,6 +94,72 @@ TEST_F(Ptex, LargeFacesAreTiledAndAlphaIsMultiplied) {
     }
 }
 
+/// Drops what a file has of coarser levels.
+void keepFirstLevel(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::vector<uint8_t> b{std::istreambuf_iterator<char>(in), {}};
+    const auto change = [&](size_t at, std::vector<uint8_t> to) { std::copy(to.begin(), to.end(), b.begin() + long(at)); };
+    std::vector<uint8_t> size;
+    const uint32_t infos = 64 + take<uint32_t>(&b[28]) + take<uint32_t>(&b[32]) + take<uint32_t>(&b[36]);
+    const uint32_t infoSize = take<uint32_t>(&b[40]);
+    const uint64_t first = take<uint64_t>(&b[infos]), all = take<uint64_t>(&b[48]);
+    put(size, first);
+    b.erase(b.begin() + long(infos + infoSize + first), b.begin() + long(infos + infoSize + all));
+    b.erase(b.begin() + long(infos + 16), b.begin() + long(infos + infoSize));
+    change(22, {1, 0});
+    change(40, {16, 0, 0, 0});
+    change(48, size);
+    std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(b.data()), long(b.size()));
+}
+
+// What is larger than 2^20 numbers is looked at tile by tile: the same pixels, the same means where the file has none, the same
+// lookups.
+TEST_F(Ptex, VeryLargeFacesAreReadByTiles) {
+    for (const Mesh mesh : {Mesh::Quad, Mesh::Triangle}) {
+        Head head;
+        head.mesh = mesh;
+        head.channels = 2;
+        head.alpha = 1;
+        const bool quad = mesh == Mesh::Quad;
+        const auto images = noise(head, 1, 8, [&](int) { return quad ? std::pair(10, 9) : std::pair(9, 9); });
+        ASSERT_TRUE(writeTexture(path("a.ptx"), head, images, policy(), d));
+        keepFirstLevel(path("a.ptx"));
+        const Image& m = images[0];
+        const auto want = [&](int i, int j) {
+            const size_t at = 2 * (size_t(j) * size_t(m.u) + size_t(i));
+            return m.values[at] * m.values[at + 1];
+        };
+        ASSERT_FALSE(open("a.ptx")->tiles(0, 0)); // 2^20 or fewer: whole
+        Head wide = head;
+        wide.channels = 8; // the same four times
+        Image often{m.u, m.v, {}};
+        for (size_t i = 0; i < m.values.size(); i += 2)
+            for (size_t k = 0; k < 8; ++k) often.values.push_back(m.values[i + k % 2]);
+        ASSERT_TRUE(writeTexture(path("b.ptx"), wide, {often}, policy(), d));
+        keepFirstLevel(path("b.ptx"));
+        const auto whole = open("a.ptx"), cut = open("b.ptx");
+        ASSERT_TRUE(whole && cut);
+        const auto t = cut->tiles(0, 0);
+        ASSERT_TRUE(t);
+        ASSERT_GT(t->at.size(), 1u);
+        for (const auto& [i, j] : {std::pair(0, 0), {m.u - 1, m.v - 1}, {300, 150}, {m.u / 2, m.v / 2 - 1}}) {
+            const auto piece = cut->tile(0, 0, *t, t->numberOf(i, j));
+            EXPECT_LT(piece->values.size(), 1u << 18);
+            EXPECT_NEAR(piece->values[8 * t->within(i, j)], want(i, j), 1e-6) << i << " " << j;
+        }
+        const auto coarse = whole->image(0, 1), made = cut->image(0, 1);
+        ASSERT_EQ(made->values.size(), 4 * coarse->values.size());
+        for (size_t i = 0; i < coarse->values.size(); i += 2) ASSERT_EQ(made->values[4 * i], coarse->values[i]) << i;
+        for (const float width : {0.f, .002f, .02f})
+            for (const auto& [u, v] : {std::pair(.1f, .2f), {.125f, .25f}, {.4999f, .5001f}, {0.f, .9f}}) {
+                float a = 1, b = 2;
+                EXPECT_TRUE(lookup(*whole, {0, u, v, width, width, 0, 1}, &a) && lookup(*cut, {0, u, v, width, width, 0, 1}, &b));
+                EXPECT_EQ(a, b) << u << " " << v << " " << width;
+            }
+    }
+    EXPECT_EQ(d.errors(), 0u);
+}
+
 // Bytes at the places that the specification names.
 TEST_F(Ptex, TheHeaderIsThatOfTheSpecification) {
     Head head;

@@ -1,6 +1,7 @@
 #include "render/lacks.h"
 #include "base/printable.h"
 #include "scene/scene.h"
+#include "world/turnedaway.h"
 #include <algorithm>
 
 namespace alpenglow::render {
@@ -48,6 +49,20 @@ void sayEmptyClouds(const Job& job, Diagnostics& diags) {
         warn(diags, place, "texture3d(): \"" + name + "\" has no point near any place that was looked up",
              "alpenglow ptc info tells where its points are; \"coordsystem\" must name the space in which they were baked, and "
              "normals must fit");
+}
+
+void sayTurnedAway(const Job& job, Diagnostics& diags) {
+    const transport::TurnedAway* const away = job.interrupted || !job.world ? nullptr : job.world->turnedAway();
+    if (!away) return;
+    for (const auto& f : away->blocked()) {
+        const std::string where =
+            f.primitive.line > 0 ? " (" + f.primitive.file + ":" + std::to_string(f.primitive.line) + ")" : "";
+        warn(diags, f.call,
+             "occlusion(): all over " + (f.primitives == 1 ? "a primitive" : counted(f.primitives, "primitive")) + where +
+                 " its normal faces away from the viewer, and all that it looks at is blocked: it is 1",
+             "faceforward(normalize(N), I) is the normal of the side that is seen; ReverseOrientation turns those of the "
+             "primitive");
+    }
 }
 
 void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& diags) {

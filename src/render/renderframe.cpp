@@ -432,6 +432,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     if (!settings_.pixel) {
         sayEmptyPicture(job, *f.frame, diagnostics_);
         sayEmptyClouds(job, diagnostics_);
+        sayTurnedAway(job, diagnostics_);
     }
     const transport::World::Facts facts = f.world->facts(); // kernels may be compiled while rendering
     stats_.shading.kernels = facts.kernels;

@@ -153,6 +153,8 @@ public:
     };
     const OfShape& ofShape(const geometry::Shape*);
     std::unordered_map<const scene::Attributes*, OfShape> ofShapes_;
+    TurnedAway::Tally* tallyOf(const BatchContext&, const SiteInfo&, const ShadePoint&, const Vec3& normal);
+    std::map<std::pair<const SiteInfo*, const geometry::Shape*>, TurnedAway::Tally*> tallies_;
     // gatherloop.cpp
     /// What the shaders at a hit give to the gather whose ray met it; `point` of a batch that has run.
     /// Parameters at points that rays of gathers have met, as these have sent them.

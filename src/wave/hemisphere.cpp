@@ -66,6 +66,19 @@ int Engine::samplesOf(float asked, const geometry::Shape* shape, const SiteInfo&
     return int(std::min(asked, 4096.f));
 }
 
+TurnedAway::Tally* Engine::tallyOf(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Vec3& normal) {
+    if (!p.shape) return nullptr;
+    TurnedAway::Tally*& t = tallies_[{&s, p.shape}];
+    if (!t) {
+        const auto& files = c.bound->kernel->files();
+        const auto& at = s.site->place;
+        t = &world_->turnedAway_.of(
+            {at.file >= 0 && at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column}, *p.shape);
+    }
+    if (const float towards = dot(normal, p.I); towards != 0) TurnedAway::Tally::set(towards > 0 ? t->away : t->facing);
+    return t;
+}
+
 void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Vec3& at,
                             const geometry::SurfacePoint* surface, const std::function<float(int)>& f, const Color& weight,
                             TargetId target, uint32_t site, uint32_t occurrence, std::vector<ShadowRay>& out) {
@@ -95,6 +108,7 @@ void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const Shad
     h.share = 1 / float(count);
     h.fade = {std::max(0.f, number(o.fade.strength, 0)), ray.distance, number(o.fade.mode, 0) != 0};
     h.spread = p.ray ? p.ray->footprint.spread : 0;
+    if (surface && p.ray && !c.light && half > 0) h.tally = tallyOf(c, s, p, normal);
     ray.hemisphere = int32_t(hemispheres_.size());
     hemispheres_.push_back(h);
     ray.contribution = weight * h.share;
@@ -165,8 +179,9 @@ bool Engine::agree(std::vector<ShadowRay>& rays, size_t begin, HemisphereRays& o
 
 Color Engine::openLight(const ShadowRay& r, const Color& transmitted, TraceSums* sums) const {
     const float open = mean(transmitted);
+    const HemisphereRays& h = hemispheres_[size_t(r.hemisphere)];
+    h.open(transmitted);
     if (sums) {
-        const HemisphereRays& h = hemispheres_[size_t(r.hemisphere)];
         sums->add(TraceSums::Open, r.dir * (open * h.share));
         if (h.site->map) sums->add(TraceSums::Environment, mapTowards(*h.site, r.dir, h.spread) * transmitted * h.share);
     }

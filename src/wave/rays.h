@@ -66,6 +66,11 @@ struct HemisphereRays {
     float share = 1;    ///< of one of its rays
     shading::Fade fade; ///< how much a surface blocks that a ray meets far away
     float spread = 0;   ///< of the rays, for the map
+    TurnedAway::Tally* tally = nullptr;
+    /// Notes that a ray came through.
+    void open(const Color& transmitted) const {
+        if (tally && transmitted != Color(0)) TurnedAway::Tally::set(tally->open);
+    }
 };
 
 /// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does

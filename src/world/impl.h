@@ -11,6 +11,7 @@
 #include "world/lightchooser.h"
 #include "world/photonstore.h"
 #include "world/records.h"
+#include "world/turnedaway.h"
 #include "world/unmade.h"
 #include "world/world.h"
 #include <functional>
@@ -43,6 +44,7 @@ public:
     std::vector<int> outputWidths() const override { return outputWidths_; }
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
     std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const override;
+    const TurnedAway* turnedAway() const override { return &turnedAway_; }
     std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool interpolates() const override { return interpolates_; }
@@ -189,7 +191,8 @@ public:
     std::shared_ptr<PhotonStore> photons_; ///< changes between passes only, when nobody follows rays
     std::shared_ptr<CloudStore> clouds_;   ///< point clouds that are read, and what is baked; keeps itself safe
     std::shared_ptr<PtexStore> ptex_;      ///< Ptex files that are read; keeps itself safe
-    bool globalMaps_ = false;              ///< some surface has a global photon map, and some indirectdiffuse() may meet it
+    mutable TurnedAway turnedAway_;
+    bool globalMaps_ = false; ///< some surface has a global photon map, and some indirectdiffuse() may meet it
     mutable LightRecords records_;
     bool interpolates_ = false; ///< some call may want records
     mutable std::mutex imagerMutex_;

@@ -11,6 +11,7 @@ namespace alpenglow::transport {
 class WorldImpl;
 class Evaluator;
 class PhotonStore;
+class TurnedAway;
 /// Gives who runs kernels of a world before rays are followed (evaluator.h). Several may work at a time; the world outlives them.
 using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop)>;
 
@@ -42,6 +43,8 @@ public:
     virtual std::vector<std::string> missingOutputs() const { return {}; }
     /// Point clouds and their like in which texture3d() has found nothing at any point until now, with the place of a call.
     virtual std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const { return {}; }
+    /// Calls of occlusion() that have found everything blocked behind normals that face away (world/turnedaway.h).
+    virtual const TurnedAway* turnedAway() const { return nullptr; }
     /// The photon maps of the frame (photonstore.h).
     virtual PhotonStore* photons() const { return nullptr; }
     /// What could be named instead: predefined variables and the outputs of the frame's shaders.

@@ -1,4 +1,4 @@
-// Rays against the box's twelve triangles and two spheres by Embree alone: what traversal costs at the least.
+// Rays against shapes by Embree alone: what traversal costs elsewhere.
 #pragma once
 #include "accel/accel.h"
 #include <span>
@@ -7,11 +7,15 @@ namespace alpenglow::bench {
 
 class BareEmbree {
 public:
-    /// Polygons as their triangles, spheres as Embree's own spheres.
+    /// Meshes as their triangles, what is placed as an instance, curves as Embree's round curves and spheres as its own; other
+    /// exact shapes are left out. Robust. All stand still.
     explicit BareEmbree(std::span<const geometry::ShapeRef>);
     ~BareEmbree();
-    /// Rays that meet something.
-    size_t intersect(std::span<const accel::Ray>) const;
+    BareEmbree(const BareEmbree&) = delete;
+    BareEmbree& operator=(const BareEmbree&) = delete;
+    /// Rays that meet something. t, if it is not null: where each does, infinite where nothing is.
+    size_t intersect(std::span<const accel::Ray>, float* t = nullptr) const;
+    size_t occluded(std::span<const accel::Ray>, uint8_t* met = nullptr) const;
 
 private:
     void* device_ = nullptr;

@@ -104,7 +104,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     for (const ShapeRef& s : impl_->shapes)
         if (s->exact()) impl_->bounds.add(s->bounds());
     try {
-        impl_->tree.build(impl_->shapes);
+        impl_->buildTree();
         impl_->bounds.add(impl_->tree.bounds());
         if (impl_->tree.beyond()) impl_->sayBeyond(impl_->tree, *impl_->shapes[impl_->tree.beyondOf()], diag);
     } catch (const std::length_error&) { impl_->refuse(diag); }

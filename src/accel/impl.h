@@ -189,7 +189,21 @@ struct Accel::Impl {
     std::vector<uint32_t> geometryOf; ///< by shape: into geometries, or kNone; empty: nothing is placed
     bool isPlaced(uint32_t s) const { return !geometryOf.empty() && geometryOf[s] != kNone; }
     const Geometry& geometryAt(uint32_t s) const { return *geometries[geometryOf[s]]; } ///< of a shape that is placed
+    /// A shape whose geometry has a tree, as rays come into it.
+    struct alignas(128) Place {
+        geometry::Affine in; ///< to the geometry's space, where it stands still
+        const Geometry* geometry;
+        const geometry::Placed* placed;
+        uint32_t shape;
+        bool moves;
+    };
+    std::vector<Place> places; ///< Tree::Exact::shape of a part is into it
     void readyPlaced();
+    /// Boxes of what is placed, each of a part of its geometry's tree: a ray comes to the parts that it may meet, the nearest
+    /// first, and passes what overlaps them (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial Re-Braiding",
+    /// HPG 2017).
+    std::vector<Tree::Part> partsOfPlaces();
+    void buildTree() { tree.build(shapes, {}, {}, partsOfPlaces()); } ///< after readyPlaced()
     std::vector<const Shape*> trimmed; ///< by shape: who knows what of it is cut away, or null; empty: nothing is
     void readyTrimmed();
     /// A ray in the space of a placed geometry.

@@ -1,5 +1,6 @@
 // Shapes that are placed: the tree of their geometry, and a ray's way into its space.
 #include "accel/impl.h"
+#include "base/parallel.h"
 #include <unordered_map>
 
 namespace alpenglow::accel {
@@ -20,6 +21,65 @@ void Accel::Impl::readyPlaced() {
         else if (!g->shape->exact() || g->shape->exactPrims() > 1) g->tree.build({&g->shape, 1});
         geometries.push_back(std::move(g));
     }
+}
+
+namespace {
+
+/// The box of a box that is placed; rounded outwards, and by what rays are off on their way into the geometry's space.
+geometry::Bounds placed(const geometry::Bounds& of, const geometry::Affine& m) {
+    Vec3d lo = m.o, hi = m.o;
+    const auto axis = [&](const Vec3d& x, double from, double to) {
+        for (int a = 0; a < 3; ++a) {
+            lo[a] += std::min(x[a] * from, x[a] * to);
+            hi[a] += std::max(x[a] * from, x[a] * to);
+        }
+    };
+    axis(m.x, double(of.lo.x), double(of.hi.x));
+    axis(m.y, double(of.lo.y), double(of.hi.y));
+    axis(m.z, double(of.lo.z), double(of.hi.z));
+    Vec3 far;
+    for (int a = 0; a < 3; ++a) far[a] = float(std::max(std::fabs(lo[a]), std::fabs(hi[a])));
+    const float room = 4 * geometry::roundingError(far);
+    geometry::Bounds b;
+    b.lo = Vec3(lo) - Vec3(room);
+    b.hi = Vec3(hi) + Vec3(room);
+    return b;
+}
+
+} // namespace
+
+std::vector<Tree::Part> Accel::Impl::partsOfPlaces() {
+    // More parts of a place bring rays of the camera through foliage another fifth, and cost all others and the building.
+    constexpr size_t kParts = 8, kMost = 2'000'000;
+    for (uint32_t s = 0; s < shapes.size(); ++s) {
+        if (!isPlaced(s) || geometryAt(s).tree.empty()) continue;
+        const auto* p = shapes[s]->placed();
+        Place place{{}, &geometryAt(s), p, s, p->placeMoves()};
+        if (p->toGeometry(0, place.in)) places.push_back(place);
+    }
+    std::vector<Tree::Part> parts;
+    if (places.empty()) return parts;
+    const size_t each = std::clamp(kMost / places.size(), size_t(1), kParts);
+    std::vector<std::vector<std::pair<Tree::Child, geometry::Bounds>>> opened(geometries.size());
+    for (size_t g = 0; g < geometries.size(); ++g)
+        if (!geometries[g]->tree.empty()) opened[g] = geometries[g]->tree.opened(each);
+    std::vector<size_t> first{0};
+    for (const Place& p : places) first.push_back(first.back() + opened[geometryOf[p.shape]].size());
+    parts.resize(first.back());
+    parallelFor(size_t(0), places.size(), [&](size_t i) {
+        const Place& p = places[i];
+        const auto& boxes = opened[geometryOf[p.shape]];
+        for (size_t k = 0; k < boxes.size(); ++k) {
+            Tree::Part& part = parts[first[i] + k];
+            part.shape = p.shape;
+            part.as = {Tree::kPart | uint32_t(i), boxes[k].first};
+            if (p.placed->deforming()) part.bounds = p.placed->bounds();
+            else if (!p.moves) part.bounds = placed(boxes[k].second, p.placed->fromGeometry(0));
+            else
+                for (const auto& [time, out] : p.placed->placeKeys()) part.bounds.add(placed(boxes[k].second, out));
+        }
+    });
+    return parts;
 }
 
 void Accel::Impl::readyTrimmed() {

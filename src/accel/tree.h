@@ -13,9 +13,12 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace alpenglow::accel {
+
+struct Box;
 
 class Tree {
 public:
@@ -52,10 +55,22 @@ public:
     };
     static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
 
+    /// A child that is exact. Of a part of a shape that has a tree of its own: kPart and the number that Part gives, and the
+    /// child of that tree.
+    struct Exact {
+        uint32_t shape, prim;
+    };
+    static constexpr uint32_t kPart = 0x80000000u;
+    struct Part {
+        geometry::Bounds bounds;
+        uint32_t shape;
+        Exact as;
+    };
     /// Throws std::bad_alloc when memory is short, std::length_error for more than 2^30 leaves. keys, times: of the only shape,
-    /// what it is at several times from 0 to 1; its points go linearly between them.
+    /// what it is at several times from 0 to 1; its points go linearly between them. parts: of shapes that are in the tree by
+    /// them alone, ordered by shape.
     void build(std::span<const geometry::ShapeRef>, std::span<const geometry::ShapeRef> keys = {},
-               std::span<const float> times = {});
+               std::span<const float> times = {}, std::span<const Part> parts = {});
 
     // ---- of a shape with keys
     /// The nodes with their boxes at time 1; those of nodes() are then the ones at time 0, and boxes between lie between. Else
@@ -78,12 +93,11 @@ public:
     const Node* nodes() const { return nodes_.data(); }
     const Leaf* leaves() const { return leaves_.data(); }
     bool empty() const { return nodes_.empty(); }
+    /// Up to `most` children, the largest divided first, that hold all of the tree between them, and their boxes; the root alone
+    /// for a tree with keys.
+    std::vector<std::pair<Child, geometry::Bounds>> opened(size_t most) const;
     const geometry::Bounds& bounds() const { return bounds_; }
     size_t bytes() const { return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) + exact_.size() * sizeof(Exact); }
-    /// A child that is exact.
-    struct Exact {
-        uint32_t shape, prim;
-    };
     const Exact& exact(uint32_t index) const { return exact_[index]; }
     /// Shape of a triangle, and its number there.
     void find(uint32_t id, uint32_t& shape, uint32_t& prim) const {
@@ -95,6 +109,8 @@ public:
 
 private:
     struct Builder;
+    void followKeys(std::span<const geometry::ShapeRef> keys, std::span<const float> times);
+    void followLeaf(size_t leaf, std::span<const geometry::ShapeRef> keys, std::span<const float> times, Box& first, Box& last);
     struct Mesh {
         uint32_t first, shape;
     }; ///< number of its first triangle

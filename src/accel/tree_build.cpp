@@ -1,5 +1,5 @@
 // Building: surface area heuristic over sixteen bins of centroids, the largest child first until there are eight.
-#include "accel/tree.h"
+#include "accel/tree_boxes.h"
 #include "base/parallel.h"
 #include <algorithm>
 #include <atomic>
@@ -11,22 +11,6 @@
 namespace alpenglow::accel {
 
 namespace {
-
-typedef float Four __attribute__((vector_size(16)));
-
-Four least(Four a, Four b) { return a < b ? a : b; }
-Four most(Four a, Four b) { return a > b ? a : b; }
-constexpr float kHuge = 3e38f;
-
-struct Box {
-    Four lo{kHuge, kHuge, kHuge, kHuge}, hi{-kHuge, -kHuge, -kHuge, -kHuge};
-    void add(Four l, Four h) { lo = least(lo, l), hi = most(hi, h); }
-    void add(const Box& b) { add(b.lo, b.hi); }
-    double halfArea() const {
-        const Four d = hi - lo;
-        return d[0] < 0 ? 0 : double(d[0]) * d[1] + double(d[1]) * d[2] + double(d[2]) * d[0];
-    }
-};
 
 /// A triangle or a primitive of an exact shape; its number lies in the fourth lane of the lower corner.
 struct Ref {
@@ -60,6 +44,7 @@ constexpr size_t kParallel = 8192; // references below which a task of its own c
 struct Tree::Builder {
     Tree& tree;
     std::span<const geometry::ShapeRef> shapes, keys;
+    std::span<const Part> parts;
     uint32_t triangles = 0; // numbers from here on are primitives of exact shapes: exact[number - triangles]
     std::vector<Exact> exact;
     std::unique_ptr<Ref[]> refs;
@@ -201,7 +186,79 @@ struct Tree::Builder {
         both.wait();
     }
 
+    /// A range that is divided in two again and again down to its leaves; which of these pieces become the children of nodes is
+    /// chosen by cost: the sum of areas of all nodes (Ylitie et al., section 3.1).
+    struct Pieces {
+        struct Piece {
+            Range range;
+            int left = -1, right = -1; // -1: a leaf
+            // By a number of children, what it costs at the least when they are this piece or lie below it; and how many of them
+            // lie on its left side then, 0: it is one.
+            float cost[kWide + 1] = {};
+            uint8_t lefts[kWide + 1] = {};
+        };
+        std::vector<Piece> list;
+
+        int divide(Builder& builder, const Range& r, int depth) {
+            const int at = int(list.size());
+            list.emplace_back().range = r;
+            if (r.leaf) return at;
+            Range first, second;
+            builder.split(r, depth >= kDeepest - 20, first, second);
+            const int left = divide(builder, first, depth + 1), right = divide(builder, second, depth + 1);
+            list[size_t(at)].left = left;
+            list[size_t(at)].right = right;
+            weigh(list[size_t(at)]);
+            return at;
+        }
+        void weigh(Piece& p) const {
+            const float *l = list[size_t(p.left)].cost, *r = list[size_t(p.right)].cost;
+            for (int n = 2; n <= kWide; ++n) {
+                p.cost[n] = INFINITY;
+                p.lefts[n] = 1; // also where areas have no floats
+                for (int k = 1; k < n; ++k)
+                    if (const float c = l[k] + r[n - k]; c < p.cost[n]) p.cost[n] = c, p.lefts[n] = uint8_t(k);
+            }
+            p.cost[1] = float(p.range.box.halfArea()) + p.cost[kWide];
+            for (int n = 2; n < kWide; ++n)
+                if (p.cost[1] <= p.cost[n]) p.cost[n] = p.cost[1], p.lefts[n] = 0;
+        }
+        void children(int piece, int n, int out[kWide], int& count) const {
+            const Piece& p = list[size_t(piece)];
+            if (p.left < 0 || n == 1 || (n < kWide && !p.lefts[n])) {
+                out[count++] = piece;
+                return;
+            }
+            children(p.left, p.lefts[n], out, count);
+            children(p.right, n - p.lefts[n], out, count);
+        }
+    };
+    size_t makeNode(const Pieces& of, int piece) {
+        int child[kWide], n = 0;
+        of.children(piece, kWide, child, n);
+        Range ranges[kWide];
+        Box boxes[kWide];
+        for (int k = 0; k < n; ++k) ranges[k] = of.list[size_t(child[k])].range, boxes[k] = ranges[k].box;
+        const size_t at = newNode();
+        Node& out = this->node(at);
+        setBoxes(out, of.list[size_t(piece)].range.box, {boxes, size_t(n)});
+        for (int k = 0; k < n; ++k) {
+            if (ranges[k].leaf) {
+                out.child[k] = uint32_t(ranges[k].begin);
+                out.spare[k] = uint8_t(ranges[k].size());
+            } else {
+                out.child[k] = uint32_t(makeNode(of, child[k]));
+            }
+        }
+        return at;
+    }
+
     size_t makeNode(const Range& all, int depth) {
+        constexpr size_t kPieces = 65536;
+        if (all.size() <= kPieces) {
+            Pieces small;
+            return makeNode(small, small.divide(*this, all, depth));
+        }
         Range child[kWide] = {all};
         int n = 1;
         while (n < kWide) {
@@ -216,7 +273,9 @@ struct Tree::Builder {
         }
         const size_t at = newNode();
         Node& node = this->node(at);
-        setBoxes(node, all.box, {child, size_t(n)});
+        Box boxes[kWide];
+        for (int k = 0; k < n; ++k) boxes[k] = child[k].box;
+        setBoxes(node, all.box, {boxes, size_t(n)});
         TaskGroup below;
         for (int k = 0; k < n; ++k) {
             if (child[k].leaf) {
@@ -230,27 +289,6 @@ struct Tree::Builder {
         }
         below.wait();
         return at;
-    }
-
-    static void setBoxes(Node& node, const Box& all, std::span<const Range> child) {
-        node = Node{};
-        std::fill_n(node.child, kWide, kNothing);
-        // Wider than a ray along a flat box could leave it by, and than rounding.
-        double most = 1e-30;
-        for (int a = 0; a < 3; ++a) most = std::max({most, std::fabs(double(all.lo[a])), std::fabs(double(all.hi[a]))});
-        const double pad = most * 0x1p-21;
-        for (int a = 0; a < 3; ++a) {
-            const float origin = float(all.lo[a] - 2 * pad);
-            const float scale = float((double(all.hi[a]) + 2 * pad - origin) / 254.9);
-            node.origin[a] = origin;
-            node.scale[a] = scale;
-            for (size_t k = 0; k < child.size(); ++k) {
-                const double lo = (double(child[k].box.lo[a]) - pad - origin) / scale,
-                             hi = (double(child[k].box.hi[a]) + pad - origin) / scale;
-                node.q[0][a][k] = uint8_t(std::clamp(std::floor(lo), 0.0, 255.0));
-                node.q[1][a][k] = uint8_t(std::clamp(std::ceil(hi), 0.0, 255.0));
-            }
-        }
     }
 
     /// Depth first, the children of a node side by side: where rays go next is near.
@@ -302,15 +340,20 @@ struct Tree::Builder {
         tree.nodes_ = std::move(nodes);
     }
 
-    /// All primitives of exact shapes.
+    /// All primitives of exact shapes; the first are the parts.
     void listExact() {
-        size_t n = 0;
-        for (const geometry::ShapeRef& s : shapes)
-            if (s->exact()) n += s->exactPrims();
+        std::vector<uint8_t> inParts(parts.empty() ? 0 : shapes.size());
+        for (const Part& p : parts) inParts[p.shape] = 1;
+        const auto primsOf = [&](uint32_t s) {
+            return shapes[s]->exact() && (parts.empty() || !inParts[s]) ? shapes[s]->exactPrims() : 0;
+        };
+        size_t n = parts.size();
+        for (uint32_t s = 0; s < shapes.size(); ++s) n += primsOf(s);
         if (triangles + n >= kIndex) throw std::length_error("exact primitives");
         exact.reserve(n);
+        for (const Part& p : parts) exact.push_back(p.as);
         for (uint32_t s = 0; s < shapes.size(); ++s)
-            for (uint32_t p = 0, many = shapes[s]->exact() ? shapes[s]->exactPrims() : 0; p < many; ++p) exact.push_back({s, p});
+            for (uint32_t p = 0, many = primsOf(s); p < many; ++p) exact.push_back({s, p});
     }
     Ref exactRef(uint32_t number, const geometry::Bounds& b) const {
         const auto sound = [](float f, float otherwise) { return std::isfinite(f) ? std::clamp(f, -kHuge, kHuge) : otherwise; };
@@ -377,7 +420,8 @@ struct Tree::Builder {
         });
         tree.exact_.reserve(exact.size());
         parallelFor(size_t(0), exact.size(), [&](size_t i) {
-            refs[triangles + i] = exactRef(uint32_t(i), shapes[exact[i].shape]->exactBounds(exact[i].prim));
+            refs[triangles + i] =
+                exactRef(uint32_t(i), i < parts.size() ? parts[i].bounds : shapes[exact[i].shape]->exactBounds(exact[i].prim));
         });
         pieces.resize(all / kPiece + 2); // a node has two children at least
         if (beyond > 0) leaveOut(beyond, beyondOf);
@@ -387,79 +431,9 @@ struct Tree::Builder {
         for (int a = 0; a < 3; ++a) tree.bounds_.lo[a] = root.box.lo[a], tree.bounds_.hi[a] = root.box.hi[a];
         arrange(root.leaf ? lone(root) : makeNode(root, 0));
     }
-    /// The vertices of a leaf at all keys, and its boxes at both ends of the shutter: their blend holds it at each time between.
-    void followLeaf(size_t leaf, std::span<const float> times, Box& first, Box& last) {
-        const Leaf& f = tree.leaves_[leaf];
-        const geometry::TriMesh& mesh = keys[0]->mesh();
-        uint32_t which[kLeafVertices] = {};
-        bool known[kLeafVertices] = {}, loose = false;
-        const auto place = [&](size_t key, uint32_t v) -> const Vec3& { return keys[key]->mesh().P[v]; };
-        for (uint32_t t = 0; t < f.size(); ++t)
-            for (int c = 0; c < 3; ++c) {
-                const uint32_t v = f.vertex(t, c), at = mesh.index[3 * size_t(f.id[t]) + size_t(c)];
-                if (!known[v]) known[v] = true, which[v] = at;
-                for (size_t k = 0; k < keys.size() && at != which[v]; ++k) loose |= !(place(k, at) == place(k, which[v]));
-            }
-        for (uint32_t v = 0; v < kLeafVertices; ++v)
-            if (!known[v]) which[v] = which[0];
-        tree.loose_[leaf] = loose;
-        std::vector<Box> box(keys.size());
-        for (size_t k = 0; k < keys.size(); ++k) {
-            for (uint32_t v = 0; v < kLeafVertices; ++v)
-                for (int a = 0; a < 3; ++a) tree.moved_[leaf * keys.size() + k].p[a][v] = place(k, which[v])[a];
-            for (uint32_t t = 0; t < f.size(); ++t)
-                for (size_t c = 0; c < 3; ++c) {
-                    const Vec3& p = place(k, mesh.index[3 * size_t(f.id[t]) + c]);
-                    box[k].add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0});
-                }
-        }
-        first = box.front();
-        last = box.back();
-        const Four none{};
-        for (size_t k = 1; k + 1 < keys.size(); ++k) {
-            const float w = times[k];
-            const Four below = most(first.lo * (1 - w) + last.lo * w - box[k].lo, none),
-                       above = most(box[k].hi - first.hi * (1 - w) - last.hi * w, none);
-            first.lo -= below, last.lo -= below;
-            first.hi += above, last.hi += above;
-        }
-    }
-    void followKeys(std::span<const float> times) {
-        const size_t n = tree.leaves_.size();
-        tree.keys_ = keys.size();
-        tree.moved_.resize(n * keys.size());
-        tree.loose_.resize(n);
-        struct Ends {
-            Box first, last;
-        };
-        std::vector<Ends> leaf(n), node(tree.nodes_.size());
-        parallelFor(size_t(0), n, [&](size_t i) { followLeaf(i, times, leaf[i].first, leaf[i].last); });
-        tree.last_.resize(tree.nodes_.size());
-        for (size_t i = tree.nodes_.size(); i-- > 0;) { // children come after their parents
-            Range first[kWide], last[kWide];
-            int count = 0;
-            for (; count < kWide && tree.nodes_[i].child[count] != kNothing; ++count) {
-                const Child c = tree.nodes_[i].child[count];
-                const Ends& e = c & kLeaf ? leaf[c & kIndex] : node[c];
-                first[count].box = e.first;
-                last[count].box = e.last;
-                node[i].first.add(e.first);
-                node[i].last.add(e.last);
-            }
-            Node at = tree.nodes_[i];
-            for (int side = 0; side < 2; ++side) {
-                Node& out = side ? tree.last_[i] : tree.nodes_[i];
-                setBoxes(out, side ? node[i].last : node[i].first, {side ? last : first, size_t(count)});
-                std::copy_n(at.child, kWide, out.child);
-            }
-        }
-        for (const geometry::ShapeRef& k : keys)
-            for (const Vec3& p : k->mesh().P)
-                if (!Tree::reaches(p)) tree.extent_ = std::max({tree.extent_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-    }
     size_t lone(const Range& r) {
         const size_t at = newNode();
-        setBoxes(node(at), r.box, {&r, 1});
+        setBoxes(node(at), r.box, {&r.box, 1});
         node(at).child[0] = uint32_t(r.begin);
         node(at).spare[0] = uint8_t(r.size());
         return at;
@@ -467,10 +441,10 @@ struct Tree::Builder {
 };
 
 void Tree::build(std::span<const geometry::ShapeRef> shapes, std::span<const geometry::ShapeRef> keys,
-                 std::span<const float> times) {
-    Builder b{.tree = *this, .shapes = shapes, .keys = keys};
+                 std::span<const float> times, std::span<const Part> parts) {
+    Builder b{.tree = *this, .shapes = shapes, .keys = keys, .parts = parts};
     b.run();
-    if (keys.size() > 1 && !nodes_.empty()) b.followKeys(times);
+    if (keys.size() > 1 && !nodes_.empty()) followKeys(keys, times);
 }
 
 } // namespace alpenglow::accel

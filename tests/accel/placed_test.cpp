@@ -384,7 +384,7 @@ TEST(Placed, CompanyChangesNoBit) {
     in.shapes = w.shapes;
     in.visibility.assign(w.shapes.size(), accel::kAll);
     in.readyPlaced();
-    in.tree.build(w.shapes);
+    in.buildTree();
     in.walkNearest(r, plain, true);
     size_t hits = 0, placed = 0;
     for (size_t i = 0; i < r.size(); ++i) {

@@ -137,6 +137,44 @@ TEST(Tree, NothingIsOverlooked) {
     EXPECT_GT(met, 4000u);
 }
 
+// The parts that a tree is opened into hold each triangle once, within their boxes.
+TEST(Tree, PartsHoldAllOfIt) {
+    Rng rng(8);
+    Diagnostics diag;
+    const ShapeRef shape = build(soup(rng, 3000, {3, -2, 8}, 4), Matrix(), diag);
+    ASSERT_TRUE(shape);
+    Tree tree;
+    tree.build({&shape, 1});
+    for (const size_t most : {size_t(1), size_t(8), size_t(60), size_t(100000)}) {
+        const auto parts = tree.opened(most);
+        EXPECT_LE(parts.size(), most);
+        EXPECT_GT(parts.size() * Tree::kWide, std::min<size_t>(most, 500));
+        std::vector<int> held(shape->mesh().triangles());
+        for (const auto& [start, box] : parts) {
+            std::vector<Tree::Child> left{start};
+            while (!left.empty()) {
+                const Tree::Child c = left.back();
+                left.pop_back();
+                if (!(c & Tree::kLeaf)) {
+                    for (const Tree::Child k : tree.nodes()[c].child)
+                        if (k != Tree::kNothing) left.push_back(k);
+                    continue;
+                }
+                const Tree::Leaf& leaf = tree.leaves()[c & Tree::kIndex];
+                for (uint32_t t = 0; t < leaf.size(); ++t) {
+                    ++held[leaf.id[t]];
+                    for (int k = 0; k < 3; ++k)
+                        for (int a = 0; a < 3; ++a) {
+                            const float x = leaf.point(leaf.vertex(t, k))[a];
+                            ASSERT_TRUE(x >= box.lo[a] && x <= box.hi[a]) << most << " " << leaf.id[t];
+                        }
+                }
+            }
+        }
+        EXPECT_EQ(std::count(held.begin(), held.end(), 1), long(held.size())) << most;
+    }
+}
+
 // Whether anything is met, of rays that end or begin about where the only triangle is: as the triangle itself has it.
 TEST(Tree, AnyHitAtTheEndsOfRays) {
     Rng rng(5);

@@ -9,6 +9,7 @@
 // Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017): a node is two cache lines, and so is a leaf. Several
 // rays are followed in turns, so that one waits for memory while the others work.
 #pragma once
+#include "geometry/capsule.h"
 #include "geometry/shape.h"
 #include <cmath>
 #include <memory>
@@ -97,8 +98,13 @@ public:
     /// for a tree with keys.
     std::vector<std::pair<Child, geometry::Bounds>> opened(size_t most) const;
     const geometry::Bounds& bounds() const { return bounds_; }
-    size_t bytes() const { return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) + exact_.size() * sizeof(Exact); }
+    size_t bytes() const {
+        return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) + exact_.size() * sizeof(Exact) +
+               capsules_.size() * sizeof(geometry::Capsule);
+    }
     const Exact& exact(uint32_t index) const { return exact_[index]; }
+    /// Around each of them, by the same index; null: nothing is known of any. A radius of infinity: nothing is known.
+    const geometry::Capsule* capsules() const { return capsules_.empty() ? nullptr : capsules_.data(); }
     /// Shape of a triangle, and its number there.
     void find(uint32_t id, uint32_t& shape, uint32_t& prim) const {
         uint32_t k = first_[id >> kCoarse];
@@ -120,6 +126,7 @@ private:
     std::vector<Mesh> meshes_;
     std::vector<uint32_t> first_; ///< by sixteen triangles: into meshes_
     std::vector<Exact> exact_;    ///< in the order of the leaves
+    std::vector<geometry::Capsule> capsules_;
     geometry::Bounds bounds_;
     std::vector<Node> last_;
     std::vector<Vertices> moved_;

@@ -336,8 +336,24 @@ struct Tree::Builder {
         });
         refs.reset();
         exact = {};
+        makeCapsules();
         nodes.shrink_to_fit();
         tree.nodes_ = std::move(nodes);
+    }
+
+    void makeCapsules() {
+        std::vector<const geometry::InCapsules*> of(shapes.size());
+        bool any = false;
+        for (size_t s = 0; s < shapes.size(); ++s)
+            if (shapes[s]->exact() && !shapes[s]->placed())
+                any |= (of[s] = dynamic_cast<const geometry::InCapsules*>(shapes[s].get())) != nullptr;
+        if (!any) return;
+        tree.capsules_.resize(tree.exact_.size());
+        parallelFor(size_t(0), tree.exact_.size(), [&](size_t i) {
+            const Exact& e = tree.exact_[i];
+            geometry::Capsule& c = tree.capsules_[i];
+            if ((e.shape & kPart) || !of[e.shape] || !of[e.shape]->capsule(e.prim, c)) c.radius = INFINITY;
+        });
     }
 
     /// All primitives of exact shapes; the first are the parts.

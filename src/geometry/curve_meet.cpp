@@ -161,36 +161,6 @@ int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2]
     return 2;
 }
 
-struct Tube {
-    Vec3d p[4];
-    double h[4];
-};
-
-/// Newton's iteration for the point (0, 0, z) on the circle at f. False where it leads elsewhere.
-bool refine(const Tube& g, double& z, double& f) {
-    Vec3d d[3], dd[2];
-    double hd[3];
-    bernsteinSlope<3>(g.p, d);
-    bernsteinSlope<2>(d, dd);
-    bernsteinSlope<3>(g.h, hd);
-    double last = INFINITY;
-    for (int i = 0; i < 30; ++i) {
-        const Vec3d c = bernsteinAt<3>(g.p, f), t = bernsteinAt<2>(d, f), tt = bernsteinAt<1>(dd, f), w = Vec3d(0, 0, z) - c;
-        const double h = bernsteinAt<3>(g.h, f), slope = bernsteinAt<2>(hd, f);
-        const double g1 = dot(w, t), g2 = dot(w, w) - h * h;
-        const double a = t.z, b = dot(w, tt) - dot(t, t), e = 2 * w.z, q = -2 * g1 - 2 * h * slope, det = a * q - b * e;
-        if (!(std::fabs(det) > 0)) return false;
-        const double dz = (g1 * q - b * g2) / det, df = (a * g2 - e * g1) / det;
-        z -= dz;
-        f -= df;
-        if (!(f > -1 && f < 2)) return false;
-        const double moved = std::fabs(df) + std::fabs(dz) / (h + 1e-300);
-        if (moved < 1e-13 || (moved < 1e-9 && moved >= last)) return h > 0;
-        last = moved;
-    }
-    return false;
-}
-
 int meetRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]) {
     const Vec3d a = r.placed(g.p[1]), b = r.placed(g.p[2]);
     const Vec3d ends[2] = {a, b};
@@ -216,60 +186,21 @@ int meetRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]) {
 
 } // namespace
 
-int meetTube(const CurveSegment& g, double from, double to, const CurveRay& r, CurveHit out[4]) {
+namespace common {
+#include "geometry/curve_tube.inc"
+} // namespace common
+
+#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2"))), apply_to = function)
+namespace avx2 {
+#include "geometry/curve_tube.inc"
+} // namespace avx2
+#pragma clang attribute pop
+
+int meetTube(const CurveSegment& g, double from, double to, const CurveRay& r, CurveHit out[4], bool nearest, bool plain) {
+    static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+                            __builtin_cpu_supports("bmi2");
     if (g.linear) return meetRoundLine(g, r, out);
-    struct Waiting {
-        Tube tube;
-        double from, to;
-    } stack[24];
-    Tube whole;
-    for (int i = 0; i < 4; ++i) whole.p[i] = r.placed(g.p[i]), whole.h[i] = g.h[i];
-    if (!passesBy(r, whole.p, 4, g.widest())) return 0;
-    stack[0] = {whole, from, to};
-    bernsteinPart<3>(stack[0].tube.p, from, to);
-    bernsteinPart<3>(stack[0].tube.h, from, to);
-    int size = 1, n = 0;
-    while (size) {
-        Waiting w = stack[--size];
-        const double widest = std::max(std::max(w.tube.h[0], w.tube.h[1]), std::max(w.tube.h[2], w.tube.h[3]));
-        if (!(widest > 0) || !passesBy(r, w.tube.p, 4, widest)) continue;
-        const Vec3d* p = w.tube.p;
-        const double bent = std::max(length(p[0] - p[1] * 2.0 + p[2]), length(p[1] - p[2] * 2.0 + p[3])),
-                     chord = length(p[3] - p[0]);
-        const double narrowed = std::fabs(w.tube.h[3] - w.tube.h[0]);
-        const bool small = w.to - w.from <= 1. / 1024;
-        const auto halve = [&] {
-            Waiting right;
-            right.from = w.from + 0.5 * (w.to - w.from);
-            right.to = w.to;
-            bernsteinSplit<3>(w.tube.p, 0.5, right.tube.p);
-            bernsteinSplit<3>(w.tube.h, 0.5, right.tube.h);
-            w.to = right.from;
-            stack[size++] = right;
-            stack[size++] = w;
-        };
-        if (!small && (bent > 0.02 * widest || bent > 0.05 * chord || narrowed > widest)) {
-            halve();
-            continue;
-        }
-        if (!(chord > 0)) continue;
-        double z[2];
-        bool misses, lost = false; // lost: a ray along the tube, for which the cone is no good beginning
-        const int roots = meetCone(p[0], w.tube.h[0], p[3], w.tube.h[3], z, misses);
-        for (int i = 0; i < roots; ++i) {
-            const double begin = dot(Vec3d(0, 0, z[i]) - p[0], p[3] - p[0]) / (chord * chord);
-            double f = std::clamp(begin, 0.0, 1.0), at = z[i];
-            const bool found = refine(w.tube, at, f);
-            lost |= !misses && (found ? std::fabs(f - begin) > 0.5 : begin > -1 && begin < 2);
-            if (!found || !(f >= -kEdge && f <= 1 + kEdge)) continue;
-            const CurveHit h{r.t(at), 0, w.from + (w.to - w.from) * std::clamp(f, 0.0, 1.0), {}};
-            const bool known =
-                std::any_of(out, out + n, [&](const CurveHit& o) { return std::fabs(o.t - h.t) * r.length < 1e-7 * widest; });
-            if (!known) keep(r, out, n, h);
-        }
-        if (lost && !small) halve(); // what was found is known then
-    }
-    return n;
+    return (has && !plain ? avx2::meetTube : common::meetTube)(g, from, to, r, out, nearest);
 }
 
 } // namespace alpenglow::geometry

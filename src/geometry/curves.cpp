@@ -2,6 +2,7 @@
 // "roundcurve").
 #include "geometry/curves.h"
 #include "base/exact.h"
+#include "geometry/capsule.h"
 #include "geometry/dice.h"
 #include "geometry/factories.h"
 #include "geometry/keyed.h"
@@ -23,13 +24,15 @@ bool onDisc(double b2) { return b2 < kFirst + 1.5 || b2 > kLast - 1.5; }
 /// The part of the radius.
 double outOnDisc(double b2) { return b2 < 0 ? b2 - kFirst : kLast - b2; }
 
-class Curves final : public KeyedShape {
+class Curves final : public KeyedShape, public InCapsules {
 public:
     Curves(ShapeSource s, CurveSet set, Diagnostics&);
 
     uint32_t exactPrims() const override { return set_.segments() * parts_; }
     int exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, float time,
                     ExactHit out[4]) const override;
+
+    bool capsule(uint32_t prim, Capsule&) const override;
 
     int faces() const override { return int(source_.primitive->ints.size()); }
     SurfacePoint evaluate(int face, double u, double v) const override {
@@ -66,6 +69,7 @@ private:
         to = double(prim % parts_ + 1) / parts_;
     }
     void chooseParts();
+    int hull(uint32_t prim, Vec3d p[4], double& wide) const;
     Vec3d toObject(const Vec3d& p) const { return transformPoint(toObject_, p); }
     SurfacePoint pointOf(uint32_t segment, double u, double f, const Vec3d& from, float time) const;
     LocalPoint local(const CurveSegment&, const CurveFacing&, double u, double f) const;
@@ -87,6 +91,7 @@ private:
     Matrix toObject_;
     double side_ = 1; ///< +1, -1: of Ng along dPdu ^ dPdv of object space
     double reach_[3]; ///< half the extent of a unit ball of object space along camera axes
+    double stretch_;  ///< no direction of object space becomes longer
     mutable std::once_flag made_;
     /// Summed up by segment, of each what is round the curve and the discs at its begin and end; of what moves, the mean of its
     /// keys.
@@ -99,6 +104,13 @@ Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : KeyedShape(std:
     side_ = (mirrored ? -1 : 1) * double(orientation_);
     const auto& m = toCamera().m;
     for (int k = 0; k < 3; ++k) reach_[k] = std::sqrt(m[0][k] * m[0][k] + m[1][k] * m[1][k] + m[2][k] * m[2][k]);
+    // The largest singular value squared is below each sum of a row of the product with the transpose.
+    stretch_ = 0;
+    for (int i = 0; i < 3; ++i) {
+        double sum = 0;
+        for (int k = 0; k < 3; ++k) sum += std::fabs(m[i][0] * m[k][0] + m[i][1] * m[k][1] + m[i][2] * m[k][2]);
+        stretch_ = std::max(stretch_, std::sqrt(sum));
+    }
     const scene::Param* round = attributes().value("dice:roundcurve");
     if (set_.hasNormals()) facing_.kind = CurveFacing::Given;
     else {
@@ -155,22 +167,44 @@ void Curves::load(uint32_t segment, size_t k, double way, CurveSegment& g) const
     if (k > 0) set_.load(segment, to), g.axis = to.axis; // one axis at all times, or the frame would turn over at a key
 }
 
-Bounds Curves::keyBounds(uint32_t prim) const {
+/// Points whose hull holds the middle of a primitive, and half its width at the most.
+int Curves::hull(uint32_t prim, Vec3d p[4], double& wide) const {
     CurveSegment g;
     set_.load(prim / parts_, g);
-    double from, to, wide = g.widest();
+    double from, to;
+    wide = g.widest();
     part(prim, from, to);
-    Vec3d p[4];
-    int n = 4;
     if (g.linear) {
-        n = 2;
         p[0] = g.p[1] + (g.p[2] - g.p[1]) * from;
         p[1] = g.p[1] + (g.p[2] - g.p[1]) * to;
         wide *= 2; // mitres
-    } else {
-        std::copy(g.p, g.p + 4, p);
-        bernsteinPart<3>(p, from, to);
+        return 2;
     }
+    std::copy(g.p, g.p + 4, p);
+    bernsteinPart<3>(p, from, to);
+    return 4;
+}
+
+bool Curves::capsule(uint32_t prim, Capsule& out) const {
+    if (joined()) return false;
+    Vec3d p[4];
+    double wide, bent = 0;
+    const int n = hull(prim, p, wide);
+    for (int i = 0; i < n; ++i) p[i] = transformPoint(toCamera(), p[i]);
+    const Vec3d e = p[n - 1] - p[0];
+    const double ee = dot(e, e);
+    for (int i = 1; i + 1 < n; ++i) {
+        const double s = ee > 0 ? std::clamp(dot(p[i] - p[0], e) / ee, 0.0, 1.0) : 0;
+        bent = std::max(bent, length(p[i] - p[0] - e * s));
+    }
+    out = Capsule::between(p[0], p[n - 1], wide * stretch_ * 1.000001 + bent);
+    return true;
+}
+
+Bounds Curves::keyBounds(uint32_t prim) const {
+    Vec3d p[4];
+    double wide;
+    const int n = hull(prim, p, wide);
     Bounds b;
     for (int i = 0; i < n; ++i) {
         const Vec3d c = transformPoint(toCamera(), p[i]);
@@ -205,7 +239,8 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     if (fromRay_) facing.at = -d;
     CurveHit hits[6];
     const bool round = tubes();
-    int n = round ? meetTube(g, from, to, ray, hits) : meetRibbon(g, from, to, facing, fromRay_, ray, hits);
+    int n =
+        round ? meetTube(g, from, to, ray, hits, wanted != Wanted::All) : meetRibbon(g, from, to, facing, fromRay_, ray, hits);
     if (round) meetDiscs(g, prim, ray, hits, n);
     std::sort(hits, hits + n, [](const CurveHit& a, const CurveHit& b) { return a.t < b.t; });
     n = std::min(n, wanted != Wanted::All ? 1 : 4);

@@ -79,8 +79,10 @@ struct CurveHit {
 /// is its direction reversed.
 int meetRibbon(const CurveSegment&, double from, double to, const CurveFacing&, bool fromRay, const CurveRay&, CurveHit out[4]);
 /// Without the discs at the ends of tubes. Subdivided until a cone is within a fiftieth of its radius of the part (or 1/1024 of
-/// the segment is left), then Newton's iteration on the swept circle itself, to the last bits.
-int meetTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4]);
+/// the segment is left), then Newton's iteration on the swept circle itself, to the last bits. nearest: others than the first
+/// along the ray may be left out. plain: with the instructions that every processor has.
+int meetTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4], bool nearest = false,
+             bool plain = false);
 
 /// How curves lie in the arrays of their request.
 class CurveSet {

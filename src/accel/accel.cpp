@@ -179,14 +179,14 @@ bool Accel::Impl::occludedOne(const Ray& r) const {
 bool Accel::intersect(const Ray& r, Hit& hit) const { return impl_->intersectOne(r, hit); }
 bool Accel::occluded(const Ray& r) const { return impl_->occludedOne(r); }
 
-void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
-    if (!impl_->direct) return impl_->walkNearest(rays, hits);
+void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits, const StopFlag* stop) const {
+    if (!impl_->direct) return impl_->walkNearest(rays, hits, false, stop);
     if (rays.size() > 1 && impl_->takesBlocks()) return impl_->nearestInBlocks(rays, hits);
     for (size_t i = 0; i < rays.size(); ++i) impl_->intersectOne(rays[i], hits[i]);
 }
 
-void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> out) const {
-    if (!impl_->direct) return impl_->walkAny(rays, out);
+void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> out, const StopFlag* stop) const {
+    if (!impl_->direct) return impl_->walkAny(rays, out, stop);
     if (rays.size() > 1 && impl_->takesBlocks()) return impl_->anyInBlocks(rays, out);
     for (size_t i = 0; i < rays.size(); ++i) out[i] = impl_->occludedOne(rays[i]);
 }

@@ -9,6 +9,7 @@
 // t stays what it is. What deforms has leaves whose triangles stand where they are at the ray's time.
 #pragma once
 #include "base/diagnostics.h"
+#include "base/stopflag.h"
 #include "geometry/shape.h"
 #include <algorithm>
 #include <cmath>
@@ -81,9 +82,10 @@ public:
     bool intersect(const Ray&, Hit& hit) const;
     /// Whether anything is met. Thread safe.
     bool occluded(const Ray&) const;
-    /// The same for arrays; rays and results have equal length.
-    void intersect(std::span<const Ray>, std::span<Hit>) const;
-    void occluded(std::span<const Ray>, std::span<uint8_t>) const;
+    /// The same for arrays; rays and results have equal length. stop: once it is set they return within some milliseconds,
+    /// however many shapes a ray meets; results are void then, and those that have not been found stay what they were.
+    void intersect(std::span<const Ray>, std::span<Hit>, const StopFlag* stop = nullptr) const;
+    void occluded(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 
     const std::vector<geometry::ShapeRef>& shapes() const;
     /// The point of a hit, where it is at the hit's time.

@@ -222,8 +222,8 @@ struct Accel::Impl {
     bool intersectOne(const Ray&, Hit&) const;
     bool occludedOne(const Ray&) const;
     /// plain: with the instructions that every processor has.
-    void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false) const;
-    void walkAny(std::span<const Ray>, std::span<uint8_t>) const;
+    void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
+    void walkAny(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 };
 
 } // namespace alpenglow::accel

@@ -25,14 +25,14 @@ static bool hasAvx2() {
     return has;
 }
 
-void Accel::Impl::walkNearest(std::span<const Ray> rays, std::span<Hit> hits, bool plain) const {
+void Accel::Impl::walkNearest(std::span<const Ray> rays, std::span<Hit> hits, bool plain, const StopFlag* stop) const {
     if (tree.empty()) std::fill(hits.begin(), hits.end(), Hit());
-    else (hasAvx2() && !plain ? avx2::nearest : common::nearest)(*this, rays, hits);
+    else (hasAvx2() && !plain ? avx2::nearest : common::nearest)(*this, rays, hits, stop);
 }
 
-void Accel::Impl::walkAny(std::span<const Ray> rays, std::span<uint8_t> met) const {
+void Accel::Impl::walkAny(std::span<const Ray> rays, std::span<uint8_t> met, const StopFlag* stop) const {
     if (tree.empty()) std::fill(met.begin(), met.end(), uint8_t(0));
-    else (hasAvx2() ? avx2::any : common::any)(*this, rays, met);
+    else (hasAvx2() ? avx2::any : common::any)(*this, rays, met, stop);
 }
 
 } // namespace alpenglow::accel

@@ -81,7 +81,8 @@ template <class F> static void inParts(size_t n, const StopFlag* stop, F f) {
 
 void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits) {
     std::fill(hits.begin(), hits.end(), accel::Hit{});
-    inParts(rays.size(), stop, [&](size_t at, size_t n) { world_->accel_->intersect(rays.subspan(at, n), hits.subspan(at, n)); });
+    inParts(rays.size(), stop,
+            [&](size_t at, size_t n) { world_->accel_->intersect(rays.subspan(at, n), hits.subspan(at, n), stop); });
     for (size_t i = 0; world_->unmade_ && i < rays.size(); ++i) {
         if (!world_->unmade_->meets(rays[i], hits[i].valid() ? hits[i].distance : INFINITY)) continue;
         unfinished_ = true;
@@ -94,7 +95,7 @@ void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits) 
 void Engine::block(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
     std::fill(blocked.begin(), blocked.end(), uint8_t(0));
     inParts(rays.size(), stop,
-            [&](size_t at, size_t n) { world_->accel_->occluded(rays.subspan(at, n), blocked.subspan(at, n)); });
+            [&](size_t at, size_t n) { world_->accel_->occluded(rays.subspan(at, n), blocked.subspan(at, n), stop); });
     for (size_t i = 0; world_->unmade_ && i < rays.size(); ++i) {
         if (blocked[i] || !world_->unmade_->meets(rays[i], INFINITY)) continue;
         unfinished_ = true;

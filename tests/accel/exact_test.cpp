@@ -2,9 +2,12 @@
 #include "../geometry/make.h"
 #include "accel/accel.h"
 #include "geometry/solve.h"
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
+#include <thread>
 
 namespace exact_test {
 
@@ -119,6 +122,38 @@ TEST(ExactPrims, AreMetLikeSoManyShapes) {
             }
         }
         EXPECT_GT(met, 2500u);
+    }
+}
+
+// A flag that is set while rays meet a hundred thousand balls in one place, several seconds of work, ends it at once.
+TEST(ExactPrims, AFlagStopsTheSearch) {
+    Diagnostics diag;
+    Accel all({shapeOf(std::vector<OneBall>(100'000, {Vec3d(0, 0, 5), 1}))}, {}, diag);
+    Ray r;
+    r.dir = Vec3(0, 0, 1);
+    r.tnear = 4.5f; // within all of them, whose surfaces it does not reach: none makes another needless
+    r.tfar = 5.5f;
+    const std::vector<Ray> rays(4000, r);
+    std::vector<Hit> hits(rays.size());
+    std::vector<uint8_t> met(rays.size());
+    for (const bool any : {false, true}) {
+        StopFlag stop;
+        std::atomic<bool> begun = false;
+        std::chrono::steady_clock::time_point set, ended;
+        std::thread search([&] {
+            begun = true;
+            if (any) all.occluded(rays, met, &stop);
+            else all.intersect(rays, hits, &stop);
+            ended = std::chrono::steady_clock::now();
+        });
+        while (!begun) std::this_thread::yield();
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        set = std::chrono::steady_clock::now();
+        stop = 1;
+        search.join();
+        EXPECT_GT(ended, set);
+        EXPECT_LT(ended - set, std::chrono::milliseconds(500));
+        EXPECT_FALSE(hits.back().valid());
     }
 }
 

@@ -49,16 +49,15 @@ inline double edgeRoom(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const 
     return den > 0 ? kEdge + 0x1p-48 * norm(a) * norm(d) * (norm(e1) + norm(e2)) / den : 0;
 }
 
-inline bool usable(const Ray& r) {
+inline bool usable(const Vec3& org, const Vec3& dir) {
     // An infinite far end is usual; anything else infinite or NaN would wander through every box.
     constexpr float kFar = 1e18f;
     auto near = [](float c) { return std::fabs(c) < kFar; };
     // Without branches: nearly all rays pass.
-    const bool sound = int(near(r.org.x)) & int(near(r.org.y)) & int(near(r.org.z)) & int(near(r.dir.x)) & int(near(r.dir.y)) &
-                       int(near(r.dir.z)) & int(r.tnear < r.tfar) &
-                       int((std::fabs(r.dir.x) + std::fabs(r.dir.y) + std::fabs(r.dir.z)) > 0);
-    return sound;
+    return int(near(org.x)) & int(near(org.y)) & int(near(org.z)) & int(near(dir.x)) & int(near(dir.y)) & int(near(dir.z)) &
+           int((std::fabs(dir.x) + std::fabs(dir.y) + std::fabs(dir.z)) > 0);
 }
+inline bool usable(const Ray& r) { return bool(int(r.tnear < r.tfar) & int(usable(r.org, r.dir))); }
 
 struct Accel::Impl {
     std::vector<ShapeRef> shapes;
@@ -194,6 +193,7 @@ struct Accel::Impl {
         geometry::Affine in; ///< to the geometry's space, where it stands still
         const Geometry* geometry;
         const geometry::Placed* placed;
+        const geometry::Deforming* deforming; ///< or null
         uint32_t shape;
         bool moves;
     };

@@ -54,7 +54,7 @@ std::vector<Tree::Part> Accel::Impl::partsOfPlaces() {
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         if (!isPlaced(s) || geometryAt(s).tree.empty()) continue;
         const auto* p = shapes[s]->placed();
-        Place place{{}, &geometryAt(s), p, s, p->placeMoves()};
+        Place place{{}, &geometryAt(s), p, p->deforming(), s, p->placeMoves()};
         if (p->toGeometry(0, place.in)) places.push_back(place);
     }
     std::vector<Tree::Part> parts;

@@ -1,6 +1,8 @@
 // Lines with a width, around pieces of curves: cheaper to miss than the pieces, and closer to them than boxes.
 #pragma once
 #include "base/vec.h"
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace alpenglow::geometry {
@@ -13,6 +15,17 @@ struct Capsule {
     /// Added to the square of a distance that is compared with the radius: how far that may be off where `along` is long and
     /// thin.
     float excess = 0;
+    /// Whether a ray may pass through. Never false for one that does. slack: how far its origin may be off.
+    bool mayPass(const Vec3& org, const Vec3& dir, float slack = 0) const {
+        const float dd = dot(dir, dir), inverse = 1 / dd;
+        const Vec3 w = a - org, across = w - dir * (dot(w, dir) * inverse), beside = along - dir * (dot(along, dir) * inverse);
+        // Of what is not a number comes an end.
+        const float s = std::min(1.f, std::max(0.f, -dot(across, beside) / dot(beside, beside)));
+        const Vec3 nearest = across + beside * s;
+        const auto norm = [](const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
+        const float reach = radius + 0x1p-19f * (norm(w) + norm(along)) + 2 * slack;
+        return !(dd > 1e-30f) || !(dot(nearest, nearest) > reach * reach + excess);
+    }
     static Capsule between(const Vec3d& a, const Vec3d& b, double radius) {
         Capsule c;
         c.a = Vec3(a);

@@ -115,31 +115,37 @@ struct Tree::Builder {
 
     /// Where to cut: the axis and the bins before it; axis -1: nothing divides the centres.
     struct Cut {
-        int axis = -1, bin = 0;
+        int axis = -1, bin = 0, bins = kBins;
         Four from{}, scale{};
     };
     static int binOf(const Cut& c, const Ref& r, int axis) {
-        return std::clamp(int((r.twiceCentre()[axis] - c.from[axis]) * c.scale[axis]), 0, kBins - 1);
+        return std::clamp(int((r.twiceCentre()[axis] - c.from[axis]) * c.scale[axis]), 0, c.bins - 1);
     }
     Cut bestCut(const Range& r) const {
         Cut cut;
+        cut.bins = r.size() <= 4 ? 4 : r.size() <= 16 ? 8 : kBins; // most ranges are small
         cut.from = r.centres.lo;
         const Four wide = r.centres.hi - r.centres.lo;
         bool any = false;
         for (int a = 0; a < 3; ++a) {
-            cut.scale[a] = wide[a] > 0 ? kBins * 0.99999f / wide[a] : 0;
+            cut.scale[a] = wide[a] > 0 ? float(cut.bins) * 0.99999f / wide[a] : 0;
             if (!std::isfinite(cut.scale[a])) cut.scale[a] = 0;
             any |= cut.scale[a] > 0;
         }
         if (!any) return cut;
         struct Bin {
             Box box;
-            size_t n = 0;
-        } bins[3][kBins];
+            size_t n;
+        };
+        alignas(Bin) std::byte room[3 * kBins * sizeof(Bin)];
+        Bin* const bins[3] = {reinterpret_cast<Bin*>(room), reinterpret_cast<Bin*>(room) + kBins,
+                              reinterpret_cast<Bin*>(room) + 2 * kBins};
+        for (Bin* of : bins)
+            for (int k = 0; k < cut.bins; ++k) new (&of[k]) Bin{Box(), 0};
         for (size_t i = r.begin; i < r.end; ++i) {
             const Four at = (refs[i].twiceCentre() - cut.from) * cut.scale;
             for (int a = 0; a < 3; ++a) {
-                Bin& b = bins[a][std::clamp(int(at[a]), 0, kBins - 1)];
+                Bin& b = bins[a][std::clamp(int(at[a]), 0, cut.bins - 1)];
                 b.box.add(refs[i].lo, refs[i].hi);
                 ++b.n;
             }
@@ -152,14 +158,14 @@ struct Tree::Builder {
             double above[kBins] = {};
             Box box;
             size_t n = 0;
-            for (int k = kBins - 1; k > 0; --k) {
+            for (int k = cut.bins - 1; k > 0; --k) {
                 box.add(bins[a][k].box);
                 n += bins[a][k].n;
                 above[k] = n ? box.halfArea() * leaves(n) : INFINITY;
             }
             box = Box();
             n = 0;
-            for (int k = 1; k < kBins; ++k) {
+            for (int k = 1; k < cut.bins; ++k) {
                 box.add(bins[a][k - 1].box);
                 n += bins[a][k - 1].n;
                 const double cost = n ? box.halfArea() * leaves(n) + above[k] : INFINITY;
@@ -170,7 +176,7 @@ struct Tree::Builder {
     }
     void split(const Range& r, bool halves, Range& a, Range& b) {
         size_t middle = r.begin + r.size() / 2;
-        if (const Cut cut = halves ? Cut() : bestCut(r); cut.axis >= 0) {
+        if (const Cut cut = halves || r.size() == 2 ? Cut() : bestCut(r); cut.axis >= 0) {
             const auto below = [&](const Ref& ref) { return binOf(cut, ref, cut.axis) < cut.bin; };
             const size_t m = size_t(std::partition(&refs[r.begin], &refs[r.begin] + r.size(), below) - &refs[0]);
             if (m > r.begin && m < r.end) middle = m;
@@ -190,7 +196,10 @@ struct Tree::Builder {
     /// chosen by cost: the sum of areas of all nodes (Ylitie et al., section 3.1).
     struct Pieces {
         struct Piece {
-            Range range;
+            Box box;
+            uint32_t size;
+            bool leaf;
+            size_t begin;
             int left = -1, right = -1; // -1: a leaf
             // By a number of children, what it costs at the least when they are this piece or lie below it; and how many of them
             // lie on its left side then, 0: it is one.
@@ -201,7 +210,7 @@ struct Tree::Builder {
 
         int divide(Builder& builder, const Range& r, int depth) {
             const int at = int(list.size());
-            list.emplace_back().range = r;
+            list.push_back({.box = r.box, .size = uint32_t(r.size()), .leaf = r.leaf, .begin = r.begin});
             if (r.leaf) return at;
             Range first, second;
             builder.split(r, depth >= kDeepest - 20, first, second);
@@ -219,7 +228,7 @@ struct Tree::Builder {
                 for (int k = 1; k < n; ++k)
                     if (const float c = l[k] + r[n - k]; c < p.cost[n]) p.cost[n] = c, p.lefts[n] = uint8_t(k);
             }
-            p.cost[1] = float(p.range.box.halfArea()) + p.cost[kWide];
+            p.cost[1] = float(p.box.halfArea()) + p.cost[kWide];
             for (int n = 2; n < kWide; ++n)
                 if (p.cost[1] <= p.cost[n]) p.cost[n] = p.cost[1], p.lefts[n] = 0;
         }
@@ -236,27 +245,24 @@ struct Tree::Builder {
     size_t makeNode(const Pieces& of, int piece) {
         int child[kWide], n = 0;
         of.children(piece, kWide, child, n);
-        Range ranges[kWide];
         Box boxes[kWide];
-        for (int k = 0; k < n; ++k) ranges[k] = of.list[size_t(child[k])].range, boxes[k] = ranges[k].box;
+        for (int k = 0; k < n; ++k) boxes[k] = of.list[size_t(child[k])].box;
         const size_t at = newNode();
         Node& out = this->node(at);
-        setBoxes(out, of.list[size_t(piece)].range.box, {boxes, size_t(n)});
+        setBoxes(out, of.list[size_t(piece)].box, {boxes, size_t(n)});
         for (int k = 0; k < n; ++k) {
-            if (ranges[k].leaf) {
-                out.child[k] = uint32_t(ranges[k].begin);
-                out.spare[k] = uint8_t(ranges[k].size());
-            } else {
-                out.child[k] = uint32_t(makeNode(of, child[k]));
-            }
+            const Pieces::Piece& p = of.list[size_t(child[k])];
+            out.child[k] = uint32_t(p.leaf ? p.begin : makeNode(of, child[k]));
+            out.spare[k] = uint8_t(p.leaf ? p.size : 0);
         }
         return at;
     }
 
     size_t makeNode(const Range& all, int depth) {
-        constexpr size_t kPieces = 65536;
+        constexpr size_t kPieces = 65536; // some megabytes of a thread
         if (all.size() <= kPieces) {
             Pieces small;
+            small.list.reserve(all.size());
             return makeNode(small, small.divide(*this, all, depth));
         }
         Range child[kWide] = {all};

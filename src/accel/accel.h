@@ -4,9 +4,9 @@
 // (tree.h) only proposes candidates and overlooks none, each candidate's t and parameters are computed in double from the shape,
 // and equal distances go to the lower (shape, primitive).
 //
-// Two levels: a shape that is geometry::Placed is a leaf of the tree of all, and has a tree of its own in the space of its
-// geometry, one for all places of that geometry. A ray that comes to it is taken there in double, by the place at the ray's time;
-// t stays what it is. What deforms has leaves whose triangles stand where they are at the ray's time.
+// Two levels: a shape that is geometry::Placed has a tree of its own in the space of its geometry, one for all places of that
+// geometry; parts of it are leaves of the tree of all. A ray that comes to it is taken there in double, by the place at the ray's
+// time; t stays what it is. What deforms has leaves whose triangles stand where they are at the ray's time.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/stopflag.h"

@@ -119,9 +119,9 @@ static void nameOutput(OutputPlan& plan, const std::string& output, Diagnostics&
         const display::DriverDescriptor* driver = display::findDriver(s.type);
         const bool writes = !driver || driver->writes, first = &s == &plan.pictures.front();
         const auto all = [&](auto is) { return std::all_of(s.variables.begin(), s.variables.end(), is); };
-        using Source = OutputVariable::Source;
-        const bool plain = all([](const auto& v) { return v.source == Source::Ci || v.source == Source::Alpha; });
-        const bool map = all([](const auto& v) { return v.source == Source::Z; });
+        using Shown = OutputVariable::Source;
+        const bool plain = all([](const auto& v) { return v.source == Shown::Ci || v.source == Shown::Alpha; });
+        const bool map = all([](const auto& v) { return v.source == Shown::Z; });
         if (writes && (map || (!first && (s.userFile || !plain)))) kept.push_back(std::move(s));
     }
     plan.pictures = std::move(kept);

@@ -219,7 +219,8 @@ struct World {
         };
         diceShapes(shapes, o, diag);
         accel = std::make_unique<accel::Accel>(shapes, std::vector<uint32_t>{}, diag);
-        for (const Diagnostic& d : diag.all()) ADD_FAILURE() << form.name << ", " << kHow[how] << ": " << toString(d);
+        for (const Diagnostic& d : diag.all()) // notes tell how long a slow machine took
+            if (d.severity > Severity::Info) ADD_FAILURE() << form.name << ", " << kHow[how] << ": " << toString(d);
     }
     Matrix placeAt(float time) const {
         const scene::Transform& t = f.instances.empty() ? f.primitives[0]->toWorld : f.instances[0].toWorld;

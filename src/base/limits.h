@@ -30,9 +30,9 @@ inline constexpr int kPathDepth = 10'000;                  ///< hard cap, counte
 inline constexpr size_t kFrameBytesPerThread = 64u << 20;  ///< suspended kernel frames (design decision 2)
 inline constexpr size_t kRequestBytes = size_t(256) << 20; ///< of rays that a kernel that does not wait asks for in a batch
 inline constexpr int kLightsSampled = 8;                   ///< lights sampled at a vertex under path; with more, about this many
-inline constexpr int kLightsSampledDeeper = 3;             ///< the same behind the first vertex of a path, where there are more than those
-inline constexpr int kCategoryDepth = 32;                  ///< nesting of a category expression of lights
-inline constexpr size_t kLightCache = 256; ///< light samples that one strip of points keeps for its next light loop
+inline constexpr int kLightsSampledDeeper = 3; ///< the same behind the first vertex of a path, where there are more than those
+inline constexpr int kCategoryDepth = 32;      ///< nesting of a category expression of lights
+inline constexpr size_t kLightCache = 256;     ///< light samples that one strip of points keeps for its next light loop
 inline constexpr size_t kLightBlocks =
     256; ///< illuminate() and solar() blocks of one light shader, those of functions once for each call
 inline constexpr int kLightTurns = 64;       ///< samples of a light's generateSamples() with a turn of their own in light loops

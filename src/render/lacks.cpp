@@ -1,7 +1,6 @@
 #include "render/lacks.h"
 #include "base/printable.h"
 #include "scene/scene.h"
-#include "world/turnedaway.h"
 #include <algorithm>
 
 namespace alpenglow::render {
@@ -52,9 +51,8 @@ void sayEmptyClouds(const Job& job, Diagnostics& diags) {
 }
 
 void sayTurnedAway(const Job& job, Diagnostics& diags) {
-    const transport::TurnedAway* const away = job.interrupted || !job.world ? nullptr : job.world->turnedAway();
-    if (!away) return;
-    for (const auto& f : away->blocked()) {
+    if (job.interrupted || !job.world) return;
+    for (const transport::World::TurnedAwayCall& f : job.world->callsTurnedAway()) {
         const std::string where =
             f.primitive.line > 0 ? " (" + f.primitive.file + ":" + std::to_string(f.primitive.line) + ")" : "";
         warn(diags, f.call,

@@ -73,7 +73,8 @@ void Gather::lightOf(const BoundLight& light, std::span<const std::pair<int, flo
     }
 }
 
-/// Fills chosenAt_: of each light that points ask for these points, or, where all ask for all, of the first entry. True: by light.
+/// Fills chosenAt_: of each light that points ask for these points, or, where all ask for all, of the first entry. True: by
+/// light.
 bool Gather::choose(const WorldImpl::LightList& list, const std::vector<int>& on, std::vector<int>& touched) {
     const bool many = rules_.pickOne && !(world_.chooserOf(list).empty() && list.deeper.empty());
     touched.clear();

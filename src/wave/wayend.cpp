@@ -162,7 +162,8 @@ void Engine::emission(std::span<const Met> met, Sched& sched) {
             float weight = 1;
             if (r.lobePdf >= 0 && light.emitter && light.importance) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
-                if (rules_.pickOne && r.lobeBinding >= 0) pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
+                if (rules_.pickOne && r.lobeBinding >= 0)
+                    pdf *= chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             if (const FreeFlight& flown = extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)

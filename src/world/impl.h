@@ -44,7 +44,7 @@ public:
     std::vector<int> outputWidths() const override { return outputWidths_; }
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
     std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const override;
-    const TurnedAway* turnedAway() const override { return &turnedAway_; }
+    std::vector<TurnedAwayCall> callsTurnedAway() const override { return turnedAway_.blocked(); }
     std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool interpolates() const override { return interpolates_; }

@@ -1,5 +1,6 @@
 // Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many at the first
-// vertex of a path and limits::kLightsSampledDeeper behind it, by LightChooser. What a chosen light gives is divided by the probability of the choice: the mean stays the same.
+// vertex of a path and limits::kLightsSampledDeeper behind it, by LightChooser. What a chosen light gives is divided by the
+// probability of the choice: the mean stays the same.
 #include "world/impl.h"
 
 namespace alpenglow::transport {

@@ -7,11 +7,11 @@ TurnedAway::Tally& TurnedAway::of(const SourcePlace& call, const geometry::Shape
     return tallies_[call][&shape];
 }
 
-std::vector<TurnedAway::Found> TurnedAway::blocked() const {
+std::vector<World::TurnedAwayCall> TurnedAway::blocked() const {
     std::lock_guard lock(mutex_);
-    std::vector<Found> all;
+    std::vector<World::TurnedAwayCall> all;
     for (const auto& [call, shapes] : tallies_) {
-        Found f{call, {}, 0};
+        World::TurnedAwayCall f{call, {}, 0};
         for (const auto& [shape, t] : shapes)
             if (t.away && !t.facing && !t.open && (f.primitives++ == 0 || Before{}(shape->place(), f.primitive)))
                 f.primitive = shape->place();

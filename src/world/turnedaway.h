@@ -1,7 +1,7 @@
 // Calls of occlusion() whose normals face away from the viewer.
 #pragma once
-#include "base/diagnostics.h"
 #include "geometry/shape.h"
+#include "world/world.h"
 #include <atomic>
 #include <map>
 #include <mutex>
@@ -22,11 +22,7 @@ public:
     /// Lives as long as this.
     Tally& of(const SourcePlace& call, const geometry::Shape&);
 
-    struct Found {
-        SourcePlace call, primitive; ///< the first in the order of files and lines
-        size_t primitives = 0;
-    };
-    std::vector<Found> blocked() const;
+    std::vector<World::TurnedAwayCall> blocked() const;
 
 private:
     struct Before {

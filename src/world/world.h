@@ -11,7 +11,6 @@ namespace alpenglow::transport {
 class WorldImpl;
 class Evaluator;
 class PhotonStore;
-class TurnedAway;
 /// Gives who runs kernels of a world before rays are followed (evaluator.h). Several may work at a time; the world outlives them.
 using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop)>;
 
@@ -43,8 +42,12 @@ public:
     virtual std::vector<std::string> missingOutputs() const { return {}; }
     /// Point clouds and their like in which texture3d() has found nothing at any point until now, with the place of a call.
     virtual std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const { return {}; }
-    /// Calls of occlusion() that have found everything blocked behind normals that face away (world/turnedaway.h).
-    virtual const TurnedAway* turnedAway() const { return nullptr; }
+    /// Calls of occlusion() that have found everything blocked behind normals that face away, all over so many primitives.
+    struct TurnedAwayCall {
+        SourcePlace call, primitive; ///< the primitive that is the first in the order of files and lines
+        size_t primitives = 0;
+    };
+    virtual std::vector<TurnedAwayCall> callsTurnedAway() const { return {}; }
     /// The photon maps of the frame (photonstore.h).
     virtual PhotonStore* photons() const { return nullptr; }
     /// What could be named instead: predefined variables and the outputs of the frame's shaders.

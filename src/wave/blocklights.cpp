@@ -53,10 +53,10 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     if (takesPair(light, true)) drawNumbers(use << 1, pairs_);
     if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
     asked_.clear();
-    queries_.resize(points_);
     for (size_t b = 0; b < blocks_; ++b)
         for (Lanes left = lit_[b]; left; left &= left - 1) {
             const int lane = std::countr_zero(left), point = int(b) * kBlock + lane;
+            if (asked_.size() == queries_.size()) queries_.emplace_back(); // those of the light before are written again
             ShadePoint& q = queries_[asked_.size()];
             Query& a = asked_.emplace_back();
             a.point = point;

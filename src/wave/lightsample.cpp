@@ -29,6 +29,7 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         p.shape = s.shape;
         p.P = meetsAt(p.surface);
         p.N = p.surface.n;
+        p.Ci = Color(0);
         return true;
     }
     p.shape = nullptr;

@@ -26,6 +26,8 @@ public:
     /// Takes the lists of the input, to give their memory back early.
     PolygonMesh(ShapeSource, PolygonInput&&, const std::vector<float>& P, Diagnostics&);
     bool empty() const { return triangles_ == 0; }
+    /// No variable gives s, t or N: normals are those of the triangles.
+    bool plain() const { return plain_; }
     int faces() const override { return faceCount_; }
     SurfacePoint evaluate(int face, double u, double v) const override;
     double area() const override { return areas().sum; }

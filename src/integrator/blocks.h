@@ -69,6 +69,23 @@ struct alignas(64) LightBlock {
     bool met = false;                      ///< rays can meet it: multiple importance sampling
 };
 
+/// An emitter of a few flat triangles with normals of their own, current space: how Emitter::sample() draws its points.
+struct FlatEmitter {
+    static constexpr int kMost = 4;
+    int count = 0;
+    double corner[kMost][3][3]; ///< by triangle and corner
+    float normal[kMost][3];     ///< unit
+    // Near by, points are even in the solid angle of the triangles.
+    double centre[3];
+    double near2, least2; ///< squared distances from the centre below which it is near, from a corner above which it is sure
+    double mostAngle, leastAngle; ///< of a triangle; of all
+    double share;                 ///< the chance that it is sampled
+    // Else even in area.
+    double cumulative[kMost]; ///< areas, up to and with this triangle
+    double perArea;           ///< one over the area of all, times `share`
+    bool oneSided = false;    ///< gives no light behind
+};
+
 /// Shadow rays of a block toward one light.
 struct alignas(64) ShadowBlock {
     Row origin[3], direction[3], length;

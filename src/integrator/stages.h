@@ -3,6 +3,7 @@
 //
 //   request     what calls ask for: rows of lobes                    reads VertexBlock, the call's arguments; writes LobeBlock
 //   select      which lobe is followed with which chance             reads LobeBlock; writes LobeBlock::chosen, energyScale
+//   place       points of an emitter                             reads VertexBlock, FlatEmitter; writes LightBlock and rows
 //   aim         shadow rays to samples of a light                    reads VertexBlock, LightBlock; writes ShadowBlock
 //   contribute  what a lobe gives back of that light                 reads all of these; writes ShadowBlock::light
 //   pick        the lobe that chance decides for                     reads LobeBlock; writes ScatterBlock
@@ -21,6 +22,10 @@ struct Stages {
     Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
     /// LobeBlock::chosen, VertexBlock::energyScale and passes.
     Selected (*select)(VertexBlock&, LobeBlock* const* sites, int count, const SelectRules&);
+    /// A point of the emitter for each of the block, by pairs of numbers: to LightBlock::w, density and end, and to three rows
+    /// `stride` apart of each of P and N. Returns the points that have one.
+    Lanes (*place)(const VertexBlock&, const FlatEmitter&, const float* x, const float* y, LightBlock&, float* P, float* N,
+                   int stride);
     void (*aim)(const VertexBlock&, const LightBlock&, ShadowBlock&);
     /// For points of LobeBlock::lights and LightBlock::asked. kept: a row, what the lobe takes of the light; met: points from
     /// where its rays could meet the light; ahead: only where the way to the emitter is along its direction. value: of the lobe

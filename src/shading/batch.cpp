@@ -1,7 +1,5 @@
 #include "shading/batch.h"
-#include "shading/faceindex.h"
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstring>
 
@@ -64,6 +62,11 @@ uint32_t needOf(int16_t offset, uint32_t& lit) {
 #undef OF
 #undef OF_SURFACE
     return 0;
+}
+
+constexpr int16_t kLightVariables[] = {offsetof(ShadePoint, P), offsetof(ShadePoint, N), offsetof(ShadePoint, Ps)}; // LightRows
+bool inLightRows(int16_t offset) {
+    return std::find(std::begin(kLightVariables), std::end(kLightVariables), offset) != std::end(kLightVariables);
 }
 
 } // namespace
@@ -139,6 +142,7 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
                     for (int part = 0; part < s.parts; ++part) needs_ |= needOf(v.part[part], litNeeds_);
                 }
         }
+        lightRows_ &= s.scalar ? s.from == From::Parameter : s.from == From::Variable && inLightRows(s.offset[0]) && s.parts == 1;
         inputs_.push_back(std::move(s));
     }
     for (const rsl::ir::OutputSlot& o : kernel.outputs()) {
@@ -186,16 +190,16 @@ Batch::Batch(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan
     assign(std::move(k), plan, points, different, of, spaces);
 }
 
-void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, std::span<const ShadePoint> points,
-                   std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver& spaces) {
+/// Memory for a call over so many points; outputs are zero.
+void Batch::layOut(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, size_t points) {
     kernel_ = std::move(k);
     plan_ = &plan;
     size_t lanes = size_t(std::max(1, kernel_->lanes()));
-    call_.n = int32_t(points.size());
-    call_.stride = int32_t((points.size() + 63) / 64 * 64);
+    call_.n = int32_t(points);
+    call_.stride = int32_t((points + 63) / 64 * 64);
     call_.strings = kernel_->strings().data();
     size_t stride = size_t(call_.stride), total = std::max<size_t>(1, plan.rows_) * std::max<size_t>(stride, 64);
-    padded_ = std::min(stride, (points.size() + lanes - 1) / lanes * lanes);
+    padded_ = std::min(stride, (points + lanes - 1) / lanes * lanes);
     if (total > capacity_) {
         storage_.reset();
         storage_.reset(static_cast<float*>(::operator new[](total * sizeof(float), std::align_val_t(64))));
@@ -205,6 +209,16 @@ void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan
     out_.clear();
     for (const BatchPlan::Source& s : plan.inputs_) in_.push_back(storage_.get() + s.firstRow * stride);
     for (size_t row : plan.outputRow_) out_.push_back(storage_.get() + row * stride);
+    if (!plan.outputRow_.empty()) // what lanes leave unwritten must not be garbage
+        for (size_t row = plan.outputRow_[0]; row < plan.rows_; ++row) std::fill_n(storage_.get() + row * stride, padded_, 0.f);
+    call_.in = in_.data();
+    call_.out = out_.data();
+}
+
+void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, std::span<const ShadePoint> points,
+                   std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver& spaces) {
+    layOut(std::move(k), plan, points.size());
+    const size_t stride = size_t(call_.stride);
     if (!points.empty()) {
         fillVariables(points);
         primvars_ = false;
@@ -216,10 +230,24 @@ void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan
             pad(s, row);
         }
     }
-    if (!plan.outputRow_.empty()) // what lanes leave unwritten must not be garbage
-        for (size_t row = plan.outputRow_[0]; row < plan.rows_; ++row) std::fill_n(storage_.get() + row * stride, padded_, 0.f);
-    call_.in = in_.data();
-    call_.out = out_.data();
+}
+
+void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, const LightRows& rows,
+                   const InstanceView& view) {
+    const size_t points = rows.P.size() / 3;
+    layOut(std::move(k), plan, points);
+    primvars_ = false;
+    const std::span<const float> of[] = {rows.P, rows.N, rows.Ps};
+    for (const BatchPlan::Source& s : plan.inputs_) {
+        float* row = storage_.get() + s.firstRow * size_t(call_.stride);
+        if (s.from == BatchPlan::From::Parameter) {
+            fillParameter(s, row, {}, {{&view, 1}, {}});
+            continue;
+        }
+        const auto from = of[std::find(std::begin(kLightVariables), std::end(kLightVariables), s.offset[0]) - kLightVariables];
+        for (size_t c = 0; c < 3; ++c) std::copy_n(from.data() + c * points, points, row + c * size_t(call_.stride));
+        pad(s, row);
+    }
 }
 
 // Lanes past n repeat the last point, so that no garbage is computed on.
@@ -284,14 +312,6 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
                 }
         }
     }
-}
-
-/// Whether a variable of a primitive holds what a parameter is: as many numbers, or elements of the same kind (arrays of open
-/// length).
-static bool fits(const geometry::PrimVar& v, int components, int elements) {
-    if (v.type == scene::Type::String) return false;
-    return v.outWidth() == components * elements ||
-           (v.arrayLength > 0 && elements > 1 && v.outWidth() == components * v.elements());
 }
 
 void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views,
@@ -374,116 +394,6 @@ void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePo
     case From::Nothing:
         std::fill_n(row, s.rows * stride, 0.f);
         return;
-    }
-}
-
-ParameterRows::ParameterRows(const BatchPlan& plan, const ParameterBlock& block) : plan_(&plan) {
-    for (const BatchPlan::Source& s : plan.inputs_) {
-        if (s.from != BatchPlan::From::Parameter) continue;
-        const auto found = block.numbers.find(s.name.name);
-        for (int c = 0; c < s.components * s.elements; ++c)
-            numbers_.push_back(found != block.numbers.end() && c < int(found->second.size()) ? found->second[size_t(c)] : 0.f);
-    }
-}
-
-/// By view, the numbers of a parameter, as many as it has components; absent ones are zero. The pointers are good until the next
-/// call.
-void Batch::findParameter(const BatchPlan::Source& s, const Views& views) {
-    const size_t size = size_t(s.components) * s.elements;
-    numbers_.clear();
-    found_.clear();
-    for (const InstanceView& v : views.views) {
-        if (v.rows && v.rows->plan_ == plan_) {
-            numbers_.push_back(v.rows->numbers_.data() + s.firstNumber);
-            continue;
-        }
-        numbers_.push_back(nullptr);
-        found_.resize(views.views.size() * size, 0.f);
-        const auto at =
-            v.parameters ? v.parameters->numbers.find(s.name.name) : std::map<std::string, std::vector<float>>::const_iterator{};
-        if (v.parameters && at != v.parameters->numbers.end())
-            std::copy_n(at->second.begin(), std::min(size, at->second.size()),
-                        found_.begin() + long((numbers_.size() - 1) * size));
-    }
-    for (size_t k = 0; k < numbers_.size() && !found_.empty(); ++k)
-        if (!numbers_[k]) numbers_[k] = found_.data() + k * size;
-}
-
-void Batch::fillParameter(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views) {
-    const int n = int(points.size()), np = s.parts, comps = s.components, count = s.scalar ? 1 : n;
-    const size_t stride = size_t(call_.stride);
-    const bool moving =
-        std::any_of(views.views.begin(), views.views.end(), [](const InstanceView& v) { return v.moving != nullptr; });
-    findParameter(s, views);
-    bool overridden = false; // by a primitive variable of some shape
-    const geometry::Shape* last = nullptr;
-    for (int i = 0; s.varying && primvars_ && !overridden && i < count; ++i)
-        if (points[i].shape && points[i].shape != last) {
-            last = points[i].shape;
-            overridden = !last->primvars().empty() && last->findPrimvar(s.name.name) >= 0;
-        }
-    if (overridden) return fillOverridden(s, row, points, views);
-    if (s.varying && s.name.name == kFaceIndex && comps == 1) {
-        for (int i = 0; i < count; ++i) row[i] = points[i].shape ? float(points[i].surface.face) : 0;
-        for (int p = 1; p < np && !s.scalar; ++p) std::fill_n(row + size_t(p) * stride, n, 0.f);
-        return;
-    }
-    for (int c = 0; c < comps * s.elements; ++c) { // component by component: a value for each instance, then a row
-        valueOf_.clear();
-        for (const float* numbers : numbers_) valueOf_.push_back(numbers[c]);
-        float* to = s.scalar ? row + c : row + size_t(c) * np * stride;
-        const bool same = std::all_of(valueOf_.begin(), valueOf_.end(), [&](float v) {
-            return std::bit_cast<uint32_t>(v) == std::bit_cast<uint32_t>(valueOf_[0]);
-        });
-        if (same) std::fill_n(to, count, valueOf_[0]);
-        else
-            for (int i = 0; i < count; ++i) to[i] = valueOf_[views.index(i)];
-        for (int i = 0; moving && i < count; ++i)
-            if (views[i].moving) to[i] += views[i].moving->change(s.name.name, size_t(c), points[i].shutter);
-        if (!s.scalar)
-            for (int p = 1; p < np; ++p) std::fill_n(to + size_t(p) * stride, n, 0.f);
-    }
-}
-
-/// The same where variables of primitives stand for the parameter at some of the points.
-void Batch::fillOverridden(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views) {
-    const int n = int(points.size()), np = s.parts, comps = s.components, count = s.scalar ? 1 : n;
-    const size_t stride = size_t(call_.stride);
-    const auto at = [&](int component, int part, int point) -> float& {
-        return s.scalar ? row[component] : row[(size_t(component) * np + part) * stride + point];
-    };
-    if (s.scalar) std::fill_n(row, size_t(comps) * s.elements, 0.f);
-    else
-        for (size_t r = 0; r < s.rows; ++r) std::fill_n(row + r * stride, n, 0.f);
-    std::vector<float> interpolated; // value, du, dv
-    for (int i = 0; i < count; ++i) {
-        if (points[i].shape) {
-            const int v = points[i].shape->findPrimvar(s.name.name);
-            const geometry::PrimVar* variable = v >= 0 ? &points[i].shape->primvars()[size_t(v)] : nullptr;
-            if (variable && fits(*variable, comps, s.elements)) {
-                const size_t width = size_t(variable->outWidth());
-                interpolated.resize(3 * width);
-                float *value = interpolated.data(), *du = value + width, *dv = du + width;
-                points[i].shape->interpolate(v, points[i].surface, value, du, dv);
-                for (int c = 0; c < std::min(comps * s.elements, int(width)); ++c) {
-                    at(c, 0, i) = value[c];
-                    if (np > 1) {
-                        at(c, 1, i) = du[c];
-                        at(c, 2, i) = dv[c];
-                    }
-                }
-                continue;
-            }
-        }
-        if (points[i].shape && comps * s.elements == 1 && s.name.name == kFaceIndex) {
-            at(0, 0, i) = float(points[i].surface.face);
-            continue;
-        }
-        const float* numbers = numbers_[views.index(i)];
-        for (int c = 0; c < comps * s.elements; ++c) {
-            at(c, 0, i) = numbers[c];
-            if (views[i].moving) at(c, 0, i) += views[i].moving->change(s.name.name, size_t(c), points[i].shutter);
-        }
     }
 }
 

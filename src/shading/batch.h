@@ -57,6 +57,8 @@ public:
     /// geometry::PointNeed: what of ShadePoint::surface is read, and of ShadePoint::lit.
     uint32_t needs() const { return needs_; }
     uint32_t litNeeds() const { return litNeeds_; }
+    /// Whether LightRows and the values of parameters are all that is read.
+    bool readsLightRows() const { return lightRows_; }
 
 private:
     friend class Batch;
@@ -85,6 +87,12 @@ private:
     size_t rows_ = 0, numbers_ = 0; ///< of ParameterRows
     bool footprint_ = false;
     uint32_t needs_ = 0, litNeeds_ = 0;
+    bool lightRows_ = true;
+};
+
+/// What kernels of lights mostly read: three rows each, as long as there are points.
+struct LightRows {
+    std::span<const float> P, N, Ps;
 };
 
 /// A ParameterBlock as one kernel reads it: numbers in the order of its plan, so that none is looked for by name while rendering.
@@ -113,6 +121,9 @@ public:
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
+    /// The same for a plan that readsLightRows(), of an instance that does not move.
+    void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const LightRows&, const InstanceView&);
+
     /// Fills the inputs that the displacement shader gives from the outputs of its run at the same points, derivatives too.
     void tell(const Batch& displaced);
     /// Gives a varying parameter that has so many components another value at a point, without slope.
@@ -140,6 +151,7 @@ private:
         size_t index(int point) const { return of.empty() ? 0 : of[size_t(point)]; }
         const InstanceView& operator[](int point) const { return views[index(point)]; }
     };
+    void layOut(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, size_t points);
     void fill(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&, const SpaceResolver&);
     void findParameter(const BatchPlan::Source&, const Views&);
     void fillParameter(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&);

@@ -15,7 +15,14 @@ void BlockVertices::light(BatchContext& c) {
         lit_.assign(blocks_, 0);
         for (size_t k = 0; k < count_; ++k)
             for (size_t b = 0; b < blocks_ && samples(sites_[k], light); ++b) lit_[b] |= sites_[k].lobes[b].lights;
-        if (std::all_of(lit_.begin(), lit_.end(), [](Lanes l) { return l == 0; })) continue;
+        litBlocks_.clear();
+        for (size_t b = 0; b < blocks_; ++b)
+            if (lit_[b]) litBlocks_.push_back(b);
+        if (litBlocks_.empty()) continue;
+        if (inRows(light)) {
+            lightInRows(light, c);
+            continue;
+        }
         sampleLight(light, c);
         if (asked_.empty()) continue;
         values_.assign(asked_.size(), {});
@@ -73,15 +80,20 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     queries_.resize(asked_.size());
 }
 
-/// The light at the points, in rows.
-void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
+/// Room for what a light sends, nothing yet.
+void BlockVertices::beginLights(const BoundLight& light) {
     lights_.resize(blocks_);
-    queryAt_.resize(points_);
     for (LightBlock& l : lights_) {
         l.asked = l.metDiffuse = l.metSpecular = 0;
         l.emitter = light.kind == LightKind::Area;
         l.met = light.hasDensity();
     }
+}
+
+/// The light at the points, in rows.
+void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
+    beginLights(light);
+    queryAt_.resize(points_);
     for (size_t k = 0; k < asked_.size(); ++k) {
         const LightValue& value = values_[k];
         const Query& a = asked_[k];
@@ -148,10 +160,11 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
 void BlockVertices::sendShadow(size_t point, const BoundLight& of, const Color& light, BatchContext& c) {
     const size_t lane = point % kBlock;
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
-    const LightValue& value = values_[size_t(queryAt_[point])];
     ShadowRay& s = e_.shadows.emplace_back();
     s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], light,
          c.targets[point],     c.points[point].shutter, &c.rays[point]};
+    if (queryAt_.empty()) return;
+    const LightValue& value = values_[size_t(queryAt_[point])];
     if (value.shadowRadius > 0) { // to a point of the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
         const Vec2 u = e_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);

@@ -52,9 +52,16 @@ private:
     void sampleLight(const BoundLight&, BatchContext&);
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&);
     void takeValues(const BoundLight&, const BatchContext&);
+    void beginLights(const BoundLight&);
     void connect(const BoundLight&, BatchContext&);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     void sendShadow(size_t point, const BoundLight&, const Color& light, BatchContext&);
+
+    // blockemitters.cpp
+    bool inRows(const BoundLight&) const;
+    void lightInRows(const BoundLight&, BatchContext&);
+    void placeOnEmitter(const BoundLight&);
+    void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
 
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
@@ -79,7 +86,11 @@ private:
     std::vector<ShadePoint> queries_;
     std::vector<Query> asked_;
     std::vector<LightValue> values_;
-    std::vector<int32_t> queryAt_; ///< by point: in asked_
+    std::vector<int32_t> queryAt_;  ///< by point: in asked_; empty: the light was sampled in rows
+    std::vector<size_t> litBlocks_; ///< blocks of which some points sample lights
+    std::vector<float> lamp_;       ///< LightRows of their points
+    std::vector<Lanes> placed_;     ///< of litBlocks_: those that have a point of the light
+    std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
     ScatterBlock next_{};
     ShadowBlock shadow_{};
     alignas(64) Row whole_; ///< 1

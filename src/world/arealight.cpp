@@ -79,6 +79,10 @@ void Emitter::weigh() {
         e.cumulative = sum += e.share;
         entryOf_[e.shape] = int(&e - entries_.data());
     }
+    flat_.reset();
+    if (entries_.size() != 1) return;
+    if (const Entry& e = entries_[0]; e.triangles >= 0 && e.facets < 0 && TriangleLamp::flat(*e.shape))
+        flat_ = triangles_[size_t(e.triangles)].inBlocks(*e.shape, e.share);
 }
 
 void Emitter::shinesTo(Shines to) {

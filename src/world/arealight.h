@@ -3,6 +3,7 @@
 #include "world/emitterfacets.h"
 #include "world/trianglelamp.h"
 #include <functional>
+#include <optional>
 #include <unordered_map>
 
 namespace alpenglow::transport {
@@ -30,6 +31,10 @@ public:
         shape = entries_[0].shape;
         return shape->sampleArea(u.x, u.y);
     }
+    /// For lanes, if it is one shape of a few flat triangles; else null.
+    const FlatEmitter* flat() const { return flat_ ? &*flat_ : nullptr; }
+    /// Sample::visibility of a flat one.
+    uint32_t flatVisibility() const { return entries_[0].visibility; }
     /// Whether sample() needs its number `choose`.
     bool chooses() const { return entries_.size() > 1; }
 
@@ -91,6 +96,7 @@ private:
     std::vector<EmitterFacets> facets_;
     std::vector<TriangleLamp> triangles_;
     std::unordered_map<const geometry::Shape*, int> entryOf_;
+    std::optional<FlatEmitter> flat_;
     double area_ = 0;
     LightChooser chooser_; ///< over entries_; empty where there are few
 };

@@ -2,6 +2,7 @@
 // angle that of Van Oosterom and Strackee, The Solid Angle of a Plane Triangle (1983).
 #include "world/trianglelamp.h"
 #include "base/exact.h"
+#include "geometry/polygon_mesh.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
@@ -9,8 +10,12 @@ namespace alpenglow::transport {
 namespace {
 /// Beyond so many of its radii a lamp is sampled by area: what is nearer and faces the point more differs little.
 constexpr double kNear = 2.5;
+/// From a corner, of the radius squared: nearer, its direction says too little.
+constexpr double kLeastDistance2 = 1e-12;
 /// Beyond, a triangle fills nearly all that a point on its plane can see (2 pi).
 constexpr double kMostAngle = 6.2;
+/// What of less is near is seen edge-on.
+constexpr double kLeastAngle = 1e-4;
 
 double solidAngle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     return 2 * exact::atan2(std::fabs(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
@@ -61,14 +66,14 @@ bool TriangleLamp::see(const Vec3& from, Seen& seen) const {
         for (size_t i = 0; i < 3; ++i) {
             c[i] = triangles_[t][i] - at;
             const double l2 = dot(c[i], c[i]);
-            if (!(l2 > 1e-12 * radius2_)) return false;
+            if (!(l2 > kLeastDistance2 * radius2_)) return false;
             c[i] = c[i] / std::sqrt(l2);
         }
         seen.angle[t] = solidAngle(c[0], c[1], c[2]);
         if (!(seen.angle[t] < kMostAngle)) return false;
         seen.total += seen.angle[t];
     }
-    return seen.total > 1e-4; // less of what is near is seen edge-on
+    return seen.total > kLeastAngle;
 }
 
 geometry::HitRef TriangleLamp::place(const Vec3& from, const Seen& seen, Vec2 u) const {
@@ -84,6 +89,36 @@ geometry::HitRef TriangleLamp::place(const Vec3& from, const Seen& seen, Vec2 u)
     double b1 = 1 / 3., b2 = 1 / 3.;
     if (facing != 0) b1 = std::clamp(dot(q, e2) / facing, 0.0, 1.0), b2 = std::clamp(-dot(q, e1) / facing, 0.0, 1.0 - b1);
     return {uint32_t(t), b1, b2, nullptr, 0};
+}
+
+bool TriangleLamp::flat(const geometry::Shape& s) {
+    const auto* polygons = dynamic_cast<const geometry::PolygonMesh*>(&s);
+    return polygons && polygons->plain() && !s.diced() && has(s) && s.mesh().triangles() > 0;
+}
+
+FlatEmitter TriangleLamp::inBlocks(const geometry::Shape& s, double share) const {
+    static_assert(FlatEmitter::kMost >= kMost);
+    FlatEmitter e{};
+    double area = 0;
+    e.count = int(triangles_.size());
+    for (size_t t = 0; t < triangles_.size(); ++t) {
+        const auto& c = triangles_[t];
+        const geometry::SurfacePoint p = s.evaluateHit(uint32_t(t), 1 / 3., 1 / 3.);
+        for (int q = 0; q < 3; ++q) {
+            for (size_t i = 0; i < 3; ++i) e.corner[t][i][q] = c[i][q];
+            e.normal[t][q] = p.n[q];
+            e.centre[q] = centre_[q];
+        }
+        e.cumulative[t] = area += 0.5 * length(cross(c[1] - c[0], c[2] - c[0]));
+        e.perArea = share * s.sampleDensity(p);
+    }
+    e.near2 = kNear * kNear * radius2_;
+    e.least2 = kLeastDistance2 * radius2_;
+    e.mostAngle = kMostAngle;
+    e.leastAngle = kLeastAngle;
+    e.share = share;
+    e.oneSided = s.oneSided();
+    return e;
 }
 
 } // namespace alpenglow::transport

@@ -1,6 +1,7 @@
 // Lamps of a few triangles, near by: points that are even in the solid angle which they fill.
 #pragma once
 #include "geometry/shape.h"
+#include "integrator/blocks.h"
 #include <array>
 
 namespace alpenglow::transport {
@@ -22,6 +23,10 @@ public:
     bool see(const Vec3& from, Seen&) const;
     /// The point for a pair of numbers: a triangle of the mesh and the place on it.
     geometry::HitRef place(const Vec3& from, const Seen&, Vec2 u) const;
+    /// Whether each of its points is that of a flat triangle with a normal of its own: what FlatEmitter holds.
+    static bool flat(const geometry::Shape&);
+    /// share: the chance that the shape is sampled. Of a flat one.
+    FlatEmitter inBlocks(const geometry::Shape&, double share) const;
 
 private:
     std::vector<std::array<Vec3d, 3>> triangles_;

@@ -72,9 +72,10 @@ struct alignas(64) LightBlock {
 /// An emitter of a few flat triangles with normals of their own, current space: how Emitter::sample() draws its points.
 struct FlatEmitter {
     static constexpr int kMost = 4;
-    int count = 0;
-    double corner[kMost][3][3]; ///< by triangle and corner
-    float normal[kMost][3];     ///< unit
+    int count = 0, cornerCount = 0;
+    double corner[3 * kMost][3]; ///< each once
+    int corners[kMost][3];       ///< of triangles
+    float normal[kMost][3];      ///< unit
     // Near by, points are even in the solid angle of the triangles.
     double centre[3];
     double near2, least2; ///< squared distances from the centre below which it is near, from a corner above which it is sure

@@ -4,6 +4,7 @@
 #include "base/exact.h"
 #include "geometry/polygon_mesh.h"
 #include <algorithm>
+#include <cstring>
 
 namespace alpenglow::transport {
 
@@ -96,6 +97,14 @@ bool TriangleLamp::flat(const geometry::Shape& s) {
     return polygons && polygons->plain() && !s.diced() && has(s) && s.mesh().triangles() > 0;
 }
 
+/// The number of a corner: triangles share them.
+static int cornerIn(FlatEmitter& e, const Vec3d& c) {
+    int k = 0;
+    while (k < e.cornerCount && std::memcmp(e.corner[k], &c, sizeof c) != 0) ++k;
+    if (k == e.cornerCount) std::memcpy(e.corner[e.cornerCount++], &c, sizeof c);
+    return k;
+}
+
 FlatEmitter TriangleLamp::inBlocks(const geometry::Shape& s, double share) const {
     static_assert(FlatEmitter::kMost >= kMost);
     FlatEmitter e{};
@@ -104,8 +113,8 @@ FlatEmitter TriangleLamp::inBlocks(const geometry::Shape& s, double share) const
     for (size_t t = 0; t < triangles_.size(); ++t) {
         const auto& c = triangles_[t];
         const geometry::SurfacePoint p = s.evaluateHit(uint32_t(t), 1 / 3., 1 / 3.);
+        for (size_t i = 0; i < 3; ++i) e.corners[t][i] = cornerIn(e, c[i]);
         for (int q = 0; q < 3; ++q) {
-            for (size_t i = 0; i < 3; ++i) e.corner[t][i][q] = c[i][q];
             e.normal[t][q] = p.n[q];
             e.centre[q] = centre_[q];
         }

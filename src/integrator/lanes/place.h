@@ -41,29 +41,32 @@ AL_INLINE D3 constant(const double (&v)[3]) { return {hd(v[0]), hd(v[1]), hd(v[2
 
 /// A corner of triangle t.
 AL_INLINE D3 cornerOf(const FlatEmitter& e, hm t, int corner) {
-    D3 c = constant(e.corner[0][corner]);
-    for (int k = 1; k < e.count; ++k) c = choose(t == k, constant(e.corner[k][corner]), c);
+    D3 c = constant(e.corner[e.corners[0][corner]]);
+    for (int k = 1; k < e.count; ++k) c = choose(t == k, constant(e.corner[e.corners[k][corner]]), c);
     return c;
+}
+
+AL_INLINE hm isNear(const FlatEmitter& e, const D3& from) {
+    const D3 middle = constant(e.centre) - from;
+    return dot(middle, middle) < e.near2;
 }
 
 /// The triangles as seen from points: TriangleLamp::see().
 struct SeenLanes {
     hd angle[FlatEmitter::kMost], total;
-    D3 way[FlatEmitter::kMost][3]; ///< unit, to the corners
+    D3 way[3 * FlatEmitter::kMost]; ///< unit, to the corners
 };
 AL_INLINE hm seeLamp(const FlatEmitter& e, const D3& from, SeenLanes& s) {
-    const D3 middle = constant(e.centre) - from;
-    hm seen = dot(middle, middle) < e.near2;
-    if (!any(seen)) return seen;
+    hm seen = isNear(e, from);
+    for (int i = 0; i < e.cornerCount; ++i) {
+        const D3 c = constant(e.corner[i]) - from;
+        const hd l2 = dot(c, c);
+        seen &= l2 > e.least2;
+        s.way[i] = c / rootOf(l2);
+    }
     s.total = hd(0);
     for (int t = 0; t < e.count; ++t) {
-        for (int i = 0; i < 3; ++i) {
-            const D3 c = constant(e.corner[t][i]) - from;
-            const hd l2 = dot(c, c);
-            seen &= l2 > e.least2;
-            s.way[t][i] = c / rootOf(l2);
-        }
-        const D3 &a = s.way[t][0], &b = s.way[t][1], &c = s.way[t][2];
+        const D3 &a = s.way[e.corners[t][0]], &b = s.way[e.corners[t][1]], &c = s.way[e.corners[t][2]];
         s.angle[t] = 2 * exact::atan2Lanes(exact::absoluteLanes(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
         seen &= s.angle[t] < e.mostAngle;
         s.total += s.angle[t];
@@ -87,14 +90,11 @@ AL_INLINE D3 withinAngle(const D3& a, const D3& b, const D3& c, hd angle, hd u, 
     return choose(dot(aside, aside) > 0, b * z + normalize(aside) * rootAbove(1 - z * z), b);
 }
 
-struct PlaceLanes {
-    hm triangle;
-    hd b1, b2;
-};
 /// TriangleLamp::place().
-AL_INLINE PlaceLanes placeByAngle(const FlatEmitter& e, const D3& from, const SeenLanes& s, hd x, hd y) {
+AL_INLINE void placeByAngle(const FlatEmitter& e, const D3& from, const SeenLanes& s, hd x, hd y, hm& t, hd& b1, hd& b2) {
     hd left = x * s.total;
-    hm t = hm(0), goes = hm(-1);
+    hm goes = hm(-1);
+    t = hm(0);
     for (int k = 0; k + 1 < e.count; ++k) {
         goes &= left >= s.angle[k];
         left = goes ? left - s.angle[k] : left;
@@ -102,25 +102,25 @@ AL_INLINE PlaceLanes placeByAngle(const FlatEmitter& e, const D3& from, const Se
     }
     for (int k = e.count - 1; k > 0; --k) t += (t == k) & ~(s.angle[k] > 0);
     hd angle = s.angle[0];
-    D3 way[3] = {s.way[0][0], s.way[0][1], s.way[0][2]};
+    D3 way[3] = {s.way[e.corners[0][0]], s.way[e.corners[0][1]], s.way[e.corners[0][2]]};
     for (int k = 1; k < e.count; ++k) {
         const hm here = t == k;
         angle = here ? s.angle[k] : angle;
-        for (int i = 0; i < 3; ++i) way[i] = choose(here, s.way[k][i], way[i]);
+        for (int i = 0; i < 3; ++i) way[i] = choose(here, s.way[e.corners[k][i]], way[i]);
     }
     const D3 a = cornerOf(e, t, 0) - from, b = cornerOf(e, t, 1) - from, c = cornerOf(e, t, 2) - from;
     const D3 w = withinAngle(way[0], way[1], way[2], angle, clamp(left / angle, hd(0), hd(1)), y);
     const D3 e1 = b - a, e2 = c - a, q = cross(a, w);
     const hd facing = dot(cross(e1, e2), w);
     const hm there = facing != 0;
-    const hd b1 = there ? clamp(dot(q, e2) / facing, hd(0), hd(1)) : hd(1 / 3.);
-    return {t, b1, there ? clamp(-dot(q, e1) / facing, hd(0), 1.0 - b1) : hd(1 / 3.)};
+    b1 = there ? clamp(dot(q, e2) / facing, hd(0), hd(1)) : hd(1 / 3.);
+    b2 = there ? clamp(-dot(q, e1) / facing, hd(0), 1.0 - b1) : hd(1 / 3.);
 }
 
 /// PolygonMesh::sampleArea().
-AL_INLINE PlaceLanes placeByArea(const FlatEmitter& e, hd x, hd y) {
+AL_INLINE void placeByArea(const FlatEmitter& e, hd x, hd y, hm& t, hd& b1, hd& b2) {
     const hd target = x * e.cumulative[e.count - 1];
-    hm t = hm(0);
+    t = hm(0);
     hd low = hd(0), high = hd(e.cumulative[0]);
     for (int k = 0; k + 1 < e.count; ++k) t -= hd(e.cumulative[k]) <= target;
     for (int k = 1; k < e.count; ++k) {
@@ -128,33 +128,88 @@ AL_INLINE PlaceLanes placeByArea(const FlatEmitter& e, hd x, hd y) {
         high = t == k ? hd(e.cumulative[k]) : high;
     }
     const hd size = high - low, side = rootOf(size > 0 ? clamp((target - low) / size, hd(0), hd(1)) : hd(0.5));
-    return {t, side * (1 - y), side * y};
+    b1 = side * (1 - y), b2 = side * y;
 }
 
-/// Of the points from `at` on: P, the normals of their triangles, and their density by solid angle, 0 where it is by area.
-AL_INLINE void placeHalf(const VertexBlock& v, const FlatEmitter& e, int at, const float* x, const float* y, float* P, float* N,
-                         int stride, float* density) {
-    const D3 from = {wide(v.P[0] + at), wide(v.P[1] + at), wide(v.P[2] + at)};
-    const hd u0 = wide(x + at), u1 = wide(y + at);
+/// Points of a block and their places on the emitter, in doubles.
+struct alignas(64) PlaceRows {
+    double from[3][kBlock], u[2][kBlock];
+    double b1[kBlock], b2[kBlock], pdf[kBlock]; ///< pdf: by solid angle; 0: the place is even in area
+    int64_t triangle[kBlock];
+};
+AL_INLINE hd loadHalf(const double* p) {
+    hd v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+}
+AL_INLINE D3 fromHalf(const PlaceRows& r, int at) {
+    return {loadHalf(r.from[0] + at), loadHalf(r.from[1] + at), loadHalf(r.from[2] + at)};
+}
+
+/// Replaces the places of those from `at` on that are even in solid angle.
+AL_INLINE void placeNear(const FlatEmitter& e, PlaceRows& r, int at) {
+    const D3 from = fromHalf(r, at);
     SeenLanes s;
-    const hm near = seeLamp(e, from, s);
-    PlaceLanes p{};
-    hd pdf = hd(0);
-    if (any(~near)) p = placeByArea(e, u0, u1);
-    if (any(near)) {
-        const PlaceLanes n = placeByAngle(e, from, s, u0, u1);
-        p = {near ? n.triangle : p.triangle, near ? n.b1 : p.b1, near ? n.b2 : p.b2};
-        pdf = near ? e.share / s.total : pdf;
+    const hm seen = seeLamp(e, from, s);
+    hm triangle, t;
+    hd b1, b2;
+    placeByAngle(e, from, s, loadHalf(r.u[0] + at), loadHalf(r.u[1] + at), t, b1, b2);
+    __builtin_memcpy(&triangle, r.triangle + at, sizeof triangle);
+    store(r.triangle + at, seen ? t : triangle);
+    store(r.b1 + at, seen ? b1 : loadHalf(r.b1 + at));
+    store(r.b2 + at, seen ? b2 : loadHalf(r.b2 + at));
+    store(r.pdf + at, seen ? e.share / s.total : hd(0));
+}
+
+/// The same for points anywhere in a block, which move together: solid angles are most of the work.
+static void placeTogether(const FlatEmitter& e, PlaceRows& r, const int* lanes, int count) {
+    PlaceRows g;
+    for (int k = 0; k < (count + kH - 1) / kH * kH; ++k) {
+        const int i = lanes[k < count ? k : 0];
+        for (int q = 0; q < 3; ++q) g.from[q][k] = r.from[q][i];
+        for (int q = 0; q < 2; ++q) g.u[q][k] = r.u[q][i];
+        g.b1[k] = r.b1[i], g.b2[k] = r.b2[i], g.triangle[k] = r.triangle[i];
     }
-    const D3 a = cornerOf(e, p.triangle, 0), e1 = cornerOf(e, p.triangle, 1) - a, e2 = cornerOf(e, p.triangle, 2) - a;
-    const D3 to = a + e1 * p.b1 + e2 * p.b2;
-    storeNarrow(P, to.x), storeNarrow(P + stride, to.y), storeNarrow(P + 2 * stride, to.z);
+    for (int at = 0; at < count; at += kH) placeNear(e, g, at);
+    for (int k = 0; k < count; ++k) {
+        const int i = lanes[k];
+        r.b1[i] = g.b1[k], r.b2[i] = g.b2[k], r.triangle[i] = g.triangle[k], r.pdf[i] = g.pdf[k];
+    }
+}
+
+AL_INLINE void placeAll(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, PlaceRows& r) {
+    int near[kBlock], count = 0, halves = 0; // halves: with some near points
+    bool some[kBlock / kH];
+    for (int at = 0; at < kBlock; at += kH) {
+        const hd u0 = wide(x + at), u1 = wide(y + at);
+        for (int q = 0; q < 3; ++q) store(r.from[q] + at, wide(v.P[q] + at));
+        store(r.u[0] + at, u0), store(r.u[1] + at, u1);
+        hm t;
+        hd b1, b2;
+        placeByArea(e, u0, u1, t, b1, b2);
+        store(r.b1 + at, b1), store(r.b2 + at, b2), store(r.pdf + at, hd(0)), store(r.triangle + at, t);
+        const hm m = isNear(e, fromHalf(r, at));
+        halves += some[at / kH] = any(m);
+        for (int k = 0; some[at / kH] && k < kH; ++k)
+            if (m[k]) near[count++] = at + k;
+    }
+    if ((count + kH - 1) / kH < halves) return placeTogether(e, r, near, count);
+    for (int at = 0; at < kBlock; at += kH)
+        if (some[at / kH]) placeNear(e, r, at);
+}
+
+/// P and the normals of triangles, of the places from `at` on.
+AL_INLINE void pointsOf(const FlatEmitter& e, const PlaceRows& r, int at, float* P, float* N, int stride) {
+    hm t;
+    __builtin_memcpy(&t, r.triangle + at, sizeof t);
+    const D3 a = cornerOf(e, t, 0), e1 = cornerOf(e, t, 1) - a, e2 = cornerOf(e, t, 2) - a;
+    const D3 p = a + e1 * loadHalf(r.b1 + at) + e2 * loadHalf(r.b2 + at);
+    storeNarrow(P, p.x), storeNarrow(P + stride, p.y), storeNarrow(P + 2 * stride, p.z);
     for (int q = 0; q < 3; ++q) {
         hd n = hd(double(e.normal[0][q]));
-        for (int k = 1; k < e.count; ++k) n = p.triangle == k ? hd(double(e.normal[k][q])) : n;
+        for (int k = 1; k < e.count; ++k) n = t == k ? hd(double(e.normal[k][q])) : n;
         storeNarrow(N + q * stride, n);
     }
-    storeNarrow(density, pdf);
 }
 
 /// geometry::roundingError().
@@ -165,7 +220,12 @@ AL_INLINE vf roundingError(const V3& p) {
 static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, LightBlock& to, float* P,
                             float* N, int stride) {
     Lanes placed = 0;
-    for (int at = 0; at < kBlock; at += kH) placeHalf(v, e, at, x, y, P + at, N + at, stride, to.density + at);
+    PlaceRows r;
+    placeAll(v, e, x, y, r);
+    for (int at = 0; at < kBlock; at += kH) {
+        pointsOf(e, r, at, P + at, N + at, stride);
+        storeNarrow(to.density + at, loadHalf(r.pdf + at));
+    }
     for (int at = 0; at < kBlock; at += kW) {
         const V3 p = load3(P + at, stride), n = load3(N + at, stride), d = p - load3(v.P, at);
         const vf angular = load(to.density + at), d2 = dot(d, d), way = rootLanes(d2), cosine = absLanes(dot(d, n)) / way;

@@ -163,12 +163,13 @@ void BlockVertices::sendShadow(size_t point, const BoundLight& of, const Color& 
     ShadowRay& s = e_.shadows.emplace_back();
     s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], light,
          c.targets[point],     c.points[point].shutter, &c.rays[point]};
-    if (queryAt_.empty()) return;
-    const LightValue& value = values_[size_t(queryAt_[point])];
+    const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
+    if (query < 0) return;
+    const LightValue& value = values_[size_t(query)];
     if (value.shadowRadius > 0) { // to a point of the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
         const Vec2 u = e_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
-        const Vec3 to = onShadowDisk(queries_[size_t(queryAt_[point])].Ps - value.L, s.dir, value.shadowRadius, u) - s.origin;
+        const Vec3 to = onShadowDisk(c.points[point].P - value.L, s.dir, value.shadowRadius, u) - s.origin;
         s.dir = normalizeOr(to, s.dir);
         s.distance = length(to) * (1 - 1e-5f);
     }

@@ -57,11 +57,13 @@ private:
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     void sendShadow(size_t point, const BoundLight&, const Color& light, BatchContext&);
 
-    // blockemitters.cpp
+    // blocklightrows.cpp
     bool inRows(const BoundLight&) const;
     void lightInRows(const BoundLight&, BatchContext&);
-    void placeOnEmitter(const BoundLight&);
+    void placeInRows(const BoundLight&);
     void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
+    void takeLightOf(size_t k, const BoundLight&, const shading::Batch&, const BatchContext&);
+    void takePlace(const BoundLight&, size_t point, const Vec3& L, const shading::Batch&, size_t at);
 
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
@@ -86,7 +88,7 @@ private:
     std::vector<ShadePoint> queries_;
     std::vector<Query> asked_;
     std::vector<LightValue> values_;
-    std::vector<int32_t> queryAt_;  ///< by point: in asked_; empty: the light was sampled in rows
+    std::vector<int32_t> queryAt_;  ///< by point: in values_; -1, or empty: that says nothing more than lights_
     std::vector<size_t> litBlocks_; ///< blocks of which some points sample lights
     std::vector<float> lamp_;       ///< LightRows of their points
     std::vector<Lanes> placed_;     ///< of litBlocks_: those that have a point of the light

@@ -17,6 +17,13 @@ void tellLit(ShadePoint& p, const ShadePoint& lit) {
     p.ray = lit.ray;
 }
 
+Vec3 originOfLight(const ShaderInstance& of, float shutter) {
+    Matrix moved;
+    const auto& m = of.moving ? (moved = of.toCurrentAt(shutter)).m : of.toCurrent.m; // transformPoint() of the origin
+    const Vec3d at(m[3][0], m[3][1], m[3][2]);
+    return Vec3(m[3][3] == 1 || m[3][3] == 0 ? at : at / m[3][3]);
+}
+
 bool placeLightSample(const WorldImpl& world, const BoundLight& light, const LightNumbers& u, bool path, ShadePoint& p,
                       Emitter::Sample& s) {
     if (light.kind == LightKind::Area) {
@@ -44,11 +51,7 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         return true;
     }
     p.N = Vec3();
-    const ShaderInstance& of = *light.instance;
-    Matrix moved;
-    const auto& m = of.moving ? (moved = of.toCurrentAt(p.shutter)).m : of.toCurrent.m; // transformPoint() of the origin
-    const Vec3d at(m[3][0], m[3][1], m[3][2]);
-    p.P = Vec3(m[3][3] == 1 || m[3][3] == 0 ? at : at / m[3][3]);
+    p.P = originOfLight(*light.instance, p.shutter);
     p.Ci = light.cone && path ? coneNumbers(u.pair) : Color(0);
     return true;
 }

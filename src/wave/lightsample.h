@@ -15,6 +15,8 @@ inline bool takesChoice(const BoundLight& l) { return l.kind == LightKind::Area 
 
 /// What a light is told of the point that it lights.
 void tellLit(ShadePoint& query, const ShadePoint& lit);
+/// The origin of a light's shader space: where P lies of those without geometry.
+Vec3 originOfLight(const ShaderInstance&, float shutter);
 /// The point of the light, for a query that tellLit() has filled. False: this draw brings nothing.
 bool placeLightSample(const WorldImpl&, const BoundLight&, const LightNumbers&, bool path, ShadePoint& query, Emitter::Sample&);
 

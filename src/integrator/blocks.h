@@ -80,10 +80,9 @@ struct FlatEmitter {
     double centre[3];
     double near2, least2; ///< squared distances from the centre below which it is near, from a corner above which it is sure
     double mostAngle, leastAngle; ///< of a triangle; of all
-    double share;                 ///< the chance that it is sampled
     // Else even in area.
     double cumulative[kMost]; ///< areas, up to and with this triangle
-    double perArea;           ///< one over the area of all, times `share`
+    double perArea;           ///< one over the area of all
     bool oneSided = false;    ///< gives no light behind
 };
 

@@ -22,10 +22,11 @@ struct Stages {
     Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
     /// LobeBlock::chosen, VertexBlock::energyScale and passes.
     Selected (*select)(VertexBlock&, LobeBlock* const* sites, int count, const SelectRules&);
-    /// A point of the emitter for each of the block, by pairs of numbers: to LightBlock::w, density and end, and to three rows
+    /// A point of the emitter for each of the block, by pairs of numbers; share: the chances with
+    /// which it was chosen. To LightBlock::w, density and end, and to three rows
     /// `stride` apart of each of P and N. Returns the points that have one.
-    Lanes (*place)(const VertexBlock&, const FlatEmitter&, const float* x, const float* y, LightBlock&, float* P, float* N,
-                   int stride);
+    Lanes (*place)(const VertexBlock&, const FlatEmitter&, const float* x, const float* y, const double* share, LightBlock&,
+                   float* P, float* N, int stride);
     void (*aim)(const VertexBlock&, const LightBlock&, ShadowBlock&);
     /// For points of LobeBlock::lights and LightBlock::asked. kept: a row, what the lobe takes of the light; met: points from
     /// where its rays could meet the light; ahead: only where the way to the emitter is along its direction. value: of the lobe

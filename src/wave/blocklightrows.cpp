@@ -11,7 +11,7 @@ namespace alpenglow::transport {
 /// Whether points of the light come from the stage `place` or are one, and its kernel asks for nothing but what that gives.
 bool BlockVertices::inRows(const BoundLight& l) const {
     const bool emitter = l.kind == LightKind::Area;
-    if (emitter ? l.mean || !l.emitter->flat() || world_.accel_->hasSolids() : l.sky || l.cone) return false;
+    if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.sky || l.cone) return false;
     const auto& k = *l.kernel.kernel;
     return l.kernel.plan->readsLightRows() && k.sites().empty() && !k.facts().suspends && !k.facts().lightLoops &&
            !l.instance->moving;
@@ -47,35 +47,69 @@ void BlockVertices::placeInRows(const BoundLight& light) {
     beginLights(light);
     const size_t n = litBlocks_.size() * kBlock;
     lamp_.resize(9 * n);
-    placed_.assign(litBlocks_.size(), 0xffffu);
+    placed_.assign(litBlocks_.size(), {0xffffu, 0xffffu, 0xffffu});
     if (light.kind == LightKind::Area) {
-        drawNumbers((kLightPoint + uint32_t(&light - world_.lights_.data())) << 1, pairs_);
+        const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+        drawNumbers(use << 1, pairs_);
+        if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
     } else {
         const Vec3 origin = originOfLight(*light.instance, 0);
         for (size_t q = 0; q < 3; ++q) std::fill_n(lamp_.data() + q * n, n, origin[int(q)]);
         std::fill_n(lamp_.data() + 3 * n, 3 * n, 0.f);
     }
     for (size_t k = 0; k < litBlocks_.size(); ++k) {
-        const size_t b = litBlocks_[k];
-        float* at = lamp_.data() + k * kBlock;
-        if (light.kind == LightKind::Area)
-            placed_[k] =
-                stages_.place(vertices_[b], *light.emitter->flat(), pairs_[b].x, pairs_[b].y, lights_[b], at, at + 3 * n, int(n));
-        for (size_t q = 0; q < 3; ++q) std::copy_n(vertices_[b].P[q], kBlock, at + (6 + q) * n);
+        if (light.kind == LightKind::Area) placeOnEmitter(k, *light.emitter);
+        for (size_t q = 0; q < 3; ++q)
+            std::copy_n(vertices_[litBlocks_[k]].P[q], kBlock, lamp_.data() + (6 + q) * n + k * kBlock);
+    }
+}
+
+/// The same for one of litBlocks_: shape by shape, of each the points that chance gives it.
+void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
+    const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
+    float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
+    LightBlock& l = lights_[b];
+    const std::span<const FlatEmitter> shapes = emitter.flat();
+    const VertexBlock& v = vertices_[b];
+    Lanes of[limits::kLightsSampled] = {};
+    alignas(64) double share[kBlock];
+    for (size_t i = 0; i < size_t(kBlock); ++i) {
+        const float choose = shapes.size() > 1 ? choices_[b].x[i] : 0;
+        of[emitter.flatFrom({v.P[0][i], v.P[1][i], v.P[2][i]}, choose, share[i])] |= 1u << i;
+    }
+    Placed& placed = placed_[k] = {};
+    for (size_t s = 0; s < shapes.size(); ++s) {
+        if (!(of[s] & lit_[b])) continue;
+        LightBlock mine;
+        alignas(64) Row rows[6];
+        const bool all = of[s] == 0xffffu;
+        const Lanes there =
+            of[s] & (all ? stages_.place(v, shapes[s], pairs_[b].x, pairs_[b].y, share, l, P, N, int(n))
+                         : stages_.place(v, shapes[s], pairs_[b].x, pairs_[b].y, share, mine, rows[0], rows[3], kBlock));
+        for (Lanes left = all ? 0 : of[s]; left; left &= left - 1) {
+            const size_t i = size_t(std::countr_zero(left));
+            for (size_t q = 0; q < 3; ++q) {
+                P[q * n + i] = rows[q][i], N[q * n + i] = rows[3 + q][i];
+                l.w[q][i] = mine.w[q][i], l.end[q][i] = mine.end[q][i];
+            }
+            l.density[i] = mine.density[i];
+        }
+        placed.points |= there;
+        if (emitter.flatVisibility(s) & visibilityBit(RayType::Diffuse)) placed.metDiffuse |= there;
+        if (emitter.flatVisibility(s) & visibilityBit(RayType::Specular)) placed.metSpecular |= there;
     }
 }
 
 /// The light at the points, from the outputs of its kernel.
 void BlockVertices::takeRows(const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
-    const uint32_t seenBy = light.kind == LightKind::Area ? light.emitter->flatVisibility() : ~0u;
     values_.clear();
     queryAt_.clear();
     if (light.shadowRadius >= 0) queryAt_.resize(points_, -1);
     for (size_t k = 0; k < litBlocks_.size(); ++k) {
         LightBlock& l = lights_[litBlocks_[k]];
         takeLightOf(k, light, from, c);
-        if (seenBy & visibilityBit(RayType::Diffuse)) l.metDiffuse = l.asked;
-        if (seenBy & visibilityBit(RayType::Specular)) l.metSpecular = l.asked;
+        l.metDiffuse = l.asked & placed_[k].metDiffuse;
+        l.metSpecular = l.asked & placed_[k].metSpecular;
     }
 }
 
@@ -98,7 +132,7 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
     };
     kept(light.nonDiffuse, l.keptDiffuse);
     kept(light.nonSpecular, l.keptSpecular);
-    for (Lanes left = lit_[b] & placed_[k]; left; left &= left - 1) {
+    for (Lanes left = lit_[b] & placed_[k].points; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         if (light.outLit >= 0 && row(light.outLit, 0)[i] == 0) continue;
         const Color Cl{l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};

@@ -36,6 +36,11 @@ private:
         Emitter::Sample sample;
     };
 
+    /// Points that have one of a light; of these, those whose rays could meet it by chance.
+    struct Placed {
+        Lanes points = 0, metDiffuse = 0, metSpecular = 0;
+    };
+
     // blockvertices.cpp
     bool loadVertices(const BatchContext&);
     bool findSites(const BatchContext&);
@@ -61,6 +66,7 @@ private:
     bool inRows(const BoundLight&) const;
     void lightInRows(const BoundLight&, BatchContext&);
     void placeInRows(const BoundLight&);
+    void placeOnEmitter(size_t k, const Emitter&);
     void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
     void takeLightOf(size_t k, const BoundLight&, const shading::Batch&, const BatchContext&);
     void takePlace(const BoundLight&, size_t point, const Vec3& L, const shading::Batch&, size_t at);
@@ -91,7 +97,7 @@ private:
     std::vector<int32_t> queryAt_;  ///< by point: in values_; -1, or empty: that says nothing more than lights_
     std::vector<size_t> litBlocks_; ///< blocks of which some points sample lights
     std::vector<float> lamp_;       ///< LightRows of their points
-    std::vector<Lanes> placed_;     ///< of litBlocks_: those that have a point of the light
+    std::vector<Placed> placed_;    ///< of litBlocks_
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
     ScatterBlock next_{};
     ShadowBlock shadow_{};

@@ -79,10 +79,10 @@ void Emitter::weigh() {
         e.cumulative = sum += e.share;
         entryOf_[e.shape] = int(&e - entries_.data());
     }
-    flat_.reset();
-    if (entries_.size() != 1) return;
-    if (const Entry& e = entries_[0]; e.triangles >= 0 && e.facets < 0 && TriangleLamp::flat(*e.shape))
-        flat_ = triangles_[size_t(e.triangles)].inBlocks(*e.shape, e.share);
+    flat_.clear();
+    const auto flat = [](const Entry& e) { return e.triangles >= 0 && e.facets < 0 && TriangleLamp::flat(*e.shape); };
+    if (entries_.size() > size_t(limits::kLightsSampled) || !std::all_of(entries_.begin(), entries_.end(), flat)) return;
+    for (const Entry& e : entries_) flat_.push_back(triangles_[size_t(e.triangles)].inBlocks(*e.shape));
 }
 
 void Emitter::shinesTo(Shines to) {

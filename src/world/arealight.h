@@ -3,7 +3,7 @@
 #include "world/emitterfacets.h"
 #include "world/trianglelamp.h"
 #include <functional>
-#include <optional>
+#include <span>
 #include <unordered_map>
 
 namespace alpenglow::transport {
@@ -31,10 +31,13 @@ public:
         shape = entries_[0].shape;
         return shape->sampleArea(u.x, u.y);
     }
-    /// For lanes, if it is one shape of a few flat triangles; else null.
-    const FlatEmitter* flat() const { return flat_ ? &*flat_ : nullptr; }
-    /// Sample::visibility of a flat one.
-    uint32_t flatVisibility() const { return entries_[0].visibility; }
+    /// For lanes, if it is a few shapes of a few flat triangles each: all of them; else none.
+    std::span<const FlatEmitter> flat() const { return flat_; }
+    /// Of flat ones: the one that a number in [0, 1) chooses, and with which probability; Sample::visibility.
+    size_t flatFrom(const Vec3& from, float choose, double& share) const {
+        return size_t(&entryFrom(from, choose, share) - entries_.data());
+    }
+    uint32_t flatVisibility(size_t shape) const { return entries_[shape].visibility; }
     /// Whether sample() needs its number `choose`.
     bool chooses() const { return entries_.size() > 1; }
 
@@ -96,7 +99,7 @@ private:
     std::vector<EmitterFacets> facets_;
     std::vector<TriangleLamp> triangles_;
     std::unordered_map<const geometry::Shape*, int> entryOf_;
-    std::optional<FlatEmitter> flat_;
+    std::vector<FlatEmitter> flat_; ///< by entry; empty if some is not flat, or there are many
     double area_ = 0;
     LightChooser chooser_; ///< over entries_; empty where there are few
 };

@@ -105,7 +105,7 @@ static int cornerIn(FlatEmitter& e, const Vec3d& c) {
     return k;
 }
 
-FlatEmitter TriangleLamp::inBlocks(const geometry::Shape& s, double share) const {
+FlatEmitter TriangleLamp::inBlocks(const geometry::Shape& s) const {
     static_assert(FlatEmitter::kMost >= kMost);
     FlatEmitter e{};
     double area = 0;
@@ -119,13 +119,12 @@ FlatEmitter TriangleLamp::inBlocks(const geometry::Shape& s, double share) const
             e.centre[q] = centre_[q];
         }
         e.cumulative[t] = area += 0.5 * length(cross(c[1] - c[0], c[2] - c[0]));
-        e.perArea = share * s.sampleDensity(p);
+        e.perArea = s.sampleDensity(p);
     }
     e.near2 = kNear * kNear * radius2_;
     e.least2 = kLeastDistance2 * radius2_;
     e.mostAngle = kMostAngle;
     e.leastAngle = kLeastAngle;
-    e.share = share;
     e.oneSided = s.oneSided();
     return e;
 }

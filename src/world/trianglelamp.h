@@ -25,8 +25,8 @@ public:
     geometry::HitRef place(const Vec3& from, const Seen&, Vec2 u) const;
     /// Whether each of its points is that of a flat triangle with a normal of its own: what FlatEmitter holds.
     static bool flat(const geometry::Shape&);
-    /// share: the chance that the shape is sampled. Of a flat one.
-    FlatEmitter inBlocks(const geometry::Shape&, double share) const;
+    /// Of a flat one.
+    FlatEmitter inBlocks(const geometry::Shape&) const;
 
 private:
     std::vector<std::array<Vec3d, 3>> triangles_;

@@ -41,7 +41,12 @@ const char* const kLights =
     "AttributeBegin\nAreaLightSource \"slrect\" 4 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
     "Polygon \"P\" [-1 2.5 4  1 2.5 4  1 2.5 6  -1 2.5 6]\nAttributeEnd\n"
     "AttributeBegin\nAreaLightSource \"arealight\" 5 \"float intensity\" 2\nSurface \"constant\"\nTranslate -2 1 4\n"
-    "Sphere .3 -.3 .3 360\nAttributeEnd\nIlluminate 4 1\nIlluminate 5 1\n";
+    "Sphere .3 -.3 .3 360\nAttributeEnd\n"
+    "AttributeBegin\nAreaLightSource \"slrect\" 6 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\n"
+    "Polygon \"P\" [1.5 -1 4  1.5 0 4  1.5 0 4.5  1.5 -1 4.5]\nAttribute \"visibility\" \"int diffuse\" 0\n"
+    "Polygon \"P\" [-1.5 0 3  -1.5 .7 3.2  -1.5 0 3.6]\nAttributeEnd\n"
+    "LightSource \"spotlight\" 7 \"intensity\" 9 \"from\" [0 2 3] \"to\" [0 0 5] \"coneangle\" .7\n"
+    "Illuminate 4 1\nIlluminate 5 1\nIlluminate 6 1\n";
 
 /// A room of balls of one shader.
 std::string roomOf(const std::string& shader, const std::string& more = "") {

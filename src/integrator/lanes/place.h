@@ -134,7 +134,7 @@ AL_INLINE void placeByArea(const FlatEmitter& e, hd x, hd y, hm& t, hd& b1, hd& 
 /// Points of a block and their places on the emitter, in doubles.
 struct alignas(64) PlaceRows {
     double from[3][kBlock], u[2][kBlock];
-    double b1[kBlock], b2[kBlock], pdf[kBlock]; ///< pdf: by solid angle; 0: the place is even in area
+    double b1[kBlock], b2[kBlock], total[kBlock]; ///< total: solid angle; 0: the place is even in area
     int64_t triangle[kBlock];
 };
 AL_INLINE hd loadHalf(const double* p) {
@@ -158,7 +158,7 @@ AL_INLINE void placeNear(const FlatEmitter& e, PlaceRows& r, int at) {
     store(r.triangle + at, seen ? t : triangle);
     store(r.b1 + at, seen ? b1 : loadHalf(r.b1 + at));
     store(r.b2 + at, seen ? b2 : loadHalf(r.b2 + at));
-    store(r.pdf + at, seen ? e.share / s.total : hd(0));
+    store(r.total + at, seen ? s.total : hd(0));
 }
 
 /// The same for points anywhere in a block, which move together: solid angles are most of the work.
@@ -173,7 +173,7 @@ static void placeTogether(const FlatEmitter& e, PlaceRows& r, const int* lanes, 
     for (int at = 0; at < count; at += kH) placeNear(e, g, at);
     for (int k = 0; k < count; ++k) {
         const int i = lanes[k];
-        r.b1[i] = g.b1[k], r.b2[i] = g.b2[k], r.triangle[i] = g.triangle[k], r.pdf[i] = g.pdf[k];
+        r.b1[i] = g.b1[k], r.b2[i] = g.b2[k], r.triangle[i] = g.triangle[k], r.total[i] = g.total[k];
     }
 }
 
@@ -187,7 +187,7 @@ AL_INLINE void placeAll(const VertexBlock& v, const FlatEmitter& e, const float*
         hm t;
         hd b1, b2;
         placeByArea(e, u0, u1, t, b1, b2);
-        store(r.b1 + at, b1), store(r.b2 + at, b2), store(r.pdf + at, hd(0)), store(r.triangle + at, t);
+        store(r.b1 + at, b1), store(r.b2 + at, b2), store(r.total + at, hd(0)), store(r.triangle + at, t);
         const hm m = isNear(e, fromHalf(r, at));
         halves += some[at / kH] = any(m);
         for (int k = 0; some[at / kH] && k < kH; ++k)
@@ -217,21 +217,26 @@ AL_INLINE vf roundingError(const V3& p) {
     return vf(1.1920929e-7f) * (absLanes(p.x) + absLanes(p.y) + absLanes(p.z)) + vf(1e-37f);
 }
 
-static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, LightBlock& to, float* P,
-                            float* N, int stride) {
+static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, const double* share,
+                            LightBlock& to, float* P, float* N, int stride) {
     Lanes placed = 0;
     PlaceRows r;
     placeAll(v, e, x, y, r);
     for (int at = 0; at < kBlock; at += kH) {
         pointsOf(e, r, at, P + at, N + at, stride);
-        storeNarrow(to.density + at, loadHalf(r.pdf + at));
+        const hd total = loadHalf(r.total + at);
+        storeNarrow(to.density + at, total > 0 ? loadHalf(share + at) / total : hd(0));
     }
     for (int at = 0; at < kBlock; at += kW) {
         const V3 p = load3(P + at, stride), n = load3(N + at, stride), d = p - load3(v.P, at);
         const vf angular = load(to.density + at), d2 = dot(d, d), way = rootLanes(d2), cosine = absLanes(dot(d, n)) / way;
-        const vd area = vd(e.perArea) * __builtin_convertvector(d2, vd) / __builtin_convertvector(cosine, vd);
+        vd chance;
+        __builtin_memcpy(&chance, share + at, sizeof chance);
+        const vd area = chance * e.perArea * __builtin_convertvector(d2, vd) / __builtin_convertvector(cosine, vd);
         const vf byArea = select((d2 > 0) & (cosine > vf(1e-7f)), __builtin_convertvector(area, vf), vf(0));
-        const vf density = select(angular > 0, angular, byArea);
+        vm angle;
+        for (int k = 0; k < kW; ++k) angle[k] = -(r.total[at + k] > 0);
+        const vf density = select(angle, angular, byArea);
         const V3 w = d / way;
         vm ok = (way > 0) & (density > 0) & finite(density);
         if (e.oneSided) ok &= dot(n, w) < 0;

@@ -186,6 +186,17 @@ TEST(ManyLights, SumStaysTheSame) {
         EXPECT_LE(double(c.shadow) / n, limits::kLightsSampled + 1.5);
         EXPECT_GE(double(c.shadow) / n, limits::kLightsSampled / 2);
     }
+    // Behind the first vertex, a mirror far away, about three are sampled; the mean is the same.
+    writeShader("mirrors", "surface mirrors() { Ci = trace(P, reflect(normalize(I), normalize(N))); }");
+    const Vec3 at(50, 1, 0), down(0, -1, 0), n = normalize(normalize(-at) - down), t(n.y, -n.x, 0);
+    std::string mirror = "AttributeBegin\nSurface \"mirrors\"\nPolygon \"P\" [";
+    for (const Vec3& c : {at - t - Vec3(0, 0, 1), at + t - Vec3(0, 0, 1), at + t + Vec3(0, 0, 1), at - t + Vec3(0, 0, 1)})
+        mirror += std::to_string(c.x) + " " + std::to_string(c.y) + " " + std::to_string(c.z) + " ";
+    Scene behind(scene(mirror + "]\nAttributeEnd\n" + lights, "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), under(Hider::Path));
+    Counters c;
+    const int n3 = samples(40000);
+    expectMean(behind.estimate(rayTo({50, 9, 0}, at), n3, &c), want, .015, "behind a mirror");
+    EXPECT_LE(double(c.shadow) / n3, limits::kLightsSampledDeeper + 1.5);
     Scene hidden(scene(lights, "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), under(Hider::Hidden)); // all are visited
     Moments m = hidden.estimate(kView, 2000);
     EXPECT_LE(std::fabs(m.mean() - want), 4 * m.se() + 1e-4 * want);

@@ -96,8 +96,8 @@ struct alignas(64) ShadowBlock {
 struct alignas(64) ScatterBlock {
     int32_t site[kBlock];             ///< by pick(): whose lobe is followed; -1: none
     Row scale;                        ///< one over the chance of that
-    Row direction[3], colour[3], pdf; ///< by draw(): of that lobe; pdf 0 where it is a single direction
-    Row request[3], spread, indirect; ///< of that lobe: weight, half angle, and 1 where `energyScale` is not for it
+    Row direction[3], colour[3], pdf; ///< by take: of that lobe; pdf 0 where it is a single direction
+    Row request[3], spread, indirect; ///< of that lobe: weight, half angle in radians, and 1 where `energyScale` counts, else 0
     Row origin[3], weight[3];         ///< by extend()
     uint32_t vertex[kBlock];          ///< by name(): key of random numbers
     Row dice;

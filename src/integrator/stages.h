@@ -3,7 +3,7 @@
 //
 //   request     what calls ask for: rows of lobes                    reads VertexBlock, the call's arguments; writes LobeBlock
 //   select      which lobe is followed with which chance             reads LobeBlock; writes LobeBlock::chosen, energyScale
-//   place       points of an emitter                             reads VertexBlock, FlatEmitter; writes LightBlock and rows
+//   place       points of an emitter                                 reads VertexBlock, FlatEmitter; writes LightBlock and rows
 //   aim         shadow rays to samples of a light                    reads VertexBlock, LightBlock; writes ShadowBlock
 //   contribute  what a lobe gives back of that light                 reads all of these; writes ShadowBlock::light
 //   pick        the lobe that chance decides for                     reads LobeBlock; writes ScatterBlock
@@ -22,11 +22,12 @@ struct Stages {
     Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
     /// LobeBlock::chosen, VertexBlock::energyScale and passes.
     Selected (*select)(VertexBlock&, LobeBlock* const* sites, int count, const SelectRules&);
-    /// A point of the emitter for each of the block, by pairs of numbers; share: the chances with
-    /// which it was chosen. To LightBlock::w, density and end, and to three rows
-    /// `stride` apart of each of P and N. Returns the points that have one.
+    /// A point of the emitter for each of the block, by pairs of numbers, 0 to 1; share: the chances with which the emitter was
+    /// chosen. Writes LightBlock::w, density and end, and P and N, three rows each, `stride` floats apart. Returns the points
+    /// that have one.
     Lanes (*place)(const VertexBlock&, const FlatEmitter&, const float* x, const float* y, const double* share, LightBlock&,
                    float* P, float* N, int stride);
+    /// Shadow rays from the points toward the light: ShadowBlock::origin, direction and length.
     void (*aim)(const VertexBlock&, const LightBlock&, ShadowBlock&);
     /// For points of LobeBlock::lights and LightBlock::asked. kept: a row, what the lobe takes of the light; met: points from
     /// where its rays could meet the light; ahead: only where the way to the emitter is along its direction. value: of the lobe
@@ -34,13 +35,14 @@ struct Stages {
     /// number.
     Lanes (*contribute)(const VertexBlock&, const LobeBlock&, const LightBlock&, const float* kept, Lanes met, bool ahead,
                         const float* value, ShadowBlock&, Lanes* failed);
-    /// number: a row, 0 to 1.
+    /// Which lobe is followed, by one number a point, 0 to 1: ScatterBlock::site and scale; VertexBlock::passes is 0 where one
+    /// is.
     void (*pick)(VertexBlock&, const LobeBlock* const* sites, int count, const float* number, ScatterBlock&);
-    /// Of points whose lobe is this one: `drawn` (kDrawnRows) to directions; `value` (kValueRows; null: of lobes that are single
-    /// directions) to colours and densities. Two calls, the first with `drawn` alone.
+    /// For points that follow the lobe of `site`: `drawn` (kDrawnRows) becomes ScatterBlock::direction, then `value` (kValueRows)
+    /// of lobes that spread colour and pdf.
     void (*takeDirections)(const LobeBlock&, int site, bool lighting, const float* drawn, ScatterBlock&);
     void (*takeValues)(const LobeBlock&, int site, const float* value, ScatterBlock&);
-    /// key: by site, the call site's number.
+    /// ScatterBlock::vertex, as childVertex() of answers/random.h. key: by site, the call site's number.
     void (*name)(const VertexBlock&, const uint32_t* key, ScatterBlock&);
     /// roulette: chance ends paths, by ScatterBlock::dice. Returns points whose throughput is not finite.
     Lanes (*extend)(const VertexBlock&, bool roulette, ScatterBlock&);

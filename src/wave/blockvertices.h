@@ -28,7 +28,6 @@ private:
         bool diffuse = false;  ///< of its rays
         std::vector<LobeBlock> lobes;
         std::vector<float> narrow; ///< of kernels with strips below a block: arguments, by block
-        LobeBlock& block(size_t b) { return lobes[b]; }
     };
     /// What a light is asked at points.
     struct Query {
@@ -85,7 +84,7 @@ private:
     bool usable_ = false; ///< by what the world is
     size_t blocks_ = 0, points_ = 0;
     std::vector<VertexBlock> vertices_;
-    std::vector<Site> sites_; ///< the first `count_`, in the order of their numbers
+    std::vector<Site> sites_; ///< the first `count_`, in the order of the calls
     size_t count_ = 0;
     std::vector<LobeBlock*> block_; ///< lobesOf()
     std::vector<Lanes> lit_;        ///< by block: points that sample lights

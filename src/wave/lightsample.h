@@ -13,9 +13,9 @@ struct LightNumbers {
 inline bool takesPair(const BoundLight& l, bool path) { return l.kind == LightKind::Area || l.sky || (l.cone && path); }
 inline bool takesChoice(const BoundLight& l) { return l.kind == LightKind::Area && l.emitter->chooses(); }
 
-/// What a light is told of the point that it lights.
+/// Copies what the light's kernel reads of the lit point (Ps, Ns, I, E, du, dv, time) to a query of the light. Current space.
 void tellLit(ShadePoint& query, const ShadePoint& lit);
-/// The origin of a light's shader space: where P lies of those without geometry.
+/// The origin of a light's shader space, current space: P of a light without geometry.
 Vec3 originOfLight(const ShaderInstance&, float shutter);
 /// The point of the light, for a query that tellLit() has filled. False: this draw brings nothing.
 bool placeLightSample(const WorldImpl&, const BoundLight&, const LightNumbers&, bool path, ShadePoint& query, Emitter::Sample&);

@@ -55,6 +55,8 @@ struct Hit {
     bool valid() const { return shape != kNone; }
 };
 
+struct DirectRays;
+
 class Accel {
 public:
     /// shapes must have been diced (geometry/dice.h); the Accel keeps them. visibility: a mask a shape, or empty for kAll.
@@ -86,6 +88,14 @@ public:
     /// however many shapes a ray meets; results are void then, and those that have not been found stay what they were.
     void intersect(std::span<const Ray>, std::span<Hit>, const StopFlag* stop = nullptr) const;
     void occluded(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
+
+    /// Whether rays may be given in rows (directblock.h): the scene is small. Then the same for those of 16 rays whose bit is
+    /// set, which begin (Ray::passed), and consider all shapes of their mask from both sides; see takesRows(Sides). time: of the
+    /// shutter, by ray. Results of the others stay what they were.
+    bool takesRows() const;
+    bool takesRows(Sides) const; ///< of rays that say so
+    void intersect(const DirectRays&, uint32_t rays, const float* time, Hit* hits) const;
+    void occluded(const DirectRays&, uint32_t rays, uint8_t* met) const;
 
     const std::vector<geometry::ShapeRef>& shapes() const;
     /// The point of a hit, where it is at the hit's time.

@@ -62,50 +62,109 @@ uint32_t Accel::Impl::loadBlock(std::span<const Ray> rays, DirectRays& to) const
     return plain;
 }
 
+namespace {
+/// A ray of a block, on its own.
+Ray rayOf(const DirectRays& b, int i, float time) {
+    Ray r;
+    r.org = {b.org[0][i], b.org[1][i], b.org[2][i]};
+    r.dir = {b.dir[0][i], b.dir[1][i], b.dir[2][i]};
+    r.tnear = b.tnear[i];
+    r.tfar = b.tfar[i];
+    r.time = time;
+    r.mask = b.mask[i];
+    r.sides = Sides::Both;
+    return r;
+}
+/// usable() of each.
+uint32_t usableOf(const DirectRays& b) {
+    uint32_t all = 0;
+    for (int i = 0; i < DirectRays::kSize; ++i)
+        all |= uint32_t((b.tnear[i] < b.tfar[i]) &
+                        usable({b.org[0][i], b.org[1][i], b.org[2][i]}, {b.dir[0][i], b.dir[1][i], b.dir[2][i]}))
+               << i;
+    return all;
+}
+} // namespace
+
+void Accel::Impl::nearestInBlock(const DirectRays& block, uint32_t rays, const float* time, Hit* hits) const {
+    DirectHits found;
+    const uint32_t good = usableOf(block);
+    if (rays & good) directSearch().nearest(*blockScene, block, rays & good, found);
+    for (; rays; rays &= rays - 1) {
+        const int i = std::countr_zero(rays);
+        Hit& hit = hits[i];
+        hit = Hit();
+        if (!(good >> i & 1)) continue;
+        if (found.undecided >> i & 1) {
+            intersectOne(rayOf(block, i, time[i]), hit);
+            continue;
+        }
+        Best best{found.t[i], kNone, kNone, 0, 0};
+        if (const int t = found.triangle[i]; t >= 0)
+            best = {found.t[i], triangles[size_t(t)].shape, triangles[size_t(t)].prim, found.b1[i], found.b2[i]};
+        uint32_t near = 0;
+        for (size_t k = 0; k < balls.size(); ++k) near |= (found.ball[k] >> i & 1) << k;
+        if (near) {
+            const Ray r = rayOf(block, i, time[i]);
+            Query q{&r, best, false};
+            for (; near; near &= near - 1) meetExact(q, balls[size_t(std::countr_zero(near))].shape, 0);
+            best = q.best;
+        }
+        if (best.shape != kNone) hit = {float(best.t), best.shape, best.prim, time[i], best.b1, best.b2, best.t};
+    }
+}
+
+void Accel::Impl::anyInBlock(const DirectRays& block, uint32_t rays, uint8_t* met) const {
+    DirectHits found;
+    const uint32_t good = usableOf(block);
+    if (rays & good) directSearch().any(*blockScene, block, rays & good, found);
+    for (; rays; rays &= rays - 1) {
+        const int i = std::countr_zero(rays);
+        met[i] = good >> i & found.blocked >> i & 1;
+        if (!(good >> i & 1) || met[i]) continue;
+        uint32_t near = found.undecided >> i & 1 ? ~0u : 0;
+        for (size_t k = 0; k < balls.size() && near != ~0u; ++k) near |= (found.ball[k] >> i & 1) << k;
+        if (!near) continue;
+        const Ray r = rayOf(block, i, 0);
+        if (near == ~0u) {
+            met[i] = occludedOne(r);
+            continue;
+        }
+        Query q{&r, {INFINITY, kNone, kNone, 0, 0}, true};
+        for (; near && !met[i]; near &= near - 1) met[i] = meetExact(q, balls[size_t(std::countr_zero(near))].shape, 0);
+    }
+}
+
 void Accel::Impl::nearestInBlocks(std::span<const Ray> rays, std::span<Hit> hits) const {
     DirectRays block;
-    DirectHits found;
     for (size_t first = 0; first < rays.size(); first += DirectRays::kSize) {
         const auto some = rays.subspan(first, std::min(size_t(DirectRays::kSize), rays.size() - first));
         const uint32_t plain = loadBlock(some, block);
-        if (plain) directSearch().nearest(*blockScene, block, plain, found);
+        float time[DirectRays::kSize] = {};
         for (size_t i = 0; i < some.size(); ++i) {
-            const Ray& r = some[i];
-            Hit& hit = hits[first + i];
-            if (!(plain >> i & 1) || (found.undecided >> i & 1)) {
-                intersectOne(r, hit);
-                continue;
-            }
-            Query q{&r, {found.t[i], kNone, kNone, 0, 0}, false};
-            if (const int t = found.triangle[i]; t >= 0)
-                q.best = {found.t[i], triangles[size_t(t)].shape, triangles[size_t(t)].prim, found.b1[i], found.b2[i]};
-            for (size_t k = 0; k < balls.size(); ++k)
-                if (found.ball[k] >> i & 1) meetExact(q, balls[k].shape, 0);
-            hit = Hit();
-            if (q.best.shape != kNone) hit = {float(q.best.t), q.best.shape, q.best.prim, r.time, q.best.b1, q.best.b2, q.best.t};
+            time[i] = some[i].time;
+            if (!(plain >> i & 1)) intersectOne(some[i], hits[first + i]);
         }
+        nearestInBlock(block, plain, time, &hits[first]);
     }
 }
 
 void Accel::Impl::anyInBlocks(std::span<const Ray> rays, std::span<uint8_t> out) const {
     DirectRays block;
-    DirectHits found;
     for (size_t first = 0; first < rays.size(); first += DirectRays::kSize) {
         const auto some = rays.subspan(first, std::min(size_t(DirectRays::kSize), rays.size() - first));
         const uint32_t plain = loadBlock(some, block);
-        if (plain) directSearch().any(*blockScene, block, plain, found);
-        for (size_t i = 0; i < some.size(); ++i) {
-            if (!(plain >> i & 1) || (found.undecided >> i & 1)) {
-                out[first + i] = occludedOne(some[i]);
-                continue;
-            }
-            bool met = found.blocked >> i & 1;
-            Query q{&some[i], {INFINITY, kNone, kNone, 0, 0}, true};
-            for (size_t k = 0; k < balls.size() && !met; ++k)
-                if (found.ball[k] >> i & 1) met = meetExact(q, balls[k].shape, 0);
-            out[first + i] = met;
-        }
+        for (size_t i = 0; i < some.size(); ++i)
+            if (!(plain >> i & 1)) out[first + i] = occludedOne(some[i]);
+        anyInBlock(block, plain, &out[first]);
     }
 }
+
+bool Accel::takesRows() const { return impl_->direct && impl_->takesBlocks(); }
+bool Accel::takesRows(Sides s) const { return s == Sides::Both || !impl_->anyOneSided; }
+void Accel::intersect(const DirectRays& block, uint32_t rays, const float* time, Hit* hits) const {
+    impl_->nearestInBlock(block, rays, time, hits);
+}
+void Accel::occluded(const DirectRays& block, uint32_t rays, uint8_t* met) const { impl_->anyInBlock(block, rays, met); }
 
 } // namespace alpenglow::accel

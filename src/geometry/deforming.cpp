@@ -72,7 +72,7 @@ void Deforming::facet(SurfacePoint& p, uint32_t prim, size_t key, double way, ui
         p.n = Vec3(normalize(wind));
         if (own) p.N = p.n;
     }
-    if (!(needs & (kNeedPartials | kNeedSTSlopes))) return;
+    if (!(needs & (kNeedPartials | kNeedNg | kNeedSTSlopes))) return;
     SurfacePoint c[3], x[3], y[3];
     static_cast<const PolygonMesh&>(*first).cornerParameters(prim, x);
     static_cast<const PolygonMesh&>(*last).cornerParameters(prim, y);
@@ -111,7 +111,7 @@ void Deforming::localPoints(std::span<const HitRef> hits, uint32_t needs) const 
                 keys_[k + 1]->evaluateHit(h.prim, h.b1, h.b2, b, wanted);
                 *h.out = between(a, b, way);
             };
-            constexpr uint32_t kOfFacet = kNeedPartials | kNeedSTSlopes; // facet() finds them
+            constexpr uint32_t kOfFacet = kNeedPartials | kNeedNg | kNeedSTSlopes; // facet() finds them
             read(facets ? needs & ~kOfFacet : needs | kNeedPartials);
             if (!facets) {
                 Vec3d c[3];

@@ -81,13 +81,14 @@ void Placed::place(SurfacePoint& p, const Pose& m, float time) const {
     // Of the float point of the geometry's own space, which may lie far from its origin; then of the rounded result.
     const double stretch = std::sqrt(3.0) * m.out.stretch();
     p.P = Vec3(m.out.point(Vec3d(p.P)));
+    const Vec3d Ng = normal(p.Ng) * (m.out.determinant() * m.flip); // where no partials are known
     for (Vec3* v : {&p.dPdu, &p.dPdv, &p.Puu, &p.Puv, &p.Pvv}) vector(*v);
     const bool own = p.N == p.n;
     const Vec3d n = normal(p.n) * side_;
     p.n = Vec3(normalize(n));
     p.orientation = float(double(p.orientation) * m.flip);
     const Vec3d g = cross(Vec3d(p.dPdu), Vec3d(p.dPdv)) * double(p.orientation);
-    p.Ng = dot(g, g) > 0 ? Vec3(g) : p.n;
+    p.Ng = dot(g, g) > 0 ? Vec3(g) : dot(Ng, Ng) > 0 ? Vec3(Ng) : p.n;
     const Vec3d N = normal(p.N) * (givesNormals() || geometry_->givesNormals() ? 1.0 : side_);
     const double l = length(N);
     if (l > 0) {

@@ -113,7 +113,7 @@ void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint
     const double area = dot(wind, wind), longest = std::max({dot(e1, e1), dot(e2, e2), dot(e3, e3)});
     const bool thin = !(area > 1e-12 * longest * longest);
     if (!thin) p.n = Vec3(wind * (double(orientation_) / std::sqrt(area)));
-    uint32_t inPlane = kNeedPartials | kNeedUV;
+    uint32_t inPlane = kNeedPartials | kNeedNg | kNeedUV;
     if (varSt_ < 0 && (varS_ < 0 || varT_ < 0)) inPlane |= kNeedST;
     if (!plain_) inPlane |= kNeedSTSlopes | (normal_.param ? kNeedNormalSlopes : 0);
     if (thin) needs |= kNeedPartials;
@@ -122,7 +122,7 @@ void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint
         const Vec3d O = q.o + q.e1 * b1 + q.e2 * b2;
         p.u = p.s = float(dot(O, q.f.a));
         p.v = p.t = float(dot(O, q.f.b));
-        if (needs & kNeedPartials) setPartials(tri, q, wind, p);
+        if (needs & (kNeedPartials | kNeedNg)) setPartials(tri, q, wind, p);
         if (thin)
             p.n = Vec3(normalize(cross(transformVector(toCamera(), q.Pu), transformVector(toCamera(), q.Pv))) *
                        double(p.orientation));
@@ -152,7 +152,7 @@ void PolygonMesh::cornerParameters(uint32_t tri, SurfacePoint out[3]) const {
 void PolygonMesh::localPoints(std::span<const HitRef> hits, uint32_t needs) const {
     // Far enough ahead that memory has answered: first the indices of a triangle, then what they point at.
     constexpr size_t kIndices = 12, kCorners = 6;
-    const bool large = remembered_.empty(), object = (needs & (kNeedPartials | kNeedUV)) != 0;
+    const bool large = remembered_.empty(), object = (needs & (kNeedPartials | kNeedNg | kNeedUV)) != 0;
     const TriMesh& m = base();
     for (size_t i = 0; i < hits.size(); ++i) {
         if (large && i + kIndices < hits.size()) __builtin_prefetch(&m.index[3 * size_t(hits[i + kIndices].prim)]);

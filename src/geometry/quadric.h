@@ -42,6 +42,12 @@ protected:
     /// Where v is not unique (a disk's worth of circles met twice), the second candidate.
     virtual std::optional<double> secondV(const Vec3d&) const { return {}; }
 
+    /// u and v of an object-space point; false: that is cut away.
+    bool accept(const Vec3d& p, double v, ExactHit& hit) const;
+    /// Nothing of implicit() is cut away. After finish().
+    bool whole() const { return whole_; }
+    const Matrix& toObject() const { return toObject_; }
+
     LocalPoint cameraPoint(double u, double v) const override;
     Vec3d cameraPosition(double u, double v) const override;
     bool edgeCurve(int side, int cell, double from, double to, EdgeCurve&) const override;
@@ -51,7 +57,6 @@ protected:
     int weights(scene::Class, const SurfacePoint&, Weight w[16]) const override;
 
 private:
-    bool accept(const Vec3d& p, double v, ExactHit& hit) const;
     double thetaMax_ = 0;   ///< radians, -2 pi .. 2 pi
     bool affine_ = true;    ///< toObject_ has no perspective
     bool mirrored_ = false; ///< toCamera() swaps handedness

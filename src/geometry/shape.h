@@ -46,12 +46,13 @@ struct SurfacePoint {
 /// always come; of the rest what is not asked for may be zero. A shape may give more than it is asked for.
 enum PointNeed : uint32_t {
     kNeedN = 1,            ///< N
-    kNeedPartials = 2,     ///< dPdu, dPdv, Puu, Puv, Pvv, Ng, orientation
+    kNeedPartials = 2,     ///< dPdu, dPdv, Puu, Puv, Pvv, orientation
     kNeedNormalSlopes = 4, ///< dNdu, dNdv
     kNeedUV = 8,           ///< u, v
     kNeedST = 16,          ///< s, t
     kNeedSTSlopes = 32,    ///< dsdu, dsdv, dtdu, dtdv
-    kNeedAll = 63
+    kNeedNg = 64,          ///< Ng
+    kNeedAll = 127
 };
 
 /// Where a ray met a shape, and the place for what is known there.

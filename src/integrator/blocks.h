@@ -104,6 +104,24 @@ struct alignas(64) ScatterBlock {
     Lanes goes = 0, single = 0; ///< single: pdf is none, the lobe is a single direction
 };
 
+/// Rays, as the queues hold them: a row for each word of a task of the scheduler (wave/raywords.h). Two rows are a pointer.
+struct alignas(64) RayBlock {
+    static constexpr int kWords = 32;
+    int32_t depth[kBlock], target[kBlock];
+    Row origin[3], direction[3], maxDistance, weight[3];
+    uint32_t sample[2][kBlock], kind[2][kBlock], media[2][kBlock];
+    uint32_t vertex[kBlock];
+    uint32_t bounces[kBlock];  ///< 16 bits each: all, and diffuse ones above
+    uint32_t specular[kBlock]; ///< bounces; layers above
+    uint32_t path[kBlock];     ///< state of light paths; bounces in media above
+    uint32_t flags[kBlock];    ///< rays asked for; above them PathRay::first to passed, and the trail
+    Row pdf, lobeOrigin[3];
+    int32_t binding[kBlock];
+    Row width, spread;
+    int32_t extra[kBlock];
+    Row importance;
+};
+
 /// How select() weighs lobes.
 struct SelectRules {
     uint32_t lighting = 0; ///< bit i: site i is of a lighting shadeop

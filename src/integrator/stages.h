@@ -10,6 +10,7 @@
 //   take        what was drawn of one lobe, to its points            reads LobeBlock; writes ScatterBlock
 //   name        the random number keys of the next vertices          reads VertexBlock; writes ScatterBlock::vertex
 //   extend      the next rays: throughput, roulette, origin          reads VertexBlock, ScatterBlock; writes ScatterBlock
+//   load, store structures in memory to rows, and back               reads, writes RayBlock
 #pragma once
 #include "integrator/blocks.h"
 
@@ -46,6 +47,12 @@ struct Stages {
     void (*name)(const VertexBlock&, const uint32_t* key, ScatterBlock&);
     /// roulette: chance ends paths, by ScatterBlock::dice. Returns points whose throughput is not finite.
     Lanes (*extend)(const VertexBlock&, bool roulette, ScatterBlock&);
+    /// Structures of `words` words (at least 16) each, `stride` bytes apart, to a row for each word. Rows have kBlock numbers:
+    /// behind the first `count` structures the last one stands again.
+    void (*load)(const void* from, int stride, int count, int words, void* rows);
+    /// The structures of some points one behind the other, of 16 words or a multiple. Returns how many; what one more would take
+    /// is overwritten.
+    int (*store)(const void* rows, int words, Lanes points, void* to);
 };
 
 /// The stages at 4, 8 or 16 lanes; null where this processor cannot run that.

@@ -47,14 +47,14 @@ const Variable kVariables[] = {
 
 /// What of a surface lies at an offset of ShadePoint.
 uint32_t needOf(int16_t offset, uint32_t& lit) {
-    if (offset == kLitNormal) lit |= geometry::kNeedPartials;
+    if (offset == kLitNormal) lit |= geometry::kNeedNg;
     const auto within = [&](size_t from, size_t size) { return offset >= int(from) && offset < int(from + size); };
 #define OF(member) within(offsetof(ShadePoint, member), sizeof(ShadePoint::member))
 #define OF_SURFACE(member) within(offsetof(ShadePoint, surface.member), sizeof(geometry::SurfacePoint::member))
     if (OF(N) || OF_SURFACE(N)) return geometry::kNeedN;
-    if (OF(du) || OF(dv) || OF_SURFACE(dPdu) || OF_SURFACE(dPdv) || OF_SURFACE(Puu) || OF_SURFACE(Puv) || OF_SURFACE(Pvv) ||
-        OF_SURFACE(Ng))
+    if (OF(du) || OF(dv) || OF_SURFACE(dPdu) || OF_SURFACE(dPdv) || OF_SURFACE(Puu) || OF_SURFACE(Puv) || OF_SURFACE(Pvv))
         return geometry::kNeedPartials;
+    if (OF_SURFACE(Ng)) return geometry::kNeedNg;
     if (OF_SURFACE(dNdu) || OF_SURFACE(dNdv)) return geometry::kNeedNormalSlopes;
     if (OF_SURFACE(u) || OF_SURFACE(v)) return geometry::kNeedUV;
     if (OF_SURFACE(s) || OF_SURFACE(t)) return geometry::kNeedST;
@@ -67,6 +67,22 @@ uint32_t needOf(int16_t offset, uint32_t& lit) {
 constexpr int16_t kLightVariables[] = {offsetof(ShadePoint, P), offsetof(ShadePoint, N), offsetof(ShadePoint, Ps)}; // LightRows
 bool inLightRows(int16_t offset) {
     return std::find(std::begin(kLightVariables), std::end(kLightVariables), offset) != std::end(kLightVariables);
+}
+
+bool isConstant(int16_t offset) { return offset == kZero || offset == kOne || offset == kThree; }
+/// Ci, Oi and alpha of surfaces are zero before they are shaded.
+bool isZeroOfSurfaces(int16_t offset) {
+    return offset == offsetof(ShadePoint, Ci) || offset == offsetof(ShadePoint, Oi) || offset == offsetof(ShadePoint, alpha);
+}
+bool inOwnRows(int16_t offset) {
+    return offset == offsetof(ShadePoint, I) || offset == offsetof(ShadePoint, E) || isZeroOfSurfaces(offset);
+}
+/// Where in a SurfacePoint lies what is at an offset of a ShadePoint whose surface is not moved; -1: nowhere.
+int geometryOffset(int16_t offset) {
+    if (offset == offsetof(ShadePoint, P)) return offsetof(geometry::SurfacePoint, P);
+    if (offset == offsetof(ShadePoint, N)) return offsetof(geometry::SurfacePoint, N);
+    const int at = int(offset) - int(offsetof(ShadePoint, surface));
+    return at >= 0 && at < int(sizeof(geometry::SurfacePoint)) ? at : -1;
 }
 
 } // namespace
@@ -142,6 +158,11 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
                     for (int part = 0; part < s.parts; ++part) needs_ |= needOf(v.part[part], litNeeds_);
                 }
         }
+        const auto inSurfaceRows = [&](int16_t offset) {
+            return geometryOffset(offset) >= 0 || inOwnRows(offset) || isConstant(offset);
+        };
+        if (s.from == From::Variable) surfaceRows_ &= std::all_of(s.offset, s.offset + s.parts, inSurfaceRows) && !s.scalar;
+        else surfaceRows_ &= s.from != From::Told && s.from != From::Nothing;
         lightRows_ &= s.scalar ? s.from == From::Parameter : s.from == From::Variable && inLightRows(s.offset[0]) && s.parts == 1;
         inputs_.push_back(std::move(s));
     }
@@ -215,21 +236,30 @@ void Batch::layOut(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan
     call_.out = out_.data();
 }
 
+template <class Points> void Batch::fillInputs(const Points& points, const Views& views, const SpaceResolver& spaces) {
+    fillVariables(points);
+    primvars_ = false;
+    const geometry::Shape* last = nullptr;
+    for (size_t i = 0; i < points.size() && !primvars_; ++i)
+        if (const geometry::Shape* shape = points[i].shape; shape != last && (last = shape))
+            primvars_ = !last->primvars().empty();
+    for (const BatchPlan::Source& s : plan_->inputs_) {
+        float* row = storage_.get() + s.firstRow * size_t(call_.stride);
+        if (s.from != BatchPlan::From::Variable) fill(s, row, points, views, spaces);
+        pad(s, row);
+    }
+}
+
 void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, std::span<const ShadePoint> points,
                    std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver& spaces) {
     layOut(std::move(k), plan, points.size());
-    const size_t stride = size_t(call_.stride);
-    if (!points.empty()) {
-        fillVariables(points);
-        primvars_ = false;
-        for (const geometry::Shape* last = nullptr; const ShadePoint& p : points)
-            if (p.shape != last && (last = p.shape)) primvars_ |= !last->primvars().empty();
-        for (const BatchPlan::Source& s : plan.inputs_) {
-            float* row = storage_.get() + s.firstRow * stride;
-            if (s.from != BatchPlan::From::Variable) fill(s, row, points, {views, viewOf}, spaces);
-            pad(s, row);
-        }
-    }
+    if (!points.empty()) fillInputs(points, {views, viewOf}, spaces);
+}
+
+void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, const SurfaceRows& rows,
+                   std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver& spaces) {
+    layOut(std::move(k), plan, rows.size());
+    fillInputs(rows, {views, viewOf}, spaces);
 }
 
 void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, const LightRows& rows,
@@ -241,7 +271,7 @@ void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan
     for (const BatchPlan::Source& s : plan.inputs_) {
         float* row = storage_.get() + s.firstRow * size_t(call_.stride);
         if (s.from == BatchPlan::From::Parameter) {
-            fillParameter(s, row, {}, {{&view, 1}, {}});
+            fillParameter(s, row, std::span<const ShadePoint>(), {{&view, 1}, {}});
             continue;
         }
         const auto from = of[std::find(std::begin(kLightVariables), std::end(kLightVariables), s.offset[0]) - kLightVariables];
@@ -314,86 +344,121 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
     }
 }
 
-void Batch::fill(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views,
-                 const SpaceResolver& spaces) {
+void Batch::fillVariables(const SurfaceRows& points) {
+    const size_t stride = size_t(call_.stride), n = points.size();
+    for (const BatchPlan::Source& s : plan_->inputs_) {
+        if (s.from != BatchPlan::From::Variable) continue;
+        float* row = storage_.get() + s.firstRow * stride;
+        for (size_t c = 0; c < size_t(s.components); ++c)
+            for (size_t p = 0; p < size_t(s.parts); ++p, row += stride) {
+                const int16_t offset = s.offset[p];
+                if (offset < 0 || isZeroOfSurfaces(offset)) {
+                    std::fill_n(row, n, offset < 0 ? kConstants[-1 - offset] : 0.f);
+                } else if (inOwnRows(offset)) {
+                    std::copy_n((offset == offsetof(ShadePoint, I) ? points.I : points.E).data() + c * n, n, row);
+                } else {
+                    const char* from =
+                        reinterpret_cast<const char*>(points.surfaces.data()) + geometryOffset(offset) + c * sizeof(float);
+                    for (size_t i = 0; i < n; ++i) std::memcpy(row + i, from + i * sizeof(geometry::SurfacePoint), sizeof(float));
+                }
+            }
+    }
+}
+
+template <class Points>
+void Batch::fill(const BatchPlan::Source& s, float* row, const Points& points, const Views& views, const SpaceResolver& spaces) {
     using From = BatchPlan::From;
-    int n = int(points.size()), np = s.parts, comps = s.components;
-    size_t stride = size_t(call_.stride);
-    auto at = [&](int component, int part, int point) -> float& {
-        return s.scalar ? row[component] : row[(size_t(component) * np + part) * stride + point];
-    };
-    int count = s.scalar ? 1 : n;
     switch (s.from) {
     case From::Variable:
         return; // fillVariables
     case From::Cs:
-    case From::Os: {
-        const char* name = s.from == From::Cs ? "Cs" : "Os";
-        const geometry::Shape* last = nullptr; // neighbours are mostly of one shape: its variables are searched once
-        int v = -1;
-        for (int i = 0; i < count; ++i) {
-            if (points[i].shape && points[i].shape->primvars().empty()) { // the usual case
-                const Color& c = s.from == From::Cs ? points[i].shape->attributes().color : points[i].shape->attributes().opacity;
-                for (int k = 0; k < std::min(comps, 3); ++k) {
-                    at(k, 0, i) = c[k];
-                    if (!s.scalar)
-                        for (int p = 1; p < np; ++p) at(k, p, i) = 0;
-                }
-                continue;
-            }
-            float value[16] = {1, 1, 1}, du[16] = {}, dv[16] = {};
-            if (const geometry::Shape* shape = points[i].shape) {
-                const Color& c = s.from == From::Cs ? shape->attributes().color : shape->attributes().opacity;
-                for (int k = 0; k < 3; ++k) value[k] = c[k];
-                if (shape != last) {
-                    v = shape->findPrimvar(name);
-                    last = shape;
-                }
-                if (v >= 0) shape->interpolate(v, points[i].surface, value, du, dv);
-            }
-            for (int c = 0; c < comps; ++c) {
-                at(c, 0, i) = value[c];
-                if (np > 1 && !s.scalar) {
-                    at(c, 1, i) = du[c];
-                    at(c, 2, i) = dv[c];
-                    for (int p = 3; p < np; ++p) at(c, p, i) = 0;
-                }
-            }
-        }
-        return;
-    }
+    case From::Os:
+        return fillColor(s, row, points);
     case From::Space:
-        for (int i = 0; i < count; ++i) {
-            if (i > 0 && points[i].shape == points[i - 1].shape && views.index(i) == views.index(i - 1) &&
-                points[i].shutter == points[i - 1].shutter) {
-                for (int c = 0; c < 16; ++c) at(c, 0, i) = at(c, 0, i - 1);
-                continue;
-            }
-            Matrix m;
-            auto own = [&](const std::string& space, Matrix& toCurrent) {
-                if (space == "object" && points[i].shape) {
-                    toCurrent = points[i].shape->toCameraAt(points[i].shutter);
-                    return true;
-                }
-                if (space == "shader" && views[i].shaderToCurrent) {
-                    toCurrent = views[i].moving ? views[i].moving->at(points[i].shutter) : *views[i].shaderToCurrent;
-                    return true;
-                }
-                return false;
-            };
-            if (!(s.name.to == "current" && own(s.name.from, m))) {
-                if (s.name.from == "current" && own(s.name.to, m)) m = inverse(m);
-                else spaces.matrix(s.name.from, s.name.to, m);
-            }
-            for (int c = 0; c < 16; ++c) at(c, 0, i) = float(m.m[c / 4][c % 4]);
-        }
-        return;
+        return fillSpace(s, row, points, views, spaces);
     case From::Parameter:
         return fillParameter(s, row, points, views);
     case From::Told: // tell()
     case From::Nothing:
-        std::fill_n(row, s.rows * stride, 0.f);
+        std::fill_n(row, s.rows * size_t(call_.stride), 0.f);
         return;
+    }
+}
+
+/// Cs and Os: attributes, or variables of primitives.
+template <class Points> void Batch::fillColor(const BatchPlan::Source& s, float* row, const Points& points) {
+    const bool isColor = s.from == BatchPlan::From::Cs;
+    const int np = s.parts, comps = s.components, count = s.scalar ? 1 : int(points.size());
+    const size_t stride = size_t(call_.stride);
+    const auto at = [&](int component, int part, int point) -> float& {
+        return s.scalar ? row[component] : row[(size_t(component) * np + part) * stride + point];
+    };
+    const geometry::Shape* last = nullptr; // neighbours are mostly of one shape: its variables are searched once
+    int v = -1;
+    for (int i = 0; i < count; ++i) {
+        const geometry::Shape* shape = points[i].shape;
+        if (shape && shape->primvars().empty()) { // the usual case
+            const Color& c = isColor ? shape->attributes().color : shape->attributes().opacity;
+            for (int k = 0; k < std::min(comps, 3); ++k) {
+                at(k, 0, i) = c[k];
+                if (!s.scalar)
+                    for (int p = 1; p < np; ++p) at(k, p, i) = 0;
+            }
+            continue;
+        }
+        float value[16] = {1, 1, 1}, du[16] = {}, dv[16] = {};
+        if (shape) {
+            const Color& c = isColor ? shape->attributes().color : shape->attributes().opacity;
+            for (int k = 0; k < 3; ++k) value[k] = c[k];
+            if (shape != last) {
+                v = shape->findPrimvar(isColor ? "Cs" : "Os");
+                last = shape;
+            }
+            if (v >= 0) shape->interpolate(v, points[i].surface, value, du, dv);
+        }
+        for (int c = 0; c < comps; ++c) {
+            at(c, 0, i) = value[c];
+            if (np > 1 && !s.scalar) {
+                at(c, 1, i) = du[c];
+                at(c, 2, i) = dv[c];
+                for (int p = 3; p < np; ++p) at(c, p, i) = 0;
+            }
+        }
+    }
+}
+
+/// Matrices between spaces.
+template <class Points>
+void Batch::fillSpace(const BatchPlan::Source& s, float* row, const Points& points, const Views& views,
+                      const SpaceResolver& spaces) {
+    const int np = s.parts, count = s.scalar ? 1 : int(points.size());
+    const auto at = [&](int component, int part, int point) -> float& {
+        return s.scalar ? row[component] : row[(size_t(component) * np + part) * size_t(call_.stride) + point];
+    };
+    for (int i = 0; i < count; ++i) {
+        const geometry::Shape* shape = points[i].shape;
+        const float shutter = points[i].shutter;
+        if (i > 0 && shape == points[i - 1].shape && views.index(i) == views.index(i - 1) && shutter == points[i - 1].shutter) {
+            for (int c = 0; c < 16; ++c) at(c, 0, i) = at(c, 0, i - 1);
+            continue;
+        }
+        Matrix m;
+        auto own = [&](const std::string& space, Matrix& toCurrent) {
+            if (space == "object" && shape) {
+                toCurrent = shape->toCameraAt(shutter);
+                return true;
+            }
+            if (space == "shader" && views[i].shaderToCurrent) {
+                toCurrent = views[i].moving ? views[i].moving->at(shutter) : *views[i].shaderToCurrent;
+                return true;
+            }
+            return false;
+        };
+        if (!(s.name.to == "current" && own(s.name.from, m))) {
+            if (s.name.from == "current" && own(s.name.to, m)) m = inverse(m);
+            else spaces.matrix(s.name.from, s.name.to, m);
+        }
+        for (int c = 0; c < 16; ++c) at(c, 0, i) = float(m.m[c / 4][c % 4]);
     }
 }
 

@@ -59,6 +59,9 @@ public:
     uint32_t litNeeds() const { return litNeeds_; }
     /// Whether LightRows and the values of parameters are all that is read.
     bool readsLightRows() const { return lightRows_; }
+    /// The same for SurfaceRows: nothing of time, of what moves, and of how large a point is. Variables of primitives that stand
+    /// for parameters are read as well.
+    bool readsSurfaceRows() const { return surfaceRows_; }
 
 private:
     friend class Batch;
@@ -87,12 +90,26 @@ private:
     size_t rows_ = 0, numbers_ = 0; ///< of ParameterRows
     bool footprint_ = false;
     uint32_t needs_ = 0, litNeeds_ = 0;
-    bool lightRows_ = true;
+    bool lightRows_ = true, surfaceRows_ = true;
 };
 
 /// What kernels of lights mostly read: three rows each, as long as there are points.
 struct LightRows {
     std::span<const float> P, N, Ps;
+};
+
+/// What kernels of surfaces mostly read: points where rays met surfaces that stand still.
+struct SurfaceRows {
+    struct Point {
+        const geometry::Shape* shape;
+        const geometry::SurfacePoint& surface;
+        float shutter = 0;
+    };
+    std::span<const geometry::SurfacePoint> surfaces;
+    std::span<const geometry::Shape* const> shapes; ///< of these
+    std::span<const float> I, E;                    ///< incident vector, and where the ray began: three rows each
+    size_t size() const { return surfaces.size(); }
+    Point operator[](size_t i) const { return {shapes[i], surfaces[i]}; }
 };
 
 /// A ParameterBlock as one kernel reads it: numbers in the order of its plan, so that none is looked for by name while rendering.
@@ -123,6 +140,9 @@ public:
 
     /// The same for a plan that readsLightRows(), of an instance that does not move.
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const LightRows&, const InstanceView&);
+    /// The same for a plan that readsSurfaceRows(), of instances that do not move.
+    void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const SurfaceRows&,
+                std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
     /// Fills the inputs that the displacement shader gives from the outputs of its run at the same points, derivatives too.
     void tell(const Batch& displaced);
@@ -152,11 +172,17 @@ private:
         const InstanceView& operator[](int point) const { return views[index(point)]; }
     };
     void layOut(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, size_t points);
-    void fill(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&, const SpaceResolver&);
+    // Points: std::span<const ShadePoint>, or SurfaceRows
+    template <class Points> void fillInputs(const Points&, const Views&, const SpaceResolver&);
+    template <class Points> void fill(const BatchPlan::Source&, float* row, const Points&, const Views&, const SpaceResolver&);
+    template <class Points> void fillColor(const BatchPlan::Source&, float* row, const Points&);
+    template <class Points>
+    void fillSpace(const BatchPlan::Source&, float* row, const Points&, const Views&, const SpaceResolver&);
     void findParameter(const BatchPlan::Source&, const Views&);
-    void fillParameter(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&);
-    void fillOverridden(const BatchPlan::Source&, float* row, std::span<const ShadePoint>, const Views&);
+    template <class Points> void fillParameter(const BatchPlan::Source&, float* row, const Points&, const Views&);
+    template <class Points> void fillOverridden(const BatchPlan::Source&, float* row, const Points&, const Views&);
     void fillVariables(std::span<const ShadePoint>);
+    void fillVariables(const SurfaceRows&);
     void pad(const BatchPlan::Source&, float* row);
     struct Free {
         void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }

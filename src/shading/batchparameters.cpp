@@ -46,7 +46,8 @@ void Batch::findParameter(const BatchPlan::Source& s, const Views& views) {
         if (!numbers_[k]) numbers_[k] = found_.data() + k * size;
 }
 
-void Batch::fillParameter(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views) {
+template <class Points>
+void Batch::fillParameter(const BatchPlan::Source& s, float* row, const Points& points, const Views& views) {
     const int n = int(points.size()), np = s.parts, comps = s.components, count = s.scalar ? 1 : n;
     const size_t stride = size_t(call_.stride);
     const bool moving =
@@ -55,8 +56,8 @@ void Batch::fillParameter(const BatchPlan::Source& s, float* row, std::span<cons
     bool overridden = false; // by a primitive variable of some shape
     const geometry::Shape* last = nullptr;
     for (int i = 0; s.varying && primvars_ && !overridden && i < count; ++i)
-        if (points[i].shape && points[i].shape != last) {
-            last = points[i].shape;
+        if (const geometry::Shape* shape = points[i].shape; shape && shape != last) {
+            last = shape;
             overridden = !last->primvars().empty() && last->findPrimvar(s.name.name) >= 0;
         }
     if (overridden) return fillOverridden(s, row, points, views);
@@ -83,7 +84,8 @@ void Batch::fillParameter(const BatchPlan::Source& s, float* row, std::span<cons
 }
 
 /// The same where variables of primitives stand for the parameter at some of the points.
-void Batch::fillOverridden(const BatchPlan::Source& s, float* row, std::span<const ShadePoint> points, const Views& views) {
+template <class Points>
+void Batch::fillOverridden(const BatchPlan::Source& s, float* row, const Points& points, const Views& views) {
     const int n = int(points.size()), np = s.parts, comps = s.components, count = s.scalar ? 1 : n;
     const size_t stride = size_t(call_.stride);
     const auto at = [&](int component, int part, int point) -> float& {
@@ -123,5 +125,8 @@ void Batch::fillOverridden(const BatchPlan::Source& s, float* row, std::span<con
         }
     }
 }
+
+template void Batch::fillParameter(const BatchPlan::Source&, float*, const std::span<const ShadePoint>&, const Views&);
+template void Batch::fillParameter(const BatchPlan::Source&, float*, const SurfaceRows&, const Views&);
 
 } // namespace alpenglow::shading

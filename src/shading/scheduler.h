@@ -12,6 +12,7 @@
 #include "base/limits.h"
 #include "base/stopflag.h"
 #include "base/vec.h"
+#include "shading/tasklist.h"
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -40,10 +41,11 @@ struct TargetValue {
 template <class Payload> class Scheduler {
 public:
     struct Task {
-        int depth = 0; ///< 0 = camera
+        int32_t depth = 0; ///< 0 = camera
         TargetId target = kNoTarget;
         Payload payload{};
     };
+    using Tasks = TaskList<Task>;
 
     /// A suspended kernel strip.
     class Strip {
@@ -78,16 +80,21 @@ public:
     void spawn(Task t) { spawn(t.depth, t.target, t.payload); }
     /// The same for a payload that is made from another and changed in place: good until the next task is spawned.
     Task& spawn(int depth, TargetId target, const Payload& from = {}) {
-        ++open_[size_t(target)].pending;
-        if (size_t(depth) >= queues_.size()) {
-            queues_.resize(size_t(depth) + 1);
-            filled_.resize(size_t(depth) / 64 + 1);
-        }
-        filled_[size_t(depth) / 64] |= uint64_t(1) << depth % 64;
+        hold(target);
+        Tasks& chunk = chunkAt(depth, 1);
+        chunk.push({depth, target, from});
         ++queued_;
-        auto& chunks = queues_[size_t(depth)];
-        if (chunks.empty() || chunks.back().size() >= size_t(sliceRays_)) chunks.push_back(newChunk());
-        return chunks.back().emplace_back(depth, target, from);
+        return chunk.back();
+    }
+    /// Whether no strip has waited so far: then it is all the same in which order tasks are followed, and nobody waits for
+    /// targets.
+    bool plain() const { return strips_.empty(); }
+    /// Where plain(): memory for some tasks that are written in one go, and `behind` more that may be overwritten; then
+    /// spawned() says how many there are.
+    Task* room(size_t tasks, size_t behind) { return chunkAt(0, tasks).room(tasks + behind); }
+    void spawned(size_t count) {
+        queues_[0].back().taken(count);
+        queued_ += count;
     }
     /// Adds light to a target. Order does not matter: the sum is exact. Non-finite values are counted and dropped.
     void add(TargetId id, const Color& c) {
@@ -137,7 +144,7 @@ public:
 
     /// Works until everything is done or stop is set. Returns false when it was stopped.
     bool run() {
-        std::vector<Task> slice;
+        Tasks slice;
         while (queued_ > 0 || !ready_.empty() || service_.settle(*this)) {
             if (queued_ == 0 && ready_.empty()) continue;
             if (stop_ && *stop_) {
@@ -162,9 +169,9 @@ public:
             } else {
                 ++slices_;
                 largestSlice_ = std::max(largestSlice_, n);
-                service_.follow(slice, *this);
+                service_.follow({slice.data(), n}, *this);
             }
-            for (const Task& t : slice) complete(t.target);
+            for (size_t i = 0; i < n && !plain(); ++i) complete(slice.data()[i].target);
         }
         if (stop_ && *stop_) {
             abandon();
@@ -252,37 +259,42 @@ private:
         Waiting& w = strips_[slot];
         if (--w.open == 0) ready_[w.strip->depth()].push_back(slot);
     }
-    std::vector<Task> newChunk() {
-        std::vector<Task> chunk;
+    /// The last chunk of the tasks of a depth, with room for some more.
+    Tasks& chunkAt(int depth, size_t more) {
+        if (size_t(depth) >= queues_.size()) {
+            queues_.resize(size_t(depth) + 1);
+            filled_.resize(size_t(depth) / 64 + 1);
+        }
+        filled_[size_t(depth) / 64] |= uint64_t(1) << depth % 64;
+        auto& chunks = queues_[size_t(depth)];
+        if (chunks.empty() || chunks.back().size() + more > size_t(sliceRays_)) chunks.push_back(newChunk());
+        return chunks.back();
+    }
+    Tasks newChunk() {
+        Tasks chunk;
         if (!freeChunks_.empty()) {
             chunk.swap(freeChunks_.back());
             freeChunks_.pop_back();
         }
         return chunk;
     }
-    void freeChunk(std::vector<Task>&& chunk) {
+    void freeChunk(Tasks&& chunk) {
         chunk.clear();
         freeChunks_.push_back(std::move(chunk));
     }
     /// The deepest tasks. Where no strip waits, a slice that would not be half full gets less deep ones, too.
-    void takeSlice(std::vector<Task>& slice, size_t most) {
+    void takeSlice(Tasks& slice, size_t most) {
         slice.clear();
         for (int depth = deepestBelow(queues_.size()); depth >= 0 && slice.size() * 2 < most;
              depth = deepestBelow(size_t(depth))) {
             auto& chunks = queues_[size_t(depth)];
             if (!slice.empty() && frameBytes_ > 0) break;
-            if (slice.empty() && chunks.size() > 1 && chunks[chunks.size() - 2].size() <= most) // all but the last are full
+            if (slice.empty() && chunks.size() > 1 && chunks[chunks.size() - 2].size() <= most) // nearly full, unlike the last
                 std::swap(chunks[chunks.size() - 2], chunks.back());
             while (!chunks.empty() && slice.size() < most) {
-                std::vector<Task>& q = chunks.back();
-                if (slice.empty() && q.size() <= most) { // no task is moved
-                    slice.swap(q);
-                } else {
-                    const size_t take = std::min(q.size(), most - slice.size());
-                    slice.insert(slice.end(), std::make_move_iterator(q.end() - ptrdiff_t(take)),
-                                 std::make_move_iterator(q.end()));
-                    q.resize(q.size() - take);
-                }
+                Tasks& q = chunks.back();
+                if (slice.empty() && q.size() <= most) slice.swap(q); // no task is moved
+                else slice.takeLast(q, std::min(q.size(), most - slice.size()));
                 if (!q.empty()) break;
                 freeChunk(std::move(q));
                 chunks.pop_back();
@@ -338,8 +350,12 @@ public:
     std::unique_ptr<Strip> takeResuming() { return std::move(resuming_); }
     /// A strip that holds a task's target open until it ends: the task's own count is closed by run(), so the strip adds one
     /// more.
-    void hold(TargetId id) { ++open_[size_t(id)].pending; }
-    void release(TargetId id) { complete(id); }
+    void hold(TargetId id) {
+        if (!plain()) ++open_[size_t(id)].pending;
+    }
+    void release(TargetId id) {
+        if (!plain()) complete(id);
+    }
 
 private:
     RayService& service_;
@@ -351,9 +367,9 @@ private:
     std::vector<TargetId> freeTargets_;
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;
-    std::vector<std::vector<std::vector<Task>>> queues_; ///< by depth, in chunks of a slice
-    std::vector<uint64_t> filled_;                       ///< a bit for each depth: whether its queue holds tasks
-    std::vector<std::vector<Task>> freeChunks_;
+    std::vector<std::vector<Tasks>> queues_; ///< by depth, in chunks of at most a slice
+    std::vector<uint64_t> filled_;           ///< a bit for each depth: whether its queue holds tasks
+    std::vector<Tasks> freeChunks_;
     size_t queued_ = 0;
     std::map<int, std::deque<int>> ready_;
     std::unique_ptr<Strip> resuming_;

@@ -30,6 +30,11 @@ struct BatchContext : KernelRun {
     Engine* engine = nullptr;
     bool ownsExtras = false;       ///< what its rays carry besides is freed with it
     std::vector<TargetId> targets; ///< by point; of an `aside` its own
+    std::vector<accel::Hit> hits;  ///< by point, of rays that met surfaces
+    /// By point, of a batch in rows (rowshading.h), whose `points` are empty until somebody asks for them; else void.
+    std::vector<geometry::SurfacePoint> surfaces;
+    std::vector<const geometry::Shape*> shapes;
+    std::vector<float> ways; ///< incident vectors, then where the rays began: three rows each
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
     std::vector<shading::FreeFlight> flown; ///< by point, where they lie inside of a medium (`between`)
@@ -37,6 +42,7 @@ struct BatchContext : KernelRun {
     std::vector<Haze> haze;                 ///< by point; only where a volume lies before some point
     std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
     std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
+    bool indirectKept = false; ///< Engine::keepIndirect() has been here
     bool opaque = false;       ///< nothing goes on behind any point; false: perhaps
     std::vector<uint8_t> ownShadows; ///< of a light, by lit point: LightValue::ownShadow; empty: of none
     std::exception_ptr failure;      ///< of a callback while the kernel ran: exceptions cannot pass generated code

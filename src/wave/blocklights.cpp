@@ -60,6 +60,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     if (takesPair(light, true)) drawNumbers(use << 1, pairs_);
     if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
     asked_.clear();
+    e_.pointsOfRows(c);
     for (size_t b = 0; b < blocks_; ++b)
         for (Lanes left = lit_[b]; left; left &= left - 1) {
             const int lane = std::countr_zero(left), point = int(b) * kBlock + lane;
@@ -162,14 +163,14 @@ void BlockVertices::sendShadow(size_t point, const BoundLight& of, const Color& 
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
     ShadowRay& s = e_.shadows.emplace_back();
     s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], light,
-         c.targets[point],     c.points[point].shutter, &c.rays[point]};
+         c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
     const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
     if (query < 0) return;
     const LightValue& value = values_[size_t(query)];
     if (value.shadowRadius > 0) { // to a point of the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
         const Vec2 u = e_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
-        const Vec3 to = onShadowDisk(c.points[point].P - value.L, s.dir, value.shadowRadius, u) - s.origin;
+        const Vec3 to = onShadowDisk(row3(vertices_[point / kBlock].P) - value.L, s.dir, value.shadowRadius, u) - s.origin;
         s.dir = normalizeOr(to, s.dir);
         s.distance = length(to) * (1 - 1e-5f);
     }

@@ -1,8 +1,9 @@
 // The rays on which paths go on from vertices in blocks.
 #include "wave/blockvertices.h"
-#include "world/emitterfootprint.h"
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 
 namespace alpenglow::transport {
 
@@ -77,46 +78,78 @@ void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
         const int lane = std::countr_zero(bad);
         e_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
     }
-    for (Lanes left = next_.goes; left; left &= left - 1) sendRay(b, std::countr_zero(left), c, sched);
+    if (!next_.goes) return;
+    turnRays(b, c);
+    keepLobes(b, c);
+    spawn(rays_[b], sched);
 }
 
-void BlockVertices::sendRay(size_t b, int lane, BatchContext& c, Sched& sched) {
-    const size_t point = b * kBlock + size_t(lane);
-    const PathRay& from = c.rays[point];
-    const ShadePoint& p = c.points[point];
-    const Site& s = sites_[size_t(next_.site[lane])];
-    const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
-    const Vec3 w = row3(next_.direction);
-    const bool single = next_.single >> lane & 1;
-    const int bounces = from.bounces + 1;
-    PathRay& r = sched.spawn(bounces + from.layers, c.targets[point], from).payload;
-    r.origin = row3(next_.origin);
-    r.dir = w;
-    r.maxDistance = 1e38f;
-    r.weight = row3(next_.weight);
-    r.kind = s.rays;
-    r.vertex = next_.vertex[lane];
-    r.bounces = int16_t(bounces);
-    ++(s.diffuse ? r.diffuseBounces : r.specularBounces);
-    r.trail = 0;
-    r.parted = r.passed = r.first = r.counts = false;
-    if (!s.diffuse && s.rays->label == e_.totalReflection_) ++e_.counters.totalReflected;
-    else if (!s.diffuse) ++(dot(w, p.surface.n) * dot(from.dir, p.surface.n) > 0 ? e_.counters.refracted : e_.counters.reflected);
-    r.extra = -1;
-    const float energy = vertices_[b].energyScale[lane];
-    if (next_.indirect[lane] != 0 && energy != 1) {
-        RayExtra extra;
-        extra.indirect = energy;
-        r.extra = e_.newExtra(extra);
+/// The rays of a block go on from its vertices.
+void BlockVertices::turnRays(size_t b, BatchContext&) {
+    const VertexBlock& v = vertices_[b];
+    RayBlock& r = rays_[b];
+    alignas(64) Row towards, from;
+    for (int i = 0; i < kBlock; ++i) {
+        const auto dotOfNormal = [&](const Row* w) { return w[0][i] * v.n[0][i] + w[1][i] * v.n[1][i] + w[2][i] * v.n[2][i]; };
+        towards[i] = dotOfNormal(next_.direction);
+        from[i] = dotOfNormal(r.direction);
+        const float x = v.P[0][i] - r.origin[0][i], y = v.P[1][i] - r.origin[1][i], z = v.P[2][i] - r.origin[2][i];
+        r.width[i] = r.width[i] + r.spread[i] * std::sqrt(x * x + y * y + z * z);
+        r.spread[i] = std::max(r.spread[i], next_.spread[i] * 0.5f);
     }
-    const bool sampled = s.lights && !single; // then an emitter that it meets counts with the weight of both
-    r.lobePdf = sampled ? next_.pdf[lane] * s.lobes[b].chosen[lane] : -1;
-    r.lobeOrigin = p.P;
-    r.lobeBinding = sampled ? c.bindings[point] : -1;
-    r.footprint = from.footprint.after(length(p.P - from.origin));
-    r.footprint.spread = spreadBehind(from, next_.spread[lane]);
-    e_.counters.depthMax = std::max(e_.counters.depthMax, bounces);
-    ++e_.counters.depthSum; // over camera rays: the mean number of bounces
+    for (int q = 0; q < 3; ++q) {
+        std::copy_n(v.P[q], kBlock, r.lobeOrigin[q]);
+        std::copy_n(next_.origin[q], kBlock, r.origin[q]);
+        std::copy_n(next_.direction[q], kBlock, r.direction[q]);
+        std::copy_n(next_.weight[q], kBlock, r.weight[q]);
+    }
+    std::fill_n(r.maxDistance, kBlock, 1e38f);
+    std::copy_n(next_.vertex, kBlock, r.vertex);
+    Counters& n = e_.counters;
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const Site& s = sites_[size_t(next_.site[i])];
+        const int bounces = v.bounces[i] + 1;
+        r.depth[i] = bounces + int16_t(r.specular[i] >> 16);
+        r.bounces[i] += 1 + (uint32_t(s.diffuse) << 16);
+        r.specular[i] = (r.specular[i] & 0xffff0000u) | uint16_t(r.specular[i] + !s.diffuse);
+        n.depthMax = std::max(n.depthMax, bounces);
+        n.depthSum += 1; // over camera rays: the mean number of bounces
+        if (s.diffuse) continue;
+        if (s.rays->label == e_.totalReflection_) ++n.totalReflected;
+        else ++(towards[i] * from[i] > 0 ? n.refracted : n.reflected);
+    }
+}
+
+/// What the rays of a block tell of the lobes that drew them.
+void BlockVertices::keepLobes(size_t b, BatchContext& c) {
+    RayBlock& r = rays_[b];
+    const VertexBlock& v = vertices_[b];
+    for (int i = 0; i < kBlock; ++i) r.flags[i] &= kAskedBits; // and no trail
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const Site& s = sites_[size_t(next_.site[i])];
+        const uint64_t kind = reinterpret_cast<uintptr_t>(s.rays);
+        r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
+        const bool sampled = s.lights && !(next_.single >> i & 1); // then an emitter that it meets counts with the weight of both
+        r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
+        r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
+        r.extra[i] = -1;
+        if (next_.indirect[i] == 0 || v.energyScale[i] == 1) continue;
+        RayExtra extra;
+        extra.indirect = v.energyScale[i];
+        r.extra[i] = e_.newExtra(extra);
+    }
+}
+
+void BlockVertices::spawn(const RayBlock& rays, Sched& sched) {
+    if (sched.plain()) {
+        sched.spawned(size_t(stages_.store(&rays, kTaskWords, next_.goes, sched.room(kBlock, 1))));
+        return;
+    }
+    std::array<Sched::Task, kBlock + 1> tasks;
+    const int count = stages_.store(&rays, kTaskWords, next_.goes, tasks.data());
+    for (int k = 0; k < count; ++k) sched.spawn(tasks[size_t(k)]);
 }
 
 } // namespace alpenglow::transport

@@ -25,16 +25,19 @@ static bool isPlainLight(const BoundLight& l) {
 }
 
 bool BlockVertices::takes(const BatchContext& c) const {
-    if (!usable_ || !c.bound->blocks || c.binding->displacement || c.aside || c.between || c.below || e_.photonTrace())
-        return false;
-    const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
+    return takes(*c.binding, *c.bound) && !c.aside && !c.between && !c.below && !e_.photonTrace();
+}
+
+bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
+    if (!usable_ || !kernel.blocks || b.displacement) return false;
+    const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
     if (list.ofAll || !world_.chooserOf(list).empty()) return false;
     return std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) { return isPlainLight(world_.lights_[size_t(l)]); });
 }
 
 bool BlockVertices::run(BatchContext& c, Sched& sched) {
     if (c.emits.empty()) return true;
-    points_ = c.points.size();
+    points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
     if (!loadVertices(c) || !findSites(c) || !request(c)) return false;
     prepare();
@@ -44,37 +47,60 @@ bool BlockVertices::run(BatchContext& c, Sched& sched) {
     return true;
 }
 
-/// The points, from their structures to rows.
+/// The points and rays, from their structures to rows.
 bool BlockVertices::loadVertices(const BatchContext& c) {
     vertices_.resize(std::max(vertices_.size(), blocks_));
+    rays_.resize(std::max(rays_.size(), blocks_));
     for (size_t b = 0; b < blocks_; ++b) {
-        VertexBlock& v = vertices_[b];
         const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
-        v.points = firstPoints(n);
-        v.through = !c.clear.empty();
-        for (size_t k = 0; k < size_t(kBlock); ++k) {
-            const size_t i = first + std::min(k, n - 1); // the last point again
-            const ShadePoint& p = c.points[i];
-            const PathRay& r = c.rays[i];
-            const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
-            if (r.quiet || r.bounces >= world_.maxDepth_ || s.matte || s.maxDiffuse >= 0 || s.maxSpecular >= 0 ||
-                p.surface.displaced || !(p.P == p.surface.P) || e_.passOf(r) || e_.extraOf(r).share >= 0)
-                return false;
-            for (int q = 0; q < 3; ++q) {
-                v.P[q][k] = p.P[q];
-                v.n[q][k] = p.surface.n[q];
-                v.I[q][k] = p.I[q];
-                v.weight[q][k] = r.weight[q];
-                v.clear[q][k] = v.through ? c.clear[i][q] : 0;
-            }
-            v.error[k] = p.surface.pError;
-            v.bias[k] = s.bias;
-            v.bounces[k] = r.bounces;
-            v.vertex[k] = r.vertex;
-            v.low[k] = r.sample->numbers.low();
-            v.high[k] = r.sample->numbers.high();
-            v.index[k] = r.sample->numbers.index();
+        RayBlock& rays = rays_[b];
+        stages_.load(&c.rays[first], int(sizeof(PathRay)), int(n), kRayWords, rays.origin);
+        for (size_t k = 0; k < size_t(kBlock); ++k) rays.target[k] = c.targets[first + std::min(k, n - 1)];
+        if (!takeRays(rays) || !loadPoints(b, c)) return false;
+    }
+    return true;
+}
+
+/// What paths need to know of the rays that came to a block. False: some ray needs a look by itself.
+bool BlockVertices::takeRays(const RayBlock& rays) {
+    VertexBlock& v = vertices_[size_t(&rays - rays_.data())];
+    bool usual = true;
+    for (int k = 0; k < kBlock; ++k) {
+        v.bounces[k] = int16_t(rays.bounces[k]);
+        usual &= v.bounces[k] < world_.maxDepth_ && !(rays.flags[k] & kQuietBit);
+    }
+    for (int k = 0; k < kBlock; ++k) {
+        const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
+        v.low[k] = sample->numbers.low();
+        v.high[k] = sample->numbers.high();
+        v.index[k] = sample->numbers.index();
+        if (rays.extra[k] >= 0) usual &= e_.extras_[size_t(rays.extra[k])].share < 0;
+        if (world_.photons_) usual &= !world_.photons_->pass(sample->sample);
+    }
+    for (int q = 0; q < 3; ++q) std::copy_n(rays.weight[q], kBlock, v.weight[q]);
+    std::copy_n(rays.vertex, kBlock, v.vertex);
+    return usual;
+}
+
+bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
+    VertexBlock& v = vertices_[b];
+    const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
+    v.points = firstPoints(n);
+    v.through = !c.clear.empty();
+    const bool rows = c.points.empty();
+    for (size_t k = 0; k < size_t(kBlock); ++k) {
+        const size_t i = first + std::min(k, n - 1); // the last point again
+        const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
+        const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
+        if (s.matte || s.maxDiffuse >= 0 || s.maxSpecular >= 0 || p.displaced || !(rows || c.points[i].P == p.P)) return false;
+        for (int q = 0; q < 3; ++q) {
+            v.P[q][k] = p.P[q];
+            v.n[q][k] = p.n[q];
+            v.I[q][k] = rows ? c.ways[size_t(q) * points_ + i] : c.points[i].I[q];
+            v.clear[q][k] = v.through ? c.clear[i][q] : 0;
         }
+        v.error[k] = p.pError;
+        v.bias[k] = s.bias;
     }
     return true;
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include "integrator/stages.h"
 #include "wave/engine.h"
+#include "wave/raywords.h"
 
 namespace alpenglow::transport {
 
@@ -10,6 +11,8 @@ class BlockVertices {
 public:
     static constexpr size_t kMostSites = 32; ///< that ask, of a kernel
     explicit BlockVertices(Engine&);
+    /// Whether all that this kernel of a binding asks for is of this kind, with the lights of the binding.
+    bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all that a batch whose kernel has run asks for is of this kind.
     bool takes(const BatchContext&) const;
     /// Lights its points and sends their rays; shadow rays are left in Engine::shadows. False: nothing was done, for some point
@@ -42,6 +45,8 @@ private:
 
     // blockvertices.cpp
     bool loadVertices(const BatchContext&);
+    bool takeRays(const RayBlock&);
+    bool loadPoints(size_t block, const BatchContext&);
     bool findSites(const BatchContext&);
     void beginSite(Site&, int number, const BatchContext&);
     bool request(const BatchContext&);
@@ -75,7 +80,9 @@ private:
     void drawDirections(size_t block);
     void throwDice(size_t block);
     void sendRays(size_t block, BatchContext&, Sched&);
-    void sendRay(size_t block, int lane, BatchContext&, Sched&);
+    void turnRays(size_t block, BatchContext&);
+    void keepLobes(size_t block, BatchContext&);
+    void spawn(const RayBlock&, Sched&);
 
     Engine& e_;
     const WorldImpl& world_;
@@ -84,7 +91,8 @@ private:
     bool usable_ = false; ///< by what the world is
     size_t blocks_ = 0, points_ = 0;
     std::vector<VertexBlock> vertices_;
-    std::vector<Site> sites_; ///< the first `count_`, in the order of the calls
+    std::vector<RayBlock> rays_; ///< that came to them, then those that go on
+    std::vector<Site> sites_;    ///< the first `count_`, in the order of the calls
     size_t count_ = 0;
     std::vector<LobeBlock*> block_; ///< lobesOf()
     std::vector<Lanes> lit_;        ///< by block: points that sample lights

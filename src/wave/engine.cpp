@@ -1,8 +1,8 @@
 // The engine of a thread: calls of trace(), and what rays and batches share.
 #include "base/memory.h"
-#include "wave/blockvertices.h"
 #include "wave/gather.h"
 #include "wave/medium.h"
+#include "wave/rowshading.h"
 #include <algorithm>
 #include <limits>
 
@@ -43,6 +43,7 @@ Engine::Engine(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     prepareLightPaths();
     for (const int l : world_->skies_) ambientLights_ |= world_->lights_[size_t(l)].kind == LightKind::Ambient;
     blockVertices_ = std::make_unique<BlockVertices>(*this);
+    rows_ = std::make_unique<RowShading>(*this, *blockVertices_);
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
     if (std::any_of(world_->media_.begin(), world_->media_.end(), event)) {
         flightsInMedia_ = std::make_unique<MediumFlights>();
@@ -112,6 +113,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     freeExtras(*c);
     c->forget(); // points stay: follow() writes them again
     c->targets.clear();
+    c->hits.clear();
     c->emits.clear();
     c->emitted = 0;
     c->failure = nullptr;
@@ -121,7 +123,7 @@ void Engine::giveBack(std::shared_ptr<BatchContext> c) {
     c->flown.clear();
     c->clear.clear();
     c->passes.clear();
-    c->opaque = false;
+    c->opaque = c->indirectKept = false;
     c->requestSite = -1;
     pool_.push_back(std::move(c));
 }
@@ -212,11 +214,14 @@ bool Engine::traceAll(std::span<const CameraRay> rays, std::span<SampleResult> o
     lightTargets_.clear();
     partTargets_.clear();
     shares_.clear();
+    grids_ = false;
+    rowsToRays_ = world_->accel_->takesRows() && !world_->unmade_ && world_->clippingPlanes_.empty() && !world_->shadesAtOpen_;
     nowhere_ = world_->lightOutputs_.empty() ? shading::kNoTarget : sched.newRoot();
     for (size_t i = 0; i < rays.size(); ++i) {
         const CameraRay& c = rays[i];
         out[i] = SampleResult{};
         out[i].aovs.assign(aovs, 0.f);
+        grids_ |= c.grid != nullptr;
         results[i] = &out[i];
         roots[i] = sched.newRoot();
         for (size_t k = 0; k < world_->lightOutputs_.size(); ++k) lightTargets_.push_back(sched.newRoot());

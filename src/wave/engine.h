@@ -32,6 +32,9 @@ inline Vec3 onSeenSide(const Vec3& n, const ShadePoint& p, const Vec3& dir) {
     return (dot(n, p.surface.n) > 0) == (dot(dir, p.surface.n) < 0) ? n : -n;
 }
 
+/// Whether nothing goes on behind any point of a batch that has run.
+bool isOpaque(const shading::Batch&);
+
 /// Questions that shadow rays answer: their weights hold the ray's throughput.
 inline bool asksShadows(SiteKind k) { return k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Ambient; }
 
@@ -177,6 +180,7 @@ public:
     bool meetsOpaqueAlone(const ShadowRay&) const;
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
     void blockedByAll(std::span<const ShadowRay>, std::span<Color> out);
+    bool blockedInRows(std::span<const ShadowRay>, std::span<Color> out); // hitrows.cpp
     // haze.cpp
     /// Runs a volume shader over points with Ci, Oi, I, P set. The points' Ci is void afterwards. The binding is that of what was
     /// met. `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.
@@ -290,7 +294,12 @@ public:
     const WorldImpl& world() const { return *world_; }
     const Rules& rules() const { return rules_; }
     Diagnostics& diagnostics() { return diagnostics_; }
+    // Of batches in rows (hits.cpp): BatchContext::surfaces, and the points of those who need them after all.
+    void placeSurfaces(BatchContext&);
+    void pointsOfRows(BatchContext&);
+    void keepIndirect(BatchContext&);
     void fillBatch(BatchContext&); // shadegroup.cpp
+    void viewsOf(const BatchContext&);
     void tellClear(BatchContext&);
     void shadeGroup(const std::shared_ptr<BatchContext>&, Sched&);
     void takeDisplacement(BatchContext&); // displace.cpp
@@ -378,11 +387,15 @@ private:
     std::vector<size_t> groupsWithHits_;
     size_t hitsWaiting_ = 0;
     void cast(std::span<const Sched::Task>);
+    bool castRows(std::span<const Sched::Task>); // hitrows.cpp
     void queueHit(const Sched::Task&, const accel::Hit&, Sched&);
     void shadeHits(size_t group, Sched&);
-    void placePoints(HitQueue&, BatchContext&);
+    void takeHits(HitQueue&, BatchContext&);
+    void placePoints(BatchContext&);
+    void completePoint(BatchContext&, size_t point);
+    template <class To> void placeSurfaces(const BatchContext&, To);
+    void finishBatch(std::shared_ptr<BatchContext>, Sched&);
     void fade(PathRay&, float way);
-    void keepIndirect(BatchContext&);
     // flight.cpp: what happens on the way. Flights that are over leave the batch, or the list.
     void fly(BatchContext&, Sched&);
     void fly(std::vector<const Sched::Task*>& missed, Sched&);
@@ -401,6 +414,7 @@ private:
     friend class KernelStrip;
     friend class Gather;
     friend class BlockVertices;
+    friend class RowShading;
     friend class MediumFlights;
     friend class Walks;
     std::unique_ptr<FlightEvent> flightsInMedia_; ///< where the world has media that scatter, or priorities
@@ -413,6 +427,7 @@ private:
     std::vector<std::shared_ptr<BatchContext>> pool_;
     std::unique_ptr<class Gather> gather_; ///< its memory is used again
     std::unique_ptr<class BlockVertices> blockVertices_;
+    std::unique_ptr<class RowShading> rows_;
     std::vector<accel::Ray> rays_, shadowRays_;
     std::vector<accel::Hit> hits_;
     std::vector<geometry::HitRef> run_;
@@ -427,6 +442,8 @@ private:
     static constexpr int kSliceOfPath = limits::kSliceRays / 8;
     int raysAtOnce_ = kSliceOfPath;
     bool beginsAnew_ = false, unfinished_ = false;
+    bool rowsToRays_ = false; ///< what rays meet is found in rows: accel::Accel::takesRows()
+    bool grids_ = false;      ///< some ray of this call meets a point that is given
     std::unique_ptr<Sched> sched_;
     /// The rays of a trace() in a light, by the engine that rayOfLight() keeps for it.
     shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,

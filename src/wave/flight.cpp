@@ -10,6 +10,7 @@ void BatchContext::move(size_t from, size_t to) {
     rays[to] = rays[from];
     targets[to] = targets[from];
     bindings[to] = bindings[from];
+    hits[to] = hits[from];
     if (!depths.empty()) depths[to] = depths[from];
     points[to].ray = &rays[to];
 }
@@ -19,6 +20,7 @@ void BatchContext::keepFirst(size_t count) {
     rays.resize(count);
     targets.resize(count);
     bindings.resize(count);
+    hits.resize(count);
     if (!depths.empty()) depths.resize(count);
 }
 

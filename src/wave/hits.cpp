@@ -1,7 +1,7 @@
 // Stages meet and settle: a slice of rays meets surfaces; hits wait by group (same program and lights) until enough of them are
 // there to fill the lanes of its kernel; then their points are worked out, emitters among them shine, and the kernel runs.
 #include "shading/gridpoint.h"
-#include "wave/engine.h"
+#include "wave/rowshading.h"
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ constexpr size_t kWaitingHits = 4096; ///< of all groups, at most: their memory 
 } // namespace
 
 void Engine::follow(std::span<const Sched::Task> slice, Sched& sched) {
-    cast(slice);
+    if (!castRows(slice)) cast(slice);
     std::vector<const Sched::Task*> missed;
     if (hitQueues_.empty()) hitQueues_.resize(size_t(world_->groups_) * (world_->primitiveHit_ ? 2 : 1));
     for (size_t i = 0; i < slice.size(); ++i) {
@@ -162,7 +162,9 @@ void Engine::shadeHits(size_t group, Sched& sched) {
     auto c = takeContext();
     c->engine = this;
     c->ownsExtras = true;
-    placePoints(hitQueues_[group], *c);
+    takeHits(hitQueues_[group], *c);
+    if (rows_->takes(group) && rows_->shade(*c, sched)) return finishBatch(std::move(c), sched);
+    placePoints(*c);
     fly(*c, sched);
     if (c->rays.empty()) return giveBack(std::move(c));
     shine(*c, sched);
@@ -176,50 +178,79 @@ void Engine::shadeHits(size_t group, Sched& sched) {
                : same && !c->binding->usesObjectSpace ? &c->binding->surfaceS
                                                       : &c->binding->surfaceV;
     shadeGroup(c, sched);
-    for (TargetId t : c->targets) sched.release(t);
+    finishBatch(std::move(c), sched);
+}
+
+void Engine::finishBatch(std::shared_ptr<BatchContext> c, Sched& sched) {
+    for (size_t i = 0; i < c->targets.size() && !sched.plain(); ++i) sched.release(c->targets[i]);
     giveBack(std::move(c));
 }
 
-/// Fills a context with the points of hits, which the queue then has no more.
-void Engine::placePoints(HitQueue& q, BatchContext& c) {
-    const size_t n = q.hits.size();
-    c.points.resize(n); // pointers into points and rays stay good
+/// Moves waiting hits, with their rays, to a batch.
+void Engine::takeHits(HitQueue& q, BatchContext& c) {
     c.rays.swap(q.rays);
     c.targets.swap(q.targets);
-    for (const accel::Hit& h : q.hits) c.bindings.push_back(world_->bindingOf_[h.shape]);
-    c.depths.clear();
-    for (size_t i = 0; world_->shadesAtOpen_ && world_->moves_ && i < n; ++i)
-        c.depths.push_back(c.rays[i].origin.z + c.rays[i].dir.z * float(q.hits[i].distance));
+    c.hits.swap(q.hits);
+    for (const accel::Hit& h : c.hits) c.bindings.push_back(world_->bindingOf_[h.shape]);
+}
+
+/// The surface at each hit of a batch, as far as its kernel reads it. to: where that of hit i is written.
+template <class To> void Engine::placeSurfaces(const BatchContext& c, To to) {
     std::vector<geometry::HitRef>& run = run_; // of one shape
-    for (size_t i = 0; i < n;) {
-        const uint32_t shape = q.hits[i].shape;
+    for (size_t i = 0; i < c.hits.size();) {
+        const uint32_t shape = c.hits[i].shape;
         run.clear();
-        for (; i < n && q.hits[i].shape == shape; ++i)
-            run.push_back(
-                {q.hits[i].prim, q.hits[i].b1, q.hits[i].b2, &c.points[i].surface, world_->shadesAtOpen_ ? 0 : q.hits[i].time});
+        for (; i < c.hits.size() && c.hits[i].shape == shape; ++i)
+            run.push_back({c.hits[i].prim, c.hits[i].b1, c.hits[i].b2, to(i), world_->shadesAtOpen_ ? 0 : c.hits[i].time});
         world_->shapes_[shape]->points(run, world_->bindings_[size_t(world_->bindingOf_[shape])].pointNeeds);
     }
-    for (size_t i = 0; i < n; ++i) {
-        const PathRay& r = c.rays[i];
-        ShadePoint& p = c.points[i]; // may hold another point's numbers: all of it is written
-        p.ray = &r;
-        p.Ci = p.Oi = p.Ps = p.Ns = p.viewI = Vec3();
-        p.lit = nullptr;
-        p.alpha = 0;
-        p.shape = world_->shapes_[q.hits[i].shape].get();
-        p.P = p.surface.P;
-        p.N = p.surface.N;
-        p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
-        p.E = r.camera() ? Vec3(0, 0, 0) : r.begin();
-        p.shutter = p.surface.time = world_->shadesAtOpen_ ? 0 : r.shutter();
-        world_->tellTime(p);
-        p.dPdtime = world_->moves_ ? world_->pointsVelocity(*p.shape, p.surface) : Vec3(0.f);
-        if (r.extra >= 0) fade(c.rays[i], length(p.P - r.origin));
-        if (!world_->footprints_) continue;
-        const float rate = r.camera() ? world_->bindings_[size_t(c.bindings[i])].shadingRate : 1;
-        shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), rate);
+}
+
+void Engine::placeSurfaces(BatchContext& c) {
+    c.surfaces.resize(std::max(c.surfaces.size(), c.hits.size()));
+    placeSurfaces(c, [&](size_t i) { return &c.surfaces[i]; });
+}
+
+/// Fills a context with the points of its hits.
+void Engine::placePoints(BatchContext& c) {
+    const size_t n = c.hits.size();
+    c.points.resize(n); // pointers into points and rays stay good
+    c.depths.clear();
+    for (size_t i = 0; world_->shadesAtOpen_ && world_->moves_ && i < n; ++i)
+        c.depths.push_back(c.rays[i].origin.z + c.rays[i].dir.z * float(c.hits[i].distance));
+    placeSurfaces(c, [&](size_t i) { return &c.points[i].surface; });
+    for (size_t i = 0; i < n; ++i) completePoint(c, i);
+}
+
+/// A point whose surface is known. It may hold another point's numbers: all of it is written.
+void Engine::completePoint(BatchContext& c, size_t i) {
+    const PathRay& r = c.rays[i];
+    ShadePoint& p = c.points[i];
+    p.ray = &r;
+    p.Ci = p.Oi = p.Ps = p.Ns = p.viewI = Vec3();
+    p.lit = nullptr;
+    p.alpha = 0;
+    p.shape = world_->shapes_[c.hits[i].shape].get();
+    p.P = p.surface.P;
+    p.N = p.surface.N;
+    p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
+    p.E = r.camera() ? Vec3(0, 0, 0) : r.begin();
+    p.shutter = p.surface.time = world_->shadesAtOpen_ ? 0 : r.shutter();
+    world_->tellTime(p);
+    p.dPdtime = world_->moves_ ? world_->pointsVelocity(*p.shape, p.surface) : Vec3(0.f);
+    if (r.extra >= 0) fade(c.rays[i], length(p.P - r.origin));
+    if (!world_->footprints_) return;
+    const float rate = r.camera() ? world_->bindings_[size_t(c.bindings[i])].shadingRate : 1;
+    shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), rate);
+}
+
+void Engine::pointsOfRows(BatchContext& c) {
+    if (!c.points.empty()) return;
+    c.points.resize(c.hits.size());
+    for (size_t i = 0; i < c.points.size(); ++i) {
+        c.points[i].surface = c.surfaces[i];
+        completePoint(c, i);
     }
-    q.hits.clear();
 }
 
 /// What a ray meets counts less far away, where its call says so.
@@ -233,6 +264,7 @@ void Engine::fade(PathRay& r, float way) {
 
 /// From here on what a ray brings is of surfaces: the light of emitters is in its target.
 void Engine::keepIndirect(BatchContext& c) {
+    if (std::exchange(c.indirectKept, true)) return;
     for (PathRay& r : c.rays) {
         if (r.extra < 0) continue;
         RayExtra& x = extras_[size_t(r.extra)];

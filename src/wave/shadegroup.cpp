@@ -15,7 +15,8 @@ Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
     const Vec3 n = directionOr(p.N, {});
     return dot(n, n) > 0 ? onSeenSide(n, p, dir) : n;
 }
-/// Whether nothing goes on behind any point.
+} // namespace
+
 bool isOpaque(const shading::Batch& b) {
     const int oi = b.plan().Oi;
     for (int k = 0; k < 3 && oi >= 0; ++k)
@@ -23,7 +24,6 @@ bool isOpaque(const shading::Batch& b) {
             if (o != 1) return false;
     return true;
 }
-} // namespace
 
 Color Engine::leftBehind(const BatchContext& c, int i) const {
     // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
@@ -156,8 +156,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
     }
 }
 
-/// The inputs of a batch from its points; their instances are few.
-void Engine::fillBatch(BatchContext& c) {
+/// The instances of a batch's points, which are few: views_ and viewOf_.
+void Engine::viewsOf(const BatchContext& c) {
     views_.clear();
     viewOf_.clear();
     slotOf_.resize(world_->bindings_.size(), -1);
@@ -171,6 +171,11 @@ void Engine::fillBatch(BatchContext& c) {
         viewOf_.push_back(uint32_t(slot));
     }
     for (int b : c.bindings) slotOf_[size_t(b)] = -1;
+}
+
+/// The inputs of a batch from its points.
+void Engine::fillBatch(BatchContext& c) {
+    viewsOf(c);
     if (!c.batch) c.batch = std::make_shared<shading::Batch>();
     c.batch->assign(c.bound->kernel, *c.bound->plan, c.points, views_, viewOf_, *world_);
     bindCall(c.batch->call(), c);

@@ -177,7 +177,10 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
         if (fading && fades(rays[i])) taken[i] += out[i] * opacity * hemispheres_[size_t(rays[i].hemisphere)].fade.at(distance);
         out[i] *= Color(1) - opacity;
     };
-    if (world_->allOpaque_ && !media && !fading) return blockedByAll(rays, out);
+    if (world_->allOpaque_ && !media && !fading) {
+        if (!blockedInRows(rays, out)) blockedByAll(rays, out);
+        return;
+    }
     struct Going {
         accel::Ray ray;
         size_t index;

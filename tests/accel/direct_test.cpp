@@ -163,6 +163,8 @@ TEST(DirectTriangles, BlocksOfRaysHaveTheBitsOfOne) {
             if (k % 6 == 0) r.mask = kDiffuse;
             if (k % 9 == 0) r.dir = Vec3(k % 2 ? 1.f : -1.f, 0, 0);
             if (k % 11 == 0) r.excludeShape = uint32_t(rng() % corners.size()), r.excludePrim = 0, r.passed = .5;
+            if (k % 13 == 0) r.org.y = INFINITY; // meets nothing
+            if (k % 17 == 0) r.tfar = r.tnear;
         }
         std::vector<Hit> all(rays.size());
         std::vector<uint8_t> any(rays.size());

@@ -285,4 +285,30 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
     }
 }
 
+TEST(Stages, StructuresBecomeRowsAndRowsStructures) {
+    Draws d;
+    for (const Stages* stage : widths())
+        for (int turn = 0; turn < 200; ++turn) {
+            const int words = turn % 3 == 0 ? 32 : turn % 3 == 1 ? 16 : 30, stride = words + turn % 4, count = 1 + turn % kBlock;
+            std::vector<uint32_t> from(size_t(stride * count));
+            for (uint32_t& w : from) w = uint32_t(d.random());
+            alignas(64) uint32_t rows[32][kBlock] = {};
+            stage->load(from.data(), 4 * stride, count, words, rows);
+            for (int i = 0; i < kBlock; ++i)
+                for (int w = 0; w < words; ++w)
+                    ASSERT_EQ(rows[w][i], from[size_t(std::min(i, count - 1) * stride + w)]) << words << " words, " << count;
+            if (words % 16 != 0) continue;
+            const Lanes which = uint32_t(d.random()) & 0xffffu;
+            std::vector<uint32_t> to(size_t((kBlock + 1) * words), 7);
+            ASSERT_EQ(stage->store(rows, words, which, to.data()), std::popcount(which));
+            for (int i = 0, at = 0; i < kBlock; ++i) {
+                if (!(which >> i & 1)) continue;
+                for (int w = 0; w < words; ++w) ASSERT_EQ(to[size_t(at * words + w)], rows[w][i]);
+                ++at;
+            }
+            for (size_t behind = size_t((std::popcount(which) + 1) * words); behind < to.size(); ++behind)
+                ASSERT_EQ(to[behind], 7u);
+        }
+}
+
 } // namespace stages_test

@@ -442,4 +442,37 @@ TEST(Scheduler, WhatIsHeldBackIsFollowedInTheEnd) {
     }
 }
 
+TEST(Scheduler, TasksWrittenInOneGoAreFollowedLikeThoseThatAreSpawned) {
+    FakeService service;
+    S s(service);
+    std::vector<TargetId> roots;
+    for (int k = 0; k < 40; ++k) roots.push_back(s.newRoot());
+    ASSERT_TRUE(s.plain());
+    for (int k = 0; k < 40; k += 4) {
+        S::Task* to = s.room(4, 1);
+        const int count = k % 3 == 0 ? 4 : 2; // of the others one is written, and overwritten or forgotten
+        for (int i = 0; i < count; ++i) to[i] = {0, roots[size_t(k + i)], {float(k + i), 1, i % 2, false}};
+        to[count] = {0, roots[0], {1000, 0, 0, false}};
+        s.spawned(size_t(count));
+        for (int i = count; i < 4; ++i) s.spawn({0, roots[size_t(k + i)], {float(k + i), 1, i % 2, false}});
+    }
+    EXPECT_TRUE(s.run());
+    for (int k = 0; k < 40; ++k) EXPECT_EQ(s.value(roots[size_t(k)]).radiance.x, float(k) * (k % 2 ? 1.5f : 1)) << k;
+}
+
+TEST(TaskList, GrowsAndHandsOver) {
+    TaskList<S::Task> a, b;
+    for (int k = 0; k < 1000; ++k) a.push({k, k, {float(k)}});
+    b.push({-1, -1, {}});
+    b.takeLast(a, 300);
+    EXPECT_EQ(a.size(), 700u);
+    EXPECT_EQ(b.size(), 301u);
+    for (int k = 0; k < 1000; ++k) EXPECT_EQ((k < 700 ? a.data()[k] : b.data()[k - 699]).payload.value, float(k));
+    EXPECT_EQ(reinterpret_cast<uintptr_t>(a.data()) % 64, 0u);
+    a.swap(b);
+    EXPECT_EQ(a.back().depth, 999);
+    a.clear();
+    EXPECT_TRUE(a.empty());
+}
+
 } // namespace scheduler_test

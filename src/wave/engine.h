@@ -38,6 +38,13 @@ bool isOpaque(const shading::Batch&);
 /// Questions that shadow rays answer: their weights hold the ray's throughput.
 inline bool asksShadows(SiteKind k) { return k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Ambient; }
 
+/// Whether a call only notes what it asks for: trace() and transmission() always do, the shadeops of lobes only where the engine
+/// estimates them.
+inline bool isRequest(SiteKind k, bool path) {
+    return k == SiteKind::Trace || k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Subsurface ||
+           k == SiteKind::Gather || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
+}
+
 class Engine final : public Sched::RayService, public Tracer {
 public:
     Engine(std::shared_ptr<const WorldImpl>, Diagnostics&);

@@ -7,12 +7,6 @@ namespace alpenglow::transport {
 
 namespace {
 
-// trace() and transmission() always ask for rays; the lobe shadeops only where the engine estimates them.
-bool isRequest(SiteKind k, bool path) {
-    return k == SiteKind::Trace || k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Subsurface ||
-           k == SiteKind::Gather || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
-}
-
 // The callbacks of generated code: C functions that find their engine through KernelCall::user.
 BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
 

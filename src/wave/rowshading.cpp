@@ -10,16 +10,16 @@ RowShading::RowShading(Engine& e, BlockVertices& blocks) : e_(e), blocks_(blocks
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
 }
 
-/// Whether a kernel calls back for lobes only, which needs no points.
-static bool asksLobesAlone(const BoundKernel& k) {
+/// Whether a kernel calls back for nothing but requests, which are looked at when it has run.
+static bool onlyRequests(const BoundKernel& k) {
     const auto& facts = k.kernel->facts();
     return !facts.suspends && !facts.lightLoops && k.plan->readsSurfaceRows() &&
-           std::all_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.block != nullptr; });
+           std::all_of(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) { return isRequest(s.kind, k.path); });
 }
 
 bool RowShading::takes(const SurfaceBinding& b) const {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
-        if (*k && !(blocks_.takes(b, *k) && asksLobesAlone(*k))) return false;
+        if (*k && !(blocks_.takes(b, *k) && onlyRequests(*k))) return false;
     return b.surfaceS && b.areaLight < 0 && !b.moveS && !b.displacementS && !b.atmosphere.shader && b.lightOutputs.empty() &&
            b.aside.empty() && !b.matte && b.surface && !b.surface->moving;
 }
@@ -43,6 +43,7 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
         return false;
     }
     count(c);
+    requestOthers(c, sched);
     e_.flushShadows(sched);
     if (c.opaque) finish(c, sched);
     else e_.finishStrip(c, 0, int(c.rays.size()), sched);
@@ -76,6 +77,18 @@ void RowShading::run(BatchContext& c) {
     e_.bindCall(c.batch->call(), c);
     c.bound->kernel->run(&c.batch->call());
     c.ran();
+}
+
+/// What the kernel asks for besides lobes: shadows, and light that is everywhere.
+void RowShading::requestOthers(BatchContext& c, Sched& sched) {
+    const auto other = [&](const EmitRecord& e) {
+        const SiteKind k = c.bound->sites[size_t(e.site)].kind;
+        return k == SiteKind::Ambient ? e_.ambientLights_ : asksShadows(k) || k == SiteKind::LightVisibility;
+    };
+    if (std::none_of(c.emits.begin(), c.emits.end(), other)) return;
+    e_.pointsOfRows(c);
+    e_.requestPairs(c, std::vector<Color>(c.rays.size(), Color(1)), nullptr, sched, false);
+    if (!e_.ambients_.empty()) e_.gatherAmbient(c);
 }
 
 void RowShading::count(const BatchContext& c) {

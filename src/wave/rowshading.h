@@ -1,4 +1,4 @@
-// Batches of groups whose kernel asks for lobes alone and reads no more than where rays met surfaces (shading::SurfaceRows): from
+// Batches of groups whose kernel only requests light and reads no more than where rays met surfaces (shading::SurfaceRows): from
 // hits to the rows of the kernel and of the blocks (blockvertices.h), with no structure a point.
 #pragma once
 #include "wave/blockvertices.h"
@@ -18,6 +18,7 @@ private:
     bool takes(const SurfaceBinding&) const;
     void run(BatchContext&);
     void count(const BatchContext&);
+    void requestOthers(BatchContext&, Sched&);
     void finish(BatchContext&, Sched&);
 
     Engine& e_;

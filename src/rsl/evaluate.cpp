@@ -1,4 +1,5 @@
 #include "rsl/evaluate.h"
+#include "rsl/front/protocol.h"
 #include <algorithm>
 #include <bit>
 #include <cstdio>
@@ -30,6 +31,7 @@ constexpr Row kRows[] = {
     {"dPdtime", 3, {0, 0, 0}, {}, {}},
     {"N", 3, {0, 0, 1}, {}, {}},
     {"Ng", 3, {0, 0, 1}, {}, {}},
+    {kSideNormal, 3, {0, 0, 1}, {}, {}},
     {"I", 3, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
     {"E", 3, {0, 0, -1}, {}, {}},
     {"Cs", 3, {1, 1, 1}, {}, {}},

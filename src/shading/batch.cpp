@@ -9,6 +9,7 @@ namespace {
 
 constexpr int16_t kZero = -1, kOne = -2, kThree = -3;
 constexpr int16_t kLitNormal = -4; // Ng of ShadePoint::lit, Ns where it is not known
+constexpr int16_t kAlongNg = -5;   // surface.Ng where that is known, else n
 constexpr float kConstants[3] = {0, 1, 3};
 
 // One line per predefined variable (rsl.md section 8): where its parts {v, du, dv, duu, duv, dvv} lie in a ShadePoint. Second
@@ -24,6 +25,7 @@ const Variable kVariables[] = {
     {"dPdv", {AT(surface.dPdv), AT(surface.Puv), AT(surface.Pvv), kZero, kZero, kZero}},
     {"N", {AT(N), AT(surface.dNdu), AT(surface.dNdv), kZero, kZero, kZero}},
     {"Ng", {AT(surface.Ng), AT(surface.dNdu), AT(surface.dNdv), kZero, kZero, kZero}},
+    {rsl::kSideNormal, {kAlongNg, kZero, kZero, kZero, kZero, kZero}},
     {"u", {AT(surface.u), kOne, kZero, kZero, kZero, kZero}},
     {"v", {AT(surface.v), kZero, kOne, kZero, kZero, kZero}},
     {"du", {AT(du), kZero, kZero, kZero, kZero, kZero}},
@@ -69,7 +71,8 @@ bool inLightRows(int16_t offset) {
     return std::find(std::begin(kLightVariables), std::end(kLightVariables), offset) != std::end(kLightVariables);
 }
 
-bool isConstant(int16_t offset) { return offset == kZero || offset == kOne || offset == kThree; }
+bool isNoMember(int16_t offset) { return offset == kZero || offset == kOne || offset == kThree || offset == kAlongNg; }
+const Vec3& alongNg(const geometry::SurfacePoint& p) { return p.Ng == Vec3() ? p.n : p.Ng; }
 /// Ci, Oi and alpha of surfaces are zero before they are shaded.
 bool isZeroOfSurfaces(int16_t offset) {
     return offset == offsetof(ShadePoint, Ci) || offset == offsetof(ShadePoint, Oi) || offset == offsetof(ShadePoint, alpha);
@@ -159,7 +162,7 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
                 }
         }
         const auto inSurfaceRows = [&](int16_t offset) {
-            return geometryOffset(offset) >= 0 || inOwnRows(offset) || isConstant(offset);
+            return geometryOffset(offset) >= 0 || inOwnRows(offset) || isNoMember(offset);
         };
         if (s.from == From::Variable) surfaceRows_ &= std::all_of(s.offset, s.offset + s.parts, inSurfaceRows) && !s.scalar;
         else surfaceRows_ &= s.from != From::Told && s.from != From::Nothing;
@@ -333,6 +336,10 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
                             row[i] = points[i].lit ? points[i].lit->Ng[int(c)] : points[i].Ns[int(c)];
                         continue;
                     }
+                    if (s.offset[p] == kAlongNg) {
+                        for (size_t i = first; i < to; ++i) row[i] = alongNg(points[i].surface)[int(c)];
+                        continue;
+                    }
                     if (s.offset[p] < 0) {
                         std::fill(row + first, row + to, kConstants[-1 - s.offset[p]]);
                         continue;
@@ -352,7 +359,9 @@ void Batch::fillVariables(const SurfaceRows& points) {
         for (size_t c = 0; c < size_t(s.components); ++c)
             for (size_t p = 0; p < size_t(s.parts); ++p, row += stride) {
                 const int16_t offset = s.offset[p];
-                if (offset < 0 || isZeroOfSurfaces(offset)) {
+                if (offset == kAlongNg) {
+                    for (size_t i = 0; i < n; ++i) row[i] = alongNg(points.surfaces[i])[int(c)];
+                } else if (offset < 0 || isZeroOfSurfaces(offset)) {
                     std::fill_n(row, n, offset < 0 ? kConstants[-1 - offset] : 0.f);
                 } else if (inOwnRows(offset)) {
                     std::copy_n((offset == offsetof(ShadePoint, I) ? points.I : points.E).data() + c * n, n, row);

@@ -10,6 +10,9 @@
 namespace alpenglow::rsl {
 
 /// ir::Input::name: what fills an input.
+/// Variable: a vector along Ng, of any length. passes/normal_side.h
+inline constexpr char kSideNormal[] = "__side";
+
 struct InputName {
     enum class Kind : uint8_t {
         Variable,     ///< a predefined variable: "P"

@@ -12,6 +12,7 @@
 #include "rsl/passes/gradients.h"
 #include "rsl/passes/ifconvert.h"
 #include "rsl/passes/localmemory.h"
+#include "rsl/passes/normal_side.h"
 #include "rsl/passes/outline.h"
 #include "rsl/passes/promote.h"
 #include "rsl/passes/slope.h"
@@ -162,6 +163,7 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
     check(k, "specialise");
     orderDerivatives(k, diagnostics);
     check(k, "derivatives");
+    if (options.optimize > 0) readSideOfNormal(k);
     checkLocalMemory(k, diagnostics);
 }
 

@@ -74,20 +74,25 @@ private:
     Vec3d centre_, axis_; ///< axis: the sphere's own z, unit
     double radius_ = 0, outward_ = 1;
     double stretch_ = 0; ///< |dPdu ^ dPdv| at the equator
+    float slack_ = 0;    ///< how far the surface by u and v may be off the ball
 };
 
 void Sphere::setBall() {
     const auto& m = toCamera().m;
     if (!whole() || m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1) return;
     const Vec3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
-    const double size = dot(x, x), most = 1e-13 * size;
-    for (const double off : {dot(x, y), dot(y, z), dot(z, x), dot(y, y) - size, dot(z, z) - size})
-        if (!(std::fabs(off) <= most)) return; // an ellipsoid
+    // Matrices of exporters are rounded to float, or to some digits: a sphere stays one.
+    const double size = exact::pow(std::fabs(determinant3(toCamera())), 2. / 3);
+    double most = 0;
+    for (const double off : {dot(x, y), dot(y, z), dot(z, x), dot(x, x) - size, dot(y, y) - size, dot(z, z) - size})
+        most = std::max(most, std::fabs(off));
+    if (!(most <= 1e-6 * size)) return; // an ellipsoid
     centre_ = Vec3d(m[3][0], m[3][1], m[3][2]);
     const LocalPoint p = cameraPoint(.25, .25);
     outward_ = (dot(p.n, p.P - centre_) < 0 ? -1 : 1) * double(orientation_);
     radius_ = std::fabs(r_) * std::sqrt(size);
-    axis_ = z / std::sqrt(size);
+    if (most > 1e-12 * size) slack_ = float(2 * most / size * radius_);
+    axis_ = normalize(z);
     stretch_ = length(cross(p.Pu, p.Pv)) / std::sqrt(1 - std::min(1., dot(p.n, axis_) * dot(p.n, axis_)));
 }
 
@@ -118,6 +123,7 @@ int Sphere::exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double 
 void Sphere::evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs) const {
     if (!isCode(b1)) {
         out = Quadric::evaluateLocal(prim, b1, b2);
+        out.pError += slack_;
         return;
     }
     const Vec3d d = decode(b1, b2);
@@ -136,7 +142,7 @@ void Sphere::evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& ou
     out.P = Vec3(centre_ + d * radius_);
     out.n = Vec3(d * outward_);
     if (!normal_.param) out.N = out.n;
-    out.pError = roundingError(out.P) + float(4e-15 * pointScale_);
+    out.pError = roundingError(out.P) + float(4e-15 * pointScale_) + slack_;
 }
 
 } // namespace

@@ -25,6 +25,7 @@ struct alignas(64) VertexBlock {
     int32_t bounces[kBlock];
     uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: render::NumberBlock
     Lanes points = 0;
+    Lanes last = 0;       ///< points whose lobes are not followed, for the path is as long as it may be
     bool through = false; ///< something comes through at some point
 };
 
@@ -131,6 +132,7 @@ struct SelectRules {
 /// those whose chances are not finite.
 struct Selected {
     Lanes bright = 0, brightWithClear = 0, failed = 0;
+    Lanes cut = 0; ///< points of VertexBlock::last where a lobe would have been followed
 };
 
 } // namespace alpenglow::transport

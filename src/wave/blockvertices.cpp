@@ -13,6 +13,8 @@ Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) -
 BlockVertices::BlockVertices(Engine& e) : e_(e), world_(e.world()), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& s = world_.settings_;
+    lastSkies_ = std::any_of(world_.skies_.begin(), world_.skies_.end(),
+                             [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
     const bool rules = e.rules().pickOne && e.rules().lightsAtRequests && !s.localRoulette && !s.lightOnly && s.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
     usable_ = s.blocks && rules && lights && world_.media_.empty() && !s.firstSeen && !s.lightPaths &&
@@ -64,10 +66,12 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
 /// What paths need to know of the rays that came to a block. False: some ray needs a look by itself.
 bool BlockVertices::takeRays(const RayBlock& rays) {
     VertexBlock& v = vertices_[size_t(&rays - rays_.data())];
+    v.last = 0;
     bool usual = true;
     for (int k = 0; k < kBlock; ++k) {
         v.bounces[k] = int16_t(rays.bounces[k]);
-        usual &= v.bounces[k] < world_.maxDepth_ && !(rays.flags[k] & kQuietBit);
+        v.last |= Lanes(v.bounces[k] >= world_.maxDepth_) << k;
+        usual &= !(rays.flags[k] & kQuietBit);
     }
     for (int k = 0; k < kBlock; ++k) {
         const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
@@ -77,6 +81,7 @@ bool BlockVertices::takeRays(const RayBlock& rays) {
         if (rays.extra[k] >= 0) usual &= e_.extras_[size_t(rays.extra[k])].share < 0;
         if (world_.photons_) usual &= !world_.photons_->pass(sample->sample);
     }
+    usual &= v.last == 0 || !lastSkies_;
     for (int q = 0; q < 3; ++q) std::copy_n(rays.weight[q], kBlock, v.weight[q]);
     std::copy_n(rays.vertex, kBlock, v.vertex);
     return usual;
@@ -210,6 +215,7 @@ bool BlockVertices::select(const BatchContext& c) {
         found[b] = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);
         if (found[b].failed & vertices_[b].points) return false;
     }
+    for (size_t b = 0; b < blocks_; ++b) e_.counters.depthCap += uint64_t(std::popcount(found[b].cut & vertices_[b].points));
     for (size_t b = 0; b < blocks_; ++b)
         for (const bool more : {true, false})
             for (Lanes left = more ? found[b].bright : found[b].brightWithClear; left; left &= left - 1)

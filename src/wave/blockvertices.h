@@ -88,7 +88,8 @@ private:
     const WorldImpl& world_;
     const Stages& stages_;
     LobeLanesList lanes_;
-    bool usable_ = false; ///< by what the world is
+    bool usable_ = false;    ///< by what the world is
+    bool lastSkies_ = false; ///< where paths end by their length skies must be asked (Gather::lastSkies)
     size_t blocks_ = 0, points_ = 0;
     std::vector<VertexBlock> vertices_;
     std::vector<RayBlock> rays_; ///< that came to them, then those that go on

@@ -122,7 +122,7 @@ Chances chancesOf(const VertexBlock& v, const std::vector<LobeBlock>& lobes, int
     for (size_t k = 0; k < lobes.size(); ++k) {
         const bool asks = lobes[k].asked >> i & 1;
         const Color w = absolute(at(lobes[k].weight, i));
-        c.chosen.push_back(asks ? worth(w) * lobes[k].lobe[kRowAlbedo][i] : 0);
+        c.chosen.push_back(asks && !(v.last >> i & 1) ? worth(w) * lobes[k].lobe[kRowAlbedo][i] : 0);
         if (asks && k % 2 == 0) sum += w * lobes[k].lobe[kRowAlbedo][i];
         asked += asks;
     }
@@ -145,6 +145,7 @@ TEST(Stages, SelectsByWhatLobesGiveBack) {
     for (int turn = 0; turn < 300; ++turn) {
         VertexBlock before = vertices(d);
         before.through = turn % 3 == 0;
+        before.last = d.rarely() ? uint32_t(d.random()) & 0xffffu : 0;
         for (int i = 0; i < kBlock; ++i) put(before.clear, i, d.rarely() ? Color(0) : Color(d.one(), d.one(), d.one()));
         std::vector<LobeBlock> lobes;
         for (int k = 0; k < 1 + turn % 4; ++k) lobes.push_back(lobe(d, false));
@@ -155,6 +156,7 @@ TEST(Stages, SelectsByWhatLobesGiveBack) {
             for (LobeBlock& l : mine) sites.push_back(&l);
             const Selected found = s->select(v, sites.data(), int(sites.size()), {0b0101, false});
             EXPECT_EQ(found.failed, 0u);
+            EXPECT_EQ(found.cut & ~before.last, 0u);
             for (int i = 0; i < kBlock; ++i) {
                 const Chances c = chancesOf(before, lobes, i);
                 for (size_t k = 0; k < lobes.size(); ++k)

@@ -11,10 +11,11 @@ namespace {
 
 struct Traced {
     std::vector<SampleResult> samples;
-    uint64_t inBlocks, points;
+    uint64_t inBlocks, points, cut;
 };
-Traced trace(const std::string& rib, bool blocks, int lanes = 16) {
+Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1) {
     Settings s;
+    s.maxDepth = maxDepth;
     s.hider = Hider::Path;
     s.blocks = blocks;
     s.lanes = lanes;
@@ -31,6 +32,7 @@ Traced trace(const std::string& rib, bool blocks, int lanes = 16) {
     integrator.trace(rays, t.samples, nullptr);
     t.inBlocks = integrator.counters().inBlocks;
     t.points = integrator.counters().points;
+    t.cut = integrator.counters().depthCap;
     return t;
 }
 
@@ -122,6 +124,21 @@ TEST(Blocks, LetLightThroughAndLeaveWhatNeedsALook) {
         EXPECT_EQ(differences(trace(rib, false), all), 0u) << shader;
         EXPECT_GT(all.inBlocks, all.points / 2) << shader;
     }
+}
+
+TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {
+    for (const char* shader :
+         {"\"matte\"", "\"plastic\"", "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1]"})
+        for (const std::string more : {"", "Opacity .5 .6 .7\n", "LightSource \"envlight\" 9 \"intensity\" .3\n"})
+            for (int depth = 0; depth < 4; ++depth) {
+                const std::string rib = roomOf(shader, more);
+                const Traced one = trace(rib, false, 16, depth), all = trace(rib, true, 16, depth);
+                EXPECT_GT(sumOf(one), 1) << shader << more << depth;
+                EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
+                EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
+                EXPECT_GT(all.cut, 0u) << shader << more << depth;
+                if (more.empty()) EXPECT_GT(all.inBlocks, all.points / 2) << shader << depth; // skies are asked point by point
+            }
 }
 
 } // namespace blocks_test

@@ -106,7 +106,9 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
         const vf albedo = load(l.lobe[kRowAlbedo] + at), worth = worthOf(weight, left, competes) * albedo;
         if (rules.lighting >> s & 1) sum = choose(mask, sum + weight * albedo, sum);
         found.failed |= bitsFrom(mask & ~finite(worth), at);
-        store(l.chosen + at, select(mask & ~(worth < 0), worth, vf(0)));
+        const vm follows = mask & ~(worth < 0);
+        found.cut |= bitsFrom(follows & (worth > 0), at) & v.last;
+        store(l.chosen + at, select(follows & ~maskFrom(v.last, at), worth, vf(0)));
         lobes -= mask;
     }
     const vf scale = energyScaleOf(sum, clear, rules);

@@ -95,7 +95,7 @@ public:
     bool takesRows() const;
     bool takesRows(Sides) const; ///< of rays that say so
     void intersect(const DirectRays&, uint32_t rays, const float* time, Hit* hits) const;
-    void occluded(const DirectRays&, uint32_t rays, uint8_t* met) const;
+    void occluded(const DirectRays&, uint32_t rays, const float* time, uint8_t* met) const;
 
     const std::vector<geometry::ShapeRef>& shapes() const;
     /// The point of a hit, where it is at the hit's time.

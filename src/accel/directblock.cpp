@@ -114,7 +114,7 @@ void Accel::Impl::nearestInBlock(const DirectRays& block, uint32_t rays, const f
     }
 }
 
-void Accel::Impl::anyInBlock(const DirectRays& block, uint32_t rays, uint8_t* met) const {
+void Accel::Impl::anyInBlock(const DirectRays& block, uint32_t rays, const float* time, uint8_t* met) const {
     DirectHits found;
     const uint32_t good = usableOf(block);
     if (rays & good) directSearch().any(*blockScene, block, rays & good, found);
@@ -125,7 +125,7 @@ void Accel::Impl::anyInBlock(const DirectRays& block, uint32_t rays, uint8_t* me
         uint32_t near = found.undecided >> i & 1 ? ~0u : 0;
         for (size_t k = 0; k < balls.size() && near != ~0u; ++k) near |= (found.ball[k] >> i & 1) << k;
         if (!near) continue;
-        const Ray r = rayOf(block, i, 0);
+        const Ray r = rayOf(block, i, time[i]);
         if (near == ~0u) {
             met[i] = occludedOne(r);
             continue;
@@ -154,9 +154,12 @@ void Accel::Impl::anyInBlocks(std::span<const Ray> rays, std::span<uint8_t> out)
     for (size_t first = 0; first < rays.size(); first += DirectRays::kSize) {
         const auto some = rays.subspan(first, std::min(size_t(DirectRays::kSize), rays.size() - first));
         const uint32_t plain = loadBlock(some, block);
-        for (size_t i = 0; i < some.size(); ++i)
+        float time[DirectRays::kSize] = {};
+        for (size_t i = 0; i < some.size(); ++i) {
+            time[i] = some[i].time;
             if (!(plain >> i & 1)) out[first + i] = occludedOne(some[i]);
-        anyInBlock(block, plain, &out[first]);
+        }
+        anyInBlock(block, plain, time, &out[first]);
     }
 }
 
@@ -165,6 +168,8 @@ bool Accel::takesRows(Sides s) const { return s == Sides::Both || !impl_->anyOne
 void Accel::intersect(const DirectRays& block, uint32_t rays, const float* time, Hit* hits) const {
     impl_->nearestInBlock(block, rays, time, hits);
 }
-void Accel::occluded(const DirectRays& block, uint32_t rays, uint8_t* met) const { impl_->anyInBlock(block, rays, met); }
+void Accel::occluded(const DirectRays& block, uint32_t rays, const float* time, uint8_t* met) const {
+    impl_->anyInBlock(block, rays, time, met);
+}
 
 } // namespace alpenglow::accel

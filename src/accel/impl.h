@@ -93,7 +93,7 @@ struct Accel::Impl {
     void nearestInBlocks(std::span<const Ray>, std::span<Hit>) const;
     void anyInBlocks(std::span<const Ray>, std::span<uint8_t>) const;
     void nearestInBlock(const DirectRays&, uint32_t rays, const float* time, Hit*) const;
-    void anyInBlock(const DirectRays&, uint32_t rays, uint8_t*) const;
+    void anyInBlock(const DirectRays&, uint32_t rays, const float* time, uint8_t*) const;
 
     bool visible(const Ray& r, uint32_t s) const {
         return (visibility[s] & r.mask) != 0 && (!r.only || r.only[s]) &&

@@ -13,6 +13,8 @@ struct KernelRun {
     std::vector<ShadePoint> points;
     std::vector<shading::PathRay> rays; ///< of the points: ShadePoint::ray points here
     std::vector<int> bindings;          ///< by point
+    /// How many points: those of a batch in rows have no structures.
+    size_t size() const { return points.empty() ? rays.size() : points.size(); }
     const BoundLight* light = nullptr;  ///< whose kernel runs
     const LitSurface* lit = nullptr;    ///< while a light's kernel runs: what it lights
     const Medium* volume = nullptr;     ///< while a volume's kernel runs

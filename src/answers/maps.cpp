@@ -63,7 +63,7 @@ void lookupEnvironment(const TextureSite& t, const ServiceCall& call, int lane, 
 /// What shaders see of a map that cannot be read: the color of Option "texture" "missing", channel by channel; beyond them the
 /// fill value.
 void answerMissing(const TextureSite& t, const ServiceCall& call, const Color& colour) {
-    call.each([&](int lane, const ShadePoint&) {
+    call.eachLane([&](int lane) {
         const int first = t.channel < 0 ? 0 : int(call.at(t.channel, lane));
         for (int k = 0; k < t.count; ++k)
             call.put(k, lane, first + k >= 0 && first + k < 3 ? colour[first + k] : t.fill < 0 ? 0.f : call.at(t.fill, lane));
@@ -78,7 +78,7 @@ bool lookupTogether(const TextureSite& t, const ServiceCall& call, texture::Hand
         texture::LookupLanes l;
         l.mask = uint32_t(call.mask >> from) & 0xffff;
         const int n = std::min(kMost, call.lanes - from);
-        if (const size_t points = call.c.points.size(); size_t(call.first + from + n) > points)
+        if (const size_t points = call.c.size(); size_t(call.first + from + n) > points)
             l.mask &= size_t(call.first + from) >= points ? 0u : (1u << (points - size_t(call.first + from))) - 1;
         if (!l.mask) continue;
         l.set(t.options);
@@ -118,7 +118,7 @@ void answerTexture(Answers& answers, const ServiceCall& call) {
     const std::optional<Color>& missing = world.textures_->settings().missing;
     if (!t.computed && !map && missing && !t.name.empty()) return answerMissing(t, call, *missing);
     if (call.s.kind == SiteKind::Texture && lookupTogether(t, call, map)) return;
-    call.each([&](int lane, const ShadePoint&) {
+    call.eachLane([&](int lane) {
         const int32_t name = t.computed ? std::bit_cast<int32_t>(call.at(0, lane)) : 0;
         if (t.computed) map = answers.mapOfName(name, place);
         if (name && !map && missing) {

@@ -15,6 +15,11 @@ public:
         for (int lane = 0; lane < lanes; ++lane)
             if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane, c.points[size_t(first + lane)]);
     }
+    /// The same for those who only need the number of a lane.
+    template <class Body> void eachLane(Body&& body) const {
+        for (int lane = 0; lane < lanes; ++lane)
+            if ((mask >> lane & 1) && size_t(first + lane) < c.size()) body(lane);
+    }
     float at(int row, int lane) const { return in[size_t(row) * lanes + lane]; }
     void put(int row, int lane, float v) const { out[size_t(row) * lanes + lane] = v; }
     void putText(int row, int lane, const std::string& t) const { put(row, lane, std::bit_cast<float>(rsl::internString(t))); }

@@ -77,8 +77,19 @@ const Vec3& alongNg(const geometry::SurfacePoint& p) { return p.Ng == Vec3() ? p
 bool isZeroOfSurfaces(int16_t offset) {
     return offset == offsetof(ShadePoint, Ci) || offset == offsetof(ShadePoint, Oi) || offset == offsetof(ShadePoint, alpha);
 }
+/// The rows of SurfaceRows that hold it; none: it is of the surface.
+std::span<const float> ownRows(const SurfaceRows& r, int16_t offset) {
+    return offset == offsetof(ShadePoint, I)    ? r.I
+           : offset == offsetof(ShadePoint, E)  ? r.E
+           : offset == offsetof(ShadePoint, du) ? r.du
+           : offset == offsetof(ShadePoint, dv) ? r.dv
+                                                : std::span<const float>();
+}
 bool inOwnRows(int16_t offset) {
-    return offset == offsetof(ShadePoint, I) || offset == offsetof(ShadePoint, E) || isZeroOfSurfaces(offset);
+    constexpr size_t kOwn[] = {offsetof(ShadePoint, I), offsetof(ShadePoint, E), offsetof(ShadePoint, du),
+                               offsetof(ShadePoint, dv)};
+    return offset >= 0 &&
+           (std::find(std::begin(kOwn), std::end(kOwn), size_t(offset)) != std::end(kOwn) || isZeroOfSurfaces(offset));
 }
 /// Where in a SurfacePoint lies what is at an offset of a ShadePoint whose surface is not moved; -1: nowhere.
 int geometryOffset(int16_t offset) {
@@ -364,7 +375,7 @@ void Batch::fillVariables(const SurfaceRows& points) {
                 } else if (offset < 0 || isZeroOfSurfaces(offset)) {
                     std::fill_n(row, n, offset < 0 ? kConstants[-1 - offset] : 0.f);
                 } else if (inOwnRows(offset)) {
-                    std::copy_n((offset == offsetof(ShadePoint, I) ? points.I : points.E).data() + c * n, n, row);
+                    std::copy_n(ownRows(points, offset).data() + c * n, n, row);
                 } else {
                     const char* from =
                         reinterpret_cast<const char*>(points.surfaces.data()) + geometryOffset(offset) + c * sizeof(float);

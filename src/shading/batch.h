@@ -59,7 +59,7 @@ public:
     uint32_t litNeeds() const { return litNeeds_; }
     /// Whether LightRows and the values of parameters are all that is read.
     bool readsLightRows() const { return lightRows_; }
-    /// The same for SurfaceRows: nothing of time, of what moves, and of how large a point is. Variables of primitives that stand
+    /// The same for SurfaceRows: nothing of time and of what moves. Variables of primitives that stand
     /// for parameters are read as well.
     bool readsSurfaceRows() const { return surfaceRows_; }
 
@@ -108,6 +108,7 @@ struct SurfaceRows {
     std::span<const geometry::SurfacePoint> surfaces;
     std::span<const geometry::Shape* const> shapes; ///< of these
     std::span<const float> I, E;                    ///< incident vector, and where the ray began: three rows each
+    std::span<const float> du, dv;                  ///< where the plan usesFootprint()
     size_t size() const { return surfaces.size(); }
     Point operator[](size_t i) const { return {shapes[i], surfaces[i]}; }
 };

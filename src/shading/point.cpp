@@ -23,12 +23,13 @@ float Fade::at(double distance) const {
     return left > 0 ? float(exact::exp(double(strength) * exact::log(left))) : 0;
 }
 
-void setFootprint(ShadePoint& p, const Footprint& footprint, const Vec3& dir, float distance, float shadingRate) {
+Vec2 footprintAt(const geometry::SurfacePoint& p, const Footprint& footprint, const Vec3& dir, float distance,
+                 float shadingRate) {
     // Two steps across the ray, as long as the footprint is wide, are projected along the ray onto the tangent plane and
     // expressed in dPdu, dPdv by least squares; the larger of the two steps counts.
     float w = 2 * footprint.at(distance);
-    const Vec3 &a = p.surface.dPdu, &b = p.surface.dPdv;
-    Vec3 n = p.surface.n, d = dir;
+    const Vec3 &a = p.dPdu, &b = p.dPdv;
+    Vec3 n = p.n, d = dir;
     Vec3 ex = normalize(std::fabs(d.x) > 0.6f ? cross(d, Vec3(0, 1, 0)) : cross(d, Vec3(1, 0, 0))), ey = cross(d, ex);
     float dn = dot(d, n);
     if (std::fabs(dn) < 0.05f) dn = dn < 0 ? -0.05f : 0.05f; // a grazing footprint has no useful limit
@@ -48,8 +49,7 @@ void setFootprint(ShadePoint& p, const Footprint& footprint, const Vec3& dir, fl
         best[1] = std::max(best[1], std::fabs(v));
     }
     float rate = std::sqrt(std::max(shadingRate, 1e-6f));
-    p.du = std::max(best[0] * rate, 1e-12f);
-    p.dv = std::max(best[1] * rate, 1e-12f);
+    return {std::max(best[0] * rate, 1e-12f), std::max(best[1] * rate, 1e-12f)};
 }
 
 } // namespace alpenglow::shading

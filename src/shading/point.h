@@ -203,7 +203,12 @@ struct ShadePoint {
     const PathRay* ray = nullptr;
 };
 
-/// Fills du and dv from the footprint of a ray that comes from `distance` away in direction `dir`, unit.
-void setFootprint(ShadePoint&, const Footprint&, const Vec3& dir, float distance, float shadingRate);
+/// du and dv at a point of a surface, from the footprint of a ray that comes from `distance` away in direction `dir`, unit.
+Vec2 footprintAt(const geometry::SurfacePoint&, const Footprint&, const Vec3& dir, float distance, float shadingRate);
+/// The same, into a point.
+inline void setFootprint(ShadePoint& p, const Footprint& f, const Vec3& dir, float distance, float shadingRate) {
+    const Vec2 size = footprintAt(p.surface, f, dir, distance, shadingRate);
+    p.du = size.x, p.dv = size.y;
+}
 
 } // namespace alpenglow::shading

@@ -34,7 +34,7 @@ struct BatchContext : KernelRun {
     /// By point, of a batch in rows (rowshading.h), whose `points` are empty until somebody asks for them; else void.
     std::vector<geometry::SurfacePoint> surfaces;
     std::vector<const geometry::Shape*> shapes;
-    std::vector<float> ways; ///< incident vectors, then where the rays began: three rows each
+    std::vector<float> ways; ///< incident vectors, then where the rays began: three rows each; then du, dv
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
     std::vector<shading::FreeFlight> flown; ///< by point, where they lie inside of a medium (`between`)

@@ -63,8 +63,14 @@ bool Engine::blockedInRows(std::span<const ShadowRay> asked, std::span<Color> ou
             std::copy_n(rows[3 + q], kBlock, block.dir[q]);
         }
         std::copy_n(rows[6], kBlock, block.tfar);
-        for (int i = 0; i < kBlock; ++i) block.mask[i] = i < n ? visibilityBit(asked[first + size_t(i)].kind->type) : 0;
-        world_->accel_->occluded(block, (1u << n) - 1, met);
+        float time[kBlock];
+        std::fill_n(block.mask, kBlock, 0u);
+        for (int i = 0; i < n; ++i) {
+            const ShadowRay& ray = asked[first + size_t(i)];
+            block.mask[i] = visibilityBit(ray.kind->type);
+            time[i] = ray.time;
+        }
+        world_->accel_->occluded(block, (1u << n) - 1, time, met);
         for (int i = 0; i < n; ++i) {
             out[first + size_t(i)] = met[i] ? Color(0) : Color(1);
             counters.hits += met[i];

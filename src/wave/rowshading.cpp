@@ -4,30 +4,33 @@
 namespace alpenglow::transport {
 
 RowShading::RowShading(Engine& e, BlockVertices& blocks) : e_(e), blocks_(blocks), world_(e.world()) {
-    const bool plain = !world_.moves_ && world_.wanted_.empty() && e_.events_.empty();
+    const bool plain = !world_.moves_ && world_.wanted_.empty();
     takes_.assign(plain ? size_t(world_.groups_) : 0, 1);
     for (const SurfaceBinding& b : world_.bindings_)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
 }
 
-/// Whether a kernel calls back for nothing but requests, which are looked at when it has run.
-static bool onlyRequests(const BoundKernel& k) {
+/// Whether a kernel calls back for nothing but requests, which are looked at when it has run, and lookups in pictures, which need
+/// no point.
+static bool needsNoPoints(const BoundKernel& k) {
     const auto& facts = k.kernel->facts();
     return !facts.suspends && !facts.lightLoops && k.plan->readsSurfaceRows() &&
-           std::all_of(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) { return isRequest(s.kind, k.path); });
+           std::all_of(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) {
+               return isRequest(s.kind, k.path) || s.kind == SiteKind::Texture || s.kind == SiteKind::Environment;
+           });
 }
 
 bool RowShading::takes(const SurfaceBinding& b) const {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
-        if (*k && !(blocks_.takes(b, *k) && onlyRequests(*k))) return false;
+        if (*k && !(blocks_.takes(b, *k) && needsNoPoints(*k))) return false;
     return b.surfaceS && b.areaLight < 0 && !b.moveS && !b.displacementS && !b.atmosphere.shader && b.lightOutputs.empty() &&
            b.aside.empty() && !b.matte && b.surface && !b.surface->moving;
 }
 
 bool RowShading::shade(BatchContext& c, Sched& sched) {
-    if (e_.photonTrace() || !e_.gathered_.empty() || !e_.traceSums_.empty()) return false;
+    if (!e_.events_.empty() || e_.photonTrace() || !e_.gathered_.empty() || !e_.traceSums_.empty()) return false;
     for (const PathRay& r : c.rays) // what is told of it needs its point
-        if ((r.extra >= 0 && e_.extraOf(r).fade.fades()) || (r.first && !sched.plain())) return false;
+        if ((r.extra >= 0 && e_.extraOf(r).fade.fades()) || (r.first && !(r.counts && sched.plain()))) return false;
     c.points.clear();
     run(c);
     c.opaque = isOpaque(*c.batch);
@@ -55,7 +58,7 @@ void RowShading::run(BatchContext& c) {
     e_.placeSurfaces(c);
     const size_t n = c.hits.size();
     c.shapes.resize(n);
-    c.ways.resize(6 * n);
+    c.ways.resize(8 * n);
     for (size_t i = 0; i < n; ++i) {
         const PathRay& r = c.rays[i];
         c.shapes[i] = world_.shapes_[c.hits[i].shape].get();
@@ -64,6 +67,11 @@ void RowShading::run(BatchContext& c) {
             c.ways[size_t(q) * n + i] = I[q];
             c.ways[size_t(3 + q) * n + i] = r.camera() ? 0 : begin[q];
         }
+        if (!world_.footprints_) continue;
+        const float rate = r.camera() ? world_.bindings_[size_t(c.bindings[i])].shadingRate : 1;
+        const Vec2 size = shading::footprintAt(c.surfaces[i], r.footprint, r.dir, length(c.surfaces[i].P - r.origin), rate);
+        c.ways[6 * n + i] = size.x;
+        c.ways[7 * n + i] = size.y;
     }
     c.binding = &world_.bindings_[size_t(c.bindings[0])];
     const bool same = std::all_of(c.bindings.begin(), c.bindings.end(), [&](int b) { return b == c.bindings[0]; });
@@ -71,9 +79,10 @@ void RowShading::run(BatchContext& c) {
     e_.viewsOf(c);
     if (!c.batch) c.batch = std::make_shared<shading::Batch>();
     const std::span<const float> ways(c.ways);
-    c.batch->assign(c.bound->kernel, *c.bound->plan,
-                    shading::SurfaceRows{std::span(c.surfaces).first(n), c.shapes, ways.first(3 * n), ways.subspan(3 * n)},
-                    e_.views_, e_.viewOf_, world_);
+    const shading::SurfaceRows rows{
+        std::span(c.surfaces).first(n), c.shapes,           ways.first(3 * n), ways.subspan(3 * n, 3 * n),
+        ways.subspan(6 * n, n),         ways.subspan(7 * n)};
+    c.batch->assign(c.bound->kernel, *c.bound->plan, rows, e_.views_, e_.viewOf_, world_);
     e_.bindCall(c.batch->call(), c);
     c.bound->kernel->run(&c.batch->call());
     c.ran();

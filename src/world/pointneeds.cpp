@@ -25,6 +25,7 @@ void WorldImpl::setPointNeeds() {
     }
     for (BoundLight& l : lights_) {
         l.pointNeeds = needsOf(l) | always;
+        if (l.emitter) l.pointNeeds |= geometry::kNeedPartials; // the density of a point is by them
         for (int part : l.parts) l.pointNeeds |= needsOf(lights_[size_t(part)]);
     }
     if (primitiveHit_) always |= primitiveHit_.plan->needs();

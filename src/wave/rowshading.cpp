@@ -4,8 +4,7 @@
 namespace alpenglow::transport {
 
 RowShading::RowShading(Engine& e, BlockVertices& blocks) : e_(e), blocks_(blocks), world_(e.world()) {
-    const bool plain = !world_.moves_ && world_.wanted_.empty();
-    takes_.assign(plain ? size_t(world_.groups_) : 0, 1);
+    takes_.assign(!world_.moves_ ? size_t(world_.groups_) : 0, 1);
     for (const SurfaceBinding& b : world_.bindings_)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
 }
@@ -48,8 +47,13 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     count(c);
     requestOthers(c, sched);
     e_.flushShadows(sched);
-    if (c.opaque) finish(c, sched);
-    else e_.finishStrip(c, 0, int(c.rays.size()), sched);
+    const bool outputs = !world_.wanted_.empty() && std::any_of(c.rays.begin(), c.rays.end(), [](auto& r) { return r.counts; });
+    if (c.opaque && !outputs) {
+        finish(c, sched);
+    } else {
+        e_.pointsOfRows(c);
+        e_.finishStrip(c, 0, int(c.rays.size()), sched);
+    }
     return true;
 }
 

@@ -1,4 +1,5 @@
 // Vertices that are followed 16 at a time (wave/blockvertices.h) have the bits of those that go one by one.
+#include "display/imageio.h"
 #include "transport/harness.h"
 
 namespace blocks_test {
@@ -139,6 +140,34 @@ TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {
                 EXPECT_GT(all.cut, 0u) << shader << more << depth;
                 if (more.empty()) EXPECT_GT(all.inBlocks, all.points / 2) << shader << depth; // skies are asked point by point
             }
+}
+
+TEST(Blocks, LookPicturesUpAndKnowHowLargePointsAre) {
+    display::Image m = display::makeImage(32, 16, display::defaultChannels(3));
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 32; ++x)
+            for (int c = 0; c < 3; ++c) m.pixel(x, y)[c] = float((x / 2 + y / 2 + c) % 3) / 2;
+    Diagnostics d;
+    display::WriteOptions o;
+    o.format = display::Format::Exr;
+    o.policy = {shaderFolder(), false, -1};
+    ASSERT_TRUE(display::writeImage("squares.exr", m, o, d));
+    const std::string map = '"' + shaderFolder() + "/squares.exr\"";
+    writeShader("painted", "surface painted() { normal n = faceforward(normalize(N), I); Ci = Ci + diffuse(n) * color texture(" +
+                               map + ", s, t) + .2 * ambient() + specular(n, -normalize(I), .2) * float texture(" + map +
+                               "[1], 3 * s, t, \"blur\", .02); }");
+    writeShader("sized",
+                "surface sized() { Ci = diffuse(faceforward(normalize(N), I)) * (1 - exp(-9999 * area(P))) + du * .1; }");
+    writeShader("shiny",
+                "surface shiny() { normal n = faceforward(normalize(N), I); Ci = .2 * diffuse(n) + .1 * color environment(" +
+                    map + ", reflect(I, n)) + .1 * color(E) * s; }");
+    for (const char* shader : {"painted", "sized", "shiny"}) {
+        const std::string rib = roomOf("\"" + std::string(shader) + "\"");
+        const Traced one = trace(rib, false), all = trace(rib, true);
+        EXPECT_GT(sumOf(one), 1) << shader;
+        EXPECT_EQ(differences(one, all), 0u) << shader;
+        EXPECT_GT(all.inBlocks, all.points / 2) << shader;
+    }
 }
 
 } // namespace blocks_test

@@ -44,7 +44,7 @@ bool Engine::castRows(std::span<const Sched::Task> slice) {
     return true;
 }
 
-/// The same as blockedByAll().
+/// What blockedByAll() finds. False: some ray needs more than rows hold.
 bool Engine::blockedInRows(std::span<const ShadowRay> asked, std::span<Color> out) {
     if (!rowsToRays_) return false;
     const auto plain = [&](const ShadowRay& s) { return !s.kind->set.only && world_->accel_->takesRows(s.kind->set.sides); };

@@ -129,6 +129,7 @@ void Engine::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Color> o
 
 /// The same where all surfaces are such ones.
 void Engine::blockedByAll(std::span<const ShadowRay> rays, std::span<Color> out) {
+    if (blockedInRows(rays, out)) return;
     constexpr size_t kAtOnce = 512; // they stay in a core's cache
     blocked_.resize(std::min(rays.size(), kAtOnce));
     for (size_t first = 0; first < rays.size(); first += kAtOnce) {
@@ -177,10 +178,7 @@ void Engine::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out)
         if (fading && fades(rays[i])) taken[i] += out[i] * opacity * hemispheres_[size_t(rays[i].hemisphere)].fade.at(distance);
         out[i] *= Color(1) - opacity;
     };
-    if (world_->allOpaque_ && !media && !fading) {
-        if (!blockedInRows(rays, out)) blockedByAll(rays, out);
-        return;
-    }
+    if (world_->allOpaque_ && !media && !fading) return blockedByAll(rays, out);
     struct Going {
         accel::Ray ray;
         size_t index;

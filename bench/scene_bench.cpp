@@ -32,6 +32,7 @@ constexpr const char* kUsage = R"(scene_bench [OPTIONS] [SCENE ...]     all scen
   --threads N      default 1
   --seed N         default 0
   --symbols N      also the N symbols that take most time
+  --stages         also nanoseconds a sample by stage of the integrator (docs/architecture.md)
   --program A      whole programs instead of this one: run A on each scene, processor seconds from its --stats
   --against B      run A and B in turns; the median of the ratios of processor time, B / A (above 1: A is faster)
   --turns N        how often (default 5)
@@ -42,7 +43,7 @@ struct Arguments {
     std::vector<std::string> scenes;
     int spp = 0, threads = 1, symbols = 0, turns = 5;
     uint64_t seed = 0;
-    bool writeOnly = false;
+    bool writeOnly = false, stages = false;
 };
 
 bool parse(int argc, char** argv, Arguments& a) {
@@ -54,6 +55,10 @@ bool parse(int argc, char** argv, Arguments& a) {
         }
         if (what == "--write") {
             a.writeOnly = true;
+            continue;
+        }
+        if (what == "--stages") {
+            a.stages = true;
             continue;
         }
         if (++i >= argc) return false;
@@ -145,6 +150,18 @@ void printSymbols(const std::map<std::string, uint64_t>& symbols, int most) {
                     bench::kPartNames[size_t(bench::partOfSymbol(order[size_t(i)].second))], order[size_t(i)].second.c_str());
 }
 
+void printStages(const std::map<std::string, uint64_t>& symbols, double nanoseconds) {
+    std::array<uint64_t, bench::kStages> of{};
+    uint64_t all = 0;
+    for (const auto& [symbol, n] : symbols) {
+        of[size_t(bench::stageOfSymbol(symbol))] += n;
+        all += n;
+    }
+    for (size_t k = 0; k < of.size(); ++k)
+        std::printf("    %-16s %7.1f ns a sample %5.1f %%\n", bench::kStageNames[k], nanoseconds * double(of[k]) / double(all),
+                    100 * double(of[k]) / double(all));
+}
+
 void printHead() {
     std::printf("%-16s %8s %7s %7s %6s %5s %6s |", "scene", "ns/spl", "Mray/s", "Mpt/s", "pts/b", "lane", "MB");
     for (const char* part : bench::kPartNames) std::printf(" %9s", part);
@@ -167,6 +184,7 @@ bool printRow(const Arguments& a, const bench::BenchScene& scene) {
                         f.points / f.cpu / 1e6, f.batch, f.lanes, f.megabytes);
             for (double share : f.share) std::printf(" %9.1f", 100 * share);
             std::printf("\n");
+            if (a.stages) printStages(symbols, 1e9 * f.cpu / f.samples);
             printSymbols(symbols, a.symbols);
         }
         std::fflush(stdout);

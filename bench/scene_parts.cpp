@@ -6,10 +6,11 @@
 namespace alpenglow::bench {
 namespace {
 
-struct Rule {
-    Part part;
+template <class Of> struct RuleOf {
+    Of part;
     std::vector<std::string_view> parts;
 };
+using Rule = RuleOf<Part>;
 
 // The first rule of which one text is in the symbol decides.
 const std::vector<Rule>& rules() {
@@ -33,13 +34,40 @@ const std::vector<Rule>& rules() {
     return all;
 }
 
-} // namespace
+const std::vector<RuleOf<Stage>>& stageRules() {
+    static const std::vector<RuleOf<Stage>> all{
+        {kShade, {"[kernel code]", "7texture"}},
+        {kSystem, {"libc.so", "libm.so", "libgcc", "libstdc++", "libtbbmalloc", "[vdso]", "linux-vdso"}},
+        {kAccumulate, {"E3addEi", "7deposit", "10RowShading6finish", "11finishStrip", "9tellAsker", "8ExactSum"}},
+        {kSearch, {"5accel", "exactHits", "Quadric5roots", "Quadric6accept", "solveQuadratic", "hitNormal", "6Engine8castRows"}},
+        {kNumbers, {"drawNumbers", "drawBlocks", "13SampleNumbers", "nestedS", "6render6nested", "6sobol"}},
+        {kLightSamples,
+         {"placeOnEmitter", "placeInRows", "takeLightOf", "takeRows", "takePlace", "lightInRows", "contributeLight", "aimShadow",
+          "connectBlock", "sendShadow", "sampleLight", "Emitter", "evaluateLight", "tellLit", "placeLightSample", "9LightRows"}},
+        {kShadows, {"blockedInRows", "transmittances", "flushShadows", "passSurfaces", "blockedBy"}},
+        {kQueues,
+         {"9Scheduler", "queueHit", "Records", "8turnRays", "9keepLobes", "8takeRays", "13BlockVertices5spawn", "9shadeHits",
+          "8takeHits", "6Engine6follow", "11finishBatch", "6Engine4cast", "6Engine5rayOf"}},
+        {kSurfaces,
+         {"8geometry", "placeSurfaces", "10RowShading3run", "7shading5Batch", "10loadPoints", "completePoint", "pointsOfRows",
+          "viewsOf"}},
+        {kChoose,
+         {"5lobes", "Lobe", "13BlockVertices", "takeDirections", "takeValues", "extendPaths", "nameVertices", "sampleBlock",
+          "evaluateBlock", "prepareBlock"}},
+        {kCamera, {"4Film", "6render", "6Camera", "8traceAll", "8beginRay", "12SampleResult"}}};
+    return all;
+}
 
-Part partOfSymbol(const std::string& s) {
-    for (const Rule& r : rules())
+template <class Of> Of partBy(const std::vector<RuleOf<Of>>& list, const std::string& s, Of otherwise) {
+    for (const RuleOf<Of>& r : list)
         if (std::any_of(r.parts.begin(), r.parts.end(), [&](std::string_view what) { return s.find(what) != s.npos; }))
             return r.part;
-    return kOther;
+    return otherwise;
 }
+
+} // namespace
+
+Part partOfSymbol(const std::string& s) { return partBy(rules(), s, kOther); }
+Stage stageOfSymbol(const std::string& s) { return partBy(stageRules(), s, kElsewhere); }
 
 } // namespace alpenglow::bench

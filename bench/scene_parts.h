@@ -15,4 +15,26 @@ inline constexpr std::array<const char*, kParts> kPartNames{"traversal", "points
 /// (OpenEXR, zlib).
 Part partOfSymbol(const std::string& mangled);
 
+/// The stages of the integrator, as docs/architecture.md counts them.
+enum Stage {
+    kQueues,
+    kSearch,
+    kSurfaces,
+    kShade,
+    kChoose,
+    kLightSamples,
+    kShadows,
+    kNumbers,
+    kAccumulate,
+    kCamera,
+    kSystem,
+    kElsewhere,
+    kStages
+};
+inline constexpr std::array<const char*, kStages> kStageNames{"queues",     "search",          "surfaces", "kernels",
+                                                              "lobes",      "light samples",   "shadows",  "numbers",
+                                                              "accumulate", "camera and film", "system",   "elsewhere"};
+/// The stage that a symbol works for; elsewhere: what goes point by point, and what is shared.
+Stage stageOfSymbol(const std::string& mangled);
+
 } // namespace alpenglow::bench

@@ -107,5 +107,17 @@ TEST(SceneParts, Rooms) {
     EXPECT_EQ(partOfSymbol("[libz.so.1]"), kOther);
 }
 
+TEST(SceneParts, Stages) {
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow7shading9SchedulerINS0_7PathRayEE5spawnEiiRKS2_"), kQueues);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow7shading9SchedulerINS0_7PathRayEE3addEiRKNS_4Vec3E"), kAccumulate);
+    EXPECT_EQ(stageOfSymbol("_ZNK9alpenglow5accel5Accel4Impl14nearestInBlockERKNS0_10DirectRaysEjPKfPNS0_3HitE"), kSearch);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport10RowShading3runERNS0_12BatchContextE"), kSurfaces);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport13BlockVertices6selectERKNS0_12BatchContextE"), kChoose);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport13BlockVertices14placeOnEmitterEmRKNS0_7EmitterE"), kLightSamples);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow6render4Film3addEiRKNS_4Vec3E"), kCamera);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport6Engine11passThroughERKNS0_14SurfaceBindingE"), kElsewhere);
+    EXPECT_EQ(stageOfSymbol("[kernel code]"), kShade);
+}
+
 } // namespace
 } // namespace alpenglow::bench::scenes_test

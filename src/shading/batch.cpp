@@ -364,24 +364,30 @@ void Batch::fillVariables(std::span<const ShadePoint> points) {
 
 void Batch::fillVariables(const SurfaceRows& points) {
     const size_t stride = size_t(call_.stride), n = points.size();
-    for (const BatchPlan::Source& s : plan_->inputs_) {
-        if (s.from != BatchPlan::From::Variable) continue;
-        float* row = storage_.get() + s.firstRow * stride;
-        for (size_t c = 0; c < size_t(s.components); ++c)
-            for (size_t p = 0; p < size_t(s.parts); ++p, row += stride) {
-                const int16_t offset = s.offset[p];
-                if (offset == kAlongNg) {
-                    for (size_t i = 0; i < n; ++i) row[i] = alongNg(points.surfaces[i])[int(c)];
-                } else if (offset < 0 || isZeroOfSurfaces(offset)) {
-                    std::fill_n(row, n, offset < 0 ? kConstants[-1 - offset] : 0.f);
-                } else if (inOwnRows(offset)) {
-                    std::copy_n(ownRows(points, offset).data() + c * n, n, row);
-                } else {
-                    const char* from =
-                        reinterpret_cast<const char*>(points.surfaces.data()) + geometryOffset(offset) + c * sizeof(float);
-                    for (size_t i = 0; i < n; ++i) std::memcpy(row + i, from + i * sizeof(geometry::SurfacePoint), sizeof(float));
-                }
-            }
+    constexpr size_t kTogether = 32; // as above
+    for (size_t first = 0; first < n; first += kTogether) {
+        const size_t count = std::min(n - first, kTogether);
+        for (const BatchPlan::Source& s : plan_->inputs_) {
+            if (s.from != BatchPlan::From::Variable) continue;
+            float* row = storage_.get() + s.firstRow * stride + first;
+            for (size_t c = 0; c < size_t(s.components); ++c)
+                for (size_t p = 0; p < size_t(s.parts); ++p, row += stride) fillRow(points, s.offset[p], c, first, {row, count});
+        }
+    }
+}
+
+/// A component of a variable at some points from `first` on.
+void Batch::fillRow(const SurfaceRows& points, int16_t offset, size_t component, size_t first, std::span<float> row) {
+    if (offset == kAlongNg) {
+        for (size_t i = 0; i < row.size(); ++i) row[i] = alongNg(points.surfaces[first + i])[int(component)];
+    } else if (offset < 0 || isZeroOfSurfaces(offset)) {
+        std::fill(row.begin(), row.end(), offset < 0 ? kConstants[-1 - offset] : 0.f);
+    } else if (inOwnRows(offset)) {
+        std::copy_n(ownRows(points, offset).data() + component * points.size() + first, row.size(), row.data());
+    } else {
+        const char* from =
+            reinterpret_cast<const char*>(points.surfaces.data() + first) + geometryOffset(offset) + component * sizeof(float);
+        for (size_t i = 0; i < row.size(); ++i) std::memcpy(&row[i], from + i * sizeof(geometry::SurfacePoint), sizeof(float));
     }
 }
 

@@ -118,6 +118,7 @@ struct SurfaceRows {
 class ParameterRows {
 public:
     ParameterRows(const BatchPlan&, const ParameterBlock&);
+    const BatchPlan* plan() const { return plan_; }
 
 private:
     friend class Batch;
@@ -184,6 +185,7 @@ private:
     template <class Points> void fillOverridden(const BatchPlan::Source&, float* row, const Points&, const Views&);
     void fillVariables(std::span<const ShadePoint>);
     void fillVariables(const SurfaceRows&);
+    static void fillRow(const SurfaceRows&, int16_t offset, size_t component, size_t first, std::span<float> row);
     void pad(const BatchPlan::Source&, float* row);
     struct Free {
         void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }

@@ -8,6 +8,7 @@
 #include "wave/recordings.h"
 #include "wave/samples.h"
 #include "wave/vertex.h"
+#include <array>
 #include <deque>
 #include <functional>
 #include <map>
@@ -307,6 +308,9 @@ public:
     void keepIndirect(BatchContext&);
     void fillBatch(BatchContext&); // shadegroup.cpp
     void viewsOf(const BatchContext&);
+    const shading::ParameterRows* parametersOf(int binding, const shading::BatchPlan&);
+    /// By binding, the last two that were asked for: of the kernels for one binding and for several.
+    std::vector<std::array<std::unique_ptr<const shading::ParameterRows>, 2>> parameters_;
     void tellClear(BatchContext&);
     void shadeGroup(const std::shared_ptr<BatchContext>&, Sched&);
     void takeDisplacement(BatchContext&); // displace.cpp

@@ -156,6 +156,17 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
     }
 }
 
+/// The parameters of a binding's surface as kernels of a plan read them.
+const shading::ParameterRows* Engine::parametersOf(int binding, const shading::BatchPlan& plan) {
+    parameters_.resize(world_->bindings_.size());
+    auto& known = parameters_[size_t(binding)];
+    for (const auto& rows : known)
+        if (rows && rows->plan() == &plan) return rows.get();
+    std::swap(known[0], known[1]);
+    known[0] = std::make_unique<const shading::ParameterRows>(plan, world_->bindings_[size_t(binding)].surface->parameters);
+    return known[0].get();
+}
+
 /// The instances of a batch's points, which are few: views_ and viewOf_.
 void Engine::viewsOf(const BatchContext& c) {
     views_.clear();
@@ -167,6 +178,7 @@ void Engine::viewsOf(const BatchContext& c) {
             const InstanceRef& i = world_->bindings_[size_t(b)].surface;
             slot = int(views_.size());
             views_.push_back(i->view());
+            views_.back().rows = parametersOf(b, *c.bound->plan);
         }
         viewOf_.push_back(uint32_t(slot));
     }

@@ -118,15 +118,18 @@ private:
 };
 
 /// Meeting a triangle in double: false when the line is parallel to it or the triangle has no area. b1, b2 are clamped to the
-/// triangle, for candidates that are known to be hits; `outside` says by how much they had to be.
-inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb, const Vec3d& fc, double& t,
-                         double& b1, double& b2, double& outside) {
+/// triangle, for candidates that are known to be hits; `outside` says by how much they had to be. wanted(t): false ends it early.
+template <class Wanted>
+[[gnu::always_inline]] inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb,
+                                                const Vec3d& fc, double& t, double& b1, double& b2, double& outside,
+                                                Wanted wanted) {
     // Float coordinates subtract exactly or nearly so in double: the plane test keeps the side of an origin one float step away.
     Vec3d a = fa - org, b = fb - org, c = fc - org;
     Vec3d e1 = b - a, e2 = c - a, n = cross(e1, e2);
     double den = dot(n, d);
     if (!(std::fabs(den) > 0)) return false;
     t = dot(n, a) / den;
+    if (!wanted(t)) return false;
     // Moeller-Trumbore weights, relative to corner a.
     Vec3d q = cross(a, d);
     b1 = dot(q, e2) / den;
@@ -141,6 +144,10 @@ inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, cons
         b2 /= s;
     }
     return true;
+}
+inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& a, const Vec3d& b, const Vec3d& c, double& t, double& b1,
+                         double& b2, double& outside) {
+    return meetTriangle(org, d, a, b, c, t, b1, b2, outside, [](double) { return true; });
 }
 inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1,
                          double& b2, double& outside) {

@@ -118,15 +118,12 @@ struct Accel::Impl {
         return false;
     }
 
-    /// Whether all that the ray meets of a shape counts, wherever it is.
-    bool plain(const Ray& r, uint32_t s) const {
-        return r.passed < 0 && r.excludeShape == kNone && visible(r, s) && (trimmed.empty() || !trimmed[s]) &&
-               (r.sides == Sides::Both || !shapes[s]->oneSided()) && !ofSolid(s);
-    }
+    /// False: take() will not, whatever is met there.
+    static bool mayTake(const Query& q, double t) { return t > q.ray->tnear && t < q.ray->tfar && (q.any || !(t > q.best.t)); }
     /// Whether a candidate counts; then q.best is it. t is ours. away(): how far its normal points along the ray, if one-sided.
     template <class Away> bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2, Away away) const {
         const Ray& r = *q.ray;
-        if (!(t > r.tnear && t < r.tfar)) return false;
+        if (!mayTake(q, t)) return false;
         if (t <= r.passed && (t < r.passed || std::pair(s, prim) <= std::pair(r.excludeShape, r.excludePrim))) return false;
         if (!q.any && !before(t, s, prim, q.best)) return false;
         if (!trimmed.empty() && trimmed[s] && !trimmed[s]->keepsHit(prim, b1, b2)) return false;
@@ -139,11 +136,13 @@ struct Accel::Impl {
         return take(q, s, prim, t, b1, b2, [&] { return dot(shapes[s]->hitNormal(prim, b1, b2), Vec3d(q.ray->dir)); });
     }
     /// Whether a candidate triangle is met and counts: then q.best is it.
-    bool meetOne(Query& q, uint32_t s, uint32_t prim, const Vec3& a, const Vec3& b, const Vec3& c) const {
+    [[gnu::always_inline]] bool meetOne(Query& q, uint32_t s, uint32_t prim, const Vec3& a, const Vec3& b, const Vec3& c) const {
         const Ray& r = *q.ray;
         if (!visible(r, s) || excluded(r, s, prim)) return false;
         double t, b1, b2, outside;
-        if (!meetTriangle(r.org, r.dir, a, b, c, t, b1, b2, outside)) return false;
+        if (!meetTriangle(Vec3d(r.org), Vec3d(r.dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside,
+                          [&](double at) { return mayTake(q, at); }))
+            return false;
         if (outside > kEdge && outside > edgeRoom(Vec3d(r.org), Vec3d(r.dir), Vec3d(a), Vec3d(b), Vec3d(c))) return false;
         return !sameCrossing(r, s, t, a, b, c) && take(q, s, prim, t, b1, b2);
     }

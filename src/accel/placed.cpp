@@ -150,7 +150,7 @@ bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim, const Ve
     const Ray& r = *q.ray;
     if (excluded(r, at.shape, prim)) return false;
     double t, b1, b2, outside;
-    if (!meetTriangle(at.org, at.dir, a, b, c, t, b1, b2, outside)) return false;
+    if (!meetTriangle(at.org, at.dir, a, b, c, t, b1, b2, outside, [&](double t_) { return mayTake(q, t_); })) return false;
     if (outside > kEdge && outside > edgeRoom(at.org, at.dir, a, b, c)) return false;
     const Vec3d corner[3] = {a, b, c};
     if (sameCrossing(q, at, t, corner)) return false;

@@ -45,13 +45,14 @@ public:
         uint8_t spare[16];
     };
     struct alignas(128) Leaf {
-        float p[3][kLeafVertices];   ///< by axis
-        uint64_t corners;            ///< nine bits a triangle, from the lowest: three numbers of vertices; from bit 54: how many
+        float p[3][kLeafVertices]; ///< by axis
+        /// Three bits a number of a vertex. Those of triangle k are the lowest of the half k & 1 after 9 * (k >> 1) bits, so that
+        /// one shift by lanes of 64 bits brings all of them down; from bit 59: how many triangles.
+        uint64_t corners;
         uint32_t id[kLeafTriangles]; ///< triangles, counted through all shapes
-        uint32_t size() const { return uint32_t(corners >> 54); }
-        uint32_t vertex(uint32_t triangle, int corner) const {
-            return uint32_t(corners >> (9 * triangle + 3 * uint32_t(corner))) & 7;
-        }
+        uint32_t size() const { return uint32_t(corners >> 59); }
+        static int cornerAt(size_t triangle, int corner) { return int(32 * (triangle & 1) + 9 * (triangle >> 1)) + 3 * corner; }
+        uint32_t vertex(uint32_t triangle, int corner) const { return uint32_t(corners >> cornerAt(triangle, corner)) & 7; }
         Vec3 point(uint32_t v) const { return {p[0][v], p[1][v], p[2][v]}; }
     };
     static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
@@ -103,6 +104,7 @@ public:
                capsules_.size() * sizeof(geometry::Capsule);
     }
     const Exact& exact(uint32_t index) const { return exact_[index]; }
+    const Exact* exacts() const { return exact_.data(); }
     /// Around each of them, by the same index; null: nothing is known of any. A radius of infinity: nothing is known.
     const geometry::Capsule* capsules() const { return capsules_.empty() ? nullptr : capsules_.data(); }
     /// Shape of a triangle, and its number there.

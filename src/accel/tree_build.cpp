@@ -76,7 +76,7 @@ struct Tree::Builder {
         if (r.size() > kLeafTriangles) return false;
         Vec3 vertex[kLeafVertices];
         size_t n = 0;
-        uint64_t corners = uint64_t(r.size()) << 54;
+        uint64_t corners = uint64_t(r.size()) << 59;
         for (size_t i = 0; i < r.size(); ++i) {
             const uint32_t id = refs[r.begin + i].id();
             if (id >= triangles) return false;
@@ -89,7 +89,7 @@ struct Tree::Builder {
                     if (n == kLeafVertices) return false;
                     vertex[n++] = corner[k];
                 }
-                corners |= uint64_t(v) << (9 * i + 3 * k);
+                corners |= uint64_t(v) << Leaf::cornerAt(i, int(k));
             }
             if (out) out->id[i] = id;
         }

@@ -107,6 +107,10 @@ public:
     const Exact* exacts() const { return exact_.data(); }
     /// Around each of them, by the same index; null: nothing is known of any. A radius of infinity: nothing is known.
     const geometry::Capsule* capsules() const { return capsules_.empty() ? nullptr : capsules_.data(); }
+    /// Asks memory for what is needed to meet an exact primitive that has a capsule.
+    void fetch(const Exact& e) const {
+        if (const geometry::InCapsules* s = inCapsules_[e.shape]) s->fetch(e.prim);
+    }
     /// Shape of a triangle, and its number there.
     void find(uint32_t id, uint32_t& shape, uint32_t& prim) const {
         uint32_t k = first_[id >> kCoarse];
@@ -129,6 +133,7 @@ private:
     std::vector<uint32_t> first_; ///< by sixteen triangles: into meshes_
     std::vector<Exact> exact_;    ///< in the order of the leaves
     std::vector<geometry::Capsule> capsules_;
+    std::vector<const geometry::InCapsules*> inCapsules_; ///< by shape; null: none are known. Empty without capsules
     geometry::Bounds bounds_;
     std::vector<Node> last_;
     std::vector<Vertices> moved_;

@@ -348,12 +348,16 @@ struct Tree::Builder {
     }
 
     void makeCapsules() {
-        std::vector<const geometry::InCapsules*> of(shapes.size());
+        std::vector<const geometry::InCapsules*>& of = tree.inCapsules_;
+        of.resize(shapes.size());
         bool any = false;
         for (size_t s = 0; s < shapes.size(); ++s)
             if (shapes[s]->exact() && !shapes[s]->placed())
                 any |= (of[s] = dynamic_cast<const geometry::InCapsules*>(shapes[s].get())) != nullptr;
-        if (!any) return;
+        if (!any) {
+            of.clear();
+            return;
+        }
         tree.capsules_.resize(tree.exact_.size());
         parallelFor(size_t(0), tree.exact_.size(), [&](size_t i) {
             const Exact& e = tree.exact_[i];

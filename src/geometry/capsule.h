@@ -43,6 +43,8 @@ public:
     virtual ~InCapsules() = default;
     /// Encloses all that a ray can hit of a primitive, camera space. False: none does.
     virtual bool capsule(uint32_t prim, Capsule&) const = 0;
+    /// Asks memory for what exactHits() of a primitive will read.
+    virtual void fetch(uint32_t prim) const = 0;
 };
 
 } // namespace alpenglow::geometry

@@ -254,6 +254,19 @@ void CurveSet::load(uint32_t segment, CurveSegment& g) const {
     g.axis = x <= y && x <= z ? Vec3d(1, 0, 0) : y <= z ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
 }
 
+void CurveSet::fetch(uint32_t segment) const {
+    const Row& r = rows_[curveOf_[segment]];
+    const uint32_t i = segment - r.segment, count = (&r)[1].segment - r.segment;
+    const auto at = [&](uint32_t vertex) { return P_ + 3 * size_t(vertex); };
+    const float* own = at(vertexOf(r, i, 0));
+    __builtin_prefetch(own);
+    __builtin_prefetch(own + 11);
+    __builtin_prefetch(at(r.vertex));
+    __builtin_prefetch(at(vertexOf(r, count - 1, linear_ ? 1 : 3)));
+    if (width_.cls == Class::Vertex) __builtin_prefetch(width_.values + vertexOf(r, i, 0));
+    else if (width_.cls != Class::Constant && width_.cls != Class::Uniform) __builtin_prefetch(width_.values + cornerOf(r, i, 0));
+}
+
 int CurveSet::weights(Class c, uint32_t segment, double f, Weight w[16]) const {
     const Row& r = rows_[curveOf_[segment]];
     const uint32_t i = segment - r.segment;

@@ -33,6 +33,7 @@ public:
                     ExactHit out[4]) const override;
 
     bool capsule(uint32_t prim, Capsule&) const override;
+    void fetch(uint32_t prim) const override { set_.fetch(prim / parts_); }
 
     int faces() const override { return int(source_.primitive->ints.size()); }
     SurfacePoint evaluate(int face, double u, double v) const override {

@@ -101,6 +101,8 @@ public:
     /// The segment that holds v of a curve, and where; curves that are not drawn give way to the next.
     uint32_t segmentAt(int face, double v, double& f) const;
     void load(uint32_t segment, CurveSegment& out) const;
+    /// Asks memory for what load() will read.
+    void fetch(uint32_t segment) const;
     size_t classCount(scene::Class) const;
     /// Weights at f of a segment; `dv` by v of the whole curve.
     int weights(scene::Class, uint32_t segment, double f, Weight w[16]) const;

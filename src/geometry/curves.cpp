@@ -192,13 +192,18 @@ bool Curves::capsule(uint32_t prim, Capsule& out) const {
     double wide, bent = 0;
     const int n = hull(prim, p, wide);
     for (int i = 0; i < n; ++i) p[i] = transformPoint(toCamera(), p[i]);
+    // How far the inner points are off the chord. The middle is off it by B1(f) off[0] + B2(f) off[1], and B1 + B2 <= 3/4: that
+    // lies in the triangle of 0 and 3/4 of both, about which the capsule is put.
     const Vec3d e = p[n - 1] - p[0];
     const double ee = dot(e, e);
+    Vec3d off[2];
     for (int i = 1; i + 1 < n; ++i) {
         const double s = ee > 0 ? std::clamp(dot(p[i] - p[0], e) / ee, 0.0, 1.0) : 0;
-        bent = std::max(bent, length(p[i] - p[0] - e * s));
+        off[i - 1] = (p[i] - p[0] - e * s) * 0.75;
     }
-    out = Capsule::between(p[0], p[n - 1], wide * stretch_ * 1.000001 + bent);
+    const Vec3d shift = (off[0] + off[1]) * 0.25;
+    for (const Vec3d& o : {Vec3d(0.0), off[0], off[1]}) bent = std::max(bent, length(o - shift));
+    out = Capsule::between(p[0] + shift, p[n - 1] + shift, wide * stretch_ * 1.000001 + bent);
     return true;
 }
 

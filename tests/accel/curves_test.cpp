@@ -93,6 +93,54 @@ CurveSegment segment(Rng& rng) {
 
 } // namespace
 
+/// One cubic segment of Bezier points.
+static ShapeRef bent(const Vec3d (&points4)[4], float width) {
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "Curves";
+    p->strings = {"cubic", "nonperiodic"};
+    p->ints = {4};
+    std::vector<float> P;
+    for (const Vec3d& q : points4) P.insert(P.end(), {float(q.x), float(q.y), float(q.z)});
+    p->params = {points(P), param("constantwidth", scene::Class::Constant, scene::Type::Float, {width})};
+    Diagnostics diag;
+    return build(p, Matrix(), diag); // the basis is Bezier's unless another is named
+}
+
+TEST(CurveRays, CapsulesHoldTheMiddleAndTheWidth) {
+    Rng rng(6);
+    for (int turn = 0; turn < 300; ++turn) {
+        Vec3d p[4];
+        for (Vec3d& q : p) q = within(rng, turn % 3 ? 1 : 0.1) + Vec3d(0, 0, double(&q - p));
+        const float width = float(std::exp(uniform(rng, -7, -1)));
+        const ShapeRef s = bent(p, width);
+        const auto* in = dynamic_cast<const InCapsules*>(s.get());
+        ASSERT_NE(in, nullptr);
+        const uint32_t parts = s->exactPrims();
+        for (uint32_t k = 0; k < parts; ++k) {
+            Capsule c;
+            ASSERT_TRUE(in->capsule(k, c));
+            const Vec3d a(c.a), e(c.along);
+            for (int i = 0; i <= 32; ++i) {
+                const double f = (k + i / 32.) / parts, g = 1 - f;
+                const Vec3d at = p[0] * (g * g * g) + p[1] * (3 * g * g * f) + p[2] * (3 * g * f * f) + p[3] * (f * f * f);
+                const double along = std::clamp(dot(at - a, e) / dot(e, e), 0.0, 1.0);
+                ASSERT_LE(length(at - a - e * along) + 0.5 * double(width), double(c.radius) * (1 + 1e-6)) << turn << " " << k;
+            }
+        }
+    }
+}
+
+TEST(CurveRays, CapsulesAreClose) {
+    // Both inner points are .4 off the chord: the middle is off it by up to 3/4 of that, so half of this on either side.
+    const Vec3d p[4] = {{0, 0, 0}, {1. / 3, 0.4, 0}, {2. / 3, 0.4, 0}, {1, 0, 0}};
+    const ShapeRef s = bent(p, 0.5f);
+    ASSERT_EQ(s->exactPrims(), 1u);
+    Capsule c;
+    ASSERT_TRUE(dynamic_cast<const InCapsules&>(*s).capsule(0, c));
+    EXPECT_NEAR(double(c.radius), 0.25 + 0.15, 1e-5);
+    EXPECT_NEAR(double(c.a.y), 0.15, 1e-6);
+}
+
 TEST(CurveRays, TheTreeOverlooksNone) {
     size_t met = 0;
     for (const Kind& kind : kKinds)

@@ -117,10 +117,16 @@ struct Tree::Builder {
     struct Cut {
         int axis = -1, bin = 0, bins = kBins;
         Four from{}, scale{};
+        Box below, above; ///< of what lies there
     };
-    static int binOf(const Cut& c, const Ref& r, int axis) {
-        return std::clamp(int((r.twiceCentre()[axis] - c.from[axis]) * c.scale[axis]), 0, c.bins - 1);
+    typedef int32_t Whole4 __attribute__((vector_size(16)));
+    /// By axis.
+    static Whole4 binsOf(const Cut& c, Four twiceCentre) {
+        // No float's bits: what has no whole number goes to a bin at an end.
+        const Four at = least(most((twiceCentre - c.from) * c.scale, Four{}), all(float(c.bins - 1)));
+        return __builtin_convertvector(at, Whole4);
     }
+    static Four all(float f) { return Four{f, f, f, f}; }
     Cut bestCut(const Range& r) const {
         Cut cut;
         cut.bins = r.size() <= 4 ? 4 : r.size() <= 16 ? 8 : kBins; // most ranges are small
@@ -143,16 +149,16 @@ struct Tree::Builder {
         for (Bin* of : bins)
             for (int k = 0; k < cut.bins; ++k) new (&of[k]) Bin{Box(), 0};
         for (size_t i = r.begin; i < r.end; ++i) {
-            const Four at = (refs[i].twiceCentre() - cut.from) * cut.scale;
+            const Whole4 at = binsOf(cut, refs[i].twiceCentre());
             for (int a = 0; a < 3; ++a) {
-                Bin& b = bins[a][std::clamp(int(at[a]), 0, cut.bins - 1)];
+                Bin& b = bins[a][at[a]];
                 b.box.add(refs[i].lo, refs[i].hi);
                 ++b.n;
             }
         }
         // A leaf costs as much for one triangle as for four.
         const auto leaves = [](size_t n) { return double((n + 3) / 4); };
-        double least = INFINITY;
+        double lowest = INFINITY;
         for (int a = 0; a < 3; ++a) {
             if (!(cut.scale[a] > 0)) continue;
             double above[kBins] = {};
@@ -169,27 +175,45 @@ struct Tree::Builder {
                 box.add(bins[a][k - 1].box);
                 n += bins[a][k - 1].n;
                 const double cost = n ? box.halfArea() * leaves(n) + above[k] : INFINITY;
-                if (cost < least) least = cost, cut.axis = a, cut.bin = k;
+                if (cost < lowest) lowest = cost, cut.axis = a, cut.bin = k;
             }
         }
+        for (int k = 0; cut.axis >= 0 && k < cut.bins; ++k) (k < cut.bin ? cut.below : cut.above).add(bins[cut.axis][k].box);
         return cut;
     }
     void split(const Range& r, bool halves, Range& a, Range& b) {
-        size_t middle = r.begin + r.size() / 2;
-        if (const Cut cut = halves || r.size() == 2 ? Cut() : bestCut(r); cut.axis >= 0) {
-            const auto below = [&](const Ref& ref) { return binOf(cut, ref, cut.axis) < cut.bin; };
-            const size_t m = size_t(std::partition(&refs[r.begin], &refs[r.begin] + r.size(), below) - &refs[0]);
-            if (m > r.begin && m < r.end) middle = m;
-        }
-        if (r.size() <= 4 * kParallel) {
-            a = measured(r.begin, middle);
-            b = measured(middle, r.end);
+        const Cut cut = halves || r.size() == 2 ? Cut() : bestCut(r);
+        const size_t middle = cut.axis >= 0 ? partition(r, cut, a, b) : r.begin;
+        if (middle > r.begin && middle < r.end) {
+            a.box = cut.below, b.box = cut.above;
+            a.begin = r.begin, a.end = b.begin = middle, b.end = r.end;
+            a.leaf = leafOf(a, nullptr);
+            b.leaf = leafOf(b, nullptr);
             return;
         }
-        TaskGroup both;
-        both.run([&] { a = measured(r.begin, middle); });
-        b = measured(middle, r.end);
-        both.wait();
+        a = measured(r.begin, r.begin + r.size() / 2);
+        b = measured(r.begin + r.size() / 2, r.end);
+    }
+    /// Those below a cut to the front; returns where the others begin. a, b: boxes of their centres.
+    size_t partition(const Range& r, const Cut& cut, Range& a, Range& b) {
+        Ref *front = &refs[r.begin], *back = &refs[0] + r.end;
+        Box below, above;
+        Four c{};
+        const auto isBelow = [&](const Ref& ref) {
+            c = ref.twiceCentre();
+            return binsOf(cut, c)[cut.axis] < cut.bin;
+        };
+        for (;;) {
+            for (; front < back && isBelow(*front); ++front) below.add(c, c);
+            if (front == back) break;
+            above.add(c, c);
+            for (--back; front < back && !isBelow(*back); --back) above.add(c, c);
+            if (front == back) break;
+            below.add(c, c);
+            std::swap(*front++, *back);
+        }
+        a.centres = below, b.centres = above;
+        return size_t(front - &refs[0]);
     }
 
     /// A range that is divided in two again and again down to its leaves; which of these pieces become the children of nodes is

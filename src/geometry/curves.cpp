@@ -211,15 +211,17 @@ Bounds Curves::keyBounds(uint32_t prim) const {
     Vec3d p[4];
     double wide;
     const int n = hull(prim, p, wide);
-    Bounds b;
+    const Vec3d reach(reach_[0] * wide * 1.000001, reach_[1] * wide * 1.000001, reach_[2] * wide * 1.000001);
+    Vec3d lo(INFINITY), hi(-INFINITY);
     for (int i = 0; i < n; ++i) {
         const Vec3d c = transformPoint(toCamera(), p[i]);
         const double slack = 1e-6 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z)) + 1e-30;
-        const Vec3d r(reach_[0] * wide * 1.000001 + slack, reach_[1] * wide * 1.000001 + slack,
-                      reach_[2] * wide * 1.000001 + slack);
-        b.add(Vec3(c - r));
-        b.add(Vec3(c + r));
+        const Vec3d r = reach + Vec3d(slack), from = c - r, to = c + r;
+        lo = {std::min(lo.x, from.x), std::min(lo.y, from.y), std::min(lo.z, from.z)};
+        hi = {std::max(hi.x, to.x), std::max(hi.y, to.y), std::max(hi.z, to.z)};
     }
+    Bounds b;
+    b.lo = Vec3(lo), b.hi = Vec3(hi);
     return b;
 }
 

@@ -98,8 +98,8 @@ std::vector<OptionalParameter> subsurfaceParameters() {
          "walk: light is followed as it scatters; jensen: dipole (2001, 2002), grosjean: better dipole (d'Eon 2012), both biased "
          "where the surface is no half space"},
         {kC, "irradiance", false, "from the lights",
-         "what enters at P, as diffuse() gives it. Walks that come out here take it, by a run of the shader that prints and "
-         "bakes nothing; not where the shader waits for rays (info tells)"},
+         "what enters at P, as diffuse() gives it; may be made of light that the shader gathers. Walks that come out here take "
+         "it, by a run of the shader that prints and bakes nothing; not where it must wait for rays (a warning tells)"},
         {kC, "scattering", false, "attribute subsurface:scattering", "coefficient, 1/mm"},
         {kC, "absorption", false, "attribute subsurface:absorption", "coefficient, 1/mm"},
         {kC, "meanfreepath", false, "attribute subsurface:meanfreepath", "with reflectance: 1 / (scattering + absorption), mm"},

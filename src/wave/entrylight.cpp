@@ -4,20 +4,11 @@
 
 namespace alpenglow::transport {
 
-namespace {
-
-bool saysIrradiance(const SiteInfo& s) { return s.kind == SiteKind::Subsurface && s.subsurface->irradiance >= 0; }
-
-} // namespace
-
 void Walks::askSurfaces(Sched& sched) {
     if (e_.photonTrace()) return;
     const WorldImpl& world = e_.world();
     const auto number = [&](const Exit& x) { return world.bindingOf_[x.shape]; };
-    const auto silent = [&](const Exit& x) {
-        const BoundKernel& k = world.bindings_[size_t(number(x))].surfaceS;
-        return k.kernel->facts().suspends || std::none_of(k.sites.begin(), k.sites.end(), saysIrradiance);
-    };
+    const auto silent = [&](const Exit& x) { return !world.bindings_[size_t(number(x))].entering; };
     const auto middle = std::stable_partition(exits_.begin(), exits_.end(), silent);
     std::stable_sort(middle, exits_.end(), [&](const Exit& a, const Exit& b) { return number(a) < number(b); });
     const std::span<Exit> asked(middle, exits_.end());
@@ -37,7 +28,7 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
     const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
     auto c = e_.takeContext();
     c->engine = &e_;
-    c->bound = b.usesObjectSpace && b.surfaceV ? &b.surfaceV : &b.surfaceS;
+    c->bound = &b.entering;
     c->binding = &b;
     c->again = true;
     settleAt(*c, exits);
@@ -51,26 +42,36 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
     if (c->displaced) c->batch->tell(*c->displaced->batch);
     c->bound->kernel->run(&c->batch->call());
     c->ran();
-    std::vector<char> said(exits.size());
-    for (const EmitRecord& e : c->emits) {
-        const SiteInfo& s = c->bound->sites[size_t(e.site)];
-        if (!saysIrradiance(s)) continue;
-        const float* row = c->arena.data() + e.offset + size_t(3 + s.subsurface->irradiance) * size_t(e.lanes);
-        for (int lane = 0; lane < e.lanes; ++lane) {
-            const size_t point = size_t(e.first + lane);
-            if (!(e.mask >> lane & 1) || point >= exits.size() || std::exchange(said[point], 1)) continue;
-            const PathRay& ray = c->rays[point];
-            const Color light(row[lane], row[e.lanes + lane], row[2 * e.lanes + lane]);
-            if (isFinite(light))
-                e_.deposit(sched, {c->targets[point], ray.weight * light, LightEvent::Surface, &ray, e_.extraOf(ray).share,
-                                   b.surface.get()});
-        }
+    const shading::Batch& batch = *c->batch;
+    const int irradiance = batch.output(rsl::OutputName::of(rsl::kEntering));
+    const int given = batch.output(rsl::OutputName::given(rsl::kEntering));
+    const auto said = [&](size_t i) { return batch.value(given, 0, int(i)) != 0; };
+    for (size_t i = 0; i < exits.size(); ++i) {
+        const PathRay& ray = c->rays[i];
+        const Color light = batch.color(irradiance, int(i));
+        if (said(i) && isFinite(light))
+            e_.deposit(sched,
+                       {c->targets[i], ray.weight * light, LightEvent::Surface, &ray, e_.extraOf(ray).share, b.surface.get()});
     }
-    e_.giveBack(std::move(c));
+    askLights(*c, exits, sched);
     size_t kept = 0;
     for (size_t i = 0; i < exits.size(); ++i)
-        if (!said[i]) exits[kept++] = exits[i];
+        if (!said(i)) exits[kept++] = exits[i];
+    e_.giveBack(std::move(c));
     return kept;
+}
+
+/// What that light is made of besides, where the shader gathers it.
+void Walks::askLights(BatchContext& c, std::span<const Exit> exits, Sched& sched) {
+    const size_t had = e_.lobes.size();
+    const std::vector<Color> whole(c.points.size(), Color(1));
+    e_.requestPairs(c, whole, nullptr, sched);
+    for (size_t i = had; i < e_.lobes.size(); ++i) {
+        LobeVertex& l = e_.lobes[i];
+        l.indirect *= asked_[size_t(exits[size_t(l.point)].asked)].indirect;
+    }
+    e_.gather(c, sched);
+    e_.flushShadows(sched);
 }
 
 } // namespace alpenglow::transport

@@ -53,6 +53,7 @@ private:
     /// What the shader of the surface, the same for all, says of that light; moves to the front the exits of which it says
     /// nothing.
     size_t askAt(std::span<Exit>, Sched&);
+    void askLights(BatchContext&, std::span<const Exit>, Sched&);
     void skies(const BatchContext&, Sched&);
     bool belongs(uint32_t shape, int group) const;
     accel::Ray rayOf(const Walker&, double length) const;

@@ -13,12 +13,12 @@
 
 namespace alpenglow::transport {
 
-namespace {
-
 SourcePlace placeOf(const rsl::ir::Site& s, const rsl::CompiledKernel& k) {
     const auto& files = k.files();
     return {size_t(s.place.file) < files.size() ? files[size_t(s.place.file)] : "", s.place.line, s.place.column};
 }
+
+namespace {
 
 SiteKind kindOf(const std::string& op) {
     static const std::map<std::string, SiteKind> kinds = {{"ambient", SiteKind::Ambient},
@@ -225,9 +225,6 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     for (const char* name : {"model", "groupname"})
         if (row({name}) >= 0)
             said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
-    if ((b->irradiance = row({"irradiance"})) >= 0 && k.facts().suspends)
-        said("irradiance",
-             "the shader waits for rays, so that its \"irradiance\" is not used: what enters is found from the lights");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
         said("type", "a point cloud is read where \"filename\" names one; light is found by rays here");

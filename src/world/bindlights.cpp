@@ -266,7 +266,7 @@ void WorldImpl::countLightTraces() {
     for (const BoundLight& l : lights_) traces += sitesOf(l.kernel, [](SiteKind k) { return k == SiteKind::Trace; });
     traces *= std::min(1.0, double(limits::kLightsSampled) / double(std::max<size_t>(lights_.size(), 1)));
     for (const SurfaceBinding& b : bindings_)
-        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.entering})
             uses = std::max(uses, sitesOf(*k, [](SiteKind s) {
                                 return s == SiteKind::LightSetup || (s >= SiteKind::Ambient && s <= SiteKind::Trace);
                             }));
@@ -276,7 +276,7 @@ void WorldImpl::countLightTraces() {
 void WorldImpl::bindSentStrings(Diagnostics& d) {
     std::map<std::string, std::map<std::string, std::string>> sent;
     for (const SurfaceBinding& b : bindings_)
-        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.atmosphere.kernel})
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.entering, &b.atmosphere.kernel})
             for (const SiteInfo& s : k->sites)
                 if (s.kind == SiteKind::LightSetup)
                     for (const auto& [name, value] : s.sentStrings) sent[s.sentKey][name] = value;

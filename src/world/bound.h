@@ -180,7 +180,8 @@ struct SurfaceBinding {
     /// Where a ray is that comes from `from` and leaves a point with normal n in direction `to`; it arrived in direction `in`.
     shading::Media beyond(const shading::Media& from, const Vec3& n, const Vec3& in, const Vec3& to) const;
     bool displacementTells = false; ///< displacementS gives the outputs of its shader, for those who ask by displacement()
-    BoundKernel moveS; ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
+    BoundKernel entering; ///< what its subsurface() calls say of light that enters (rsl::kEntering); none: from the lights
+    BoundKernel moveS;    ///< P as the surface shader leaves it, where that displaces the primitive (no displacement shader)
     std::vector<LightOutput> lightOutputs;
     std::vector<char> aside;      ///< by AOV: `lightOutputs` give it; empty: none
     scene::LightSet lights;       ///< that are on, with the parts of their shaders: WorldImpl::eachLight()

@@ -83,6 +83,32 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
     outputs = std::move(plain);
 }
 
+bool SurfaceBinder::bindEntering() {
+    for (size_t i = 0; i < world_.bindings_.size(); ++i) bindEntering(world_.bindings_[i], asked_[i].varying);
+    return true;
+}
+
+void SurfaceBinder::bindEntering(SurfaceBinding& b, const Names& varying) {
+    const auto says = [](const SiteInfo& s) { return s.kind == SiteKind::Subsurface && s.text.count(rsl::kPairEntering) > 0; };
+    const auto site = std::find_if(b.surfaceS.sites.begin(), b.surfaceS.sites.end(), says);
+    if (site == b.surfaceS.sites.end()) return;
+    Names outputs{rsl::kEntering, rsl::OutputName::given(rsl::kEntering).text()};
+    for (const std::string& name : outputsOf(b))
+        if (rsl::OutputName::parse(name).parameter) outputs.push_back(name); // what lights ask for
+    b.entering = world_.kernel(*b.surface, outputs, varying, true, path_, diagnostics_, rsl::kEntering);
+    if (!b.entering || !b.entering.kernel->facts().suspends) return;
+    const SourcePlace place = placeOf(*site->site, *b.surfaceS.kernel);
+    diagnostics_.reportOnce("entering:" + place.file + std::to_string(place.line),
+                            {Severity::Warning,
+                             Rie::Unimplement,
+                             place,
+                             "subsurface(): its \"irradiance\" waits for rays (" + b.entering.kernel->facts().whyNot +
+                                 "), so that it is not used: what enters is found from the lights",
+                             "sums and products with what does not depend on light need not wait",
+                             {}});
+    b.entering = {};
+}
+
 LightOutput::Kernel SurfaceBinder::lightKernel(const SurfaceBinding& b, const LightOutput& o, const Names& varying, bool mixed) {
     LightOutput::Kernel k;
     k.bound = world_.kernel(*b.surface, o.outputs, varying, mixed, path_, diagnostics_, o.slot.text());

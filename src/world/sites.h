@@ -83,7 +83,7 @@ struct OcclusionSite {
 /// What subsurface() says of what lies below. Rows, or -1: Attribute "subsurface" says it.
 struct SubsurfaceSite {
     int samples = -1, scattering = -1, absorption = -1, path = -1, diffusePath = -1, reflectance = -1, index = -1, scale = -1,
-        anisotropy = -1, point = -1, normal = -1, irradiance = -1;
+        anisotropy = -1, point = -1, normal = -1;
     enum class Model : uint8_t { Walk, Dipole, BetterDipole } model = Model::Walk;
     std::string group; ///< "": the attribute's
 };
@@ -243,6 +243,8 @@ struct BoundKernel {
     bool blocks = false; ///< all that it asks for are lobes with SiteInfo::block
     explicit operator bool() const { return kernel != nullptr; }
 };
+/// Where in its file a call stands.
+SourcePlace placeOf(const rsl::ir::Site&, const rsl::CompiledKernel&);
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);
 
 } // namespace alpenglow::transport

@@ -119,7 +119,7 @@ bool SurfaceBinder::bindAll() {
         if (path_ && world_.bindings_[size_t(b)].atmosphere.shader && shape->attributes().areaLight >= 0)
             world_.hazyEmitters_[shape.get()] = b;
     }
-    return bindMixed() && bindHitModes();
+    return bindMixed() && bindEntering() && bindHitModes();
 }
 
 void SurfaceBinder::findGathers() {

@@ -48,6 +48,9 @@ private:
     /// Of the outputs of a surface, takes those away that displays ask for and that light reaches; they get kernels of their own.
     void partLightOutputs(SurfaceBinding&, Names& outputs, const Names& varying);
     LightOutput::Kernel lightKernel(const SurfaceBinding&, const LightOutput&, const Names& varying, bool mixed);
+    /// Kernels for what subsurface() calls say by "irradiance". True.
+    bool bindEntering();
+    void bindEntering(SurfaceBinding&, const Names& varying);
     /// False when not even the default surface could be compiled.
     bool bindSurface(SurfaceBinding&, Names varying);
     void bindAtmosphere(SurfaceBinding&, const Names& varying);

@@ -386,15 +386,58 @@ TEST_F(Subsurface, WhatEntersIsWhatShadersSay) {
         EXPECT_NEAR(spot.mean(), within, kZ * spot.se() + 1e-5) << int(h);
         EXPECT_LT(spot.se(), .03 * within);
     }
-    // Made of light: by itself where lights run at once; from the lights where the shader waits for them.
-    writeShader("lit",
-                "surface lit() { Oi = 1; Ci = subsurface(P, N, \"scale\", 20, \"irradiance\", diffuse(normalize(N)), " + tail);
-    for (const Hider h : {Hider::Hidden, Hider::Path}) {
-        Scene s(world(kAbove + "Surface \"lit\" " + kFloor), withShaders(h));
-        const Moments m = s.estimate(kView, h == Hider::Path ? samples(8000) : 600);
-        EXPECT_NEAR(m.mean(), .5 * half.reflectance(.8), kZ * m.se() + 1e-5) << int(h);
-        EXPECT_EQ(s.messages().find("\"irradiance\" is not used") != std::string::npos, h == Hider::Path) << s.messages();
-    }
+}
+
+// Light that the surface gathers where walks come out: as much comes back as of a constant that is the same. What no light would
+// bring by itself, the factors, tells that it's the shader's; what it takes of other surfaces comes with it.
+TEST_F(Subsurface, WhatEntersMayBeMadeOfLight) {
+    const std::string tail = ", \"scattering\", .8, \"absorption\", .2, \"ior\", 1.3, \"scale\", 20); }\n";
+    const std::string head = "normal n = normalize(N); Oi = 1; color e = 0;\n";
+    writeShader("lit", "surface lit() { " + head + "Ci = subsurface(P, N, \"irradiance\", diffuse(n)" + tail);
+    writeShader("tinted", "surface tinted() { " + head +
+                              "Ci = subsurface(P, N, \"irradiance\", color(1, .5, .25) * diffuse(n) + color(0, .1, .2)" + tail);
+    writeShader("summed", "surface summed() { " + head +
+                              "illuminance(P, n, PI / 2) e += color(.75, .5, 1) * Cl * (n . normalize(L));\n"
+                              "Ci = subsurface(P, N, \"irradiance\", e" +
+                              tail);
+    writeShader("output", "surface output(output varying color e = 0;) { normal n = normalize(N); Oi = 1; float i;\n"
+                          "color below(color what; float on) { return on > 0 ? subsurface(P, N, \"irradiance\", what" +
+                              tail.substr(0, tail.size() - 4) +
+                              " : color(0); }\n"
+                              "e = .5 * diffuse(n); for (i = 0; i < 2; i += 1) { if (i == 1) Ci += below(e, 1); } }\n");
+    struct Case {
+        const char* shader;
+        Color factor, more{0};
+    };
+    const double whole = HalfSpace(1.3).reflectance(.8);
+    for (const Case& k : {Case{"lit", Color(1)}, Case{"tinted", {1, .5f, .25f}, {0, .1f, .2f}}, Case{"summed", {.75f, .5f, 1}},
+                          Case{"output", Color(.5f)}})
+        for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+            Scene s(world(kAbove + "Surface \"" + k.shader + "\" " + kFloor), withShaders(h));
+            const Moments m = s.estimate(kView, h == Hider::Path ? samples(8000) : 600);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(m.mean(c), (.5 * k.factor[c] + k.more[c]) * whole, kZ * m.se(c) + 1e-5) << k.shader << int(h) << c;
+                EXPECT_LT(m.se(c), .03 * whole);
+            }
+            EXPECT_EQ(s.messages(), "") << k.shader << int(h);
+        }
+    // A sky of 1 that rays find: diffuse() is 1.
+    Scene s(world(kSky + "Surface \"tinted\" " + kFloor), withShaders(Hider::Path));
+    const Moments m = s.estimate(kView, samples(8000));
+    const double want[] = {whole, .6 * whole, .45 * whole};
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.mean(c), want[c], kZ * m.se(c) + 1e-5) << c;
+    EXPECT_LT(m.se(), .03 * whole);
+}
+
+// A square of it would have to wait for the light: the lights say what enters then, and the user is told why.
+TEST_F(Subsurface, WhatEntersDoesNotWait) {
+    writeShader("squared", "surface squared() { Oi = 1; color d = diffuse(normalize(N));\n"
+                           "    Ci = subsurface(P, N, \"scattering\", .8, \"absorption\", .2, \"ior\", 1.3, \"scale\", 20,\n"
+                           "        \"irradiance\", d * d); }\n");
+    Scene s(world(kAbove + "Surface \"squared\" " + kFloor), withShaders(Hider::Path));
+    const Moments m = s.estimate(kView, samples(8000));
+    EXPECT_NEAR(m.mean(), .5 * HalfSpace(1.3).reflectance(.8), kZ * m.se() + 1e-5);
+    EXPECT_NE(s.messages().find("its \"irradiance\" waits for rays (lightvisibility()"), std::string::npos) << s.messages();
 }
 
 TEST_F(Subsurface, NoBitDependsOnWhoSharesABatch) {

@@ -141,6 +141,8 @@ inline constexpr char kPairHighlight[] = "__highlight";   ///< a loop over light
 /// An indirectdiffuse() beside diffuse() or loops over lights, and such a diffuse() of a kernel that waits: each brings its part
 /// of the light.
 inline constexpr char kPairApart[] = "__apart";
+/// A subsurface() with "irradiance": a kernel of its own gives that, as the output kEntering.
+inline constexpr char kPairEntering[] = "__entering";
 inline constexpr char kPairSteady[] = "__steady";   ///< a bake() that all points of a primitive reach, or none
 inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes the answer is uniform
 
@@ -167,6 +169,10 @@ inline constexpr char kEmits[] = "__emits";
 // What gives light where, ir::KernelFacts::blocks.
 inline constexpr char kBlockOutside[] = "outside"; ///< outside of illuminate and solar statements
 inline constexpr char kBlockSky[] = "solar()", kBlockCone[] = "solar cone", kBlockSolar[] = "solar";
+
+/// Output of a surface: the "irradiance" of the first subsurface() that gives one; whether one does is OutputName::given() of it.
+/// Kernels that have it as KernelOptions::light send nothing below the surface themselves.
+inline constexpr char kEntering[] = "subsurface()";
 
 /// Channels that get their names when the shader runs have keys that begin so (front/calls_bind.cpp); of channels of one name and
 /// several types the type stands behind it.

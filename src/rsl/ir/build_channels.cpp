@@ -34,6 +34,7 @@ void Builder::beginChannels() {
             emit(Op::ArrayStore, Kind::None, {a, constant(static_cast<float>(n)), zero(a->element)});
         channels_[name] = {newSlot(a), type};
     };
+    if (options_.light == kEntering) make(kEntering, {Base::Color, 0}, true);
     std::vector<const Program*> programs{&program_};
     for (const CoShader& c : options_.coShaders) programs.push_back(c.program);
     const bool oneOfMany = shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Volume;
@@ -113,6 +114,21 @@ Inst* Builder::channelGiven(const std::string& text) {
         all = all ? emit(Op::Select, Kind::Float, {emit(Op::NotEqual, Kind::Bool, {one, constant(0)}), one, all}) : one;
     }
     return all;
+}
+
+/// Of kEntering, its value and its flag; empty in kernels that are not for it.
+std::vector<int> Builder::enteringSlots() const {
+    if (options_.light != kEntering) return {};
+    return {channels_.at(kEntering).first, channels_.at(flagOf(kEntering)).first};
+}
+
+/// What a subsurface() says enters: that of the first call counts.
+void Builder::enters(Inst* irradiance) {
+    const std::vector<int> slots = enteringSlots();
+    if (slots.empty()) return;
+    Inst* had = emit(Op::NotEqual, Kind::Bool, {get(slots[1]), constant(0)});
+    set(slots[0], emit(Op::Select, Kind::Triple, {had, get(slots[0]), coerce(irradiance, Kind::Triple)}));
+    set(slots[1], constant(1));
 }
 
 /// The slot that a call assigns: of a parameter of the main shader, or of a channel. -1: nothing is assigned.

@@ -87,6 +87,10 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
     s.shadeop = &op;
     s.resultType = parted ? e.type.element() : e.type;
     s.pure = op.pure && kind == Op::Service;
+    const auto mark = [&](const char* pair) {
+        s.names.push_back(pair);
+        s.pairStrings.push_back("1");
+    };
     std::vector<Inst*> args;
     struct Out {
         const Expr* lvalue;
@@ -215,11 +219,17 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         Inst* v = expr(*p.value);
         if (known && (known->type.base == Base::String) == (v->kind == Kind::String)) v = coerce(v, known->type.element());
         else if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
+        if (kind == Op::Request && op.name == "subsurface" && p.name == "irradiance") {
+            enters(v);
+            mark(kPairEntering);
+            continue;
+        }
         if (v->op == Op::ConstString && v->text.empty()) continue; // every string's default means the same as its absence
         s.names.push_back(p.name);
         s.pairStrings.push_back(v->op == Op::ConstString ? v->text : "");
         if (v->op != Op::ConstString) addArgument(s, args, v, known ? known->type.element() : p.value->type);
     }
+    if (kind == Op::Request && op.name == "subsurface" && options_.light == kEntering) return zero(whole);
     // Lights that the rays or the samples of this call meet ask for outputs as they are now.
     static const std::set<std::string> kLit = {"diffuse", "specular", "specularstd", "phong", "trace"};
     if (kind == Op::Request && kLit.count(op.name))
@@ -230,18 +240,12 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
             addArgument(s, args, v, parameter.second);
         }
     if (quiet_ > 0 && (op.name == "printf" || op.name == "print")) return constant(0);
-    if (constructing_ > 0 && (op.name == "printf" || op.name == "print")) { // once for the shader (printlog.h)
-        s.names.push_back(kPairOnce);
-        s.pairStrings.push_back("1");
-    }
+    if (constructing_ > 0 && (op.name == "printf" || op.name == "print")) mark(kPairOnce); // printlog.h
     if (part >= 0) {
         s.names.push_back(kPairPart);
         s.pairStrings.push_back(std::to_string(part));
     }
-    if (points) {
-        s.names.push_back(kPairPoints);
-        s.pairStrings.push_back("1");
-    }
+    if (points) mark(kPairPoints);
     // A uniform variable takes no varying parameter of another shader (answers/services.cpp).
     const auto isUniform = [](const Expr* l) {
         while (l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
@@ -249,16 +253,12 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
     };
     static const std::set<std::string> kShaders = {"surface",  "displacement", "atmosphere",
                                                    "incident", "opposite",     "lightsource"};
-    if (kShaders.count(op.name) && !received.empty() && isUniform(received[0].first.to)) {
-        s.names.push_back(kPairUniform);
-        s.pairStrings.push_back("1");
-    }
+    if (kShaders.count(op.name) && !received.empty() && isUniform(received[0].first.to)) mark(kPairUniform);
     static const std::set<std::string> kOfTheTurn = {"lightsource", "attribute", "shadername"};
     if (lightDepth_ == 0 && kOfTheTurn.count(op.name)) { // there is no light to ask about
         if (op.name == "lightsource" && shader_.kind != ShaderKind::Light)
             warn(e.place, "lightsource() asks about the light of an illuminance loop; there is none here, and it gives 0");
-        s.names.push_back(kPairOutside);
-        s.pairStrings.push_back("1");
+        mark(kPairOutside);
     }
     place_ = e.place;
     const bool message = op.section == "Messages" && !s.resultKinds.empty() && s.resultNames[0].empty();

@@ -335,6 +335,8 @@ void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Fun
                 if (p.symbol->output && !p.symbol->type.array) out.insert(slot(p.symbol));
         }
     }
+    if (e.kind == ExprKind::ShadeopCall && e.shadeop && e.shadeop->name == "subsurface")
+        for (const int n : enteringSlots()) out.insert(n);
     for (const NamedArg& p : e.pairs)
         if (p.output && p.value) lvalue(p.value.get());
     if (e.function) {

@@ -285,6 +285,8 @@ private:
     void giveChannel(int slot, const Expr& value, Inst* whole, Inst* condition);
     Inst* channelValue(const std::string& name, Type&);
     Inst* channelGiven(const std::string& name);
+    std::vector<int> enteringSlots() const;
+    void enters(Inst* irradiance);
     Inst* outputChannel(const Expr&);
     Inst* writeAov(const Expr&);
     Inst* readAov(const Expr&);

@@ -81,6 +81,9 @@ inline constexpr size_t kAffineInlining = 100'000;       ///< IR of a kernel up 
 inline constexpr size_t kKernelCacheBytes = size_t(512) << 20; ///< compiled kernels on disk; the least recently used go first
 
 inline constexpr size_t kDiceQuads = 4'000'000; ///< micro-quads dicing makes of one primitive (geometry/)
+/// Units from the camera, beyond which facets become larger in proportion: no picture shows what is so far, and a surface of
+/// which one point lies there would have millions of slivers that reach from the scene to it.
+inline constexpr double kDiceDistance = 1e12;
 inline constexpr size_t kLimitPatternBytes = size_t(256)
                                              << 20; ///< weights of a subdivision surface's neighbourhoods; beyond: coarser ones
 inline constexpr size_t kEditedFaces = 1'000'000;   ///< corners of a mesh that is refined once more for its edits

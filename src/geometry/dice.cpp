@@ -18,7 +18,9 @@ namespace alpenglow::geometry {
 
 double DiceCamera::pixels(const Vec3d& p, const Vec3d& d) const {
     double l = length(d) * pixelsPerUnit;
-    if (perspective) l /= std::max(length(p), 1e-30);
+    const double away = length(p);
+    if (perspective) l /= std::max(away, 1e-30);
+    if (away > limits::kDiceDistance) l *= limits::kDiceDistance / away;
     return std::isfinite(l) ? l : 1e30;
 }
 

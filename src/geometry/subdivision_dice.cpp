@@ -43,6 +43,7 @@ struct Subdivision::Dicing {
     void measure(const Subdivision& at, uint32_t piece);
     void rates(double scale);
     double quads() const;
+    double mostQuads() const;
     void sharedPoints();
     void pieceRates(uint32_t piece, int out[4]) const;
     void border(uint32_t piece, std::vector<uint32_t>& out) const;
@@ -195,6 +196,12 @@ double Subdivision::Dicing::quads() const {
     return sum;
 }
 
+/// What is not displaced is smooth: where its pieces want more than 64 x 64 on average, some reach far beyond what pictures show.
+double Subdivision::Dicing::mostQuads() const {
+    const double most = double(limits::kDiceQuads), smooth = 64 * 64 * double(limit.pieces());
+    return std::max(displaced ? most : std::clamp(smooth, most / 16, most), 2.0 * limit.pieces());
+}
+
 /// Points at vertices, on edges, in the middle of split faces and on the lines that split them.
 void Subdivision::Dicing::sharedPoints() {
     cornerPoint.assign(size_t(s.input_.cage.vertices), kNone);
@@ -287,11 +294,11 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     d.cutBorder();
     double scale = 1;
     d.rates(scale);
-    const double most = std::max(double(limits::kDiceQuads), 2.0 * limit_->pieces());
+    const double most = d.mostQuads();
     while (d.quads() > most && scale > 1e-9) d.rates(scale *= 0.7);
     if (scale < 1)
         diag.report(Severity::Info, Rie::Limit, place(),
-                    kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
+                    kind() + " would need more than " + std::to_string(size_t(most)) +
                         " micropolygons; it is diced more coarsely");
     d.sharedPoints();
     // The same rates come again and again.

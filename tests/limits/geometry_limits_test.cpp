@@ -187,6 +187,44 @@ std::shared_ptr<scene::Primitive> subdivision(int n, const std::string& kind, co
 
 } // namespace
 
+// One point at 1e38, or at 2^31: what reaches so far is cut no finer than a picture could show it, and a scene that is far and
+// large looks as it does from near.
+TEST(GeometryLimits, APointThatIsFarAway) {
+    DiceOptions o;
+    o.camera.perspective = true;
+    o.camera.pixelsPerUnit = 500;
+    const auto facets = [&](const std::shared_ptr<scene::Primitive>& p, double scale) {
+        Diagnostics d;
+        scene::Attributes a;
+        a.ubasis = a.vbasis = {
+            {{-1 / 6., .5, -.5, 1 / 6.}, {.5, -1, .5, 0}, {-.5, 0, .5, 0}, {1 / 6., 4 / 6., 1 / 6., 0}}, 1, "b-spline"};
+        const ShapeRef s = build(p, scaleMatrix(scale, scale, scale) * translateMatrix(0, 0, 5 * scale), d, a);
+        EXPECT_TRUE(s);
+        if (!s) return size_t(0);
+        diceShapes({s}, o, d);
+        return size_t(s->mesh().triangles());
+    };
+    std::vector<float> net;
+    for (int j = 0; j < 8; ++j)
+        for (int i = 0; i < 9; ++i) net.insert(net.end(), {.2f * float(i) - .8f, .15f * float(j) - .5f, .05f * float(i * j % 5)});
+    const auto curtain = [&](float far) {
+        std::vector<float> P = net;
+        P[3 * 9] = far;
+        return patchMesh("bicubic", 9, "nonperiodic", 8, "nonperiodic", P);
+    };
+    const size_t near = facets(curtain(-.8f), 1);
+    EXPECT_GT(near, 1000u);
+    EXPECT_EQ(facets(curtain(-.8f), 0x1p30), near);
+    EXPECT_LT(facets(curtain(1e38f), 1), 200'000u);
+    const auto cage = [&](float far) {
+        auto p = subdivision(8, "SubdivisionMesh", {});
+        p->params[0].numbers[3 * 40 + 2] = far;
+        return p;
+    };
+    EXPECT_GT(facets(cage(.1f), 1), 100u);
+    EXPECT_LE(facets(cage(0x1p31f), 1), 3u * 64 * 64 * 64); // 64 faces
+}
+
 TEST(GeometryLimits, EditsOfSubdivisionSurfaces) {
     // Ten levels of 16 faces would be 16 million: kEditedFaces corners stop it, the surface is drawn.
     static_assert(16ull * 4 << 20 > limits::kEditedFaces);

@@ -56,8 +56,10 @@ void sayTurnedAway(const Job& job, Diagnostics& diags) {
         const std::string where =
             f.primitive.line > 0 ? " (" + f.primitive.file + ":" + std::to_string(f.primitive.line) + ")" : "";
         warn(diags, f.call,
-             "occlusion(): all over " + (f.primitives == 1 ? "a primitive" : counted(f.primitives, "primitive")) + where +
-                 " its normal faces away from the viewer, and all that it looks at is blocked: it is 1",
+             f.shadeop + "(): all over " + (f.primitives == 1 ? "a primitive" : counted(f.primitives, "primitive")) + where +
+                 " its normal faces away from the viewer, and " +
+                 (f.shadeop == "occlusion" ? "all that it looks at is blocked: it is 1"
+                                           : "what it sees is the inside of the primitive itself"),
              "faceforward(normalize(N), I) is the normal of the side that is seen; ReverseOrientation turns those of the "
              "primitive");
     }

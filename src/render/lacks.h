@@ -11,7 +11,8 @@ void sayMissingOutputs(const OutputPlan&, const transport::World&, Diagnostics&)
 /// Nothing of pictures without colour, of parts of a picture, and of what was interrupted.
 void sayEmptyPicture(const Job&, const scene::Frame&, Diagnostics&);
 
-/// A warning when the frame is done for each call of occlusion() that makes whole primitives black as its normals are turned.
+/// A warning when the frame is done for each call of occlusion(), indirectdiffuse() and gather() that makes whole primitives
+/// black as its normals are turned.
 void sayTurnedAway(const Job&, Diagnostics&);
 
 /// A warning when the frame is done for each point cloud in which texture3d() found nothing at any point. Nothing of parts of a

@@ -165,6 +165,8 @@ public:
     const OfShape& ofShape(const geometry::Shape*);
     std::unordered_map<const scene::Attributes*, OfShape> ofShapes_;
     TurnedAway::Tally* tallyOf(const BatchContext&, const SiteInfo&, const ShadePoint&, const Vec3& normal);
+    /// The same of a call that looks for light about a unit normal: whether its own primitive is before it.
+    void noteTurnedAway(const BatchContext&, const SiteInfo&, int point, const Vec3& normal);
     std::map<std::pair<const SiteInfo*, const geometry::Shape*>, TurnedAway::Tally*> tallies_;
     // gatherloop.cpp
     /// What the shaders at a hit give to the gather whose ray met it; `point` of a batch that has run.

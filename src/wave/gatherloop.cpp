@@ -10,6 +10,9 @@ namespace alpenglow::transport {
 
 namespace {
 
+/// A gather over more than this half angle looks for light from all sides; a smaller one may well look into what refracts.
+constexpr float kHemisphere = 1.4f;
+
 using Of = GatherSite::Of;
 using Output = GatherSite::Output;
 
@@ -283,6 +286,9 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
     kind.set = e.raySetOf(a.s, [&](int row) { return a.f(row); }, p.shape, kind.type, kind.label);
     const RayKind* const kept = e.kindOf(kind);
     const bool deep = a.tooDeep(kind.type);
+    const float angle = a.f(a.s.rows[2]);
+    if (begin == 0 && cast && angle > kHemisphere && p.shape && p.ray)
+        e.noteTurnedAway(a.c, a.s, a.first + a.lane, directionOr(a.triple(a.s.rows[1]), p.surface.n));
     const float far = std::min(a.number(r.maxDistance, 1e38f), a.number(r.maxHit, 1e38f)), reach = far >= 0 ? far : 1e38f;
     const float base = a.number(r.base, 0);
     const int turns = count;

@@ -73,10 +73,26 @@ TurnedAway::Tally* Engine::tallyOf(const BatchContext& c, const SiteInfo& s, con
         const auto& files = c.bound->kernel->files();
         const auto& at = s.site->place;
         t = &world_->turnedAway_.of(
-            {at.file >= 0 && at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column}, *p.shape);
+            {at.file >= 0 && at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column},
+            s.kind == SiteKind::Trace ? "indirectdiffuse" : s.site->op, *p.shape);
     }
     if (const float towards = dot(normal, p.I); towards != 0) TurnedAway::Tally::set(towards > 0 ? t->away : t->facing);
     return t;
+}
+
+void Engine::noteTurnedAway(const BatchContext& c, const SiteInfo& s, int point, const Vec3& normal) {
+    const ShadePoint& p = c.points[size_t(point)];
+    if (!p.shape || !p.ray || !p.ray->camera() || c.light || photonTrace_) return;
+    TurnedAway::Tally& t = *tallyOf(c, s, p, normal);
+    if (!(dot(normal, p.I) > 0) || t.facing || t.open) return; // of what is silent already, no more rays
+    accel::Ray ray;
+    ray.org = leave(c, size_t(point), normal);
+    ray.dir = normal;
+    ray.time = p.shutter;
+    ray.sides = accel::Sides::Both;
+    if (p.ray->sample) ray.level = p.ray->sample->level;
+    accel::Hit hit;
+    if (!meet(ray, hit) || world_->shapes_[hit.shape].get() != p.shape) TurnedAway::Tally::set(t.open);
 }
 
 void Engine::hemisphereRays(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Vec3& at,

@@ -217,6 +217,7 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
             lobes.pop_back();
             return;
         }
+        if (s.trace->hemisphere) noteTurnedAway(c, s, point, params.axis);
         break;
     default:
         break;

@@ -2,17 +2,19 @@
 
 namespace alpenglow::transport {
 
-TurnedAway::Tally& TurnedAway::of(const SourcePlace& call, const geometry::Shape& shape) {
+TurnedAway::Tally& TurnedAway::of(const SourcePlace& call, const std::string& shadeop, const geometry::Shape& shape) {
     std::lock_guard lock(mutex_);
-    return tallies_[call][&shape];
+    Call& of = tallies_[call];
+    of.shadeop = shadeop;
+    return of.shapes[&shape];
 }
 
 std::vector<World::TurnedAwayCall> TurnedAway::blocked() const {
     std::lock_guard lock(mutex_);
     std::vector<World::TurnedAwayCall> all;
-    for (const auto& [call, shapes] : tallies_) {
-        World::TurnedAwayCall f{call, {}, 0};
-        for (const auto& [shape, t] : shapes)
+    for (const auto& [call, of] : tallies_) {
+        World::TurnedAwayCall f{call, {}, of.shadeop, 0};
+        for (const auto& [shape, t] : of.shapes)
             if (t.away && !t.facing && !t.open && (f.primitives++ == 0 || Before{}(shape->place(), f.primitive)))
                 f.primitive = shape->place();
         if (f.primitives > 0) all.push_back(std::move(f));

@@ -1,4 +1,4 @@
-// Calls of occlusion() whose normals face away from the viewer.
+// Calls of occlusion(), indirectdiffuse() and gather() whose normals face away from the viewer.
 #pragma once
 #include "geometry/shape.h"
 #include "world/world.h"
@@ -9,7 +9,8 @@
 namespace alpenglow::transport {
 
 /// A hemisphere about a normal that faces away is what was asked for; but where all of a primitive asks so and all rays are
-/// blocked, the primitive is black in silence, for the shader (or the model) has turned the normal. Thread safe.
+/// blocked, or what looks for light has the primitive itself before it, the primitive is black in silence, for the shader (or the
+/// model) has turned the normal. Thread safe.
 class TurnedAway {
 public:
     /// Of one call on one shape: whether any normal faced the viewer, any faced away, and any ray came through.
@@ -20,7 +21,7 @@ public:
         }
     };
     /// Lives as long as this.
-    Tally& of(const SourcePlace& call, const geometry::Shape&);
+    Tally& of(const SourcePlace& call, const std::string& shadeop, const geometry::Shape&);
 
     std::vector<World::TurnedAwayCall> blocked() const;
 
@@ -31,7 +32,11 @@ private:
         }
     };
     mutable std::mutex mutex_;
-    std::map<SourcePlace, std::map<const geometry::Shape*, Tally>, Before> tallies_;
+    struct Call {
+        std::string shadeop;
+        std::map<const geometry::Shape*, Tally> shapes;
+    };
+    std::map<SourcePlace, Call, Before> tallies_;
 };
 
 } // namespace alpenglow::transport

@@ -42,9 +42,11 @@ public:
     virtual std::vector<std::string> missingOutputs() const { return {}; }
     /// Point clouds and their like in which texture3d() has found nothing at any point until now, with the place of a call.
     virtual std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const { return {}; }
-    /// Calls of occlusion() that have found everything blocked behind normals that face away, all over so many primitives.
+    /// Calls of occlusion(), indirectdiffuse() and gather() that have found everything blocked behind normals that face away, all
+    /// over so many primitives.
     struct TurnedAwayCall {
         SourcePlace call, primitive; ///< the primitive that is the first in the order of files and lines
+        std::string shadeop;
         size_t primitives = 0;
     };
     virtual std::vector<TurnedAwayCall> callsTurnedAway() const { return {}; }

@@ -75,6 +75,9 @@ public:
                                      const std::vector<std::string>& varying, bool mixed, bool path) const;
     BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
                        bool mixed, bool path, Diagnostics&, const std::string& light = "Ci");
+    /// Warns where a shader divides by a parameter that is 0.
+    void sayZeroDivisions(const ShaderInstance&, const rsl::KernelOptions&, Diagnostics&);
+    std::set<std::string> zeroDivisors_; ///< shaders, their calls and such parameters that it has looked at
     /// The outputs of the kernel() of an instance, and whether light that it asks for reaches them.
     std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs,
                                                      const std::vector<std::string>& varying, bool path) const;

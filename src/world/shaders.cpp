@@ -332,6 +332,7 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     auto k = compiler_->kernel(i.program, o, d);
     facts_.compileSec += compileClock() - begin;
     if (!k) return {};
+    sayZeroDivisions(i, o, d);
     std::vector<rsl::InputName> spaces;
     for (const auto& in : k->inputs())
         if (rsl::InputName name = rsl::InputName::parse(in.name); name.kind == rsl::InputName::Kind::Space)

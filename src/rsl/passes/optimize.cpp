@@ -51,31 +51,6 @@ void clean(Kernel& k) {
     }
 }
 
-/// What comes before light and derivatives.
-void simplifyAll(Kernel& k, const KernelOptions& options) {
-    toLongForm(k);
-    check(k, "build");
-    inlineCalls(k, options.outline);
-    check(k, "inline");
-    if (options.optimize > 0) {
-        clean(k);
-        for (int round = 0; round < 3; ++round) {
-            int changes = unrollLoops(k);
-            check(k, "unroll");
-            changes += promoteArrays(k);
-            check(k, "promote");
-            if (changes == 0) break;
-            clean(k);
-        }
-        convertIfs(k);
-        check(k, "ifconvert");
-        clean(k);
-    } else {
-        removeDeadCode(k);
-        check(k, "dce");
-    }
-}
-
 /// Where direct light is asked for as well as indirectdiffuse(), none of both brings what is the other's: see kPairApart. A
 /// kernel that does not wait has all calls of a point before its light is gathered; one that waits must know beforehand.
 void tellApart(Kernel& k) {
@@ -104,8 +79,32 @@ void tellApart(Kernel& k) {
 
 } // namespace
 
+void simplify(Kernel& k, const KernelOptions& options) {
+    toLongForm(k);
+    check(k, "build");
+    inlineCalls(k, options.outline);
+    check(k, "inline");
+    if (options.optimize > 0) {
+        clean(k);
+        for (int round = 0; round < 3; ++round) {
+            int changes = unrollLoops(k);
+            check(k, "unroll");
+            changes += promoteArrays(k);
+            check(k, "promote");
+            if (changes == 0) break;
+            clean(k);
+        }
+        convertIfs(k);
+        check(k, "ifconvert");
+        clean(k);
+    } else {
+        removeDeadCode(k);
+        check(k, "dce");
+    }
+}
+
 std::vector<OutputLight> lightOfOutputs(Kernel& k, const KernelOptions& options) {
-    simplifyAll(k, options);
+    simplify(k, options);
     std::vector<OutputLight> all;
     for (const OutputSlot& o : k.outputs) all.push_back({o, false});
     forEach(k.body, [&](Inst* i) {
@@ -115,7 +114,7 @@ std::vector<OutputLight> lightOfOutputs(Kernel& k, const KernelOptions& options)
 }
 
 void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics) {
-    simplifyAll(k, options);
+    simplify(k, options);
     if (options.optimize > 0 && warnOfZeroDivisions(k, diagnostics) > 0) clean(k);
     orderDerivatives(k, diagnostics); // warns of derivatives of rays while the rays are still there
     if (options.differences) {

@@ -14,6 +14,9 @@ struct OutputLight {
 /// Of a kernel as it was built; changes it. In order of its outputs.
 std::vector<OutputLight> lightOfOutputs(Kernel&, const KernelOptions&);
 
+/// What comes before light and derivatives: inlining, folding, unrolling, conditions.
+void simplify(Kernel&, const KernelOptions&);
+
 /// Runs every pass; in builds with assertions the kernel is verified after each. At options.optimize == 0 only what changes
 /// meaning or interface: affine form, derivative orders, uniformity, unused inputs.
 void optimize(Kernel&, const KernelOptions&, Diagnostics&);

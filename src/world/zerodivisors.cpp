@@ -1,0 +1,26 @@
+// Parameters that shaders divide by and that the scene has set to 0: such a division gives 0, and the shader is often only black.
+#include "rsl/zerodivisors.h"
+#include "rsl/compiler.h"
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+
+void WorldImpl::sayZeroDivisions(const ShaderInstance& i, const rsl::KernelOptions& o, Diagnostics& d) {
+    const rsl::Program& program = i.program->program();
+    const std::vector<std::string> zeros = rsl::zeroDivisors(program, i.program->shader(), i.parameters.numbers);
+    if (zeros.empty()) return;
+    std::string names, key = i.program->name();
+    for (const std::string& name : zeros) names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    if (!zeroDivisors_.insert(key + names + i.place.file + std::to_string(i.place.line)).second) return;
+    const std::string of = i.place.line > 0 ? " at " + i.place.file + ":" + std::to_string(i.place.line) : "";
+    for (const SourcePlace& at : rsl::divisionsByZero(program, i.program->shader(), o, i.parameters.numbers))
+        d.reportOnce("zero division:" + at.file + std::to_string(at.line) + ":" + std::to_string(at.column),
+                     {Severity::Warning,
+                      Rie::Math,
+                      at,
+                      "a division by 0, which gives 0: " + names + (zeros.size() == 1 ? " is 0" : " are 0") + of,
+                      {},
+                      {}});
+}
+
+} // namespace alpenglow::transport

@@ -83,4 +83,51 @@ TEST(VisibleFacets, DeviationsAtFlatAngles) {
         }
 }
 
+namespace {
+
+/// The error, root mean square over 64 digital shifts, of the mean that n points of Hammersley's net give, of a sky that
+/// brightens from one side to the other.
+double errorOf(const OneLobe& lobe, int n) {
+    std::mt19937_64 rng(23 + teststat::seedBase());
+    const Vec3 bright = normalize(Vec3(.7f, -.2f, .4f));
+    double sum = 0, square = 0;
+    const int shifts = 64;
+    for (int k = 0; k < shifts; ++k) {
+        const uint32_t x = uint32_t(rng()), y = uint32_t(rng());
+        double mean = 0;
+        for (uint32_t i = 0; i < uint32_t(n); ++i) {
+            uint32_t reversed = 0;
+            for (int b = 0; b < 32; ++b) reversed |= (i >> b & 1) << (31 - b);
+            const auto unit = [](uint32_t v) { return float(v >> 8) * 0x1p-24f; };
+            Vec3 w;
+            if (!lobe.sample({unit(uint32_t((uint64_t(i) << 32) / uint64_t(n)) ^ x), unit(reversed ^ y)}, w)) continue;
+            const LobeValue v = lobe.value(w);
+            if (v.pdf > 0) mean += double(v.fcos) / double(v.pdf) * (1 + double(dot(w, bright))) / n;
+        }
+        sum += mean, square += mean * mean;
+    }
+    return std::sqrt(std::max(0., square / shifts - sum * sum / shifts / shifts));
+}
+
+} // namespace
+
+// Which side of a groove is seen takes no number of its own. Of independent numbers the error at 1024 points is a fourth of that
+// at 64; of a net, where few draws are lost, it falls by n^-3/4 at least.
+TEST(VisibleFacets, StratifiedNumbersKeepWhatTheyGain) {
+    for (const char* name : {"blinn", "cook-torrance"})
+        for (const float roughness : {.1f, .25f})
+            for (const float degrees : {20.f, 45.f}) {
+                LobeParams p;
+                const float a = degrees * float(kPi) / 180;
+                p.axis = normalize(Vec3(.1f, .3f, .9f));
+                p.wo = Basis(p.axis).toWorld({std::sin(a) * .6f, std::sin(a) * .8f, std::cos(a)});
+                auto m = std::make_shared<DistributionParams>();
+                m->roughness = m->roughnessv = roughness;
+                p.more = m;
+                const OneLobe lobe(*findLobe(name), p);
+                const double few = errorOf(lobe, 64), many = errorOf(lobe, 1024);
+                EXPECT_LT(many, few / 8) << name << " " << roughness << " " << degrees;
+            }
+}
+
 } // namespace visiblefacets_test

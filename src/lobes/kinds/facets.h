@@ -66,13 +66,37 @@ template <class Facets> struct FacetLobe {
     }
 };
 
-/// The side of a V-shaped groove that the viewer sees: one of a facet and its turned one, by what is seen of each (Heitz and
-/// d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", 2014). Values are then no more
-/// than their densities. dn: the density of facets times n . h, with which they are drawn.
+/// How far facets of one slope are turned away from the viewer, cosine and sine, where one of each two that face each other is
+/// taken by what is seen of it: (1 + k cos) / 2 between 0 and 1, k the product of the tangents of the facet and of the viewer.
+/// The number u goes around once, so that what is stratified stays so: the inverse of the distribution, by Newton's steps on a
+/// function that bends one way only. From the dark end on, at the angle t:
+/// (1 - k) t + k (t - sin t) up to k = 1, then t - sin t + sqrt(k^2 - 1) (1 - cos t).
+AL_INLINE Pair<vf> seenInGroove(vf k, vf u) {
+    const vf y = mad(u, vf(2), vf(-1)), rest = (vf(1) - absLanes(y)) * vf(kPi);
+    const vf alone = acosLanes(vf(1) / maxLanes(k, vf(1))); // so far the other one is not seen at all
+    const vf end = vf(kPi) - alone * vf(2);
+    const vf a = maxLanes(vf(1) - k, vf(0)), b = minLanes(k, vf(1)), s = rootOf(mad(k, k, vf(-1)));
+    const vf tiny = vf(1e-20f), third = powLanes(rest * vf(6) / maxLanes(b, tiny), vf(1 / 3.f));
+    vf t = minLanes(minLanes(rest / maxLanes(a, tiny), rootLanes(rest * vf(2) / maxLanes(s, tiny))), minLanes(third, end));
+    for (int step = 0; step < 4; ++step) {
+        const Pair<vf> half = unitCircle(t * vf(.25f / kPi));
+        const vf sine = half.a * half.b * vf(2), rise = half.b * half.b * vf(2); // 1 - cos t
+        const vf value = mad(a, t, mad(b, t - sine, s * rise)) - rest, slope = mad(b, rise, mad(s, sine, a));
+        t = minLanes(maxLanes(t - value / maxLanes(slope, tiny), vf(0)), end);
+    }
+    const vf turned = select(rest > end, absLanes(y) * vf(.5f * kPi), vf(kPi) - alone - t);
+    const Pair<vf> c = unitCircle(turned * vf(.5f / kPi));
+    return {c.a, copySign(c.b, y)};
+}
+/// The side of a V-shaped groove that the viewer sees (Heitz and d'Eon, "Importance Sampling Microfacet-Based BSDFs using the
+/// Distribution of Visible Normals", 2014), of facets that are as steep as h, which lies over x. Values are then no more than
+/// their densities. dn: the density of facets times n . h, with which they are drawn.
 AL_INLINE Direction visibleInGroove(const Direction& h, const Direction& o, vf u) {
-    const Direction other = turnedAbout(h);
-    const vf seen = maxLanes(dot(h, o), vf(0)), both = seen + maxLanes(dot(other, o), vf(0));
-    return select3(withinTurn(u) * both < seen, h, other);
+    const vf flat = rootLanes(mad(o.x, o.x, o.y * o.y)), per = vf(1) / maxLanes(flat, vf(1e-30f));
+    const vf x = select(flat > 0, o.x * per, vf(1)), y = o.y * per;
+    const vf k = minLanes(h.x * flat / maxLanes(h.z * o.z, vf(1e-20f)), vf(1e6f));
+    const Pair<vf> d = seenInGroove(k, u);
+    return {h.x * mad(x, d.a, -y * d.b), h.x * mad(y, d.a, x * d.b), h.z};
 }
 AL_INLINE vf visibleInGroove(const Facet<vf>& f, vf dn) { return minLanes(divide(dn * f.oh, f.nh * f.no), dn * vf(2)); }
 
@@ -89,7 +113,7 @@ struct BlinnFacets {
                 visibleInGroove(f, (e + vf(2)) * vf(0.5f / kPi) * lobe * f.nh)};
     }
     static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
-        return visibleInGroove(samplePhong(p.own(7), u), o, u.b);
+        return visibleInGroove(samplePhong(p.own(7), {u.a, vf(0)}), o, u.b);
     }
 };
 struct AshikhminFacets {
@@ -126,7 +150,7 @@ struct BeckmannFacets {
         return {cookTorrance(f, d, p.triple(kRowEta), p.triple(kRowK)), visibleInGroove(f, d * f.nh)};
     }
     static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
-        return visibleInGroove(fromSlope(-p.own(6) * logOfRest(u.a), unitCircle(u.b)), o, u.b);
+        return visibleInGroove(fromSlope(-p.own(6) * logOfRest(u.a), {vf(1), vf(0)}), o, u.b);
     }
 };
 struct WardFacets {

@@ -17,10 +17,10 @@ RibReader::RibReader(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& d)
 RibReader::~RibReader() = default;
 
 bool RibReader::readFile(const std::string& path) {
-    if (path == "-") return in_->read(standardInput(), "standard input");
+    if (path == "-") return in_->read(standardInput(in_->interpreter.settings.stop), "standard input");
     if (const auto& reads = in_->interpreter.settings.reads) reads->add(path);
     std::string why;
-    auto source = fileSource(path, &why, in_->interpreter.settings.regularFiles);
+    auto source = fileSource(path, &why, in_->interpreter.settings.regularFiles, in_->interpreter.settings.stop);
     if (!source) {
         in_->interpreter.reporter.error(Rie::NoFile, {path, 0, 0}, "the file cannot be read: " + why);
         return false;

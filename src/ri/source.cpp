@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
@@ -42,22 +43,31 @@ private:
 
 class File : public ByteSource {
 public:
-    File(int fd, bool owned) : fd_(fd), owned_(owned) {}
+    File(int fd, bool owned, const StopFlag* stop) : fd_(fd), owned_(owned), stop_(stop) {}
     ~File() override {
         if (owned_) ::close(fd_);
     }
     size_t read(char* out, size_t size) override {
         ssize_t n;
         do {
+            if (!waitForBytes()) return 0;
             n = ::read(fd_, out, size); // what is there: a pipe's requests are seen as they come
-        } while (n < 0 && errno == EINTR);
+        } while (n < 0 && (errno == EINTR || errno == EAGAIN));
         if (n < 0) failure_ = std::string("read error: ") + std::strerror(errno);
         return n > 0 ? size_t(n) : 0;
     }
 
 private:
+    /// Until there is something, be it the end; false: stopped. A system call that waits would begin anew after a signal.
+    bool waitForBytes() const {
+        constexpr int kMilliseconds = 50;
+        pollfd p{fd_, POLLIN, 0};
+        while (stop_ && !*stop_ && ::poll(&p, 1, kMilliseconds) <= 0) {}
+        return !stop_ || !*stop_;
+    }
     int fd_;
     bool owned_;
+    const StopFlag* stop_; ///< may be null
 };
 
 /// Bytes already taken from a stream, then the rest of it.
@@ -154,13 +164,14 @@ private:
 std::unique_ptr<ByteSource> memorySource(std::string_view text) { return std::make_unique<Memory>(text); }
 std::unique_ptr<ByteSource> streamSource(std::istream& in) { return std::make_unique<Stream>(in); }
 
-std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular) {
+std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular, const StopFlag* stop) {
     std::error_code ec;
+    const bool waits = stop && std::filesystem::is_fifo(path, ec); // for its writer: where it is read, not where it is opened
     if (std::filesystem::is_directory(path, ec)) {
         if (why) *why = "it is a directory";
         return nullptr;
     }
-    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular ? O_NONBLOCK : 0));
+    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular || waits ? O_NONBLOCK : 0));
     if (fd < 0) {
         if (why) *why = std::strerror(errno);
         return nullptr;
@@ -171,10 +182,10 @@ std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why
         ::close(fd);
         return nullptr;
     }
-    return std::make_unique<File>(fd, true);
+    return std::make_unique<File>(fd, true, stop);
 }
 
-std::unique_ptr<ByteSource> standardInput() { return std::make_unique<File>(STDIN_FILENO, false); }
+std::unique_ptr<ByteSource> standardInput(const StopFlag* stop) { return std::make_unique<File>(STDIN_FILENO, false, stop); }
 
 std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw, size_t most) {
     std::string head;

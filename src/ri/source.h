@@ -1,6 +1,7 @@
 // Where a RIB stream's bytes come from: memory, a file, an istream, each possibly gzip-compressed.
 #pragma once
 #include "base/limits.h"
+#include "base/stopflag.h"
 #include <cstddef>
 #include <istream>
 #include <memory>
@@ -30,10 +31,11 @@ std::unique_ptr<ByteSource> memorySource(std::string_view text);
 /// The stream must outlive the source.
 std::unique_ptr<ByteSource> streamSource(std::istream& in);
 /// Null when the file cannot be opened or is a directory; *why says which. regular: nor anything else but a regular file, at
-/// once; opening a pipe waits for its writer.
-std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular = false);
+/// once; opening a pipe waits for its writer. stop: set: the source is at its end, also where it waits for bytes; may be null.
+std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular = false,
+                                       const StopFlag* stop = nullptr);
 /// Descriptor 0, unbuffered.
-std::unique_ptr<ByteSource> standardInput();
+std::unique_ptr<ByteSource> standardInput(const StopFlag* stop);
 /// Inflates when the stream starts with 1f 8b (concatenated members too), else passes it through.
 /// Limits: limits::kGzipRatio, and `most` inflated bytes.
 std::unique_ptr<ByteSource> inflating(std::unique_ptr<ByteSource> raw, size_t most = limits::kGzipBytes);

@@ -215,6 +215,7 @@ TEST(GeometryLimits, APointThatIsFarAway) {
     const size_t near = facets(curtain(-.8f), 1);
     EXPECT_GT(near, 1000u);
     EXPECT_EQ(facets(curtain(-.8f), 0x1p30), near);
+    EXPECT_EQ(facets(curtain(-.8f), std::exp2(std::floor(std::log2(limits::kDiceDistance / 16)))), near);
     EXPECT_LT(facets(curtain(1e38f), 1), 200'000u);
     const auto cage = [&](float far) {
         auto p = subdivision(8, "SubdivisionMesh", {});

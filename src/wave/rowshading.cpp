@@ -28,7 +28,8 @@ bool RowShading::takes(const SurfaceBinding& b) const {
 
 bool RowShading::shade(BatchContext& c, Sched& sched) {
     if (!e_.events_.empty() || e_.photonTrace() || !e_.gathered_.empty() || !e_.traceSums_.empty()) return false;
-    for (const PathRay& r : c.rays) // what is told of it needs its point
+    // A ray that fades with distance, or whose call asks for distance and normal of the hit, needs the point that it met.
+    for (const PathRay& r : c.rays)
         if ((r.extra >= 0 && e_.extraOf(r).fade.fades()) || (r.first && !(r.counts && sched.plain()))) return false;
     c.points.clear();
     run(c);

@@ -54,19 +54,21 @@ uint32_t numberOf(const WorldImpl& world, const BoundLight& light) {
 /// Whether the point of a lane is one that bakes, and its place among all. `light`: numberOf() one, 0: none.
 bool keyOf(const shading::PathRay* r, const ShadePoint& p, bool centre, uint32_t light, clouds::BakeKey& key) {
     if (!r || !r->camera() || r->bounces > 0 || !r->sample) return false;
-    if (const shading::GridPoint* g = r->sample->grid) {
+    const shading::GridPoint* g = r->sample->grid;
+    if (g && !g->micropolygon) {
         if (r->layers > 0 || r->vertex != 0 || g->corner == centre) return false;
         key = {false, r->sample->py, r->sample->px, 0, light, r->sample->sample};
         return true;
     }
     if (light || r->sample->records || !p.shape || shading::hasGrid(*p.shape)) return false; // its grid has been shaded
     key = {true, r->sample->py, r->sample->px, r->layers, r->vertex, r->sample->sample};
+    if (g) key.layers = int32_t(uint32_t(g->micropolygon >> 32)), key.vertex ^= uint32_t(g->micropolygon);
     return true;
 }
 
 /// The radius of the disk about a point, and the part of the surface that it stands for. Camera space.
 std::pair<float, float> extentOf(const shading::PathRay& r, const ShadePoint& p) {
-    if (r.sample->grid) return {r.sample->grid->radius, r.sample->grid->area};
+    if (r.sample->grid && !r.sample->grid->micropolygon) return {r.sample->grid->radius, r.sample->grid->area};
     const float half = r.footprint.at(length(p.P - r.origin)); // of a pixel
     return {half * 1.41421356f, 4 * half * half};
 }

@@ -1,6 +1,7 @@
 // What the renderer answers at once: messages, the state of rays and attributes; textures in maps.cpp.
 #include "answers/answers.h"
 #include "rsl/services_basic.h"
+#include "shading/gridpoint.h"
 
 namespace alpenglow::transport {
 
@@ -182,6 +183,7 @@ void Answers::print(const ServiceCall& call, int lane, const std::string& text) 
             key.sample = r->sample->sample;
             key.x = r->sample->px;
             key.y = r->sample->py;
+            if (const shading::GridPoint* g = r->sample->grid) key.point = g->micropolygon, key.run = g->run;
         }
         key.bounces = r->bounces;
         key.vertex = r->vertex;

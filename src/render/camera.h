@@ -54,6 +54,7 @@ public:
     /// DepthOfField has one, or Hider "raytrace" "lensDiameter".
     bool hasLens() const { return lensRadius_ > 0; }
     const LensGrid& lensGrid() const { return lensGrid_; }
+    bool stereo() const { return stereo_ != Stereo::None; } ///< a pair of pictures, or one of it
     double shutterOpen() const { return shutter_.open; }
     double shutterClose() const { return shutter_.close; }
 

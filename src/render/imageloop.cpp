@@ -42,6 +42,17 @@ Jitter jitterOf(const scene::Options& o, Diagnostics& diags) {
     return Jitter::Jittered;
 }
 
+bool shadesMicropolygons(const scene::Options& o, Diagnostics& diags) {
+    const scene::Param* p = scene::find(o.hiderParams, "shading");
+    if (!p)
+        if (auto i = o.values.find("hidden:shading"); i != o.values.end()) p = &i->second;
+    if (!p || p->strings.empty() || p->strings[0] == "micropolygon") return true;
+    if (p->strings[0] == "sample") return false;
+    diags.report(Severity::Error, Rie::Range, p->place,
+                 "\"shading\" of hidden is \"micropolygon\" or \"sample\"; \"micropolygon\" is used");
+    return true;
+}
+
 transport::CameraRay imageRay(const Camera& camera, Vec2 position, uint64_t seed, int x, int y, uint32_t sample) {
     Vec2 lens{0.5f, 0.5f};
     float time = 0;

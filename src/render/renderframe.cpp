@@ -191,6 +191,7 @@ transport::Settings Renderer::engineSettings(const FrameWork& f) const {
     t.lightPaths = f.plan.lightPaths;
     t.firstSeen = f.path && f.plan.needsFirstSeen();
     t.stop = settings_.stop;
+    t.micropolygons = f.hider == Hider::Hidden && !f.camera.stereo() && shadesMicropolygons(f.o, diagnostics_);
     return t;
 }
 

@@ -33,6 +33,7 @@ void PrintLog::keep(Message m) {
 
 void PrintLog::add(const PrintKey& key, const std::string& text) {
     const std::lock_guard lock(mutex_);
+    if (key.run && runOf_.try_emplace(key.point, key.run).first->second != key.run) return;
     const std::string name = nameOf(key);
     if (size_t& n = kept_[name]; ++n > kOfOneCall) {
         ++lost_[name];
@@ -63,6 +64,7 @@ void PrintLog::discard() {
     bytes_ = 0;
     kept_.clear();
     lost_.clear();
+    runOf_.clear();
 }
 
 bool PrintLog::pending() {

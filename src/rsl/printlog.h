@@ -2,6 +2,7 @@
 #pragma once
 #include "base/limits.h"
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -26,6 +27,9 @@ struct PrintKey {
     std::array<float, 3> place{}; ///< the point: shaders of lights run for several of one vertex
     /// Of the call in the shader: file, line and column. It orders nothing: messages of one run stay in their order.
     std::array<int32_t, 3> call{};
+    /// Of a point that may be shaded more than once, as micropolygons are: its name, and PrintLog::newRun(). What it prints is
+    /// kept of the first run that prints. 0: it is shaded once.
+    uint64_t point = 0, run = 0;
 };
 
 /// Collects messages until flush(). Thread safe. Messages with equal keys come from one run of a shader and stay in their order.
@@ -41,6 +45,7 @@ public:
     /// more than limits::kPrintRuns of these, or no room for them, everything is written first: the order then holds within each
     /// part.
     void add(const PrintKey&, const std::string& text);
+    uint64_t newRun() { return ++runsBegun_; } ///< a PrintKey::run that nobody has had
     /// The same for what construct() prints, which runs once for a shader by the book and here in every run of its code: a text
     /// of one place (`where`, any name for it) is kept once, before all samples, and discard() does not forget it. Beyond
     /// limits::kPrintBytes of them no more are kept.
@@ -55,6 +60,8 @@ public:
     void goOn(PrintLog& before);
 
 private:
+    std::atomic<uint64_t> runsBegun_{0};
+    std::unordered_map<uint64_t, uint64_t> runOf_; ///< by PrintKey::point
     struct Message {
         PrintKey key;
         std::string text;

@@ -18,6 +18,8 @@ constexpr OptionDescription kOptions[] = {
     {"checkpoint:interval", "", "", "", Ignored, "PRMan; --checkpoint is the way here"},
     {"curve:minwidth", "", "", "", Ignored, kPrman},
     {"dice:maxhairlength", "", "", "", Ignored, kPrman},
+    {"hidden:shading", "string", "\"micropolygon\"", "\"sample\"", Used,
+     "The same as the hider's parameter shading, which has precedence."},
     {"hider:aperture", "float[4]", "[0 0 0 0]", "[6 15 0.2 0]", Used,
      "The same as the hider's parameter aperture, which has precedence."},
     {"hider:depthfilter", "string", "\"min\"", "\"midpoint\"", Used,
@@ -184,6 +186,9 @@ constexpr OptionDescription kHiderParameters[] = {
     {"samplemotion", "int", "0", "1", Used,
      "hidden: surfaces are shaded at the time of each sample, not when the shutter opens."},
     {"samplepattern", "", "", "", Ignored, kSeveral},
+    {"shading", "string", "\"micropolygon\"", "\"sample\"", Used,
+     "hidden: \"micropolygon\": surfaces are shaded on micropolygons of ShadingRate, once for all samples that see them, as "
+     "ShadingInterpolation says; \"sample\": each sample is shaded where it lies."},
     {"sigma", "", "", "", Ignored, kPrman},
     {"sigmablur", "", "", "", Ignored, kPrman},
     {"subpixel", "", "", "", Ignored, kPrman},

@@ -1,4 +1,5 @@
-// Points of grids over whole primitives, which are shaded for what shaders bake there, seen or not.
+// Points of primitives that are shaded whatever lies before them: of whole grids, for what shaders bake there, seen or not; and of
+// the micropolygons that camera samples see.
 #pragma once
 #include <cstdint>
 
@@ -11,6 +12,9 @@ struct GridPoint {
     float radius = 0;   ///< of a disk that covers its part of the surface; camera space
     float area = 0;     ///< of its part of the surface: of all points of a grid they add up to the shape
     bool corner = true; ///< of micropolygons; else the middle of one
+    /// Not 0: not for what it bakes, but a micropolygon that camera samples take, by this key of its random numbers.
+    uint64_t micropolygon = 0;
+    uint64_t run = 0; ///< rsl::PrintKey::run
 };
 
 } // namespace alpenglow::shading

@@ -1,7 +1,9 @@
 // The top of the engine: a world that the engine's own kernels help to build, and the engine that follows its rays.
 #include "transport/integrator.h"
 #include "wave/engine.h"
+#include "wave/gridshading.h"
 #include "wave/kernelevaluator.h"
+#include <optional>
 
 namespace alpenglow::transport {
 
@@ -11,12 +13,16 @@ std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame> fram
 
 struct Integrator::Impl {
     Engine engine;
-    Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : engine(std::move(w), d) {}
+    std::optional<GridShading> grids;
+    Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : engine(std::move(w), d) {
+        if (GridShading::takes(engine.world())) grids.emplace(engine);
+    }
 };
 Integrator::Integrator(std::shared_ptr<const World> w, Diagnostics& d)
     : impl_(std::make_unique<Impl>(std::static_pointer_cast<const WorldImpl>(std::move(w)), d)) {}
 Integrator::~Integrator() = default;
 bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) {
+    if (impl_->grids && !r.empty() && !r[0].grid && !r[0].depths && !r[0].records) return impl_->grids->trace(r, out, stop);
     return impl_->engine.trace(r, out, stop);
 }
 bool Integrator::unfinished() const { return impl_->engine.unfinished(); }

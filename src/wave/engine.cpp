@@ -1,5 +1,6 @@
 // The engine of a thread: calls of trace(), and what rays and batches share.
 #include "base/memory.h"
+#include "shading/gridpoint.h"
 #include "wave/gather.h"
 #include "wave/medium.h"
 #include "wave/rowshading.h"
@@ -159,7 +160,11 @@ void Engine::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     r.footprint = {c.width, c.spread};
     r.setStart(c.start);
     r.media = world_->eye_.count && !c.grid ? &world_->eye_ : nullptr;
-    if (world_->fades_) sample.level = random(r).one(0, kLevel, 0);
+    if (c.grid && c.grid->micropolygon) {
+        const uint64_t key = c.grid->micropolygon;
+        sample.numbers = render::SampleNumbers(render::Sampler(seed_, int(uint32_t(key)), int(uint32_t(key >> 32))), c.sample);
+    }
+    if (world_->fades_) sample.level = levelOfSample(c);
     r.counts = true;
 }
 

@@ -374,6 +374,8 @@ public:
     void beginTrace();                                              ///< nothing waits and nothing is spoiled
     void endTrace(const Sched&);                                    ///< counts what the scheduler saw, and forgets
     accel::Ray rayOf(const PathRay&) const;                         ///< as the tree follows it
+    void clip(accel::Ray&) const;                                   ///< keeps a camera ray within the clipping planes
+    float levelOfSample(const CameraRay&) const;                    ///< PathSample::level
     void beginRay(const CameraRay&, size_t i, PathRay&);            ///< the i-th of a call
     /// What is left of light along camera rays, behind each surface that they meet: SampleResult::left. depths.cpp
     bool seeThrough(std::span<const CameraRay>, std::span<SampleResult>);
@@ -442,7 +444,10 @@ private:
     std::unique_ptr<class BlockVertices> blockVertices_;
     std::unique_ptr<class RowShading> rows_;
     std::vector<accel::Ray> rays_, shadowRays_;
-    std::vector<accel::Hit> hits_;
+    std::vector<accel::Hit> hits_, found_;
+    std::vector<uint32_t> given_; ///< of a slice, the rays whose points are given
+    /// Whether a ray meets the point that its sample gives, whatever is there.
+    static bool beginsAtGrid(const PathRay& r) { return r.sample->grid && r.camera() && r.bounces == 0 && r.layers == 0; }
     std::vector<geometry::HitRef> run_;
     std::vector<uint8_t> blocked_;
     std::vector<shading::InstanceView> views_;

@@ -11,7 +11,9 @@ static_assert(accel::DirectRays::kSize == kBlock);
 
 /// hits_, as cast() finds them. False: some ray needs more than rows hold.
 bool Engine::castRows(std::span<const Sched::Task> slice) {
-    if (!rowsToRays_ || grids_) return false;
+    if (!rowsToRays_) return false;
+    if (grids_ && std::any_of(slice.begin(), slice.end(), [](const Sched::Task& t) { return beginsAtGrid(t.payload); }))
+        return false;
     constexpr int kWords = 16; // from PathRay::origin to media
     hits_.resize(slice.size());
     uint64_t of[4] = {}; // by RayType

@@ -38,6 +38,19 @@ bool Engine::settle(Sched& sched) {
     return true;
 }
 
+void Engine::clip(accel::Ray& ray) const {
+    for (const auto& [point, normal] : world_->clippingPlanes_) {
+        double height = dot(normal, Vec3d(ray.org) - point), climb = dot(normal, Vec3d(ray.dir)), t = -height / climb;
+        if (climb > 0) ray.tfar = std::min(ray.tfar, float(std::max(t, 0.0)));
+        else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
+        else if (height > 0) ray.tfar = 0; // along the plane, on its cut side
+    }
+}
+
+float Engine::levelOfSample(const CameraRay& c) const {
+    return Random(render::SampleNumbers(render::Sampler(seed_, c.px, c.py), c.sample)).one(0, kLevel, 0);
+}
+
 /// A ray as the tree follows it: within the clipping planes, meeting what it may meet.
 accel::Ray Engine::rayOf(const PathRay& r) const {
     accel::Ray ray;
@@ -45,13 +58,7 @@ accel::Ray Engine::rayOf(const PathRay& r) const {
     ray.dir = r.dir;
     ray.tnear = 0;
     ray.tfar = r.maxDistance;
-    if (r.camera())
-        for (const auto& [point, normal] : world_->clippingPlanes_) {
-            double height = dot(normal, Vec3d(r.origin) - point), climb = dot(normal, Vec3d(r.dir)), t = -height / climb;
-            if (climb > 0) ray.tfar = std::min(ray.tfar, float(std::max(t, 0.0)));
-            else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
-            else if (height > 0) ray.tfar = 0; // along the plane, on its cut side
-        }
+    if (r.camera()) clip(ray);
     ray.time = world_->shutterOf(r);
     ray.mask = visibilityBit(r.type());
     ray.excludeShape = ray.excludePrim = geometry::kNone;
@@ -109,16 +116,25 @@ void Engine::block(std::span<const accel::Ray> rays, std::span<uint8_t> blocked)
 void Engine::cast(std::span<const Sched::Task> slice) {
     rays_.clear();
     hits_.resize(slice.size());
-    for (const Sched::Task& t : slice) {
-        rays_.push_back(rayOf(t.payload));
-        ++raysOf(t.payload.type());
-    }
-    meet(rays_, hits_);
+    given_.clear();
     for (size_t i = 0; i < slice.size(); ++i) {
         const PathRay& r = slice[i].payload;
-        if (!r.sample->grid || !r.camera() || r.bounces > 0 || r.layers > 0) continue;
+        ++raysOf(r.type());
+        if (!beginsAtGrid(r)) rays_.push_back(rayOf(r));
+        else given_.push_back(uint32_t(i));
+    }
+    if (given_.empty()) return meet(rays_, hits_);
+    found_.resize(rays_.size());
+    meet(rays_, found_);
+    size_t next = 0, met = 0;
+    for (size_t i = 0; i < slice.size(); ++i) {
+        if (next == given_.size() || given_[next] != i) {
+            hits_[i] = found_[met++];
+            continue;
+        }
+        const PathRay& r = slice[given_[next++]].payload;
         const shading::GridPoint& g = *r.sample->grid;
-        hits_[i] = {g.distance, g.shape, g.prim, rays_[i].time, g.b1, g.b2, g.distance};
+        hits_[i] = {g.distance, g.shape, g.prim, world_->shutterOf(r), g.b1, g.b2, g.distance};
     }
 }
 

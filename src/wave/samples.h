@@ -59,6 +59,7 @@ struct SampleResult {
     std::vector<Color> parts;    ///< of `color`, by Settings::lightPaths; empty: none are asked for
     Color albedo{0};             ///< with Settings::firstSeen: what the lobes of the surfaces seen give back of even light
     Vec3 normal{0.f};            ///< and their unit normals, camera space, by coverage
+    Color behind{0}; ///< of a ray with a grid point: what comes through it of the light behind; nothing is followed there
 };
 
 } // namespace alpenglow::transport

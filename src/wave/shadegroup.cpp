@@ -150,7 +150,8 @@ void Engine::finishStrip(BatchContext& c, int first, int lanes, Sched& sched, st
         }
         const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
         const Color clear = chance > 0 && !c.opaque ? goesOn(c, i) : Color(0);
-        if (maxComponent(clear) > 0)
+        if (ray.counts && ray.sample->grid) results[size_t(ray.sample->path)]->behind = clear;
+        else if (maxComponent(clear) > 0)
             passThrough(binding, ray, c.targets[i], c.points[i], clear, chance, asked.empty() ? 0 : asked[size_t(i - first)],
                         sched);
     }

@@ -30,11 +30,14 @@ struct Settings {
     bool unbiased = false;               ///< no scaling of indirect weights above 1
     bool localRoulette = false;          ///< the seed's rule (--preset slproject) instead of throughput
     bool roulette = true;
-    bool suspend = false;    ///< force suspending kernels where affine ones exist (tests)
-    bool mixedOnly = false;  ///< build V everywhere (tests: it has the same bits as S)
-    bool bsdfOnly = false;   ///< no light sampling, emission counts in full (tests, T6)
-    bool lightOnly = false;  ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
-    bool blocks = true;      ///< vertices of lobes alone are followed 16 at a time (tests: one by one they have the same bits)
+    bool suspend = false;   ///< force suspending kernels where affine ones exist (tests)
+    bool mixedOnly = false; ///< build V everywhere (tests: it has the same bits as S)
+    bool bsdfOnly = false;  ///< no light sampling, emission counts in full (tests, T6)
+    bool lightOnly = false; ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
+    bool blocks = true;     ///< vertices of lobes alone are followed 16 at a time (tests: one by one they have the same bits)
+    /// hidden: camera samples take the colours of micropolygons, which are shaded once for all samples that see them; false: each
+    /// sample is shaded where it lies.
+    bool micropolygons = false;
     bool evenLights = false; ///< many lights: each is as likely to be sampled as any other (tests, measurements)
     MediumSampling mediumSampling = MediumSampling::Both;
     std::vector<std::string> shaderPaths, texturePaths;

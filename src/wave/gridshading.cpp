@@ -1,0 +1,249 @@
+#include "wave/gridshading.h"
+#include "base/hash.h"
+#include "scene/scene.h"
+#include "wave/engine.h"
+#include "wave/limits.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+namespace {
+
+constexpr int kColour = 0, kOpacity = 3, kClear = 6, kOutputs = 9; ///< floats of a slot
+constexpr uint32_t kFree = 0xffffffffu;
+
+Color colourAt(const float* v) { return {v[0], v[1], v[2]}; }
+void put(float* to, const Color& c) { to[0] = c.x, to[1] = c.y, to[2] = c.z; }
+
+} // namespace
+
+bool GridShading::takes(const WorldImpl& w) {
+    if (!w.settings_.micropolygons || !w.shadesAtOpen_ || w.unmade_ || !w.media_.empty()) return false;
+    return std::none_of(w.skies_.begin(), w.skies_.end(), [&](int l) { // seen behind everything, sample by sample
+        const BoundLight& sky = w.lights_[size_t(l)];
+        return sky.kind == LightKind::Environment && sky.strategy == LightStrategy::Trace;
+    });
+}
+
+GridShading::GridShading(Engine& e)
+    : engine_(e), world_(e.world()), lattices_(world_), camera_(world_.frame_->options), stride_(kOutputs) {
+    for (const int width : world_.outputWidths_) {
+        for (int k = 0; k < width; ++k) colour_.push_back(width % 3 == 0 ? uint8_t(k % 3) : 3);
+        stride_ += size_t(width);
+    }
+    forget();
+}
+
+void GridShading::forget() {
+    keys_.clear();
+    values_.clear();
+    table_.assign(1024, {kFree, 0});
+    last_ = kFree;
+}
+
+/// Doubles the table.
+void GridShading::grow() {
+    table_.assign(2 * table_.size(), {kFree, 0});
+    for (uint32_t slot = 0; slot < keys_.size(); ++slot) {
+        if (!keys_[slot].shared()) continue;
+        const uint64_t hash = keys_[slot].hash();
+        size_t at = hash & (table_.size() - 1);
+        while (table_[at].slot != kFree) at = (at + 1) & (table_.size() - 1);
+        table_[at] = {slot, uint32_t(hash >> 32)};
+    }
+}
+
+void GridShading::begin(std::span<const CameraRay> rays, std::span<SampleResult> out) {
+    if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget();
+    samples_.resize(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) {
+        std::vector<float> outputs = std::move(out[i].aovs); // its memory is used again
+        outputs.assign(colour_.size(), 0.f);
+        out[i] = SampleResult{};
+        out[i].aovs = std::move(outputs);
+        samples_[i] = Sample{};
+        samples_[i].number = uint32_t(i);
+        samples_[i].origin = rays[i].origin;
+    }
+}
+
+/// What the samples that go on meet next: hits_, points_.
+void GridShading::meet(std::span<const CameraRay> rays) {
+    rays_.resize(samples_.size());
+    hits_.assign(samples_.size(), {});
+    points_.resize(samples_.size());
+    for (size_t i = 0; i < samples_.size(); ++i) {
+        const CameraRay& c = rays[samples_[i].number];
+        accel::Ray& r = rays_[i] = accel::Ray{};
+        r.org = samples_[i].origin;
+        r.dir = c.direction;
+        r.time = c.shutter;
+        r.mask = visibilityBit(RayType::Camera);
+        r.sides = shading::kCameraKind.set.sides;
+        if (world_.fades_) r.level = engine_.levelOfSample(c);
+        engine_.clip(r);
+    }
+    engine_.meet(rays_, hits_);
+    for (size_t i = 0; i < samples_.size(); ++i) points_[i] = rays_[i].org + rays_[i].dir * float(hits_[i].distance);
+}
+
+/// The slot of a micropolygon; a new one is noted, to be shaded.
+uint32_t GridShading::slotOf(const MicropolygonShare& s) {
+    if (last_ < keys_.size() && keys_[last_] == s.key && s.key.shared()) return last_; // samples of a pixel come together
+    const uint32_t next = uint32_t(keys_.size());
+    if (s.key.shared()) {
+        if (2 * keys_.size() >= table_.size()) grow();
+        const uint64_t hash = s.key.hash();
+        size_t at = hash & (table_.size() - 1);
+        for (; table_[at].slot != kFree; at = (at + 1) & (table_.size() - 1))
+            if (table_[at].tag == uint32_t(hash >> 32) && keys_[table_[at].slot] == s.key) return last_ = table_[at].slot;
+        table_[at] = {next, uint32_t(hash >> 32)};
+    }
+    keys_.push_back(s.key);
+    fresh_.push_back(s);
+    return last_ = next;
+}
+
+void GridShading::findShares() {
+    shares_.clear();
+    fresh_.clear();
+    firstFresh_ = uint32_t(keys_.size());
+    for (Sample& s : samples_) s.n = 0;
+    lattices_.find(hits_, points_, [&](size_t i, const MicropolygonShare& share) {
+        Sample& s = samples_[i];
+        if (s.n++ == 0) s.first = uint32_t(shares_.size());
+        shares_.push_back({slotOf(share), share.weight});
+    });
+}
+
+/// The ray by which the eye sees a micropolygon.
+CameraRay GridShading::rayTo(const MicropolygonShare& s, shading::GridPoint& point) const {
+    point = {s.key.shape, s.key.prim, s.b1, s.b2};
+    point.micropolygon = s.key.shared() ? s.key.hash()
+                                        : s.key.hash() + render::mix64(std::bit_cast<uint64_t>(s.b1)) +
+                                              3 * render::mix64(std::bit_cast<uint64_t>(s.b2));
+    point.corner = false;
+    geometry::SurfacePoint p;
+    const geometry::HitRef at{s.key.prim, s.b1, s.b2, &p, 0};
+    world_.shapes_[s.key.shape]->points({&at, 1}, 0);
+    const Vec3 P = p.displaced ? p.displacedP : p.P;
+    CameraRay r;
+    r.direction = camera_.towards(P);
+    if (camera_.perspective) {
+        r.spread = camera_.pixel * r.direction.z / 2;
+        point.distance = length(P);
+    } else {
+        r.origin = Vec3(P.x, P.y, std::min(0.f, P.z - 1));
+        r.width = camera_.pixel / 2;
+        point.distance = P.z - r.origin.z;
+    }
+    r.cosine = r.direction.z;
+    r.time = world_.shutter_.opens() ? float(world_.shutter_.open) : 0;
+    r.px = int(s.key.prim);
+    r.py = int(s.key.shape);
+    r.grid = &point;
+    return r;
+}
+
+void GridShading::keep(uint32_t slot, const SampleResult& r) {
+    float* v = values(slot);
+    put(v + kColour, r.color);
+    put(v + kOpacity, r.opacity);
+    put(v + kClear, r.behind);
+    std::copy(r.aovs.begin(), r.aovs.end(), v + kOutputs);
+}
+
+/// Shades the new ones. False: stopped, and nothing of the cache is valid.
+bool GridShading::shade(const StopFlag* stop) {
+    values_.resize(keys_.size() * stride_);
+    constexpr size_t kAtOnce = 4096;
+    std::vector<shading::GridPoint> points;
+    std::vector<CameraRay> rays;
+    std::vector<SampleResult> results;
+    for (size_t first = 0; first < fresh_.size(); first += kAtOnce) {
+        const size_t n = std::min(kAtOnce, fresh_.size() - first);
+        points.resize(n);
+        rays.clear();
+        results.resize(n);
+        const uint64_t run = world_.prints_.newRun();
+        for (size_t i = 0; i < n; ++i) {
+            rays.push_back(rayTo(fresh_[first + i], points[i]));
+            points[i].run = run;
+        }
+        Counters& c = engine_.counters;
+        const uint64_t paths = c.paths, camera = c.camera;
+        const bool whole = engine_.trace(rays, results, stop);
+        c.paths = paths, c.camera = camera; // these are counted by sample
+        if (!whole) return false;
+        for (size_t i = 0; i < n; ++i) keep(uint32_t(firstFresh_ + first + i), results[i]);
+    }
+    return true;
+}
+
+/// A sample goes on behind what it met, `clear` of which lets light through. False: it ends.
+bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit, const Color& clear) const {
+    if (!(maxComponent(clear) > 0)) return false;
+    if (++s.layers > limits::kPathDepth / 32) {
+        ++engine_.counters.depthCap;
+        return false;
+    }
+    geometry::SurfacePoint p;
+    world_.accel_->point(hit, p, 0);
+    s.origin = geometry::offsetOrigin(p, ray.direction);
+    s.weight *= clear;
+    return true;
+}
+
+/// Adds what samples have met to their results. Those that go on stay in samples_.
+void GridShading::show(std::span<const CameraRay> rays, std::span<SampleResult> out) {
+    size_t left = 0;
+    for (size_t i = 0; i < samples_.size(); ++i) {
+        Sample s = samples_[i];
+        if (s.n == 0) continue;
+        SampleResult& r = out[s.number];
+        const CameraRay& ray = rays[s.number];
+        const float z = s.origin.z + ray.direction.z * float(hits_[i].distance);
+        if (r.z >= 1e38f) r.z = z;
+        else if (r.zSecond >= 1e38f) r.zSecond = z;
+        Color clear(0);
+        const Color w = s.weight;
+        const float grey = luminance(w);
+        for (uint32_t k = s.first; k < s.first + s.n; ++k) {
+            const float* v = values(shares_[k].slot);
+            const float part = shares_[k].weight;
+            r.color += w * part * colourAt(v + kColour);
+            r.opacity += w * part * colourAt(v + kOpacity);
+            clear += part * colourAt(v + kClear);
+            for (size_t o = 0; o < colour_.size(); ++o)
+                r.aovs[o] += part * (colour_[o] < 3 ? w[colour_[o]] : grey) * v[kOutputs + o];
+        }
+        if (goesOn(s, ray, hits_[i], clear)) samples_[left++] = s;
+    }
+    samples_.resize(left);
+}
+
+bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    begin(rays, out);
+    engine_.counters.paths += rays.size();
+    engine_.counters.camera += rays.size();
+    while (!samples_.empty()) {
+        meet(rays);
+        if (stop && *stop) return false;
+        findShares();
+        if (!shade(stop)) {
+            forget();
+            return false;
+        }
+        show(rays, out);
+    }
+    const float clampAt = world_.settings_.sampleClamp;
+    for (SampleResult& r : out) {
+        const float m = maxComponent(r.color);
+        if (clampAt > 0 && m > clampAt) r.color *= clampAt / m; // pathtracer.md 6
+        r.opacity = {std::min(r.opacity.x, 1.f), std::min(r.opacity.y, 1.f), std::min(r.opacity.z, 1.f)};
+    }
+    return true;
+}
+
+} // namespace alpenglow::transport

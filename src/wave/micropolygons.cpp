@@ -1,0 +1,265 @@
+#include "wave/micropolygons.h"
+#include "base/hash.h"
+#include "geometry/placed.h"
+#include "scene/scene.h"
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace alpenglow::transport {
+
+namespace {
+
+using geometry::Shape;
+
+constexpr int kMostSteps = 32767;          ///< of a lattice along a parameter
+constexpr size_t kPieces = 1 << 18;        ///< primitives whose lengths are kept, at most
+constexpr float kNarrowest = 0.25f;        ///< of an edge that the eye looks along: the part of its length that counts
+constexpr float kSmallestSmooth = 1.5f;    ///< pixels: facets with shorter edges have one colour
+constexpr float kOrthographicFallback = 1; ///< cosine
+
+/// The number of steps that cover so many edges: a power of 2^(1/4), rounded.
+uint16_t stepsFor(float edges) {
+    if (!(edges > 1)) return 1;
+    const double x = std::min(double(edges), double(kMostSteps)), fourth = x * x * x * x * 1.4142135623730951;
+    const int quarters = int(std::bit_cast<uint64_t>(fourth) >> 52) - 1023; // floor(4 log2 x + 1/2)
+    constexpr double kParts[] = {1, 1.189207115002721, 1.4142135623730951, 1.681792830507429};
+    return uint16_t(std::min(kParts[quarters & 3] * double(1 << (quarters >> 2)) + 0.5, double(kMostSteps)));
+}
+
+/// The length of an edge as the eye sees it that looks at it in direction d.
+float seenLength(const Vec3& edge, const Vec3& d) {
+    const float whole = dot(edge, edge), along = dot(edge, d);
+    return std::sqrt(std::max(whole - along * along, whole * (kNarrowest * kNarrowest)));
+}
+
+/// The shape whose triangles or parameters rays meet, as the shutter opens.
+const Shape& baseOf(const Shape& s) {
+    const geometry::Placed* placed = s.placed();
+    if (!placed) return s;
+    return placed->deforming() ? *placed->deforming()->keys()[0] : *placed->geometry();
+}
+
+bool inside(double b) { return b >= 0 && b <= 1; }
+
+/// The cell of a parameter among n.
+uint16_t cellOf(double b, int n) { return uint16_t(std::clamp(int(b * n), 0, n - 1)); }
+
+} // namespace
+
+uint64_t MicropolygonKey::hash() const {
+    const uint64_t a = uint64_t(shape) << 32 | prim,
+                   b = uint64_t(steps[0]) << 48 | uint64_t(steps[1]) << 32 | uint64_t(at[0]) << 16 | at[1];
+    return render::mix64(a ^ render::mix64(b + (corner ? 0x9e3779b97f4a7c15ull : 0)));
+}
+
+MicropolygonCamera::MicropolygonCamera(const scene::Options& o) {
+    const geometry::DiceCamera c = geometry::DiceCamera::from(o);
+    perspective = c.perspective;
+    pixel = float(kOrthographicFallback / c.pixelsPerUnit);
+}
+
+Micropolygons::Micropolygons(const WorldImpl& w) : world_(w), camera_(w.frame_->options) {
+    lattices_.reserve(w.shapes_.size());
+    for (uint32_t i = 0; i < w.shapes_.size(); ++i) lattices_.push_back(latticeOf(i));
+}
+
+Micropolygons::Lattice Micropolygons::latticeOf(uint32_t shape) const {
+    const Shape& s = *world_.shapes_[shape];
+    const Shape& base = baseOf(s);
+    Lattice l;
+    l.edge = float(geometry::diceEdge(s.attributes()));
+    l.smooth = s.attributes().smoothShading;
+    if (!base.exact()) {
+        l.kind = Kind::Triangles;
+        l.mesh = &base.mesh();
+        l.paired = base.diced();
+        if (s.placed()) l.place = s.placed()->fromGeometry(0);
+    } else if (base.kind() == "Blobby") {
+        l.kind = Kind::Single; // its hits are places on the sides of boxes
+    } else {
+        l.kind = base.exactPrims() == 1 ? Kind::Surface : Kind::Pieces;
+    }
+    return l;
+}
+
+void Micropolygons::setSteps(MicropolygonKey& key, Lengths l, const Lattice& of, const Vec3& P) const {
+    const float edge = camera_.pixelAt(P) * of.edge;
+    key.steps[0] = stepsFor(l.u / edge);
+    key.steps[1] = stepsFor(l.v / edge);
+}
+
+/// Of two triangles of a diced surface that are the halves of a quad: their micropolygon, shaded in its middle.
+bool Micropolygons::pair(const geometry::TriMesh& mesh, MicropolygonShare& s) const {
+    const uint32_t even = s.key.prim & ~1u;
+    if (even + 1 >= mesh.triangles()) return false;
+    const uint32_t *a = &mesh.index[3 * size_t(even)], *b = a + 3;
+    bool common[3];
+    int n = 0;
+    for (int k = 0; k < 3; ++k) n += common[k] = std::find(b, b + 3, a[k]) != b + 3;
+    if (n != 2) return false;
+    s.key.prim = even;
+    s.b1 = common[1] ? 0.5 : 0;
+    s.b2 = common[2] ? 0.5 : 0;
+    return true;
+}
+
+namespace {
+
+/// A triangle as its lattice has it: from the corner that lies opposite the longest edge, so that cells of the halves of a
+/// rectangle are rectangles. b1 and b2 are weights of the next corner and of the one after it.
+struct Turned {
+    int first = 0; ///< that corner
+    Vec3 e1, e2;   ///< edges from there
+    double b1, b2;
+    Turned(const Vec3 p[3], double weight1, double weight2) {
+        const float l[3] = {dot(p[2] - p[1], p[2] - p[1]), dot(p[0] - p[2], p[0] - p[2]), dot(p[1] - p[0], p[1] - p[0])};
+        first = l[1] > l[0] ? (l[2] > l[1] ? 2 : 1) : (l[2] > l[0] ? 2 : 0);
+        const int second = (first + 1) % 3, third = (first + 2) % 3;
+        e1 = p[second] - p[first];
+        e2 = p[third] - p[first];
+        const double weights[3] = {1 - weight1 - weight2, weight1, weight2};
+        b1 = std::clamp(weights[second], 0., 1.);
+        b2 = std::clamp(weights[third], 0., 1.);
+    }
+    /// Puts a place of the lattice into the triangle's own weights.
+    void put(double x, double y, MicropolygonShare& s) const {
+        const double turned[3] = {1 - x - y, x, y};
+        s.b1 = turned[(4 - first) % 3];
+        s.b2 = turned[(5 - first) % 3];
+    }
+};
+
+} // namespace
+
+template <class Take> void Micropolygons::ofTriangle(const accel::Hit& h, const Vec3& P, Take take) const {
+    const Lattice& l = lattices_[h.shape];
+    const uint32_t* index = &l.mesh->index[3 * size_t(h.prim)];
+    Vec3 corners[3];
+    for (int k = 0; k < 3; ++k) {
+        corners[k] = l.mesh->P[index[k]];
+        if (l.place) corners[k] = Vec3(l.place->vector(Vec3d(corners[k])));
+    }
+    const Turned t(corners, h.b1, h.b2);
+    const Vec3 d = camera_.towards(P);
+    MicropolygonShare s;
+    s.key.shape = h.shape;
+    s.key.prim = h.prim;
+    setSteps(s.key, {seenLength(t.e1, d), seenLength(t.e2, d)}, l, P);
+    const int n1 = s.key.steps[0], n2 = s.key.steps[1];
+    const uint16_t i = cellOf(t.b1, n1), j = cellOf(t.b2, n2);
+    s.key.at[0] = i, s.key.at[1] = j;
+    if (l.smooth && (n1 > 1 || n2 > 1 || !l.paired || l.edge > kSmallestSmooth)) {
+        const double fx = t.b1 * n1 - i, fy = t.b2 * n2 - j;
+        const bool far = fx + fy > 1;
+        const struct {
+            int i, j;
+            double weight;
+        } ends[3] = {{far, far, far ? fx + fy - 1 : 1 - fx - fy}, {1, 0, far ? 1 - fy : fx}, {0, 1, far ? 1 - fx : fy}};
+        for (const auto& end : ends) {
+            MicropolygonShare at = s;
+            at.key.corner = true;
+            at.key.at[0] = uint16_t(i + end.i), at.key.at[1] = uint16_t(j + end.j);
+            at.weight = float(end.weight);
+            const double x = double(at.key.at[0]) / n1, y = double(at.key.at[1]) / n2, sum = std::max(x + y, 1.);
+            t.put(x / sum, y / sum, at); // of a cell that the edge cuts: onto the edge
+            take(at);
+        }
+        return;
+    }
+    if (n1 == 1 && n2 == 1) {
+        if (!l.paired || !pair(*l.mesh, s)) s.b1 = s.b2 = 1 / 3.;
+        return take(s);
+    }
+    // The middle of the cell; of one that the edge cuts, the middle of what is there.
+    const double x = double(i) / n1, y = double(j) / n2, left = 1 - x - y;
+    const double part = std::min(0.5, std::max(left, 0.) / (1. / n1 + 1. / n2) * (2 / 3.));
+    t.put(x + part / n1, y + part / n2, s);
+    take(s);
+}
+
+/// s: with its steps; b1 and b2 are the hit's, within 0 and 1.
+template <class Take> void Micropolygons::ofParameters(const Lattice& l, MicropolygonShare s, Take take) const {
+    const int nu = s.key.steps[0], nv = s.key.steps[1];
+    const uint16_t i = cellOf(s.b1, nu), j = cellOf(s.b2, nv);
+    if (!l.smooth) {
+        s.key.at[0] = i, s.key.at[1] = j;
+        s.b1 = (i + 0.5) / nu, s.b2 = (j + 0.5) / nv;
+        return take(s);
+    }
+    const double fx = s.b1 * nu - i, fy = s.b2 * nv - j;
+    s.key.corner = true;
+    for (int k = 0; k < 4; ++k) {
+        s.key.at[0] = uint16_t(i + (k & 1)), s.key.at[1] = uint16_t(j + (k >> 1));
+        s.b1 = double(s.key.at[0]) / nu, s.b2 = double(s.key.at[1]) / nv;
+        s.weight = float((k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy));
+        take(s);
+    }
+}
+
+/// hits: of one shape.
+template <class Take> void Micropolygons::ofSurfaces(std::span<const accel::Hit> hits, std::span<const Vec3> P, Take take) {
+    const Lattice& l = lattices_[hits[0].shape];
+    surfaces_.resize(std::max(surfaces_.size(), hits.size()));
+    run_.clear();
+    for (size_t i = 0; i < hits.size(); ++i) run_.push_back({hits[i].prim, hits[i].b1, hits[i].b2, &surfaces_[i], 0});
+    world_.shapes_[hits[0].shape]->points(run_, geometry::kNeedPartials | geometry::kNeedUV);
+    for (size_t i = 0; i < hits.size(); ++i) {
+        const geometry::SurfacePoint& p = surfaces_[i];
+        MicropolygonShare s{{hits[i].shape, hits[i].prim, {}, {}, false}, p.b1, p.b2, 1};
+        if (inside(s.b1) && inside(s.b2)) {
+            const Vec3 d = camera_.towards(P[i]);
+            setSteps(s.key, {seenLength(p.dPdu, d), seenLength(p.dPdv, d)}, l, P[i]);
+            ofParameters(l, s, [&](const MicropolygonShare& share) { take(i, share); });
+        } else {
+            s.b1 = hits[i].b1, s.b2 = hits[i].b2;
+            take(i, s);
+        }
+    }
+}
+
+/// About how long a primitive of many is along its parameters, camera space.
+Micropolygons::Lengths Micropolygons::lengthsOf(uint32_t shape, uint32_t prim) {
+    if (pieces_.size() > kPieces) pieces_.clear();
+    const auto [at, fresh] = pieces_.try_emplace(uint64_t(shape) << 32 | prim);
+    if (!fresh) return at->second;
+    Vec3 p[3][3];
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) p[j][i] = world_.shapes_[shape]->evaluateHit(prim, i * 0.5, j * 0.5).P;
+    Lengths l{0, 0};
+    for (int k = 0; k < 3; ++k) {
+        l.u = std::max(l.u, length(p[k][1] - p[k][0]) + length(p[k][2] - p[k][1]));
+        l.v = std::max(l.v, length(p[1][k] - p[0][k]) + length(p[2][k] - p[1][k]));
+    }
+    return at->second = l;
+}
+
+void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3> points,
+                         const std::function<void(size_t i, const MicropolygonShare&)>& take) {
+    for (size_t i = 0; i < hits.size();) {
+        const accel::Hit& h = hits[i];
+        if (!h.valid()) {
+            ++i;
+            continue;
+        }
+        const Lattice& l = lattices_[h.shape];
+        const auto one = [&](const MicropolygonShare& s) { take(i, s); };
+        MicropolygonShare s{{h.shape, h.prim, {}, {}, false}, h.b1, h.b2, 1};
+        size_t end = i + 1;
+        if (l.kind == Kind::Triangles) {
+            ofTriangle(h, points[i], one);
+        } else if (l.kind == Kind::Surface) {
+            while (end < hits.size() && hits[end].shape == h.shape) ++end;
+            ofSurfaces(hits.subspan(i, end - i), points.subspan(i, end - i),
+                       [&](size_t k, const MicropolygonShare& share) { take(i + k, share); });
+        } else if (l.kind == Kind::Pieces && inside(h.b1) && inside(h.b2)) {
+            setSteps(s.key, lengthsOf(h.shape, h.prim), l, points[i]);
+            ofParameters(l, s, one);
+        } else {
+            one(s);
+        }
+        i = end;
+    }
+}
+
+} // namespace alpenglow::transport

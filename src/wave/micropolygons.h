@@ -1,0 +1,86 @@
+// Where the hidden hider shades: lattices of micropolygons over (u, v) of each primitive, or over the triangles of its mesh.
+// Edges are about sqrt(ShadingRate) pixels long (RISpec, ShadingRate), so that a surface is shaded about once a pixel, however
+// many samples see it.
+//
+// The steps of a lattice follow from where a ray meets the surface, in quarters of an octave, and from nothing else: which other
+// samples there are, and in which order they come, changes no value.
+#pragma once
+#include "geometry/affine.h"
+#include "geometry/dice.h"
+#include "shading/gridpoint.h"
+#include "world/impl.h"
+#include <functional>
+#include <optional>
+
+namespace alpenglow::transport {
+
+/// Names a micropolygon, or a corner of some, among all.
+struct MicropolygonKey {
+    uint32_t shape = 0, prim = 0;
+    uint16_t steps[2] = {0, 0}; ///< of the lattice along its two parameters; 0: the point is shaded for one sample alone
+    uint16_t at[2] = {0, 0};
+    bool corner = false;
+    bool operator==(const MicropolygonKey&) const = default;
+    bool shared() const { return steps[0] > 0; }
+    uint64_t hash() const;
+};
+
+/// What a sample takes of it, and the point where it is shaded (MicropolygonKey, then shape parameters as accel::Hit has them).
+struct MicropolygonShare {
+    MicropolygonKey key;
+    double b1 = 0, b2 = 0;
+    float weight = 1;
+};
+
+/// A pixel and the eye, as all lattices see them: the lens is a point, the shutter has just opened.
+struct MicropolygonCamera {
+    explicit MicropolygonCamera(const scene::Options&);
+    bool perspective;
+    float pixel; ///< side of a pixel at distance 1 along the axis; orthographic: anywhere; camera space
+    /// Unit direction in which the eye sees a point.
+    Vec3 towards(const Vec3& p) const { return perspective && dot(p, p) > 0 ? normalize(p) : Vec3(0, 0, 1); }
+    /// Side of a pixel at a point.
+    float pixelAt(const Vec3& p) const { return perspective ? pixel * length(p) : pixel; }
+};
+
+class Micropolygons {
+public:
+    explicit Micropolygons(const WorldImpl&);
+    /// Calls take(i, share) for what each valid hit takes of micropolygons: of one, or with ShadingInterpolation "smooth" of up
+    /// to four corners, whose weights sum to 1. points: where the hits are, camera space.
+    void find(std::span<const accel::Hit> hits, std::span<const Vec3> points,
+              const std::function<void(size_t i, const MicropolygonShare&)>& take);
+
+private:
+    enum class Kind : uint8_t {
+        Single,    ///< its hits have no parameters that a lattice could have: shaded sample by sample
+        Triangles, ///< rays meet the mesh
+        Surface,   ///< one parametric surface, met exactly
+        Pieces     ///< many small ones: curves, points
+    };
+    struct Lattice {
+        Kind kind = Kind::Single;
+        const geometry::TriMesh* mesh = nullptr;
+        std::optional<geometry::Affine> place; ///< of the mesh, to camera space; none: it is there
+        float edge = 1;                        ///< of a micropolygon, pixels
+        bool smooth = false, paired = false;
+    };
+    struct Lengths {
+        float u, v;
+    };
+    Lattice latticeOf(uint32_t shape) const;
+    template <class Take> void ofTriangle(const accel::Hit&, const Vec3& P, Take) const;
+    template <class Take> void ofSurfaces(std::span<const accel::Hit>, std::span<const Vec3> P, Take);
+    template <class Take> void ofParameters(const Lattice&, MicropolygonShare, Take) const;
+    bool pair(const geometry::TriMesh&, MicropolygonShare&) const;
+    Lengths lengthsOf(uint32_t shape, uint32_t prim);
+    void setSteps(MicropolygonKey&, Lengths, const Lattice&, const Vec3& P) const;
+    const WorldImpl& world_;
+    MicropolygonCamera camera_;
+    std::vector<Lattice> lattices_;                ///< by shape
+    std::unordered_map<uint64_t, Lengths> pieces_; ///< by shape and primitive
+    std::vector<geometry::SurfacePoint> surfaces_; ///< of a run of hits of one surface
+    std::vector<geometry::HitRef> run_;
+};
+
+} // namespace alpenglow::transport

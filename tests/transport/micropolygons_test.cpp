@@ -1,0 +1,262 @@
+// Where hidden shades with Settings::micropolygons: once for all samples that see a micropolygon, with edges of sqrt(ShadingRate)
+// pixels, and what samples make of it. The pictures here are 32 x 32 pixels of a square of 2 x 2, so a pixel is 1/16 wide.
+#include "transport/floorscene.h"
+#include "wave/limits.h"
+#include <algorithm>
+#include <array>
+
+namespace micropolygons_test {
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+constexpr int kSide = 32;
+constexpr float kPixel = 2.f / kSide;
+/// Of a sample from the point whose colour it takes, in edges: two thirds where the diagonal cuts a micropolygon into triangles,
+/// and steps are rounded by up to an eighth of an octave.
+constexpr float kFarthest = 2 / 3.f * 1.0906f;
+
+Settings bySettings(bool micropolygons) {
+    Settings s = withShaders(Hider::Hidden);
+    s.micropolygons = micropolygons;
+    return s;
+}
+/// Ci is linear in P; the coordinates of the square are its red and green.
+void writeShaders() {
+    static const bool once = [] {
+        writeShader("shows", "surface shows(uniform float o = 1) { Ci = o * color(xcomp(P), ycomp(P), zcomp(P)); Oi = o; }");
+        writeShader("wavy",
+                    "surface wavy() { Ci = color(.5 + .5 * sin(20 * xcomp(P)), .5 + .5 * sin(20 * ycomp(P)), u); Oi = 1; }");
+        writeShader("glass",
+                    "surface glass(uniform color o = .5; output varying color tint = 0) { Oi = o; tint = color(1, .5, .25);"
+                    " Ci = o * Cs; }");
+        writeShader("prints", "surface prints() { printf(\"at %f\\n\", xcomp(P)); Ci = Cs; Oi = 1; }");
+        writeShader("noisy", "surface noisy() { Ci = random(); Oi = 1; }");
+        return true;
+    }();
+    (void)once;
+}
+std::string picture(const std::string& inside, const std::string& options = "") {
+    writeShaders();
+    return "Format 32 32 1\nScreenWindow -1 1 -1 1\nProjection \"orthographic\"\n" + options + "WorldBegin\n" + inside +
+           "\nWorldEnd\n";
+}
+const std::string kSquare = "Polygon \"P\" [-1 -1 5  -1 1 5  1 1 5  1 -1 5]\n";
+
+/// side x side samples of each pixel, in the middles of its cells.
+std::vector<CameraRay> samplesOf(int side) {
+    std::vector<CameraRay> rays;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+            for (int k = 0; k < side * side; ++k) {
+                const float at[2] = {float(x) + (float(k % side) + .5f) / float(side),
+                                     float(y) + (float(k / side) + .5f) / float(side)};
+                CameraRay r = rayTo({-1 + kPixel * at[0], 1 - kPixel * at[1], 0}, {-1 + kPixel * at[0], 1 - kPixel * at[1], 1});
+                r.width = kPixel / 2;
+                r.px = x, r.py = y, r.sample = uint32_t(k);
+                rays.push_back(r);
+            }
+    return rays;
+}
+/// The largest distance of a sample's red and green from where it lies.
+float farthest(const std::vector<CameraRay>& rays, const std::vector<SampleResult>& results) {
+    float most = 0;
+    for (size_t i = 0; i < rays.size(); ++i)
+        most =
+            std::max({most, std::fabs(results[i].color.x - rays[i].origin.x), std::fabs(results[i].color.y - rays[i].origin.y)});
+    return most;
+}
+bool same(const SampleResult& a, const SampleResult& b) {
+    const auto of = [](const SampleResult& r) {
+        return std::array{r.color.x, r.color.y, r.color.z, r.opacity.x, r.opacity.y, r.opacity.z, r.z, r.zSecond};
+    };
+    return of(a) == of(b) && a.aovs == b.aovs;
+}
+
+} // namespace
+
+// 16 samples a pixel of a square that fills the picture: its steps are of 1/16, rounded to quarters of an octave, so that a pixel
+// has .7 to 1.42 micropolygons, and along the diagonal both triangles have theirs.
+TEST(Micropolygons, AreShadedOnceForAllSamples) {
+    Scene s(picture("Surface \"shows\"\n" + kSquare), bySettings(true));
+    Counters counters;
+    const auto rays = samplesOf(4);
+    const auto results = s.trace(rays, &counters);
+    EXPECT_EQ(counters.camera, rays.size());
+    EXPECT_GE(counters.points, size_t(kSide * kSide * .7));
+    EXPECT_LE(counters.points, size_t(kSide * kSide * 1.42 + 4 * kSide));
+    EXPECT_LE(farthest(rays, results), kFarthest * kPixel);
+    for (size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(results[i].z, 5);
+}
+
+// Edges have sqrt(ShadingRate) pixels: what a sample sees lies at most half of that away, but for the rounding of the steps.
+TEST(Micropolygons, AreAsLargeAsShadingRateSays) {
+    const auto rays = samplesOf(4);
+    for (const float rate : {.0625f, .25f, 1.f, 4.f, 16.f, 1e4f}) {
+        Scene s(picture("Surface \"shows\"\nShadingRate " + std::to_string(rate) + "\n" + kSquare), bySettings(true));
+        const float error = farthest(rays, s.trace(rays)), edge = std::min(std::sqrt(rate) * kPixel, 2.f);
+        EXPECT_LE(error, kFarthest * edge) << rate;
+        if (rate >= .25f) EXPECT_GE(error, .3f * edge) << rate; // finer ones are as the samples lie
+    }
+}
+
+// Rates that make no sense are bounded, not followed.
+TEST(Micropolygons, BoundRatesThatMakeNoSense) {
+    const auto rays = samplesOf(1);
+    for (const char* rate : {"0", "-1", "1e-38", "1e38"}) {
+        Scene s(picture(std::string("Surface \"shows\"\nShadingRate ") + rate + "\n" + kSquare +
+                        "Translate .1 .1 0\nSphere .5 -.5 .5 360\n"),
+                bySettings(true), 0);
+        for (const SampleResult& r : s.trace(rays)) EXPECT_TRUE(std::isfinite(r.color.x)) << rate;
+    }
+}
+
+// ShadingInterpolation "smooth" gives what is linear as it is, in the middle of micropolygons and across their borders.
+TEST(Micropolygons, SmoothInterpolatesBetweenCorners) {
+    const auto rays = samplesOf(3);
+    for (const std::string& shape : {kSquare, std::string("Patch \"bilinear\" \"P\" [-1 -1 5  1 -1 5  -1 1 5  1 1 5]\n"),
+                                     std::string("PointsPolygons [3 3] [0 1 2 0 2 3] \"P\" [-1 -1 5  -1 1 5  1 1 5  1 -1 5]\n")})
+        for (const char* rate : {"1", "16", "100"}) {
+            Scene s(
+                picture("Surface \"shows\"\nShadingInterpolation \"smooth\"\nShadingRate " + std::string(rate) + "\n" + shape),
+                bySettings(true));
+            // Corners beyond the diagonal of a triangle that its steps do not meet are moved onto it.
+            EXPECT_LE(farthest(rays, s.trace(rays)), .36f * kPixel * std::sqrt(std::stof(rate))) << shape << rate;
+        }
+}
+
+// The same pictures as by samples, but for half a micropolygon, of every kind of shape. The shader's slope is at most 10 a unit;
+// half of a micropolygon of a fifth of a pixel is 1/160 along either parameter, and rounded by up to 1.0906.
+TEST(Micropolygons, ShowWhatSamplesShow) {
+    constexpr float kFar = 10 * 2 / 160.f * 1.0906f;
+    const auto rays = samplesOf(1);
+    const char* const shapes[] = {
+        "Translate 0 0 5\nSphere .9 -.9 .9 360\n",
+        "Translate 0 0 5\nSphere .9 -.5 .7 200\n",
+        "Translate 0 0 5\nRotate 60 1 1 0\nTorus .6 .25 0 360 360\n",
+        "Translate 0 0 5\nRotate 80 1 .3 0\nCylinder .6 -.8 .8 360\n",
+        "Translate 0 0 5\nRotate 80 1 .3 0\nCone 1 .7 360\n",
+        "Translate 0 0 5\nDisk 0 .9 360\n",
+        "Patch \"bicubic\" \"P\" [-1 -1 5 -.3 -1 4 .3 -1 6 1 -1 5  -1 -.3 5 -.3 -.3 4 .3 -.3 6 1 -.3 5  -1 .3 5 -.3 .3 4 .3 .3 6 "
+        "1 .3 5  "
+        "-1 1 5 -.3 1 4 .3 1 6 1 1 5]\n",
+        "SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [] [] [] [] \"P\" [-1 -1 5 0 -1 4 0 1 5 -1 1 5 1 1 5 1 -1 "
+        "4]\n",
+        "Curves \"cubic\" [4] \"nonperiodic\" \"P\" [-.9 -.9 5 -.3 .9 5 .3 -.9 5 .9 .9 5] \"constantwidth\" [.4]\n",
+        "Points \"P\" [-.5 -.5 5 .5 .5 5] \"constantwidth\" [.7]\n",
+        "Blobby 1 [1001 0 0 1] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1] [\"\"]\n",
+        "ObjectBegin 1\nSphere .4 -.4 .4 360\nObjectEnd\nTranslate -.5 0 5\nObjectInstance 1\nTranslate 1 0 0\nObjectInstance "
+        "1\n",
+    };
+    for (const std::string shape : shapes) {
+        const std::string rib = picture("Surface \"wavy\"\nShadingRate .04\n" + shape);
+        Scene fine(rib, bySettings(true)), exact(rib, bySettings(false));
+        const auto a = fine.trace(rays), b = exact.trace(rays);
+        int seen = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            EXPECT_EQ(a[i].opacity.x, b[i].opacity.x) << shape;
+            EXPECT_NEAR(a[i].z, b[i].z, .01f * kPixel) << shape; // of the facet; by samples of the surface itself
+            EXPECT_NEAR(a[i].color.x, b[i].color.x, kFar) << shape;
+            EXPECT_NEAR(a[i].color.y, b[i].color.y, kFar) << shape;
+            seen += b[i].opacity.x > 0;
+        }
+        EXPECT_GT(seen, 50) << shape;
+    }
+}
+
+// Nothing depends on how rays are put together, in which order they come, or on what was shaded and forgotten before.
+TEST(Micropolygons, BitsDependOnNothingElse) {
+    const std::string rib = picture("Surface \"wavy\"\nTranslate 0 0 5\nSphere .9 -.9 .9 360\nSurface \"noisy\"\n" + kSquare);
+    Scene s(rib, bySettings(true));
+    const auto rays = samplesOf(2);
+    const auto whole = s.trace(rays);
+    Integrator one(s.world, s.diagnostics);
+    std::vector<SampleResult> result(1);
+    for (size_t i = rays.size(); i-- > 0;) {
+        ASSERT_TRUE(one.trace({&rays[i], 1}, result, nullptr));
+        ASSERT_TRUE(same(result[0], whole[i])) << i;
+    }
+}
+
+// More than a thread keeps: what is shaded again is as before. 100 x 100 points of each pixel's area are ten million, of which
+// 9 floats each are kept.
+TEST(Micropolygons, WhatIsForgottenIsShadedAgain) {
+    Scene s(picture("Surface \"wavy\"\nShadingRate .01\n" + kSquare), bySettings(true));
+    const auto rays = samplesOf(8);
+    const size_t kept = limits::kMicropolygonBytes / (9 * sizeof(float));
+    ASSERT_GT(2 * rays.size(), kept); // of 65,536 samples each has its own
+    Integrator i(s.world, s.diagnostics);
+    std::vector<SampleResult> first(rays.size()), again(rays.size());
+    for (std::vector<SampleResult>* out : {&first, &again, &again}) ASSERT_TRUE(i.trace(rays, *out, nullptr));
+    for (size_t k = 0; k < rays.size(); ++k) ASSERT_TRUE(same(first[k], again[k]));
+    EXPECT_GT(i.counters().points, rays.size()); // some were forgotten
+}
+
+// Opacity sample by sample: two panes before a wall, with a colour each; outputs are weighed as colours are.
+TEST(Micropolygons, AreCompositedSampleBySample) {
+    Settings settings = bySettings(true);
+    settings.outputs = {"tint"};
+    Scene s(picture("Surface \"glass\" \"color o\" [.5 .25 0]\nColor [1 1 1]\nPolygon \"P\" [-1 -1 3  -1 1 3  1 1 3  1 -1 3]\n"
+                    "Surface \"glass\" \"color o\" [.5 .5 1]\nColor [0 1 1]\nPolygon \"P\" [-1 -1 4  -1 1 4  1 1 4  1 -1 4]\n"
+                    "Surface \"constant\"\nColor [1 0 0]\n" +
+                    kSquare),
+            settings);
+    for (const SampleResult& r : s.trace(samplesOf(1))) {
+        EXPECT_NEAR(r.color.x, .5 + .5 * .5 * 0 + .25, 1e-6);
+        EXPECT_NEAR(r.color.y, .25 + .75 * .5, 1e-6);
+        EXPECT_NEAR(r.color.z, 0 + 1 * 1, 1e-6);
+        EXPECT_NEAR(r.opacity.x, 1, 1e-6);
+        ASSERT_EQ(r.aovs.size(), 3u);
+        EXPECT_NEAR(r.aovs[0], 1 + .5, 1e-6);
+        EXPECT_NEAR(r.aovs[1], .5 * (1 + .75), 1e-6);
+        EXPECT_NEAR(r.aovs[2], .25 * (1 + 1), 1e-6);
+        EXPECT_EQ(r.z, 3);
+        EXPECT_EQ(r.zSecond, 4);
+    }
+}
+
+// Matte surfaces hide what is behind and show nothing.
+TEST(Micropolygons, MatteHidesAndShowsNothing) {
+    Scene s(picture("Matte 1\nSurface \"constant\"\nPolygon \"P\" [-1 -1 3  -1 1 3  1 1 3  1 -1 3]\nMatte 0\n" + kSquare),
+            bySettings(true));
+    for (const SampleResult& r : s.trace(samplesOf(1))) {
+        EXPECT_EQ(r.color, Color(0));
+        EXPECT_EQ(r.opacity, Color(0));
+    }
+}
+
+// Surfaces are shaded when the shutter opens, and move with their colours; samples of a lens see what the pinhole sees.
+TEST(Micropolygons, MoveWithTheirColours) {
+    Scene s("Shutter 0 1\n" +
+                picture("Surface \"shows\"\nMotionBegin [0 1]\nTranslate 0 0 0\nTranslate .5 0 0\nMotionEnd\n" + kSquare),
+            bySettings(true));
+    auto rays = samplesOf(1);
+    for (size_t i = 0; i < rays.size(); ++i) rays[i].time = rays[i].shutter = float(i % 7) / 6;
+    const auto results = s.trace(rays);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const float was = rays[i].origin.x - .5f * rays[i].shutter;
+        if (was < -1 + kPixel) continue; // the square has left
+        EXPECT_NEAR(results[i].color.x, was, kFarthest * kPixel);
+        EXPECT_NEAR(results[i].color.y, rays[i].origin.y, kFarthest * kPixel);
+    }
+}
+
+// Two threads that shade the same micropolygon print once; here one that forgets in between stands for them.
+TEST(Micropolygons, PrintOnce) {
+    Scene s(picture("Surface \"prints\"\nShadingRate 10000\n" + kSquare), bySettings(true));
+    const auto rays = samplesOf(1);
+    std::vector<SampleResult> results(rays.size());
+    ::testing::internal::CaptureStdout();
+    for (int k = 0; k < 2; ++k) {
+        Integrator i(s.world, s.diagnostics);
+        ASSERT_TRUE(i.trace(rays, results, nullptr));
+    }
+    s.world->flushPrints(true);
+    const std::string text = ::testing::internal::GetCapturedStdout();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text; // one a triangle
+}
+
+} // namespace micropolygons_test

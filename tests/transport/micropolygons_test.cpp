@@ -143,11 +143,12 @@ TEST(Micropolygons, ShowWhatSamplesShow) {
         "Patch \"bicubic\" \"P\" [-1 -1 5 -.3 -1 4 .3 -1 6 1 -1 5  -1 -.3 5 -.3 -.3 4 .3 -.3 6 1 -.3 5  -1 .3 5 -.3 .3 4 .3 .3 6 "
         "1 .3 5  "
         "-1 1 5 -.3 1 4 .3 1 6 1 1 5]\n",
-        "SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [] [] [] [] \"P\" [-1 -1 5 0 -1 4 0 1 5 -1 1 5 1 1 5 1 -1 "
+        "SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [\"interpolateboundary\"] [0 0] [] [] \"P\" [-1 -1 5 0 -1 4 0 "
+        "1 5 -1 1 5 1 1 5 1 -1 "
         "4]\n",
         "Curves \"cubic\" [4] \"nonperiodic\" \"P\" [-.9 -.9 5 -.3 .9 5 .3 -.9 5 .9 .9 5] \"constantwidth\" [.4]\n",
         "Points \"P\" [-.5 -.5 5 .5 .5 5] \"constantwidth\" [.7]\n",
-        "Blobby 1 [1001 0 0 1] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1] [\"\"]\n",
+        "Blobby 1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1] [\"\"]\n",
         "ObjectBegin 1\nSphere .4 -.4 .4 360\nObjectEnd\nTranslate -.5 0 5\nObjectInstance 1\nTranslate 1 0 0\nObjectInstance "
         "1\n",
     };
@@ -158,7 +159,7 @@ TEST(Micropolygons, ShowWhatSamplesShow) {
         int seen = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             EXPECT_EQ(a[i].opacity.x, b[i].opacity.x) << shape;
-            EXPECT_NEAR(a[i].z, b[i].z, .01f * kPixel) << shape; // of the facet; by samples of the surface itself
+            EXPECT_NEAR(a[i].z, b[i].z, .05f * kPixel) << shape; // of the facet; by samples of the surface itself
             EXPECT_NEAR(a[i].color.x, b[i].color.x, kFar) << shape;
             EXPECT_NEAR(a[i].color.y, b[i].color.y, kFar) << shape;
             seen += b[i].opacity.x > 0;
@@ -181,18 +182,21 @@ TEST(Micropolygons, BitsDependOnNothingElse) {
     }
 }
 
-// More than a thread keeps: what is shaded again is as before. 100 x 100 points of each pixel's area are ten million, of which
-// 9 floats each are kept.
+// More than a thread keeps: what is shaded again is as before.
 TEST(Micropolygons, WhatIsForgottenIsShadedAgain) {
-    Scene s(picture("Surface \"wavy\"\nShadingRate .01\n" + kSquare), bySettings(true));
-    const auto rays = samplesOf(8);
-    const size_t kept = limits::kMicropolygonBytes / (9 * sizeof(float));
-    ASSERT_GT(2 * rays.size(), kept); // of 65,536 samples each has its own
+    Scene s(picture("ShadingRate .01\nSurface \"glass\"\nPolygon \"P\" [-1 -1 3  -1 1 3  1 1 3  1 -1 3]\n"
+                    "Surface \"wavy\"\n" +
+                    kSquare),
+            bySettings(true));
+    const auto rays = samplesOf(8); // each has a micropolygon of its own, of 9 numbers, on the pane and behind it
+    ASSERT_GT(2 * rays.size() * 9 * sizeof(float), limits::kMicropolygonBytes);
     Integrator i(s.world, s.diagnostics);
     std::vector<SampleResult> first(rays.size()), again(rays.size());
-    for (std::vector<SampleResult>* out : {&first, &again, &again}) ASSERT_TRUE(i.trace(rays, *out, nullptr));
+    ASSERT_TRUE(i.trace(rays, first, nullptr));
+    const uint64_t once = i.counters().points;
+    ASSERT_TRUE(i.trace(rays, again, nullptr));
+    EXPECT_EQ(i.counters().points, 2 * once);
     for (size_t k = 0; k < rays.size(); ++k) ASSERT_TRUE(same(first[k], again[k]));
-    EXPECT_GT(i.counters().points, rays.size()); // some were forgotten
 }
 
 // Opacity sample by sample: two panes before a wall, with a colour each; outputs are weighed as colours are.

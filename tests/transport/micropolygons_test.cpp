@@ -133,26 +133,22 @@ TEST(Micropolygons, SmoothInterpolatesBetweenCorners) {
 TEST(Micropolygons, ShowWhatSamplesShow) {
     constexpr float kFar = 10 * 2 / 160.f * 1.0906f;
     const auto rays = samplesOf(1);
-    const char* const shapes[] = {
+    const std::string shapes[] = {
         "Translate 0 0 5\nSphere .9 -.9 .9 360\n",
         "Translate 0 0 5\nSphere .9 -.5 .7 200\n",
         "Translate 0 0 5\nRotate 60 1 1 0\nTorus .6 .25 0 360 360\n",
         "Translate 0 0 5\nRotate 80 1 .3 0\nCylinder .6 -.8 .8 360\n",
         "Translate 0 0 5\nRotate 80 1 .3 0\nCone 1 .7 360\n",
         "Translate 0 0 5\nDisk 0 .9 360\n",
-        "Patch \"bicubic\" \"P\" [-1 -1 5 -.3 -1 4 .3 -1 6 1 -1 5  -1 -.3 5 -.3 -.3 4 .3 -.3 6 1 -.3 5  -1 .3 5 -.3 .3 4 .3 .3 6 "
-        "1 .3 5  "
-        "-1 1 5 -.3 1 4 .3 1 6 1 1 5]\n",
-        "SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [\"interpolateboundary\"] [0 0] [] [] \"P\" [-1 -1 5 0 -1 4 0 "
-        "1 5 -1 1 5 1 1 5 1 -1 "
-        "4]\n",
+        "Scale 1 1 2\nPatch \"bicubic\" \"Pz\" [2.5 2 3 2.5  2.5 2 3 2.5  2.5 2 3 2.5  2.5 2 3 2.5]\n",
+        "SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [\"interpolateboundary\"] [0 0] [] []"
+        " \"P\" [-1 -1 5 0 -1 4 0 1 5 -1 1 5 1 1 5 1 -1 4]\n",
         "Curves \"cubic\" [4] \"nonperiodic\" \"P\" [-.9 -.9 5 -.3 .9 5 .3 -.9 5 .9 .9 5] \"constantwidth\" [.4]\n",
         "Points \"P\" [-.5 -.5 5 .5 .5 5] \"constantwidth\" [.7]\n",
         "Blobby 1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1] [\"\"]\n",
-        "ObjectBegin 1\nSphere .4 -.4 .4 360\nObjectEnd\nTranslate -.5 0 5\nObjectInstance 1\nTranslate 1 0 0\nObjectInstance "
-        "1\n",
+        "ObjectBegin 1\nSphere .4 -.4 .4 360\nObjectEnd\nTranslate -.5 0 5\nObjectInstance 1\nTranslate 1 0 0\nObjectInstance 1",
     };
-    for (const std::string shape : shapes) {
+    for (const std::string& shape : shapes) {
         const std::string rib = picture("Surface \"wavy\"\nShadingRate .04\n" + shape);
         Scene fine(rib, bySettings(true)), exact(rib, bySettings(false));
         const auto a = fine.trace(rays), b = exact.trace(rays);

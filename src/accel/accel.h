@@ -10,6 +10,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "base/stopflag.h"
+#include "geometry/plane.h"
 #include "geometry/shape.h"
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,7 @@ struct Hit {
     bool valid() const { return shape != kNone; }
 };
 
+using geometry::Plane;
 struct DirectRays;
 
 class Accel {
@@ -96,6 +98,9 @@ public:
     bool takesRows(Sides) const; ///< of rays that say so
     void intersect(const DirectRays&, uint32_t rays, const float* time, Hit* hits) const;
     void occluded(const DirectRays&, uint32_t rays, const float* time, uint8_t* met) const;
+
+    /// False: no point that a ray can meet, at any time of the shutter, lies in all of the half-spaces. True says nothing.
+    bool reachesInto(std::span<const Plane>) const;
 
     const std::vector<geometry::ShapeRef>& shapes() const;
     /// The point of a hit, where it is at the hit's time.

@@ -10,6 +10,7 @@
 // rays are followed in turns, so that one waits for memory while the others work.
 #pragma once
 #include "geometry/capsule.h"
+#include "geometry/plane.h"
 #include "geometry/shape.h"
 #include <cmath>
 #include <memory>
@@ -99,6 +100,7 @@ public:
     /// for a tree with keys.
     std::vector<std::pair<Child, geometry::Bounds>> opened(size_t most) const;
     const geometry::Bounds& bounds() const { return bounds_; }
+    bool reachesInto(std::span<const geometry::Plane>) const; ///< Accel::reachesInto(): by the boxes of its leaves
     size_t bytes() const {
         return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) + exact_.size() * sizeof(Exact) +
                capsules_.size() * sizeof(geometry::Capsule);

@@ -258,6 +258,22 @@ double Camera::eyeOf(double& rx, double& ry) const {
     return 0;
 }
 
+std::vector<geometry::Plane> Camera::sides(const Window& w) const {
+    if (lensRadius_ > 0 || stereo() || transform_.moves()) return {};
+    constexpr double kMargin = 1e-3; // pixels: more than floats of rays are off
+    const auto x = [&](double rx) { return (left_ + (right_ - left_) * rx / width_) * (perspective_ ? tangent_ : 1); };
+    const auto y = [&](double ry) { return (top_ - (top_ - bottom_) * ry / height_) * (perspective_ ? tangent_ : 1); };
+    const auto [left, right] = std::minmax({x(w.x0 - kMargin), x(w.x1 + kMargin)});
+    const auto [bottom, top] = std::minmax({y(w.y0 - kMargin), y(w.y1 + kMargin)});
+    std::vector<geometry::Plane> planes{{Vec3(0, 0, 1), float(-near_ * (1 - 1e-6))}};
+    const auto add = [&](float nx, float ny, double at) { // n.p >= at, or at z
+        if (perspective_) planes.push_back({Vec3(nx, ny, float(-at)), 0});
+        else planes.push_back({Vec3(nx, ny, 0), float(-at)});
+    };
+    add(1, 0, left), add(-1, 0, -right), add(0, 1, bottom), add(0, -1, -top);
+    return planes;
+}
+
 Matrix Camera::cameraToFirst(double time) const { return inverse(scene::at(transform_, time)) * worldToCamera_; }
 
 transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) const {

@@ -64,6 +64,10 @@ public:
     /// half the larger side of a pixel.
     transport::CameraRay ray(double rx, double ry, Vec2 lens, float time01) const;
 
+    /// Half-spaces in camera space that hold between them all that rays of a part of the picture can meet. Empty: nothing is
+    /// known (a lens, a camera that moves, a stereo pair).
+    std::vector<geometry::Plane> sides(const Window&) const;
+
     const Matrix& worldToCamera() const { return worldToCamera_; } ///< when the shutter opens
     /// World to NDC: (0,0) upper left, (1,1) lower right of the whole picture; z as RiPerspective leaves it.
     Matrix worldToNDC() const;

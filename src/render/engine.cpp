@@ -11,6 +11,7 @@ public:
         return integrator_.trace(rays, results, stop);
     }
     const transport::Counters& counters() const override { return integrator_.counters(); }
+    bool seesNothing(std::span<const geometry::Plane> sides) const override { return integrator_.seesNothing(sides); }
     bool unfinished() const override { return integrator_.unfinished(); }
 
 private:

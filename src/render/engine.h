@@ -14,6 +14,7 @@ public:
     virtual ~Tracer() = default;
     virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>, const StopFlag* stop) = 0;
     virtual const transport::Counters& counters() const = 0;
+    virtual bool seesNothing(std::span<const geometry::Plane>) const { return false; } ///< see transport::Integrator
     /// See transport::Integrator.
     virtual bool unfinished() const { return false; }
 };

@@ -25,6 +25,9 @@ bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out
     if (impl_->grids && !r.empty() && !r[0].grid && !r[0].depths && !r[0].records) return impl_->grids->trace(r, out, stop);
     return impl_->engine.trace(r, out, stop);
 }
+bool Integrator::seesNothing(std::span<const geometry::Plane> sides) const {
+    return impl_->grids && !sides.empty() && !impl_->engine.world().accel_->reachesInto(sides);
+}
 bool Integrator::unfinished() const { return impl_->engine.unfinished(); }
 const Counters& Integrator::counters() const { return impl_->engine.counters; }
 

@@ -2,6 +2,7 @@
 // "raytrace" shaders mean what they meant; under "path" their lobes are estimated with all light (design decisions 1 to 4).
 #pragma once
 #include "base/diagnostics.h"
+#include "geometry/plane.h"
 #include "scene/fwd.h"
 #include "scene/primitive.h"
 #include "wave/samples.h"
@@ -21,6 +22,9 @@ public:
     /// Follows all rays to the end. Results do not depend on which rays share a call. False when `stop` was set meanwhile: then
     /// the results are void. One Integrator per thread.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
+    /// Camera rays that stay within all of these half-spaces are known to meet nothing, and to bring nothing: they need not be
+    /// traced. Under hidden, as a rule; false says nothing.
+    bool seesNothing(std::span<const geometry::Plane>) const;
     /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet: its results are void (unmade.h).
     bool unfinished() const;
     const Counters& counters() const;

@@ -129,6 +129,10 @@ private:
     void reconstruct(const SampleBuffer&, const Window& part);
     void show();
     void grow();
+    size_t number(int x, int y) const { return size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0); }
+    float* pixel(size_t image, int x, int y) {
+        return result_.images[image].data.data() + number(x, y) * result_.images[image].channels.size();
+    }
     PixelFilter filterOf(size_t image) const;
 
     Job& job_;
@@ -141,7 +145,9 @@ private:
     const Window window_;
     std::vector<Channel> aovs_;
     std::vector<const OutputSpec*>
-        filtered_; ///< displays that share a reconstruction stand for each other: a frame may have hundreds
+        filtered_;                       ///< displays that share a reconstruction stand for each other: a frame may have hundreds
+    std::vector<FilterWeights> weights_; ///< by image
+    std::vector<PlaceRows> places_;      ///< by worker
     double xw_ = 1, yw_ = 1;
     int rows_ = 0, bands_ = 0;
     double reached_ = 0;
@@ -158,6 +164,7 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
         nx_ = ny_ = refinement.side;
         jitter_ = Jitter::Grid;
     }
+    places_.assign(size_t(job.team.threads()), PlaceRows(seed_, nx_, ny_, jitter_));
     plan();
 }
 
@@ -168,15 +175,14 @@ void ImageLoop::plan() {
     for (const OutputSpec& p : plan.pictures) {
         xw_ = std::max(xw_, p.filter.xw);
         yw_ = std::max(yw_, p.filter.yw);
-        const auto same = std::find_if(filtered_.begin(), filtered_.end(), [&](const OutputSpec* s) {
-            return s->depth == p.depth && s->filter.kind == p.filter.kind && s->filter.xw == p.filter.xw &&
-                   s->filter.yw == p.filter.yw;
-        });
+        const auto same = std::find_if(filtered_.begin(), filtered_.end(),
+                                       [&](const OutputSpec* s) { return s->depth == p.depth && s->filter == p.filter; });
         result_.of.push_back(size_t(same - filtered_.begin()));
         if (same == filtered_.end()) filtered_.push_back(&p);
     }
     if (jitter_ == Jitter::Middle) xw_ = yw_ = 1;
     if (refinement_.on()) xw_ = yw_ = 3; // one pixel around, to compare with
+    for (size_t p = 0; p < filtered_.size(); ++p) weights_.emplace_back(filterOf(p));
     result_.images.resize(filtered_.size());
     for (Image& i : result_.images) {
         i.window = window_;
@@ -245,15 +251,10 @@ void ImageLoop::show() {
 void ImageLoop::grow() {
     growth_->take([this](const SampleBuffer& buffer, const Window& w) {
         for (size_t p = 0; p < filtered_.size(); ++p) {
-            Image& image = result_.images[p];
-            const Image made = buffer.reconstruct(filterOf(p), filtered_[p]->depth, w);
-            const size_t n = image.channels.size(), row = size_t(w.width()) * n;
-            for (int y = w.y0; y < w.y1; ++y) {
-                const size_t at = size_t(y - window_.y0) * size_t(window_.width()) + size_t(w.x0 - window_.x0);
-                std::copy_n(made.data.begin() + long(size_t(y - w.y0) * row), row, image.data.begin() + long(at * n));
-                std::fill_n(there_.begin() + long(at), w.width(), uint8_t(1));
-            }
+            const size_t row = size_t(window_.width()) * result_.images[p].channels.size();
+            buffer.reconstruct(weights_[p], filtered_[p]->depth, w, pixel(p, w.x0, w.y0), row);
         }
+        for (int y = w.y0; y < w.y1; ++y) std::fill_n(there_.begin() + long(number(w.x0, y)), w.width(), uint8_t(1));
     });
 }
 
@@ -320,9 +321,16 @@ bool ImageLoop::traceBehind(int worker, std::span<const transport::CameraRay> ra
 }
 
 bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wanted> wanted) {
+    PlaceRows& drawn = places_[size_t(worker)];
+    drawn.clear();
+    for (const Wanted& w : wanted) drawn.ask(w.x, w.y, w.k);
+    const std::span<const Vec2> places = drawn.places();
     std::vector<transport::CameraRay> rays;
-    for (const Wanted& w : wanted)
-        rays.push_back(imageRay(job_.camera, buffer.position(w.x, w.y, w.k), seed_, w.x, w.y, uint32_t(w.k)));
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        const Wanted& w = wanted[i];
+        const Vec2 at{float(w.x) + places[i].x, float(w.y) + places[i].y};
+        rays.push_back(imageRay(job_.camera, at, seed_, w.x, w.y, uint32_t(w.k)));
+    }
     std::vector<transport::SampleResult> results(rays.size());
     if (!job_.trace(worker, rays, results)) return false;
     if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, rays, results))
@@ -337,7 +345,7 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
         if (r.z < 1e38f) s.z = r.z;
         if (r.zSecond < 1e38f) s.zSecond = r.zSecond;
         s.aovs = r.aovs;
-        if (buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), s)) continue;
+        if (buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), places[k], s)) continue;
         std::lock_guard lock(mutex_); // told is the same whatever thread meets it first
         const std::array<int, 3> at{int(rays[k].sample), rays[k].py, rays[k].px};
         if (window_.contains(at[2], at[1]) && (!dropped_.first || at < *dropped_.first)) dropped_.first = at;
@@ -391,23 +399,27 @@ std::vector<Wanted> ImageLoop::differing(const SampleBuffer& buffer, const Windo
 }
 
 void ImageLoop::reconstruct(const SampleBuffer& buffer, const Window& part) {
+    constexpr int kRows = 16; // a task
+    const size_t tasks = size_t((part.height() + kRows - 1) / kRows), channels = result_.images.front().channels.size();
+    const size_t row = size_t(window_.width()) * channels;
     for (size_t p = 0; p < filtered_.size(); ++p) {
-        Image& image = result_.images[p];
-        const PixelFilter filter = filterOf(p);
-        const size_t rowFloats = size_t(window_.width()) * image.channels.size();
-        float* to = image.data.data() + size_t(part.y0 - window_.y0) * rowFloats;
+        // Images that differ in their depth filter alone share all the rest.
+        size_t like = 0;
+        while (!(weights_[like].filter() == weights_[p].filter())) ++like;
         StopFlag go{0};
         job_.team.run(
-            size_t(part.height()), &go,
-            [&](int, size_t row) {
-                int y = part.y0 + int(row);
-                Image r = buffer.reconstruct(filter, filtered_[p]->depth, {part.x0, y, part.x1, y + 1});
-                std::copy(r.data.begin(), r.data.end(), to + row * rowFloats);
+            tasks, &go,
+            [&](int, size_t i) {
+                const int y = part.y0 + int(i) * kRows;
+                const Window rows{part.x0, y, part.x1, std::min(y + kRows, part.y1)};
+                float* to = pixel(p, rows.x0, y);
+                if (like == p) return buffer.reconstruct(weights_[p], filtered_[p]->depth, rows, to, row);
+                std::copy_n(pixel(like, rows.x0, y), size_t(rows.height()) * row, to);
+                buffer.reconstructDepth(filtered_[p]->depth, rows, to, row);
             },
             [](size_t) {});
     }
-    if (!there_.empty())
-        std::fill_n(there_.begin() + long(size_t(part.y0 - window_.y0) * size_t(window_.width())), part.pixels(), uint8_t(1));
+    if (!there_.empty()) std::fill_n(there_.begin() + long(number(part.x0, part.y0)), part.pixels(), uint8_t(1));
 }
 
 PixelFilter ImageLoop::filterOf(size_t image) const {

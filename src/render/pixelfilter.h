@@ -37,6 +37,7 @@ struct PixelFilter {
     bool separable() const;
     /// One factor of a separable filter, t in pixels from the centre, w the full width on that axis.
     double axis(double t, double w) const;
+    bool operator==(const PixelFilter&) const = default;
 };
 
 /// A filter from a request. An unknown name is reported with the nearest name and becomes gaussian; a width that is not

@@ -4,8 +4,9 @@
 // The value of a pixel is a sum over the samples near it in a fixed order, each sample a function of (seed, pixel, number).
 // Tiles, bands and threads change nothing: a buffer over a part of the raster, border included, gives the same bits.
 #pragma once
+#include "base/numberlanes.h"
 #include "render/film.h"
-#include "render/pixelfilter.h"
+#include "render/filterweights.h"
 #include <limits>
 
 namespace alpenglow::render {
@@ -20,6 +21,24 @@ enum class Jitter {
 
 /// Place of sample k (0 <= k < nx * ny) inside its pixel, each in [0,1).
 Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter);
+
+/// Draws the places of many samples, with the same bits.
+class PlaceRows {
+public:
+    PlaceRows(uint64_t seed, int nx, int ny, Jitter jitter) : seed_(seed), nx_(nx), ny_(ny), jitter_(jitter) {}
+    void clear();
+    void ask(int x, int y, int k);
+    /// places()[i] is that of the i-th that was asked for.
+    std::span<const Vec2> places();
+
+private:
+    SeedKey seed_;
+    int nx_, ny_;
+    Jitter jitter_;
+    NumberRows numbers_;
+    std::vector<int> asked_;
+    std::vector<Vec2> places_;
+};
 
 /// One image sample. Colour and AOVs as composited over the sample's surfaces, premultiplied by opacity.
 struct ImageSample {
@@ -54,8 +73,10 @@ public:
     int samplesPerPixel() const { return nx_ * ny_; }
     /// Raster position of a sample, pixels.
     Vec2 position(int x, int y, int k) const;
-    /// Stores sample k of a pixel of sampled(). One pixel by one thread at a time. A sample whose colour or opacity is not
-    /// finite is dropped and counted, once, false; a NaN in an AOV or depth makes that value 0 or "none", counted.
+    /// Stores sample k of a pixel of sampled(), whose place in the pixel is stratifiedOffset(). One pixel by one thread at a
+    /// time. A sample whose colour or opacity is not finite is dropped and counted, once, false; a NaN in an AOV or depth makes
+    /// that value 0 or "none", counted.
+    bool set(int x, int y, int k, Vec2 place, const ImageSample&);
     bool set(int x, int y, int k, const ImageSample&);
     /// Colour of a sample; black where there is none.
     Color color(int x, int y, int k) const;
@@ -67,17 +88,34 @@ public:
     /// z: "max" counts misses as infinite; "average" is over hits; "midpoint" is the least of the mid-depths of two
     /// surfaces, infinite where no sample has a second surface (nothing lies behind that could be shadowed).
     Image reconstruct(const PixelFilter&, DepthFilter, Window out) const;
+    /// The same into rows of pixels with all channels, `rowFloats` from one to the next. No filter is wider than the buffer was
+    /// made for (weights()).
+    void reconstruct(const FilterWeights&, DepthFilter, Window out, float* to, size_t rowFloats) const;
+    /// Only the channel z.
+    void reconstructDepth(DepthFilter, Window out, float* to, size_t rowFloats) const;
+    /// The weights of a filter: one that is wider than the border was made for is cut.
+    FilterWeights weights(const PixelFilter&) const;
 
 private:
     size_t base(int x, int y, int k) const {
         size_t pixel = size_t(y - sampled_.y0) * size_t(sampled_.width()) + size_t(x - sampled_.x0);
         return (pixel * size_t(nx_ * ny_) + size_t(k)) * stride_;
     }
-    void pixel(const PixelFilter&, DepthFilter, int x, int y, float* out) const;
+    struct Scratch;
+    void block(const FilterWeights&, const Window&, Scratch&, float* to, size_t rowFloats) const;
+    void weigh(const FilterWeights&, const Window& block, int row, Scratch&) const;
+    void addRow(const Window& block, int row, int y, Scratch&) const;
+    void finish(double* sums, int x, int y, float* out) const;
+    void addSample(const float* sample, double weight, double* sums) const;
+    void ownValues(int x, int y, float* out) const;
+    float depthOf(DepthFilter, int x, int y) const;
+    size_t channels() const { return size_t(kImageFixedChannels) + aovs_.size(); }
 
+    static constexpr int kColor = 2, kOpacity = 5, kDepth = 8, kDepth2 = 9, kAovs = 10; ///< floats of a sample
     Window window_, sampled_;
     int nx_, ny_;
     std::vector<Channel> aovs_;
+    bool averagesAll_; ///< no AOV is a least or a greatest value
     uint64_t seed_;
     Jitter jitter_;
     size_t stride_;

@@ -111,6 +111,47 @@ TEST(SampleBuffer, PartsOfTheRasterGiveTheSameBits) {
     }
 }
 
+TEST(SampleBuffer, BlocksOfPixelsGiveTheSameBits) {
+    // More columns and rows than a block has: 16 samples make them 64 x 16.
+    const Window all{0, 0, 70, 19}, one{63, 15, 66, 18};
+    const std::vector<Channel> aovs{{"a"}};
+    const auto shade = [](Vec2 p, int x, int, int k) {
+        static thread_local float aov[1];
+        aov[0] = float(x * k);
+        ImageSample s = grey(std::sin(p.x) * p.y);
+        s.aovs = aov;
+        return s;
+    };
+    for (FilterKind kind : {FilterKind::Gaussian, FilterKind::Bessel}) {
+        SampleBuffer whole(all, 3, 3, 4, 4, aovs, 9, Jitter::Jittered), part(one, 3, 3, 4, 4, aovs, 9, Jitter::Jittered);
+        fill(whole, shade);
+        fill(part, shade);
+        const Image a = whole.reconstruct({kind, 3, 3}, DepthFilter::Min, all),
+                    b = part.reconstruct({kind, 3, 3}, DepthFilter::Min, one);
+        for (int y = one.y0; y < one.y1; ++y)
+            for (int x = one.x0; x < one.x1; ++x)
+                for (int c = 0; c < 9; ++c) EXPECT_EQ(a.at(x, y, c), b.at(x, y, c));
+    }
+}
+
+TEST(SampleBuffer, PlacesDrawnTogetherHaveTheSameBits) {
+    for (Jitter j : {Jitter::Grid, Jitter::Jittered, Jitter::Scrambled, Jitter::Middle}) {
+        PlaceRows rows(77, 3, 5, j);
+        for (int again = 0; again < 2; ++again) { // in the memory of the call before
+            rows.clear();
+            for (int y = -1; y < 3; ++y)
+                for (int k = 0; k < 15; ++k) rows.ask(again - y, y, k);
+            const std::span<const Vec2> places = rows.places();
+            ASSERT_EQ(places.size(), 60u);
+            for (int y = -1; y < 3; ++y)
+                for (int k = 0; k < 15; ++k) {
+                    const Vec2 one = stratifiedOffset(77, again - y, y, k, 3, 5, j), p = places[size_t((y + 1) * 15 + k)];
+                    EXPECT_TRUE(one.x == p.x && one.y == p.y) << int(j) << ' ' << y << ' ' << k;
+                }
+        }
+    }
+}
+
 TEST(SampleBuffer, DepthFilters) {
     const float inf = std::numeric_limits<float>::infinity();
     const float z[4] = {5, 2, inf, 8}, second[4] = {9, inf, inf, 10};

@@ -1,0 +1,52 @@
+// The weights of samples that are reconstructed: a pixel filter from tables.
+#pragma once
+#include "render/pixelfilter.h"
+#include <memory>
+#include <vector>
+
+namespace alpenglow::render {
+
+/// A filter between nodes of its exact values, straight from one to the next. Where it ends is exact.
+class FilterWeights {
+public:
+    explicit FilterWeights(const PixelFilter&);
+    /// A weight is at most this far from the filter's value, by the greatest value of the filter: half of it on each axis.
+    static constexpr double kError = 2e-6;
+
+    const PixelFilter& filter() const { return filter_; }
+    /// The filter at (x, y), in pixels from its centre.
+    float operator()(double x, double y) const;
+    /// True when that is the product of across(x) and down(y).
+    bool separable() const { return separable_; }
+    float across(double x) const { return axis(across_.get(), x, filter_.xw / 2); }
+    float down(double y) const { return axis(down_.get(), y, filter_.yw / 2); }
+
+private:
+    /// A function of [0, end], 0 beyond.
+    struct Table {
+        struct Piece {
+            float value, slope; ///< where it begins; by the piece
+        };
+        std::vector<Piece> pieces;
+        double end, scale; ///< scale: pieces by unit
+        template <class F> Table(double end_, int count, const F& f);
+        float operator()(double t) const {
+            if (!(t <= end)) return 0;
+            const double at = t * scale;
+            const size_t i = size_t(int(at));
+            return pieces[i].value + float(at - double(int(i))) * pieces[i].slope;
+        }
+    };
+    /// No table: a box.
+    static float axis(const Table* table, double t, double half) {
+        t = t < 0 ? -t : t;
+        return table ? (*table)(t) : t <= half ? 1.f : 0.f;
+    }
+
+    PixelFilter filter_;
+    bool separable_;
+    std::shared_ptr<const Table> across_, down_;       ///< separable filters but box
+    std::shared_ptr<const Table> byDistance_, byPart_; ///< the others: of the distance in pixels, and of the way to the rim
+};
+
+} // namespace alpenglow::render

@@ -109,6 +109,15 @@ struct Wanted {
     int x, y, k;
 };
 
+/// What a worker's rays need, kept from task to task.
+struct Kept {
+    std::vector<Wanted> wanted;
+    PlaceRows places;
+    std::vector<transport::CameraRay> rays, behind;
+    std::vector<transport::SampleResult> results, found;
+    std::vector<size_t> of; ///< by ray of `behind`
+};
+
 /// What the bands of a picture have in common.
 class ImageLoop {
 public:
@@ -123,7 +132,7 @@ private:
     Done told(int b, double begin, size_t tasks);
     void trace(SampleBuffer&, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list, const Done&);
     bool traceSlice(SampleBuffer&, int worker, std::span<const Wanted>);
-    bool traceBehind(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>) const;
+    bool traceBehind(int worker, Kept&) const;
     void refine(SampleBuffer&, const Window& part, int b);
     std::vector<Wanted> differing(const SampleBuffer&, const Window& part) const;
     void reconstruct(const SampleBuffer&, const Window& part);
@@ -147,7 +156,7 @@ private:
     std::vector<const OutputSpec*>
         filtered_;                       ///< displays that share a reconstruction stand for each other: a frame may have hundreds
     std::vector<FilterWeights> weights_; ///< by image
-    std::vector<PlaceRows> places_;      ///< by worker
+    std::vector<Kept> kept_;             ///< by worker
     double xw_ = 1, yw_ = 1;
     int rows_ = 0, bands_ = 0;
     double reached_ = 0;
@@ -164,7 +173,7 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
         nx_ = ny_ = refinement.side;
         jitter_ = Jitter::Grid;
     }
-    places_.assign(size_t(job.team.threads()), PlaceRows(seed_, nx_, ny_, jitter_));
+    for (int i = 0; i < job.team.threads(); ++i) kept_.push_back({{}, PlaceRows(seed_, nx_, ny_, jitter_), {}, {}, {}, {}, {}});
     plan();
 }
 
@@ -285,7 +294,8 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
     job_.run(
         tasks,
         [&](int worker, size_t i) {
-            std::vector<Wanted> wanted;
+            std::vector<Wanted>& wanted = kept_[size_t(worker)].wanted;
+            wanted.clear();
             list(i, wanted);
             // A pixel with thousands of samples is traced in slices, so that one call stays small.
             constexpr size_t slice = 2048;
@@ -298,46 +308,45 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
 
 /// The depths of the second surfaces, which a sample has by itself only where the first lets light through: rays that begin
 /// behind the first. False: interrupted.
-bool ImageLoop::traceBehind(int worker, std::span<const transport::CameraRay> rays,
-                            std::span<transport::SampleResult> results) const {
+bool ImageLoop::traceBehind(int worker, Kept& k) const {
     constexpr float kBehind = 1 + 1e-5f; // of the depth: beyond its rounding, before what lies behind it
-    std::vector<transport::CameraRay> behind;
-    std::vector<size_t> of;
-    for (size_t k = 0; k < rays.size(); ++k) {
-        if (!(results[k].z < 1e38f) || results[k].zSecond < 1e38f || !(rays[k].direction.z > 0)) continue;
-        transport::CameraRay r = rays[k];
-        const float way = (results[k].z * kBehind - r.origin.z) / r.direction.z;
+    k.behind.clear();
+    k.of.clear();
+    for (size_t i = 0; i < k.rays.size(); ++i) {
+        if (!(k.results[i].z < 1e38f) || k.results[i].zSecond < 1e38f || !(k.rays[i].direction.z > 0)) continue;
+        transport::CameraRay r = k.rays[i];
+        const float way = (k.results[i].z * kBehind - r.origin.z) / r.direction.z;
         r.origin += r.direction * way;
         r.start += way;
         r.width += r.spread * way;
-        behind.push_back(r);
-        of.push_back(k);
+        k.behind.push_back(r);
+        k.of.push_back(i);
     }
-    if (behind.empty()) return true;
-    std::vector<transport::SampleResult> found(behind.size());
-    if (!job_.trace(worker, behind, found)) return false;
-    for (size_t k = 0; k < of.size(); ++k) results[of[k]].zSecond = found[k].z;
+    if (k.behind.empty()) return true;
+    k.found.resize(k.behind.size());
+    if (!job_.trace(worker, k.behind, k.found)) return false;
+    for (size_t i = 0; i < k.of.size(); ++i) k.results[k.of[i]].zSecond = k.found[i].z;
     return true;
 }
 
 bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wanted> wanted) {
-    PlaceRows& drawn = places_[size_t(worker)];
-    drawn.clear();
-    for (const Wanted& w : wanted) drawn.ask(w.x, w.y, w.k);
-    const std::span<const Vec2> places = drawn.places();
-    std::vector<transport::CameraRay> rays;
+    Kept& kept = kept_[size_t(worker)];
+    kept.places.clear();
+    for (const Wanted& w : wanted) kept.places.ask(w.x, w.y, w.k);
+    const std::span<const Vec2> places = kept.places.places();
+    std::vector<transport::CameraRay>& rays = kept.rays;
+    rays.clear();
     for (size_t i = 0; i < wanted.size(); ++i) {
         const Wanted& w = wanted[i];
         const Vec2 at{float(w.x) + places[i].x, float(w.y) + places[i].y};
         rays.push_back(imageRay(job_.camera, at, seed_, w.x, w.y, uint32_t(w.k)));
     }
-    std::vector<transport::SampleResult> results(rays.size());
-    if (!job_.trace(worker, rays, results)) return false;
-    if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, rays, results))
-        return false;
+    kept.results.resize(rays.size());
+    if (!job_.trace(worker, rays, kept.results)) return false;
+    if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, kept)) return false;
     if (job_.unfinished(worker)) return true; // these are traced again
     for (size_t k = 0; k < rays.size(); ++k) {
-        transport::SampleResult& r = results[k];
+        transport::SampleResult& r = kept.results[k];
         r.aovs.resize(aovs_.size());
         ImageSample s;
         s.color = clampSample(r.color, job_.settings.sampleClamp);

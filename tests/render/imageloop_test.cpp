@@ -30,6 +30,19 @@ struct Slope final : Tracer {
     const transport::Counters& counters() const override { return counts; }
 };
 
+/// Leaves memory behind in the first result of a call, and counts the calls that find none.
+struct Keeper final : Tracer {
+    int& fresh;
+    transport::Counters counts;
+    explicit Keeper(int& f) : fresh(f) {}
+    bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult> out, const StopFlag*) override {
+        fresh += out[0].aovs.capacity() < 100;
+        out[0].aovs.reserve(100);
+        return true;
+    }
+    const transport::Counters& counters() const override { return counts; }
+};
+
 struct World final : test::PlainWorld {};
 
 struct Folder {
@@ -96,6 +109,21 @@ TEST(ImageLoop, DisplaysOfOneFilterHaveDepthsOfTheirOwn) {
             EXPECT_NEAR(mean.pixel(x, y)[4], 4 + middle, 1e-6);
             for (const display::Image* i : {&least, &most, &mean}) EXPECT_NEAR(i->pixel(x, y)[0], middle, 1e-6);
         }
+}
+
+TEST(ImageLoop, ResultsAreKeptFromTaskToTask) {
+    Folder dir;
+    auto f = slopeFrame();
+    RenderSettings s;
+    s.output = dir / "a.exr";
+    s.threads = 1;
+    Diagnostics diags;
+    Progress progress{ProgressMode::None};
+    int fresh = 0;
+    Renderer renderer(s, test::plainEngine<World>([&](const transport::World&) { return std::make_unique<Keeper>(fresh); }),
+                      diags, progress, {});
+    renderer.render(f);
+    EXPECT_EQ(fresh, 1); // of the six tiles
 }
 
 } // namespace imageloop_test

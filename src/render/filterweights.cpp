@@ -9,9 +9,9 @@ namespace {
 
 // Straight pieces of length h are off by h^2 / 8 times the second derivative. By pixel that is at most 7.8 (bessel, whose
 // greatest value is pi); by the half width of a filter that grows with its width, 23 (blackman-harris).
-constexpr int kPieces = 2048; ///< a pixel, or the half width where that is less
+constexpr int kSegments = 2048; ///< a pixel, or the half width where that is less
 
-int piecesOf(double end) { return kPieces * std::max(1, int(std::ceil(end))); }
+int piecesOf(double end) { return kSegments * std::max(1, int(std::ceil(end))); }
 
 } // namespace
 
@@ -40,7 +40,7 @@ FilterWeights::FilterWeights(const PixelFilter& f) : filter_(f), separable_(f.se
     const PixelFilter wide{f.kind, 1e9, 1e9}; // its cosine is 1
     byDistance_ = std::make_shared<const Table>(end, piecesOf(end), [&](double r) { return wide(r, 0); });
     if (f.kind == FilterKind::Bessel)
-        byPart_ = std::make_shared<const Table>(1, kPieces, [](double t) { return exact::cos(kPi / 2 * t); });
+        byPart_ = std::make_shared<const Table>(1, kSegments, [](double t) { return exact::cos(kPi / 2 * t); });
 }
 
 float FilterWeights::operator()(double x, double y) const {

@@ -136,6 +136,7 @@ private:
     void refine(SampleBuffer&, const Window& part, int b);
     std::vector<Wanted> differing(const SampleBuffer&, const Window& part) const;
     void reconstruct(const SampleBuffer&, const Window& part);
+    bool seesNothing(const Window& tile) const;
     void show();
     void grow();
     size_t number(int x, int y) const { return size_t(y - window_.y0) * size_t(window_.width()) + size_t(x - window_.x0); }
@@ -230,6 +231,7 @@ void ImageLoop::band(int b) {
         buffer, tiles.size(),
         [&](size_t i, std::vector<Wanted>& wanted) {
             const Window& t = tiles[i];
+            if (!watched && seesNothing(t)) return;
             for (int y = t.y0; y < t.y1; ++y)
                 for (int x = t.x0; x < t.x1; ++x)
                     for (int k = first; k < last; ++k) wanted.push_back({x, y, k});
@@ -327,6 +329,14 @@ bool ImageLoop::traceBehind(int worker, Kept& k) const {
     if (!job_.trace(worker, k.behind, k.found)) return false;
     for (size_t i = 0; i < k.of.size(); ++i) k.results[k.of[i]].zSecond = k.found[i].z;
     return true;
+}
+
+/// Whether the samples of a tile, and all that share a filter with them, are known to see nothing. Then there are no samples:
+/// every pixel that they would be in is empty.
+bool ImageLoop::seesNothing(const Window& t) const {
+    if (refinement_.on()) return false;
+    const int bx = 2 * int(std::ceil(xw_)), by = 2 * int(std::ceil(yw_));
+    return job_.tracers[0]->seesNothing(job_.camera.sides({t.x0 - bx, t.y0 - by, t.x1 + bx, t.y1 + by}));
 }
 
 bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wanted> wanted) {

@@ -63,7 +63,21 @@ void SampleBuffer::addRow(const Window& block, int row, int y, Scratch& to) cons
     }
 }
 
+bool SampleBuffer::hasSamples(const Window& w) const {
+    if (!averagesAll_) return true;
+    for (int y = w.y0; y < w.y1; ++y) {
+        const float* s = &data_[base(w.x0, y, 0)];
+        for (size_t i = 0; i < size_t(w.width()) * size_t(nx_ * ny_); ++i, s += stride_)
+            if (s[0] >= 0) return true;
+    }
+    return false;
+}
+
 void SampleBuffer::block(const FilterWeights& f, const Window& block, Scratch& scratch, float* to, size_t rowFloats) const {
+    if (!hasSamples({block.x0 - scratch.bx, block.y0 - scratch.by, block.x1 + scratch.bx, block.y1 + scratch.by})) {
+        for (int y = block.y0; y < block.y1; ++y, to += rowFloats) std::fill_n(to, size_t(block.width()) * channels(), 0.f);
+        return;
+    }
     const size_t nsum = kFixedSums + aovs_.size(), side = size_t(2 * scratch.bx + 1);
     scratch.samples = size_t(block.width() + 2 * scratch.bx) * size_t(nx_ * ny_);
     scratch.across.resize(f.separable() ? side * scratch.samples : 0);

@@ -102,6 +102,7 @@ private:
         return (pixel * size_t(nx_ * ny_) + size_t(k)) * stride_;
     }
     struct Scratch;
+    bool hasSamples(const Window&) const;
     void block(const FilterWeights&, const Window&, Scratch&, float* to, size_t rowFloats) const;
     void weigh(const FilterWeights&, const Window& block, int row, Scratch&) const;
     void addRow(const Window& block, int row, int y, Scratch&) const;

@@ -26,7 +26,7 @@ bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out
     return impl_->engine.trace(r, out, stop);
 }
 bool Integrator::seesNothing(std::span<const geometry::Plane> sides) const {
-    return impl_->grids && !sides.empty() && !impl_->engine.world().accel_->reachesInto(sides);
+    return impl_->grids && impl_->grids->emptyIsBlack() && !sides.empty() && !impl_->engine.world().accel_->reachesInto(sides);
 }
 bool Integrator::unfinished() const { return impl_->engine.unfinished(); }
 const Counters& Integrator::counters() const { return impl_->engine.counters; }

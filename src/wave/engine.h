@@ -55,6 +55,7 @@ public:
     bool beginsAnew() const { return beginsAnew_; }
     /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet (Unmade): its results are void.
     bool unfinished() const { return unfinished_; }
+    void setUnfinished(bool u) { unfinished_ = u; }
     /// What rays meet, whether anything is in their way: all of the engine's go here. At such a bound they end.
     void meet(std::span<const accel::Ray>, std::span<accel::Hit>);
     bool meet(const accel::Ray&, accel::Hit&);

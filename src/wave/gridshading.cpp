@@ -18,16 +18,14 @@ void put(float* to, const Color& c) { to[0] = c.x, to[1] = c.y, to[2] = c.z; }
 
 } // namespace
 
-bool GridShading::takes(const WorldImpl& w) {
-    if (!w.settings_.micropolygons || !w.shadesAtOpen_ || w.unmade_ || !w.media_.empty()) return false;
-    return std::none_of(w.skies_.begin(), w.skies_.end(), [&](int l) { // seen behind everything, sample by sample
-        const BoundLight& sky = w.lights_[size_t(l)];
-        return sky.kind == LightKind::Environment && sky.strategy == LightStrategy::Trace;
-    });
-}
+bool GridShading::takes(const WorldImpl& w) { return w.settings_.micropolygons && w.shadesAtOpen_ && w.eye_.count == 0; }
 
 GridShading::GridShading(Engine& e)
     : engine_(e), world_(e.world()), lattices_(world_), camera_(world_.frame_->options), stride_(kOutputs) {
+    seesSky_ = std::any_of(world_.skies_.begin(), world_.skies_.end(), [&](int l) {
+        const BoundLight& sky = world_.lights_[size_t(l)];
+        return sky.kind == LightKind::Environment && sky.strategy == LightStrategy::Trace;
+    });
     for (const int width : world_.outputWidths_) {
         for (int k = 0; k < width; ++k) colour_.push_back(width % 3 == 0 ? uint8_t(k % 3) : 3);
         stride_ += size_t(width);
@@ -57,6 +55,7 @@ void GridShading::grow() {
 void GridShading::begin(std::span<const CameraRay> rays, std::span<SampleResult> out) {
     if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget();
     samples_.resize(rays.size());
+    own_.clear();
     for (size_t i = 0; i < rays.size(); ++i) {
         std::vector<float> outputs = std::move(out[i].aovs); // its memory is used again
         outputs.assign(colour_.size(), 0.f);
@@ -85,6 +84,7 @@ void GridShading::meet(std::span<const CameraRay> rays) {
         engine_.clip(r);
     }
     engine_.meet(rays_, hits_);
+    unfinished_ |= engine_.unfinished();
     for (size_t i = 0; i < samples_.size(); ++i) points_[i] = rays_[i].org + rays_[i].dir * float(hits_[i].distance);
 }
 
@@ -119,10 +119,12 @@ void GridShading::findShares() {
 
 /// The ray by which the eye sees a micropolygon.
 CameraRay GridShading::rayTo(const MicropolygonShare& s, shading::GridPoint& point) const {
+    MicropolygonKey key = s.key; // numbers do not depend on which procedurals were made
+    key.shape = world_.keyOfShape(s.key.shape);
     point = {s.key.shape, s.key.prim, s.b1, s.b2};
-    point.micropolygon = s.key.shared() ? s.key.hash()
-                                        : s.key.hash() + render::mix64(std::bit_cast<uint64_t>(s.b1)) +
-                                              3 * render::mix64(std::bit_cast<uint64_t>(s.b2));
+    point.micropolygon = key.hash();
+    if (!key.shared())
+        point.micropolygon += render::mix64(std::bit_cast<uint64_t>(s.b1)) + 3 * render::mix64(std::bit_cast<uint64_t>(s.b2));
     point.corner = false;
     geometry::SurfacePoint p;
     const geometry::HitRef at{s.key.prim, s.b1, s.b2, &p, 0};
@@ -141,7 +143,7 @@ CameraRay GridShading::rayTo(const MicropolygonShare& s, shading::GridPoint& poi
     r.cosine = r.direction.z;
     r.time = world_.shutter_.opens() ? float(world_.shutter_.open) : 0;
     r.px = int(s.key.prim);
-    r.py = int(s.key.shape);
+    r.py = int(key.shape);
     r.grid = &point;
     return r;
 }
@@ -175,6 +177,7 @@ bool GridShading::shade(const StopFlag* stop) {
         const uint64_t paths = c.paths, camera = c.camera;
         const bool whole = engine_.trace(rays, results, stop);
         c.paths = paths, c.camera = camera; // these are counted by sample
+        unfinished_ |= engine_.unfinished();
         if (!whole) return false;
         for (size_t i = 0; i < n; ++i) keep(uint32_t(firstFresh_ + first + i), results[i]);
     }
@@ -195,11 +198,23 @@ bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit,
     return true;
 }
 
+/// Whether a sample is to be shaded where it lies after all: it comes to a volume, along which it has a way of its own, or to a
+/// sky.
+bool GridShading::ownWay(const Sample& s, const accel::Hit& hit) const {
+    if (s.n == 0) return seesSky_ && !hit.valid();
+    const SurfaceBinding& b = world_.bindings_[size_t(world_.bindingOf_[hit.shape])];
+    return b.inside >= 0 || b.outside >= 0;
+}
+
 /// Adds what samples have met to their results. Those that go on stay in samples_.
 void GridShading::show(std::span<const CameraRay> rays, std::span<SampleResult> out) {
     size_t left = 0;
     for (size_t i = 0; i < samples_.size(); ++i) {
         Sample s = samples_[i];
+        if (ownWay(s, hits_[i])) {
+            own_.push_back(s.number);
+            continue;
+        }
         if (s.n == 0) continue;
         SampleResult& r = out[s.number];
         const CameraRay& ray = rays[s.number];
@@ -224,17 +239,23 @@ void GridShading::show(std::span<const CameraRay> rays, std::span<SampleResult> 
 }
 
 bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    unfinished_ = false;
+    const bool whole = follow(rays, out, stop) && followSampleBySample(rays, out, stop);
+    if (!whole || unfinished_) forget(); // what was shaded is void
+    engine_.setUnfinished(unfinished_);
+    return whole;
+}
+
+bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
     begin(rays, out);
     engine_.counters.paths += rays.size();
     engine_.counters.camera += rays.size();
     while (!samples_.empty()) {
+        engine_.setUnfinished(false);
         meet(rays);
         if (stop && *stop) return false;
         findShares();
-        if (!shade(stop)) {
-            forget();
-            return false;
-        }
+        if (!shade(stop)) return false;
         show(rays, out);
     }
     const float clampAt = world_.settings_.sampleClamp;
@@ -243,6 +264,19 @@ bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult>
         if (clampAt > 0 && m > clampAt) r.color *= clampAt / m; // pathtracer.md 6
         r.opacity = {std::min(r.opacity.x, 1.f), std::min(r.opacity.y, 1.f), std::min(r.opacity.z, 1.f)};
     }
+    return true;
+}
+
+bool GridShading::followSampleBySample(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    if (own_.empty()) return true;
+    std::vector<CameraRay> some;
+    for (const uint32_t i : own_) some.push_back(rays[i]);
+    std::vector<SampleResult> results(some.size());
+    engine_.counters.paths -= some.size();
+    engine_.counters.camera -= some.size();
+    if (!engine_.trace(some, results, stop)) return false;
+    unfinished_ |= engine_.unfinished();
+    for (size_t k = 0; k < own_.size(); ++k) out[own_[k]] = std::move(results[k]);
     return true;
 }
 

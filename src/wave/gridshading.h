@@ -13,8 +13,10 @@ public:
     /// The engine shades, and counts. It must outlive this.
     explicit GridShading(Engine&);
     /// Whether samples of this world take micropolygons: with Settings::micropolygons, under hidden, unless something asks for
-    /// what samples have of their own (their time, volumes that they go through, a sky behind everything).
+    /// what samples have of their own: their time, or a volume about the eye.
     static bool takes(const WorldImpl&);
+    /// Whether samples that meet nothing bring nothing.
+    bool emptyIsBlack() const { return !seesSky_ && !world_.unmade_; }
     /// Integrator::trace() of camera samples of the picture. The same bits whatever was shaded before.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
 
@@ -30,6 +32,8 @@ private:
         uint32_t slot;
         float weight;
     };
+    bool follow(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
+    bool followSampleBySample(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     void begin(std::span<const CameraRay>, std::span<SampleResult>);
     void meet(std::span<const CameraRay>);
     void findShares();
@@ -37,6 +41,7 @@ private:
     bool shade(const StopFlag*);
     void keep(uint32_t slot, const SampleResult&);
     void show(std::span<const CameraRay>, std::span<SampleResult>);
+    bool ownWay(const Sample&, const accel::Hit&) const;
     bool goesOn(Sample&, const CameraRay&, const accel::Hit&, const Color& clear) const;
     CameraRay rayTo(const MicropolygonShare&, shading::GridPoint&) const;
     float* values(uint32_t slot) { return values_.data() + size_t(slot) * stride_; }
@@ -47,6 +52,8 @@ private:
     const WorldImpl& world_;
     Micropolygons lattices_;
     MicropolygonCamera camera_;
+    bool seesSky_;                ///< some sky is seen behind everything
+    bool unfinished_ = false;     ///< Engine::unfinished(), of the call
     size_t stride_;               ///< floats of a slot: colour, opacity, what comes through, outputs
     std::vector<uint8_t> colour_; ///< by number of an output: the channel that weighs it; 3: the luminance
     // What has been shaded, by slot; the table finds slots by key (open addressing, a power of two).
@@ -65,6 +72,7 @@ private:
     std::vector<Share> shares_;
     std::vector<MicropolygonShare> fresh_; ///< to be shaded
     uint32_t firstFresh_ = 0;              ///< slot of the first
+    std::vector<uint32_t> own_;            ///< samples, by number, that are shaded where they lie
 };
 
 } // namespace alpenglow::transport

@@ -4,6 +4,6 @@
 
 namespace alpenglow::limits {
 
-inline constexpr size_t kMicropolygonBytes = size_t(4) << 20; ///< of shaded micropolygons that a thread keeps, about
+inline constexpr size_t kMicropolygonBytes = size_t(1) << 20; ///< of shaded micropolygons that a thread keeps, about
 
 } // namespace alpenglow::limits

@@ -185,6 +185,11 @@ void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits, const Stop
     for (size_t i = 0; i < rays.size(); ++i) impl_->intersectOne(rays[i], hits[i]);
 }
 
+void Accel::intersectTogether(std::span<const Ray> rays, std::span<Hit> hits, const StopFlag* stop) const {
+    if (impl_->direct) intersect(rays, hits, stop);
+    else impl_->walkNearestTogether(rays, hits, false, stop);
+}
+
 void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> out, const StopFlag* stop) const {
     if (!impl_->direct) return impl_->walkAny(rays, out, stop);
     if (rays.size() > 1 && impl_->takesBlocks()) return impl_->anyInBlocks(rays, out);

@@ -91,6 +91,9 @@ public:
     void intersect(std::span<const Ray>, std::span<Hit>, const StopFlag* stop = nullptr) const;
     void occluded(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 
+    /// intersect() for rays of which those one behind the other go about the same way, as those of a camera do: the same hits.
+    void intersectTogether(std::span<const Ray>, std::span<Hit>, const StopFlag* stop = nullptr) const;
+
     /// Whether rays may be given in rows (directblock.h): the scene is small. Then the same for those of 16 rays whose bit is
     /// set, which begin (Ray::passed), and consider all shapes of their mask from both sides; see takesRows(Sides). time: of the
     /// shutter, by ray. Results of the others stay what they were.

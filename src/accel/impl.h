@@ -224,6 +224,7 @@ struct Accel::Impl {
     bool occludedOne(const Ray&) const;
     /// plain: with the instructions that every processor has.
     void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
+    void walkNearestTogether(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
     void walkAny(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 };
 

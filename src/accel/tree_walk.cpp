@@ -30,6 +30,11 @@ void Accel::Impl::walkNearest(std::span<const Ray> rays, std::span<Hit> hits, bo
     else (hasAvx2() && !plain ? avx2::nearest : common::nearest)(*this, rays, hits, stop);
 }
 
+void Accel::Impl::walkNearestTogether(std::span<const Ray> rays, std::span<Hit> hits, bool plain, const StopFlag* stop) const {
+    if (tree.empty() || !geometries.empty()) return walkNearest(rays, hits, plain, stop);
+    (hasAvx2() && !plain ? avx2::nearestTogether : common::nearestTogether)(*this, rays, hits, stop);
+}
+
 void Accel::Impl::walkAny(std::span<const Ray> rays, std::span<uint8_t> met, const StopFlag* stop) const {
     if (tree.empty()) std::fill(met.begin(), met.end(), uint8_t(0));
     else (hasAvx2() ? avx2::any : common::any)(*this, rays, met, stop);

@@ -57,7 +57,8 @@ public:
     bool unfinished() const { return unfinished_; }
     void setUnfinished(bool u) { unfinished_ = u; }
     /// What rays meet, whether anything is in their way: all of the engine's go here. At such a bound they end.
-    void meet(std::span<const accel::Ray>, std::span<accel::Hit>);
+    /// together: those one behind the other go about the same way.
+    void meet(std::span<const accel::Ray>, std::span<accel::Hit>, bool together = false);
     bool meet(const accel::Ray&, accel::Hit&);
     void block(std::span<const accel::Ray>, std::span<uint8_t>);
     void follow(std::span<const Sched::Task> slice, Sched&) override; // hits.cpp

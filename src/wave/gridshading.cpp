@@ -83,7 +83,7 @@ void GridShading::meet(std::span<const CameraRay> rays) {
         if (world_.fades_) r.level = engine_.levelOfSample(c);
         engine_.clip(r);
     }
-    engine_.meet(rays_, hits_);
+    engine_.meet(rays_, hits_, true);
     unfinished_ |= engine_.unfinished();
     for (size_t i = 0; i < samples_.size(); ++i) points_[i] = rays_[i].org + rays_[i].dir * float(hits_[i].distance);
 }

@@ -86,10 +86,14 @@ template <class F> static void inParts(size_t n, const StopFlag* stop, F f) {
     for (size_t at = 0; at < n && !(stop && *stop); at += kPart) f(at, std::min(kPart, n - at));
 }
 
-void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits) {
+void Engine::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> hits, bool together) {
     std::fill(hits.begin(), hits.end(), accel::Hit{});
-    inParts(rays.size(), stop,
-            [&](size_t at, size_t n) { world_->accel_->intersect(rays.subspan(at, n), hits.subspan(at, n), stop); });
+    inParts(rays.size(), stop, [&](size_t at, size_t n) {
+        const auto some = rays.subspan(at, n);
+        const auto met = hits.subspan(at, n);
+        if (together) world_->accel_->intersectTogether(some, met, stop);
+        else world_->accel_->intersect(some, met, stop);
+    });
     for (size_t i = 0; world_->unmade_ && i < rays.size(); ++i) {
         if (!world_->unmade_->meets(rays[i], hits[i].valid() ? hits[i].distance : INFINITY)) continue;
         unfinished_ = true;

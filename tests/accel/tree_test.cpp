@@ -69,6 +69,90 @@ std::shared_ptr<scene::Primitive> ball(int rows, int around) {
 
 } // namespace
 
+// Where nothing lies within the sides of a window no ray through it meets anything; and that is found where there is room.
+TEST(Tree, WindowsThatSeeNothing) {
+    Rng rng(12);
+    size_t empty = 0, open = 0;
+    for (const int triangles : {12, 500}) { // looked at one by one, and in a tree
+        Diagnostics diag;
+        std::vector<ShapeRef> shapes{build(soup(rng, triangles, {0, 0, 5}, 1), Matrix(), diag),
+                                     build(quadric("Sphere", {.3f, -.3f, .3f, 360}), translateMatrix(1, 1, 6), diag)};
+        Accel accel(shapes, {}, diag);
+        for (int window = 0; window < 400; ++window) {
+            const float x = uniform(rng, -.6f, .6f), y = uniform(rng, -.6f, .6f), w = uniform(rng, .001f, .1f);
+            const Plane sides[] = {{Vec3(0, 0, 1), 0},
+                                   {Vec3(1, 0, w - x), 0},
+                                   {Vec3(-1, 0, w + x), 0},
+                                   {Vec3(0, 1, w - y), 0},
+                                   {Vec3(0, -1, w + y), 0}};
+            const bool reaches = accel.reachesInto(sides);
+            bool hit = false;
+            for (int k = 0; k < 64; ++k) {
+                Ray r;
+                r.dir = {x + w * uniform(rng, -1, 1), y + w * uniform(rng, -1, 1), 1};
+                Hit h;
+                hit |= accel.intersect(r, h);
+            }
+            ASSERT_TRUE(reaches || !hit) << triangles << " " << window;
+            empty += !reaches;
+            open += reaches;
+        }
+    }
+    EXPECT_GT(empty, 100u);
+    EXPECT_GT(open, 100u);
+}
+
+// Rays that go about the same way, as from an eye through a window, or side by side: the hits are those that each has alone, with
+// the instructions of every processor. Every fifth bundle is too wide for that, and a few rays have no length or no end.
+TEST(Tree, RaysTogetherMeetWhatTheyMeetAlone) {
+    Rng rng(11);
+    size_t met = 0;
+    for (int scene = 0; scene < 12; ++scene) {
+        const float size = std::pow(10.f, uniform(rng, -2, 3));
+        Diagnostics diag;
+        std::vector<ShapeRef> shapes{build(soup(rng, 400, {}, size), Matrix(), diag), build(ball(20, 30), Matrix(), diag)};
+        for (int k = 0; k < 5; ++k)
+            shapes.push_back(build(quadric("Sphere", {size * 0.1f, -size, size, 360}), translateMatrix(0, 0, size * k), diag));
+        Accel::Impl inside;
+        inside.shapes = shapes;
+        inside.visibility.assign(shapes.size(), kAll);
+        inside.visibility[2] = kDiffuse;
+        inside.tree.build(shapes);
+        std::vector<Ray> rays;
+        for (int bundle = 0; bundle < 40; ++bundle) {
+            const Vec3 eye = within(rng, 3 * size), aim = within(rng, size);
+            for (int k = 0; k < 16; ++k) {
+                const Vec3 off = within(rng, size * (bundle % 5 ? 0.03f : 2));
+                Ray r;
+                r.org = bundle % 2 ? eye : eye + off;
+                r.dir = bundle % 2 ? aim + off - eye : aim - eye;
+                r.mask = kCamera;
+                if (k == 3) r.tnear = 0.9f, r.tfar = 1.1f;
+                if (k == 5 && bundle % 7 == 0) r.dir = Vec3(0.f);
+                if (k == 6 && bundle % 7 == 0) r.tfar = -1;
+                rays.push_back(r);
+            }
+        }
+        rays.resize(rays.size() - 5); // the last ones are fewer
+        std::vector<Hit> alone(rays.size());
+        inside.walkNearest(rays, alone);
+        for (const bool plain : {false, true}) {
+            std::vector<Hit> together(rays.size());
+            inside.walkNearestTogether(rays, together, plain);
+            for (size_t i = 0; i < rays.size(); ++i) {
+                ASSERT_EQ(together[i].shape, alone[i].shape) << "scene " << scene << " ray " << i;
+                if (!alone[i].valid()) continue;
+                met += plain;
+                ASSERT_EQ(together[i].prim, alone[i].prim);
+                ASSERT_EQ(together[i].distance, alone[i].distance);
+                ASSERT_EQ(together[i].b1, alone[i].b1);
+                ASSERT_EQ(together[i].b2, alone[i].b2);
+            }
+        }
+    }
+    EXPECT_GT(met, 2000u);
+}
+
 TEST(Tree, NothingIsOverlooked) {
     Rng rng(3);
     size_t met = 0;

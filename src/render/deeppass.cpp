@@ -31,10 +31,11 @@ private:
 };
 
 bool DepthLoop::row(int worker, int y, Row& out) {
-    constexpr size_t kSlice = 2048; // rays of a call
+    constexpr int64_t kSlice = 2048; // rays of a call
     const Window& w = job_.camera.window();
     const int samples = nx_ * ny_;
-    std::vector<transport::CameraRay> rays;
+    ImageRays image(job_.camera, seed_, nx_, ny_, jitter_);
+    std::vector<transport::CameraRay>& rays = image.rays();
     std::vector<transport::SampleResult> results;
     std::vector<display::DeepChange> changes;
     int64_t begun = 0; // of the samples of the row
@@ -46,13 +47,10 @@ bool DepthLoop::row(int worker, int y, Row& out) {
     };
     const int64_t all = int64_t(samples) * w.width();
     while (begun < all) {
-        rays.clear();
-        for (int64_t i = begun; i < all && rays.size() < kSlice; ++i) {
-            const int x = w.x0 + int(i / samples), k = int(i % samples);
-            const Vec2 at = stratifiedOffset(seed_, x, y, k, nx_, ny_, jitter_);
-            rays.push_back(imageRay(job_.camera, {float(x) + at.x, float(y) + at.y}, seed_, x, y, uint32_t(k)));
-            rays.back().depths = true;
-        }
+        image.clear();
+        for (int64_t i = begun; i < std::min(all, begun + kSlice); ++i) image.ask(w.x0 + int(i / samples), y, int(i % samples));
+        image.make();
+        for (transport::CameraRay& r : rays) r.depths = true;
         results.assign(rays.size(), {});
         if (!job_.trace(worker, rays, results)) return false;
         for (const transport::SampleResult& r : results) {

@@ -53,25 +53,6 @@ bool shadesMicropolygons(const scene::Options& o, Diagnostics& diags) {
     return true;
 }
 
-transport::CameraRay imageRay(const Camera& camera, Vec2 position, uint64_t seed, int x, int y, uint32_t sample) {
-    Vec2 lens{0.5f, 0.5f};
-    float time = 0;
-    if (camera.hasLens() || camera.shutterClose() > camera.shutterOpen()) {
-        Sampler numbers(seed, x, y);
-        lens = numbers.get2(0, kUseLens, 0, sample);
-        if (const LensGrid& grid = camera.lensGrid(); grid.on()) {
-            const int k = int(sample);
-            lens = {(float(k % grid.x) + 0.5f) / float(grid.x), (float(k / grid.x) + 0.5f) / float(grid.y)};
-        }
-        time = numbers.get1(0, kUseTime, 0, sample);
-    }
-    transport::CameraRay r = camera.ray(position.x, position.y, lens, time);
-    r.px = x;
-    r.py = y;
-    r.sample = sample;
-    return r;
-}
-
 Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnostics& diags) {
     Refinement r;
     const scene::Param* samples = scene::find(o.hiderParams, "aaSamples");
@@ -112,8 +93,8 @@ struct Wanted {
 /// What a worker's rays need, kept from task to task.
 struct Kept {
     std::vector<Wanted> wanted;
-    PlaceRows places;
-    std::vector<transport::CameraRay> rays, behind;
+    ImageRays image;
+    std::vector<transport::CameraRay> behind;
     std::vector<transport::SampleResult> results, found;
     std::vector<size_t> of; ///< by ray of `behind`
 };
@@ -174,7 +155,8 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
         nx_ = ny_ = refinement.side;
         jitter_ = Jitter::Grid;
     }
-    for (int i = 0; i < job.team.threads(); ++i) kept_.push_back({{}, PlaceRows(seed_, nx_, ny_, jitter_), {}, {}, {}, {}, {}});
+    for (int i = 0; i < job.team.threads(); ++i)
+        kept_.push_back({{}, ImageRays(job.camera, seed_, nx_, ny_, jitter_), {}, {}, {}, {}});
     plan();
 }
 
@@ -314,9 +296,10 @@ bool ImageLoop::traceBehind(int worker, Kept& k) const {
     constexpr float kBehind = 1 + 1e-5f; // of the depth: beyond its rounding, before what lies behind it
     k.behind.clear();
     k.of.clear();
-    for (size_t i = 0; i < k.rays.size(); ++i) {
-        if (!(k.results[i].z < 1e38f) || k.results[i].zSecond < 1e38f || !(k.rays[i].direction.z > 0)) continue;
-        transport::CameraRay r = k.rays[i];
+    const std::vector<transport::CameraRay>& rays = k.image.rays();
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (!(k.results[i].z < 1e38f) || k.results[i].zSecond < 1e38f || !(rays[i].direction.z > 0)) continue;
+        transport::CameraRay r = rays[i];
         const float way = (k.results[i].z * kBehind - r.origin.z) / r.direction.z;
         r.origin += r.direction * way;
         r.start += way;
@@ -341,16 +324,10 @@ bool ImageLoop::seesNothing(const Window& t) const {
 
 bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wanted> wanted) {
     Kept& kept = kept_[size_t(worker)];
-    kept.places.clear();
-    for (const Wanted& w : wanted) kept.places.ask(w.x, w.y, w.k);
-    const std::span<const Vec2> places = kept.places.places();
-    std::vector<transport::CameraRay>& rays = kept.rays;
-    rays.clear();
-    for (size_t i = 0; i < wanted.size(); ++i) {
-        const Wanted& w = wanted[i];
-        const Vec2 at{float(w.x) + places[i].x, float(w.y) + places[i].y};
-        rays.push_back(imageRay(job_.camera, at, seed_, w.x, w.y, uint32_t(w.k)));
-    }
+    kept.image.clear();
+    for (const Wanted& w : wanted) kept.image.ask(w.x, w.y, w.k);
+    kept.image.make();
+    const std::vector<transport::CameraRay>& rays = kept.image.rays();
     kept.results.resize(rays.size());
     if (!job_.trace(worker, rays, kept.results)) return false;
     if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, kept)) return false;
@@ -364,7 +341,7 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
         if (r.z < 1e38f) s.z = r.z;
         if (r.zSecond < 1e38f) s.zSecond = r.zSecond;
         s.aovs = r.aovs;
-        if (buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), places[k], s)) continue;
+        if (buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), kept.image.places()[k], s)) continue;
         std::lock_guard lock(mutex_); // told is the same whatever thread meets it first
         const std::array<int, 3> at{int(rays[k].sample), rays[k].py, rays[k].px};
         if (window_.contains(at[2], at[1]) && (!dropped_.first || at < *dropped_.first)) dropped_.first = at;

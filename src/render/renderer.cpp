@@ -176,7 +176,7 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
     FilterSampler filter(job.plan.basis.filter);
     int nx, ny;
     gridOf(o, settings_, &nx, &ny);
-    Jitter jitter = jitterOf(o, diagnostics_);
+    ImageRays image(job.camera, settings_.seed, nx, ny, jitterOf(o, diagnostics_));
     if (!path && end > uint32_t(nx * ny)) {
         diagnostics_.report(Severity::Error, Rie::Range, {}, "--pixel: a pixel has " + std::to_string(nx * ny) + " samples");
         return;
@@ -190,8 +190,10 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
         transport::CameraRay ray;
         if (path) ray = pathRay(job.camera, filter, settings_.seed, x, y, s, &weight);
         else {
-            Vec2 p = stratifiedOffset(settings_.seed, x, y, int(s), nx, ny, jitter);
-            ray = imageRay(job.camera, {float(x) + p.x, float(y) + p.y}, settings_.seed, x, y, s);
+            image.clear();
+            image.ask(x, y, int(s));
+            image.make();
+            ray = image.rays()[0];
         }
         transport::SampleResult r;
         bool whole = job.trace(0, {&ray, 1}, {&r, 1});

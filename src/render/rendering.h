@@ -5,6 +5,7 @@
 #include "render/engine.h"
 #include "render/filtersampler.h"
 #include "render/outputs.h"
+#include "render/pixelnet.h"
 #include "render/progress.h"
 #include "render/settings.h"
 #include "render/team.h"
@@ -16,7 +17,7 @@
 namespace alpenglow::render {
 
 /// Dimensions of a camera sample, above all call sites and uses of transport/ (answers/random.h).
-enum CameraUse : uint32_t { kUseFilter = 1u << 24, kUseLens, kUseTime };
+enum CameraUse : uint32_t { kUseFilter = 1u << 24, kUseLens, kUseTime, kUseNet };
 
 /// Pixels a side of the squares that threads take.
 inline constexpr int kTile = 16;
@@ -111,7 +112,28 @@ Refinement refinementOf(const scene::Options&, const Camera&, Diagnostics&);
 struct Refined {
     uint64_t pixels = 0, rays = 0;
 };
-transport::CameraRay imageRay(const Camera&, Vec2 position, uint64_t seed, int x, int y, uint32_t sample);
+/// The camera rays of image samples, many at a time.
+class ImageRays {
+public:
+    ImageRays(const Camera&, uint64_t seed, int nx, int ny, Jitter);
+    void clear();
+    void ask(int x, int y, int k);
+    /// Makes what was asked for since clear(): places()[i] in its pixel and rays()[i] belong to the i-th.
+    void make();
+    std::span<const Vec2> places() const { return places_.places(); }
+    std::vector<transport::CameraRay>& rays() { return rays_; }
+
+private:
+    const Camera* camera_;
+    SeedKey seed_;
+    PixelNet net_;
+    PlaceRows places_;
+    struct Asked {
+        int x, y, k;
+    };
+    std::vector<Asked> asked_;
+    std::vector<transport::CameraRay> rays_;
+};
 /// Samples that are not finite numbers: how many, and sample, y and x of the first in the picture.
 struct DroppedSamples {
     uint64_t count = 0;

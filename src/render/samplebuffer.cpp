@@ -41,12 +41,11 @@ void PlaceRows::ask(int x, int y, int k) {
     if (drawn(jitter_)) numbers_.askPair({Sampler(seed_, x, y), uint32_t(k)}, 0, kPositionSite, 0);
 }
 
-std::span<const Vec2> PlaceRows::places() {
+void PlaceRows::draw() {
     numbers_.draw();
     places_.resize(asked_.size());
     for (size_t i = 0; i < asked_.size(); ++i)
         places_[i] = placeOf(asked_[i], nx_, ny_, jitter_, drawn(jitter_) ? numbers_.pair(i) : Vec2{0.5f, 0.5f});
-    return places_;
 }
 
 std::optional<DepthFilter> depthFilterByName(std::string_view n) {

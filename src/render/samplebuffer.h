@@ -28,8 +28,9 @@ public:
     PlaceRows(uint64_t seed, int nx, int ny, Jitter jitter) : seed_(seed), nx_(nx), ny_(ny), jitter_(jitter) {}
     void clear();
     void ask(int x, int y, int k);
-    /// places()[i] is that of the i-th that was asked for.
-    std::span<const Vec2> places();
+    void draw();
+    /// After draw(): places()[i] is that of the i-th that was asked for.
+    std::span<const Vec2> places() const { return places_; }
 
 private:
     SeedKey seed_;

@@ -44,8 +44,7 @@ struct FakeTracer final : Tracer {
             Vec3 p = rays[i].direction * (1 / rays[i].direction.z);
             out[i].color = {p.x, p.y, p.x < 0 ? 7.f : 0.f};
             out[i].opacity = Color(0.5f);
-            out[i].z = 5;
-            out[i].aovs.clear();
+            out[i].z = 5, out[i].aovs.clear();
             for (const std::string& o : outputs) {
                 if (o == "depthish") out[i].aovs.push_back(5);
                 else out[i].aovs.insert(out[i].aovs.end(), {p.x * 2, 0, 1});

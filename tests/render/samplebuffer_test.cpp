@@ -141,6 +141,7 @@ TEST(SampleBuffer, PlacesDrawnTogetherHaveTheSameBits) {
             rows.clear();
             for (int y = -1; y < 3; ++y)
                 for (int k = 0; k < 15; ++k) rows.ask(again - y, y, k);
+            rows.draw();
             const std::span<const Vec2> places = rows.places();
             ASSERT_EQ(places.size(), 60u);
             for (int y = -1; y < 3; ++y)

@@ -7,6 +7,7 @@
 #include "render/rendering.h"
 #include "render/watcher.h"
 #include "scene/scene.h"
+#include "transport/depths.h"
 #include "transport/unmade.h"
 #include <algorithm>
 #include <cmath>
@@ -114,6 +115,8 @@ private:
     void trace(SampleBuffer&, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list, const Done&);
     bool traceSlice(SampleBuffer&, int worker, std::span<const Wanted>);
     bool traceBehind(int worker, Kept&) const;
+    bool showsDepthsAlone() const;
+    void takeDepths(std::span<transport::SampleResult>) const;
     void refine(SampleBuffer&, const Window& part, int b);
     std::vector<Wanted> differing(const SampleBuffer&, const Window& part) const;
     void reconstruct(const SampleBuffer&, const Window& part);
@@ -139,6 +142,8 @@ private:
         filtered_;                       ///< displays that share a reconstruction stand for each other: a frame may have hundreds
     std::vector<FilterWeights> weights_; ///< by image
     std::vector<Kept> kept_;             ///< by worker
+    bool depthsAlone_ = false;           ///< no display shows more than z
+    bool unshaded_ = false;              ///< and no shader is needed for that
     double xw_ = 1, yw_ = 1;
     int rows_ = 0, bands_ = 0;
     double reached_ = 0;
@@ -158,6 +163,27 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
     for (int i = 0; i < job.team.threads(); ++i)
         kept_.push_back({{}, ImageRays(job.camera, seed_, nx_, ny_, jitter_), {}, {}, {}, {}});
     plan();
+    // Under motion surfaces are shaded where they were when the shutter opened: what rays meet has other depths.
+    const bool still = job.camera.shutterClose() <= job.camera.shutterOpen();
+    unshaded_ = depthsAlone_ && still && job.world && transport::depthsNeedNoShaders(*job.world);
+}
+
+/// Whether z is all that is shown: then neither filters nor samples about a pixel are needed.
+bool ImageLoop::showsDepthsAlone() const {
+    if (!aovs_.empty() || refinement_.on() || job_.settings.watcher || (job_.world && job_.world->frame().options.imager))
+        return false;
+    for (const OutputSpec& p : job_.plan.pictures)
+        for (const OutputVariable& v : p.variables)
+            if (v.source != OutputVariable::Source::Z) return false;
+    return true;
+}
+
+void ImageLoop::takeDepths(std::span<transport::SampleResult> results) const {
+    if (!unshaded_) return;
+    for (transport::SampleResult& r : results) {
+        r.z = r.left.empty() ? 1e38f : r.left.front().z;
+        r.zSecond = 1e38f;
+    }
 }
 
 void ImageLoop::plan() {
@@ -172,7 +198,8 @@ void ImageLoop::plan() {
         result_.of.push_back(size_t(same - filtered_.begin()));
         if (same == filtered_.end()) filtered_.push_back(&p);
     }
-    if (jitter_ == Jitter::Middle) xw_ = yw_ = 1;
+    depthsAlone_ = showsDepthsAlone();
+    if (jitter_ == Jitter::Middle || depthsAlone_) xw_ = yw_ = 1;
     if (refinement_.on()) xw_ = yw_ = 3; // one pixel around, to compare with
     for (size_t p = 0; p < filtered_.size(); ++p) weights_.emplace_back(filterOf(p));
     result_.images.resize(filtered_.size());
@@ -310,6 +337,7 @@ bool ImageLoop::traceBehind(int worker, Kept& k) const {
     if (k.behind.empty()) return true;
     k.found.resize(k.behind.size());
     if (!job_.trace(worker, k.behind, k.found)) return false;
+    takeDepths(k.found);
     for (size_t i = 0; i < k.of.size(); ++i) k.results[k.of[i]].zSecond = k.found[i].z;
     return true;
 }
@@ -327,9 +355,11 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
     kept.image.clear();
     for (const Wanted& w : wanted) kept.image.ask(w.x, w.y, w.k);
     kept.image.make();
-    const std::vector<transport::CameraRay>& rays = kept.image.rays();
+    std::vector<transport::CameraRay>& rays = kept.image.rays();
+    for (transport::CameraRay& r : rays) r.depths = unshaded_;
     kept.results.resize(rays.size());
     if (!job_.trace(worker, rays, kept.results)) return false;
+    takeDepths(kept.results);
     if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, kept)) return false;
     if (job_.unfinished(worker)) return true; // these are traced again
     for (size_t k = 0; k < rays.size(); ++k) {
@@ -409,6 +439,7 @@ void ImageLoop::reconstruct(const SampleBuffer& buffer, const Window& part) {
                 const int y = part.y0 + int(i) * kRows;
                 const Window rows{part.x0, y, part.x1, std::min(y + kRows, part.y1)};
                 float* to = pixel(p, rows.x0, y);
+                if (depthsAlone_) return buffer.reconstructDepth(filtered_[p]->depth, rows, to, row);
                 if (like == p) return buffer.reconstruct(weights_[p], filtered_[p]->depth, rows, to, row);
                 std::copy_n(pixel(like, rows.x0, y), size_t(rows.height()) * row, to);
                 buffer.reconstructDepth(filtered_[p]->depth, rows, to, row);

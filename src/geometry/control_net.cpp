@@ -81,6 +81,20 @@ NetDirection::Cell NetDirection::cell(double x) const {
             length > 0 ? (hi_ - lo_) / length : 0};
 }
 
+bool NetDirection::convex() const {
+    if (order_ > 0) return true;
+    if (width_ < 4) return true;
+    for (size_t p = 0; p < 4; ++p) // powers 3..0 of the sum of all weights, which is 1
+        if (!(std::fabs(m_[p][0] + m_[p][1] + m_[p][2] + m_[p][3] - (p == 3)) < 1e-6)) return false;
+    // A cubic that is below 0 somewhere between 0 and 1 has a Bezier coefficient below 0.
+    for (size_t k = 0; k < 4; ++k) {
+        const double a = m_[0][k], b = m_[1][k], c = m_[2][k], d = m_[3][k];
+        for (const double bezier : {d, d + c / 3, d + 2 * c / 3 + b / 3, a + b + c + d})
+            if (bezier < -1e-9) return false;
+    }
+    return true;
+}
+
 BasisSpan NetDirection::at(double x) const {
     BasisSpan s;
     x = std::clamp(x, 0.0, 1.0);
@@ -217,7 +231,25 @@ ControlNet::ControlNet(ShapeSource s, NetDirection u, NetDirection v, std::vecto
     }
     closedU_ = u_.wrap() || sameEdge(true);
     closedV_ = v_.wrap() || sameEdge(false);
+    convex_ = u_.convex() && v_.convex();
+    for (const auto& p : points_) convex_ &= p[3] > 0;
     takePrimvars(diag);
+}
+
+bool ControlNet::hull(double u0, double v0, double u1, double v1, Bounds& out) const {
+    if (!convex_) return false;
+    const auto add = [&](size_t i) {
+        const auto& p = points_[i];
+        out.add(Vec3(Vec3d(p[0] / p[3], p[1] / p[3], p[2] / p[3])));
+    };
+    if (u0 == 0 && v0 == 0 && u1 == 1 && v1 == 1) {
+        for (size_t i = 0; i < points_.size(); ++i) add(i);
+        return true;
+    }
+    const BasisSpan a = u_.at(0.5 * (u0 + u1)), b = v_.at(0.5 * (v0 + v1));
+    for (int j = 0; j < b.count; ++j)
+        for (int i = 0; i < a.count; ++i) add(size_t(b.index[j]) * size_t(u_.points()) + size_t(a.index[i]));
+    return true;
 }
 
 // Whether the edges u = 0 and u = 1 (alongV) are one curve: many old models close a patch by repeating its points.

@@ -31,6 +31,8 @@ public:
     /// Count of varying values: one a patch border.
     int varyings() const { return wrap_ ? patches_ : patches_ + 1; }
     BasisSpan at(double x) const;
+    /// No weight of it is below 0, so that what it joins lies between its control points.
+    bool convex() const;
     /// Control points that act at one place.
     int width() const { return order_ > 0 ? order_ : width_; }
     /// Where patches meet, from 0 to 1: knots of NURBS (each once), evenly spaced otherwise.
@@ -73,6 +75,7 @@ protected:
     LocalPoint cameraPoint(double u, double v) const override;
     Vec3d cameraPosition(double u, double v) const override;
     bool edgeCurve(int side, int cell, double from, double to, EdgeCurve&) const override;
+    bool hull(double u0, double v0, double u1, double v1, Bounds&) const override;
     int patchesU() const override { return u_.patches(); }
     int patchesV() const override { return v_.patches(); }
     std::vector<double> borders(int direction) const override { return (direction == 0 ? u_ : v_).borders(); }
@@ -93,6 +96,7 @@ private:
     std::shared_ptr<const TrimRegion> trim_;
     std::vector<bool> edge_; ///< by triangle: the edge of what is kept may go through it
     bool rational_ = false, closedU_ = false, closedV_ = false;
+    bool convex_ = false; ///< it lies within the box of its control points, and so does each patch
 };
 
 /// The surface of a net. A point of weight 0 is a direction; null, with an error: the surface itself is at infinity somewhere.

@@ -138,7 +138,12 @@ std::string factor(double f) {
 
 } // namespace
 
-void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
+double displacementReach(const Shape& s, const DiceOptions& opt) {
+    const Bound b = displacementBound(s, opt);
+    return b.radius < 0 ? -1 : b.radius * (b.space == "camera" ? 1 : stretch(toCamera(s, opt, b.space)));
+}
+
+bool displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
                   const std::function<SurfacePoint(uint32_t)>& pointOf, const std::function<Vec2(uint32_t)>& stepOf,
                   TriMesh& mesh) {
     constexpr uint32_t kRun = 4096; // keeps the full points of a run in the cache, and kernels in wide batches
@@ -173,7 +178,7 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
             if (!(p == g.points[i].P)) mesh.P[begin + i] = p;
         }
     }
-    if (opt.stop && *opt.stop) return; // what kernels left early is void
+    if (opt.stop && *opt.stop) return true; // what kernels left early is void
     if (notFinite)
         diag.report(Severity::Error, Rie::Math, shape.place(),
                     "displacement of this " + shape.kind() + " is not finite at " + std::to_string(notFinite) +
@@ -182,13 +187,14 @@ void displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
         diag.report(Severity::Error, Rie::Limit, shape.place(),
                     "displacement of this " + shape.kind() + " moves " + std::to_string(tooFar) +
                         " points farther than the limit; they stay where they were");
-    if (bound.radius >= 0 && farthest > bound.radius * 1.001)
-        diag.report(Severity::Warning, Rie::Range, shape.place(),
-                    "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
-                        ", beyond its displacementbound of " + std::to_string(bound.radius) + " in \"" + bound.space +
-                        "\" space; it is drawn whole",
-                    bound.radius > 0 ? "other renderers need the bound times " + factor(farthest / bound.radius)
-                                     : "other renderers need a bound that is not 0");
+    if (bound.radius < 0 || farthest <= bound.radius * 1.001) return true;
+    diag.report(Severity::Warning, Rie::Range, shape.place(),
+                "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
+                    ", beyond its displacementbound of " + std::to_string(bound.radius) + " in \"" + bound.space +
+                    "\" space; it is drawn whole",
+                bound.radius > 0 ? "other renderers need the bound times " + factor(farthest / bound.radius)
+                                 : "other renderers need a bound that is not 0");
+    return false;
 }
 
 void closeSeams(const DiceOptions& opt, TriMesh& mesh, std::vector<uint32_t> vertex, std::vector<Vec3> flat) {
@@ -254,6 +260,7 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
         mine.seamOrder = uint32_t(i);
         if (stitched(*shapes[i])) mine.seams = &seams, mine.seamWith = with[i];
         if (stitched(*shapes[i]) && !places[i]) mine.corners = &corners;
+        if (places[i]) mine.picture = nullptr; // it moves, or is seen in several places
         const double before = threadSeconds();
         shapes[i]->dice(mine, own);
         costs[i] = costOf(*shapes[i], threadSeconds() - before);

@@ -27,6 +27,7 @@ struct DiceGrid {
 
 class Seams;
 class EdgeCorners;
+class PictureSides;
 
 struct DiceOptions {
     DiceCamera camera = {};
@@ -50,6 +51,8 @@ struct DiceOptions {
     uint32_t seamOrder = 0;               ///< of this shape among all, one apart for each key
     std::vector<double> seamWith;         ///< borders are closed among those for which this is the same: how they move
     const EdgeCorners* corners = nullptr; ///< of all displaced shapes that stand still; null: only a shape's own edges cut it
+    /// Nothing but rays of the camera is sent: what they cannot come to is left out. Null: rays may come from everywhere.
+    const PictureSides* picture = nullptr;
     /// A primitive that costs more is named in a note.
     double noteSeconds = 1;
     size_t noteBytes = size_t(256) << 20;
@@ -66,9 +69,12 @@ double diceFlatness(const scene::Attributes&);
 bool isDisplaced(const Shape&, const DiceOptions&);
 /// For shapes that are met exactly and have no mesh to displace: a warning, once a kind, where a displacement shader wants to.
 void reportNotDisplaced(const Shape&, const DiceOptions&, Diagnostics&);
+/// How far displacement moves points of a shape at most, in camera space, as it and its shaders say; -1: they say nothing.
+double displacementReach(const Shape&, const DiceOptions&);
 /// Runs the hook over all vertices (params: (b1, b2) of each, prim of each by primOf) and writes the displaced positions to
 /// mesh.P. Non-finite results stay undisplaced, and what exceeds Attribute "displacementbound" is reported, once a shape.
-void displaceMesh(const Shape&, const DiceOptions&, Diagnostics&, const std::function<SurfacePoint(uint32_t)>& pointOf,
+/// False: something did exceed it.
+bool displaceMesh(const Shape&, const DiceOptions&, Diagnostics&, const std::function<SurfacePoint(uint32_t)>& pointOf,
                   const std::function<Vec2(uint32_t)>& stepOf, TriMesh& mesh);
 
 /// Closes the border of a shape's mesh, or leaves it to opt.seams. vertex: on the border; flat: where they were.

@@ -40,6 +40,9 @@ protected:
     /// The edge of a patch on the border of the surface, in the direction of u or v; side 0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0;
     /// cell: which patch along it, between `from` and `to`. False: it is no data of its own.
     virtual bool edgeCurve(int /*side*/, int /*cell*/, double /*from*/, double /*to*/, EdgeCurve&) const { return false; }
+    /// A box, in camera space, about the surface between two parameters of each direction within one patch, or (0, 0, 1, 1) about
+    /// all of it. False: none is known without looking.
+    virtual bool hull(double /*u0*/, double /*v0*/, double /*u1*/, double /*v1*/, Bounds&) const { return false; }
     /// Index of the uniform value at a point.
     virtual int faceAt(double u, double v) const;
     /// Takes away triangles of the mesh that rays are to meet; meshParam_ is set.
@@ -55,6 +58,7 @@ protected:
 
 private:
     struct Dicing; ///< parametric_dice.cpp
+    bool diceSeen(const DiceOptions&, class Unseen&, Diagnostics&);
 };
 
 /// Derivatives of the unit normal along Pu x Pv from second partials; n must be set.

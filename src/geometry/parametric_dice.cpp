@@ -5,85 +5,17 @@
 #include "base/limits.h"
 #include "base/parallel.h"
 #include "geometry/edge_corners.h"
-#include "geometry/edge_curve.h"
-#include "geometry/parametric.h"
+#include "geometry/parametric_dicing.h"
 #include "geometry/seams.h"
-#include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace alpenglow::geometry {
 
 namespace {
-constexpr double kDeviation = 0.05;      ///< pixels that facets may stray from the surface
 constexpr double kBlock = 48;            ///< facets along a block, beyond which it is cut in two
 constexpr int kDeepestHalving = 12;      ///< halvings of a patch
 constexpr size_t kMostBlocks = 1u << 16; ///< that patches are cut into, beyond one a patch
 } // namespace
-
-struct Parametric::Dicing {
-    /// Part of a patch: facets that it needs along u and v.
-    struct Block {
-        double u0, u1, v0, v1, nu, nv;
-        uint32_t cutU = 1, cutV = 1, first = 0; ///< facets, and the first vertex inside
-    };
-    /// A line of constant u or v, as far as it is a side of blocks.
-    struct Line {
-        struct Side {
-            double from, to, need;
-        };
-        std::vector<Side> sides;
-        std::vector<double> at;
-        std::vector<uint32_t> vertex;
-        bool given = false; ///< points come from an edge curve:
-        std::vector<Vec3d> points;
-        size_t nearest(double x) const;
-        bool has(double x) const { return std::binary_search(at.begin(), at.end(), x); }
-    };
-    using Lines = std::map<double, Line>;
-    /// A point of a block's side: where it is along it, and the vertex.
-    struct Point {
-        double at;
-        uint32_t vertex;
-    };
-
-    const Parametric& s;
-    const DiceOptions& opt;
-    const bool displaced;
-    std::vector<const Parametric*> keys;
-    bool closed[2];
-    std::vector<Block> blocks;
-    size_t cuts = 0;
-    double scale = 1;
-    Lines lines[2]; ///< of constant v, by v; of constant u, by u
-    std::vector<std::array<double, 2>> param;
-    std::vector<uint32_t> index;
-    std::vector<Vec2> step; ///< by vertex: along u and v to the next ones
-
-    Dicing(const Parametric& shape, const DiceOptions& o, bool displaced);
-    void probe(const Parametric&, Block&, Block& least) const;
-    void refine(Block, int depth);
-    void cutPatches();
-    bool limitFacets();
-    void cutLine(Line&, double a, double b, std::span<const Line::Side*>);
-    void giveEdge(int side, Line&, const std::vector<double>& cells);
-    void makeLines();
-    void makeVertices();
-    void makeInside(Block&);
-    void place(std::vector<Vec3>& P) const;
-    void placeEdge(int side, const Line&, std::vector<Vec3>& P) const;
-    std::vector<Point> side(int direction, double of, double from, double to) const;
-    void zip(const std::vector<Point>& out, const std::vector<Point>& in, bool flip);
-    void triangle(uint32_t a, uint32_t b, uint32_t c);
-    void fill(const Block&, const TriMesh&);
-    std::vector<uint32_t> border() const;
-    double edge() const { return diceEdge(s.attributes()); }
-    double tolerance() const {
-        const double flat = diceFlatness(s.attributes());
-        return flat > 0 ? flat : kDeviation * edge();
-    }
-    std::vector<double> cells(int direction) const;
-};
 
 Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool moves) : s(shape), opt(o), displaced(moves) {
     for (const ShapeRef& key : opt.keys)
@@ -97,13 +29,14 @@ Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool m
 
 /// Facets along a block, by some points strictly inside of it, so that knots do not mix neighbours' second derivatives.
 /// `least`: the fewest that a probe asks for.
-void Parametric::Dicing::probe(const Parametric& shape, Block& k, Block& least) const {
+void Parametric::Dicing::probe(const Parametric& shape, Block& k, Block& least, ProbedBox& box) const {
     constexpr int kProbe = 5;
     const double wu = k.u1 - k.u0, wv = k.v1 - k.v0, micro = edge(), tol = tolerance();
     const bool flat = diceFlatness(s.attributes()) > 0;
     for (int b = 0; b < kProbe; ++b)
         for (int a = 0; a < kProbe; ++a) {
             const LocalPoint p = shape.cameraPoint(k.u0 + wu * (a + 0.5) / kProbe, k.v0 + wv * (b + 0.5) / kProbe);
+            if (leavesOut()) box.add(p.P, p.Pu * (0.5 * wu / kProbe), p.Pv * (0.5 * wv / kProbe));
             double lu = opt.camera.pixels(p.P, p.Pu) * wu / micro, lv = opt.camera.pixels(p.P, p.Pv) * wv / micro;
             if (!displaced) {
                 const double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)) * wu;
@@ -127,13 +60,15 @@ void Parametric::Dicing::refine(Block k, int depth) {
     k.nv = closed[1] ? std::max(1.0, 4 * (k.v1 - k.v0)) : 1;
     Block least = k;
     least.nu = least.nv = std::numeric_limits<double>::infinity();
-    for (const Parametric* key : keys) probe(*key, k, least);
+    ProbedBox box;
+    for (const Parametric* key : keys) probe(*key, k, least, box);
     // What asks for so much everywhere that no halving that is left brings it down is not halved: a patch at 1e39, say.
     const double hopeless = std::ldexp(kBlock, kDeepestHalving - depth);
     const bool u = k.nu > kBlock && least.nu <= hopeless, v = k.nv > kBlock && least.nv <= hopeless;
     if ((!u && !v) || depth >= kDeepestHalving || cuts >= kMostBlocks) {
         k.nu = std::min(k.nu, double(limits::kDiceEdge)); // a weight that vanishes makes it look as large as can be
         k.nv = std::min(k.nv, double(limits::kDiceEdge));
+        k.seen = !leavesOut() || !(*unseen)(box.box());
         blocks.push_back(k);
         return;
     }
@@ -162,8 +97,13 @@ std::vector<double> Parametric::Dicing::cells(int direction) const {
 
 void Parametric::Dicing::cutPatches() {
     const std::vector<double> u = cells(0), v = cells(1);
+    const std::vector<uint8_t> away = unseenPatches(u, v);
     for (size_t j = 0; j + 1 < v.size(); j += 2)
-        for (size_t i = 0; i + 1 < u.size(); i += 2) refine({u[i], u[i + 1], v[j], v[j + 1], 1, 1}, 0);
+        for (size_t i = 0; i + 1 < u.size(); i += 2) {
+            Block k{u[i], u[i + 1], v[j], v[j + 1], 1, 1};
+            if (away.empty() || !away[j / 2 * (u.size() / 2) + i / 2]) refine(k, 0);
+            else k.seen = false, blocks.push_back(k);
+        }
 }
 
 /// Makes facets larger until they are not too many. True: they had to be.
@@ -310,7 +250,8 @@ void Parametric::Dicing::makeVertices() {
                 const Line& end = *sides[line.at[k] == 1];
                 line.vertex[k] = end.vertex[end.nearest(v)];
             }
-    for (Block& k : blocks) makeInside(k);
+    for (Block& k : blocks)
+        if (k.seen) makeInside(k);
 }
 
 void Parametric::Dicing::makeInside(Block& k) {
@@ -344,8 +285,9 @@ void Parametric::Dicing::placeEdge(int side, const Line& line, std::vector<Vec3>
 }
 
 void Parametric::Dicing::place(std::vector<Vec3>& P) const {
-    parallelFor(size_t(0), param.size(),
-                [&](size_t i) { P[i] = Vec3(s.cameraPosition(float(param[i][0]), float(param[i][1]))); });
+    parallelFor(size_t(0), param.size(), [&](size_t i) {
+        if (used.empty() || used[i]) P[i] = Vec3(s.cameraPosition(float(param[i][0]), float(param[i][1])));
+    });
     // At corners the borders of constant v have the word: they are whole circles, the others may be none.
     if (!closed[0]) placeEdge(3, lines[1].begin()->second, P), placeEdge(1, lines[1].rbegin()->second, P);
     if (!closed[1]) placeEdge(0, lines[0].begin()->second, P), placeEdge(2, lines[0].rbegin()->second, P);
@@ -446,34 +388,60 @@ void Parametric::borderCorners(std::vector<Vec3>& out) const {
 void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
     if (!displaced_ && !needsDicing() && opt.keys.empty()) return;
+    Unseen unseen(*this, opt);
+    Bounds all;
+    if (!unseen.none() && hull(0, 0, 1, 1, all) && unseen(all)) return leaveOut(all);
+    Diagnostics said;
+    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // it goes farther than was said: what was left out may be seen
+        unseen.lookAnywhere();
+        diceSeen(opt, unseen, diag);
+        return;
+    }
+    for (const Diagnostic& d : said.all()) diag.report(d);
+}
+
+/// Without what no ray comes to. False: displacement went beyond its bound.
+bool Parametric::diceSeen(const DiceOptions& opt, Unseen& unseen, Diagnostics& diag) {
     Dicing d(*this, opt, displaced_);
+    d.unseen = &unseen;
     d.cutPatches();
     if (d.limitFacets())
         diag.report(Severity::Info, Rie::Limit, place(),
                     kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
                         " micropolygons; it is diced more coarsely");
+    if (std::none_of(d.blocks.begin(), d.blocks.end(), [](const Dicing::Block& k) { return k.seen; })) {
+        Bounds some;
+        for (const Dicing::Block& k : d.blocks) some.add(Vec3(cameraPosition(0.5 * (k.u0 + k.u1), 0.5 * (k.v0 + k.v1))));
+        return leaveOut(some), true;
+    }
     d.makeLines();
     d.makeVertices();
+    d.findUsed();
     TriMesh m;
     m.P.resize(d.param.size());
+    d.step.assign(d.param.size(), Vec2{});
+    d.place(m.P);
+    for (const Dicing::Block& k : d.blocks)
+        if (k.seen) d.fill(k, m);
+    std::vector<uint32_t> border = displaced_ ? d.border() : std::vector<uint32_t>();
+    d.dropUnused(m.P, border);
     meshParam_.clear();
     meshParam_.reserve(d.param.size());
     for (const auto& p : d.param) meshParam_.push_back({float(p[0]), float(p[1])});
-    d.step.assign(d.param.size(), Vec2{});
-    d.place(m.P);
-    for (const Dicing::Block& k : d.blocks) d.fill(k, m);
     m.made = std::move(d.index);
     trim(m);
-    const std::vector<uint32_t> border = displaced_ ? d.border() : std::vector<uint32_t>();
     std::vector<Vec3> flat;
     for (uint32_t i : border) flat.push_back(m.P[i]);
+    bool within = true;
     if (displaced_)
-        displaceMesh(
+        within = displaceMesh(
             *this, opt, diag, [&](uint32_t i) { return evaluateLocal(0, meshParam_[i].x, meshParam_[i].y); },
             [&](uint32_t i) { return d.step[i]; }, m);
+    if (!within && !unseen.none()) return false;
     m.finish();
     mesh_ = std::move(m);
     closeSeams(opt, mesh_, border, std::move(flat));
+    return within;
 }
 
 } // namespace alpenglow::geometry

@@ -4,6 +4,7 @@
 #include "base/limits.h"
 #include "geometry/edge_corners.h"
 #include "geometry/edge_curve.h"
+#include "geometry/picture_sides.h"
 #include "geometry/piece_grid.h"
 #include "geometry/polygon_mesh.h"
 #include "geometry/seams.h"
@@ -22,6 +23,7 @@ constexpr int kDeepest = 20; ///< parts of parts: where the eye lies on a face, 
 struct PolygonMesh::Dicing {
     const PolygonMesh& s;
     const DiceOptions& opt;
+    Unseen unseen;
     std::vector<const PolygonMesh*> keys; ///< this, or all keys
     std::vector<uint8_t> open;            ///< by side of a triangle: no other triangle of the mesh has it
     double coarse = 1;                    ///< of sides that are not open
@@ -77,7 +79,7 @@ struct PolygonMesh::Dicing {
 };
 
 PolygonMesh::Dicing::Dicing(const PolygonMesh& shape, const DiceOptions& o)
-    : s(shape), opt(o), most(std::max(2.0 * double(limits::kDiceQuads), 2.0 * shape.triangles_)) {
+    : s(shape), opt(o), unseen(shape, o), most(std::max(2.0 * double(limits::kDiceQuads), 2.0 * shape.triangles_)) {
     for (const ShapeRef& key : opt.keys)
         if (const auto* k = dynamic_cast<const PolygonMesh*>(key.get()); k && k->triangles_ == s.triangles_) keys.push_back(k);
     if (keys.empty()) keys.push_back(&s);
@@ -176,6 +178,11 @@ void PolygonMesh::Dicing::cut(const Part& p, bool count) {
     int rates[3];
     bool split[3], any = false;
     if (count && facets > most) return;
+    if (!count && !unseen.none()) {
+        Bounds b;
+        for (const Part::Corner& c : p.corner) b.add(Vec3(c.P));
+        if (unseen(b)) return;
+    }
     for (int k = 0; k < 3; ++k) {
         rates[k] = p.side[k].cuts->segments(p.side[k].from, p.side[k].to);
         any |= split[k] = rates[k] == 0;
@@ -293,6 +300,30 @@ void closeCracks(const std::vector<Vec3>& flat, std::vector<Vec3>& moved, std::v
 
 } // namespace
 
+/// Cuts what rays can come to, and displaces it. flat: where it was. False: it went beyond its bound.
+bool PolygonMesh::displaceSeen(Dicing& d, std::vector<Vec3>& flat, Diagnostics& diag) {
+    d.mesh = TriMesh();
+    d.param.clear(), d.prim.clear(), d.step.clear(), d.rim.clear();
+    for (uint32_t t = 0; t < triangles_; ++t) d.cut(t, false);
+    meshParam_ = d.param;
+    meshPrim_ = d.prim;
+    flat = d.mesh.P;
+    return displaceMesh(
+        *this, d.opt, diag, [&](uint32_t i) { return evaluateLocal(meshPrim_[i], meshParam_[i].x, meshParam_[i].y); },
+        [&](uint32_t i) {
+            // A barycentric step turned to u and v: the extent of one facet.
+            const uint32_t t = meshPrim_[i];
+            const Frame f = frame(faceNormal(t));
+            const Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a,
+                        e2 = objectPoint(vertexOf(t, 2)) - a;
+            const auto extent = [&](const Vec3d& x) {
+                return float(std::max({std::fabs(dot(e1, x)), std::fabs(dot(e2, x)), 1e-12}));
+            };
+            return Vec2{extent(f.a) * d.step[i], extent(f.b) * d.step[i]};
+        },
+        d.mesh);
+}
+
 void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     if (!isDisplaced(*this, opt)) return;
     Dicing d(*this, opt);
@@ -307,26 +338,21 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
         diag.report(Severity::Info, Rie::Limit, place(),
                     kind() + " would need more than " + std::to_string(limits::kDiceQuads) +
                         " micropolygons; it is diced more coarsely");
-    for (uint32_t t = 0; t < triangles_; ++t) d.cut(t, false);
     undiced_ = std::move(mesh_); // mesh_.vertices stays: the shape is none of exact hits
-    meshParam_ = std::move(d.param);
-    meshPrim_ = std::move(d.prim);
     displaced_ = true;
-    std::vector<Vec3> flat = d.mesh.P;
-    displaceMesh(
-        *this, opt, diag, [&](uint32_t i) { return evaluateLocal(meshPrim_[i], meshParam_[i].x, meshParam_[i].y); },
-        [&](uint32_t i) {
-            // A barycentric step turned to u and v: the extent of one facet.
-            const uint32_t t = meshPrim_[i];
-            const Frame f = frame(faceNormal(t));
-            const Vec3d a = objectPoint(vertexOf(t, 0)), e1 = objectPoint(vertexOf(t, 1)) - a,
-                        e2 = objectPoint(vertexOf(t, 2)) - a;
-            const auto extent = [&](const Vec3d& x) {
-                return float(std::max({std::fabs(dot(e1, x)), std::fabs(dot(e2, x)), 1e-12}));
-            };
-            return Vec2{extent(f.a) * d.step[i], extent(f.b) * d.step[i]};
-        },
-        d.mesh);
+    Diagnostics said;
+    std::vector<Vec3> flat;
+    if (!displaceSeen(d, flat, said) && !d.unseen.none()) { // it goes farther than was said: what was left out may be seen
+        d.unseen.lookAnywhere();
+        displaceSeen(d, flat, diag);
+    } else {
+        for (const Diagnostic& k : said.all()) diag.report(k);
+    }
+    if (d.mesh.P.empty()) {
+        Bounds all;
+        for (const Vec3& p : undiced_.P) all.add(p);
+        return leaveOut(all);
+    }
     closeCracks(flat, d.mesh.P, d.rim);
     d.mesh.finish();
     mesh_ = std::move(d.mesh);

@@ -86,6 +86,7 @@ private:
     const Areas& areas() const;
     Vec3d faceNormal(uint32_t tri) const;
     struct Dicing; ///< polygon_dice.cpp
+    bool displaceSeen(Dicing&, std::vector<Vec3>& flat, Diagnostics&);
     Vec3d objectPoint(uint32_t vertex) const {
         return {objectP_[3 * vertex], objectP_[3 * vertex + 1], objectP_[3 * vertex + 2]};
     }

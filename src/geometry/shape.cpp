@@ -21,6 +21,13 @@ Bounds Shape::bounds() const {
     return b;
 }
 
+void Shape::leaveOut(const Bounds& b) {
+    mesh_ = TriMesh();
+    mesh_.P = {b.lo, b.hi};
+    mesh_.finish();
+    meshParam_.assign(2, Vec2{});
+}
+
 int Shape::findPrimvar(std::string_view name) const {
     const std::vector<PrimVar>& all = *variables_;
     for (size_t i = 0; i < all.size(); ++i)

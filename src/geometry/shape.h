@@ -235,6 +235,8 @@ protected:
     }
     /// The same for many hits of an undiced surface.
     virtual void localPoints(std::span<const HitRef>, uint32_t needs) const;
+    /// No ray comes to the shape, which lies in this box: it has a mesh without triangles.
+    void leaveOut(const Bounds&);
     /// hitNormal() of exact shapes.
     virtual Vec3d localNormal(uint32_t prim, double b1, double b2) const;
     /// Fills s, t and N from the variables (or defaults), and what depends on them; P, u, v, n, partials, dNdu, dNdv are set.

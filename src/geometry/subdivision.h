@@ -42,6 +42,9 @@ private:
         std::vector<double> cumulative;
     };
     struct Dicing; ///< subdivision_dice.cpp
+    bool diceSeen(const DiceOptions&, const class Unseen&, Diagnostics&);
+    void takeMesh(const Dicing&, const TriMesh& shared, const std::vector<Vec3>& flat,
+                  const std::vector<const struct PieceGrid*>& gridOf, const std::vector<uint32_t>& insideOf);
     const Areas& areas() const;
     LocalPoint cameraPoint(uint32_t piece, double u, double v, int derivatives) const;
     Vec3d cameraPosition(uint32_t piece, double u, double v) const { return cameraPoint(piece, u, v, 0).P; }

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "geometry/cage_border.h"
 #include "geometry/dice.h"
+#include "geometry/picture_sides.h"
 #include "geometry/piece_grid.h"
 #include "geometry/subdivision.h"
 #include <algorithm>
@@ -19,12 +20,14 @@ struct Subdivision::Dicing {
     const LimitSurface& limit;
     const DiceOptions& opt;
     bool displaced;
+    Unseen unseen;
 
     /// A point of the mesh, shared by all pieces that meet there: where it is evaluated.
     struct Point {
         uint32_t piece;
         float u, v;
     };
+    std::vector<uint8_t> away;              ///< per piece: no ray comes there
     std::vector<std::array<float, 2>> need; ///< per piece: segments along u and v, before they are made whole
     std::vector<int> edgeRate, spokeRate;   ///< per edge of the cage; per piece of split faces: middle of its edge to the face's
     std::vector<uint8_t> even;              ///< per edge: it borders a split face, so its middle is a point
@@ -59,8 +62,10 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
     const double edge = diceEdge(s.attributes()), flat = diceFlatness(s.attributes()), tol = flat > 0 ? flat : kDeviation * edge;
     const bool three = limit.triangles();
     double lu = 0, lv = 0;
+    std::vector<LocalPoint> probed;
     const auto probe = [&](double u, double v) {
         const LocalPoint p = of.cameraPoint(piece, u, v, displaced ? 1 : 2);
+        if (!unseen.none()) probed.push_back(p);
         double a = opt.camera.pixels(p.P, p.Pu) / edge, b = opt.camera.pixels(p.P, p.Pv) / edge;
         if (three) a = b = std::max({a, b, opt.camera.pixels(p.P, p.Pu - p.Pv) / edge});
         if (!displaced) {
@@ -89,6 +94,11 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
                     if (u != 0.5 || v != 0.5) probe(u, v);
     }
     need[piece] = {std::max(need[piece][0], float(lu)), std::max(need[piece][1], float(lv))};
+    if (unseen.none()) return;
+    ProbedBox box;
+    const double part = three ? (probed.size() > 1 ? 0.35 : 0.7) : probed.size() > 1 ? 0.2 : 0.5; // as far as a probe stands for
+    for (const LocalPoint& p : probed) box.add(p.P, p.Pu * part, p.Pv * part);
+    away[piece] = unseen(box.box());
 }
 
 void Subdivision::Dicing::rates(double scale) {
@@ -281,8 +291,22 @@ void Subdivision::Dicing::border(uint32_t piece, std::vector<uint32_t>& out) con
 
 void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
-    Dicing d{*this, *limit_, opt, displaced_, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    Unseen unseen(*this, opt);
+    Diagnostics said;
+    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // it goes farther than was said: what was left out may be seen
+        unseen.lookAnywhere();
+        diceSeen(opt, unseen, diag);
+    } else {
+        for (const Diagnostic& d : said.all()) diag.report(d);
+    }
+    limit_->forgetTopology();
+}
+
+/// Without what no ray comes to. False: displacement went beyond its bound.
+bool Subdivision::diceSeen(const DiceOptions& opt, const Unseen& unseen, Diagnostics& diag) {
+    Dicing d{*this, *limit_, opt, displaced_, unseen, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     d.need.resize(limit_->pieces());
+    d.away.assign(limit_->pieces(), 0);
     parallelFor(uint32_t(0), limit_->pieces(), [&](uint32_t k) {
         d.need[k] = {1, 1};
         d.measure(*this, k);
@@ -304,10 +328,9 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     // The same rates come again and again.
     std::map<std::array<int, 4>, PieceGrid> grids;
     std::vector<const PieceGrid*> gridOf(limit_->pieces(), nullptr);
-    size_t vertices = 0, facets = 0;
     std::vector<uint32_t> insideOf(limit_->pieces(), 0);
     for (uint32_t k = 0; k < limit_->pieces(); ++k) {
-        if (!limit_->drawn(limit_->pieceOf(k).face)) continue;
+        if (!limit_->drawn(limit_->pieceOf(k).face) || d.away[k]) continue;
         std::array<int, 4> r{};
         d.pieceRates(k, r.data());
         auto [at, isNew] = grids.try_emplace(r);
@@ -315,8 +338,6 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
         const PieceGrid& g = *(gridOf[k] = &at->second);
         insideOf[k] = uint32_t(d.points.size());
         for (size_t i = size_t(g.border); i < g.param.size(); ++i) d.points.push_back({k, g.param[i].x, g.param[i].y});
-        vertices += g.param.size();
-        facets += g.facet.size();
     }
     TriMesh shared;
     shared.P.resize(d.points.size());
@@ -326,9 +347,8 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     });
     d.placeBorder(shared.P);
     const std::vector<Vec3> flat = displaced_ ? shared.P : std::vector<Vec3>();
-    const std::vector<uint8_t> onBorder = d.onBorder();
-    if (displaced_)
-        displaceMesh(
+    if (displaced_) {
+        const bool within = displaceMesh(
             *this, opt, diag, [&](uint32_t i) { return evaluateLocal(d.points[i].piece, d.points[i].u, d.points[i].v); },
             [&](uint32_t i) {
                 int r[4] = {1, 1, 1, 1};
@@ -336,6 +356,19 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
                 return Vec2{1.f / float(r[0]), 1.f / float(r[1])};
             },
             shared);
+        if (!within && !unseen.none()) return false;
+    }
+    takeMesh(d, shared, flat, gridOf, insideOf);
+    return true;
+}
+
+/// The mesh of the pieces that have a grid, each with vertices of its own. flat: where displaced points were.
+void Subdivision::takeMesh(const Dicing& d, const TriMesh& shared, const std::vector<Vec3>& flat,
+                           const std::vector<const PieceGrid*>& gridOf, const std::vector<uint32_t>& insideOf) {
+    const std::vector<uint8_t> onBorder = d.onBorder();
+    size_t vertices = 0, facets = 0;
+    for (const PieceGrid* g : gridOf)
+        if (g) vertices += g->param.size(), facets += g->facet.size();
     TriMesh m;
     m.P.reserve(vertices + 1);
     m.made.reserve(facets);
@@ -357,10 +390,14 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
         }
         for (uint32_t i : g.facet) m.made.push_back(base + i);
     }
-    limit_->forgetTopology();
+    if (m.P.empty() && !shared.P.empty()) {
+        Bounds all;
+        for (const Vec3& p : shared.P) all.add(p);
+        return leaveOut(all);
+    }
     m.finish();
     mesh_ = std::move(m);
-    if (displaced_) closeSeams(opt, mesh_, std::move(seam), std::move(flatSeam));
+    if (displaced_) closeSeams(d.opt, mesh_, std::move(seam), std::move(flatSeam));
 }
 
 } // namespace alpenglow::geometry

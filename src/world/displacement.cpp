@@ -1,5 +1,6 @@
 // Displacement when shapes are diced: by displacement shaders, by classes that are both, and by surface shaders that move P.
 #include "geometry/dice.h"
+#include "geometry/picture_sides.h"
 #include "rsl/ir/edit.h"
 #include "scene/scene.h"
 #include "world/impl.h"
@@ -142,6 +143,9 @@ void WorldImpl::diceShapes(Diagnostics& d) {
         }
         return matrix(space, "current", out);
     };
+    const std::optional<geometry::PictureSides> sides =
+        onlyCameraRays() ? geometry::PictureSides::from(frame_->options) : std::nullopt;
+    dice.picture = sides ? &*sides : nullptr;
     geometry::diceShapes(shapes_, dice, d);
 }
 

@@ -92,6 +92,9 @@ public:
     void numberShapes();
     /// Makes the meshes that rays meet.
     void diceShapes(Diagnostics&);
+    /// No shader and no light sends rays or wants points of whole surfaces: pictures are made of rays of the camera alone. Once
+    /// surfaces are bound.
+    bool onlyCameraRays() const;
     /// Says by light and binding what is to be known of points, when all kernels are bound.
     void setPointNeeds();
     void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;

@@ -1,0 +1,75 @@
+// Whether rays of the camera are the only ones that a frame sends. Then what they do not come to need not be there.
+#include "scene/scene.h"
+#include "world/cloudstore.h"
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+/// Whether a call is answered without a ray, and without points of whole surfaces. What is not listed may not be.
+bool sendsNothing(const SiteInfo& s) {
+    switch (s.kind) {
+    case SiteKind::Ambient:
+    case SiteKind::Diffuse:
+    case SiteKind::Specular:
+    case SiteKind::Phong:
+    case SiteKind::Illuminance:
+    case SiteKind::Texture:
+    case SiteKind::Environment: // of maps: with rays it is a trace()
+    case SiteKind::Shadow:
+    case SiteKind::Printf:
+    case SiteKind::Message:
+    case SiteKind::LightSource:
+    case SiteKind::Attribute:
+    case SiteKind::Option:
+    case SiteKind::RendererInfo:
+    case SiteKind::RayInfo:
+    case SiteKind::RayLevel:
+    case SiteKind::TextureInfo:
+    case SiteKind::LightSetup:
+    case SiteKind::LightHandles:
+    case SiteKind::PrimitiveVariable:
+    case SiteKind::ShaderName:
+    case SiteKind::Depth:
+    case SiteKind::Transform:
+    case SiteKind::Random:
+    case SiteKind::Text:
+    case SiteKind::Texture3d:
+    case SiteKind::Ptexture:
+        return s.sentStrings.empty(); // strings that are sent make kernels that are not there yet
+    default:
+        return false;
+    }
+}
+
+bool sendsNothing(const BoundKernel& k) {
+    return std::all_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return sendsNothing(s); });
+}
+
+bool sendsNothing(const Opacity& o) { return sendsNothing(o.kernel); }
+
+} // namespace
+
+bool WorldImpl::onlyCameraRays() const {
+    if (settings_.hider == Hider::Path || !media_.empty() || unmade_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
+        interpolates_ || settings_.bsdfOnly || settings_.lightOnly)
+        return false;
+    for (const BoundLight& l : lights_) {
+        // A light on geometry gives its mean; any other that has a place to lie is looked for by rays.
+        if (l.shadows || !sendsNothing(l.kernel) || (l.kind == LightKind::Area && !l.mean) || l.kind == LightKind::Environment)
+            return false;
+        for (const auto& [key, kernel] : l.variants)
+            if (!sendsNothing(kernel)) return false;
+    }
+    for (const SurfaceBinding& b : bindings_) {
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.moveS, &b.entering, &b.atmosphere.kernel})
+            if (!sendsNothing(*k)) return false;
+        if (!sendsNothing(b.opacity) || !sendsNothing(b.primitiveOpacity) || !sendsNothing(b.shaderOpacity)) return false;
+        for (const LightOutput& o : b.lightOutputs)
+            if (!sendsNothing(o.S.bound) || !sendsNothing(o.V.bound)) return false;
+    }
+    return true;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,59 @@
+// Where rays of the camera are the only ones, nothing is diced that they cannot come to; where a shader or a light sends others,
+// all of it is.
+#include "harness.h"
+#include "world/impl.h"
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+const std::string kCamera = "Format 64 64 1 Projection \"perspective\" \"fov\" 60\n";
+/// In the picture, and behind the eye.
+const std::string kPatches =
+    "AttributeBegin Translate 0 0 5 Patch \"bilinear\" \"P\" [-1 -1 0 1 -1 .3 -1 1 0 1 1 0] AttributeEnd\n"
+    "AttributeBegin Translate 0 0 -5 Patch \"bilinear\" \"P\" [-1 -1 0 1 -1 .3 -1 1 0 1 1 0] AttributeEnd\n";
+
+/// Triangles of the one in the picture, and of the one behind.
+std::pair<uint32_t, uint32_t> diced(const std::string& frame, const std::string& world, Settings settings = {}) {
+    const Scene s(kCamera + frame + "WorldBegin\n" + world + kPatches + "WorldEnd\n", std::move(settings));
+    if (!s.world) return {};
+    const auto& shapes = static_cast<const WorldImpl&>(*s.world).shapes_;
+    EXPECT_EQ(shapes.size(), 2u);
+    return {shapes[0]->mesh().triangles(), shapes[1]->mesh().triangles()};
+}
+
+} // namespace
+
+TEST(PictureSides, NothingIsDicedWhereNoRayComes) {
+    for (const char* world : {"", "Surface \"matte\"\n", "LightSource \"pointlight\" 1 Surface \"plastic\"\n",
+                              "LightSource \"spotlight\" 1 LightSource \"shadowspot\" 2 \"shadowname\" \"\" Surface "
+                              "\"shinymetal\" \"texturename\" \"\"\n",
+                              "Atmosphere \"fog\" Surface \"paintedplastic\" Opacity .5 .5 .5\n"}) {
+        const auto [seen, behind] = diced("", world);
+        EXPECT_GT(seen, 0u) << world;
+        EXPECT_EQ(behind, 0u) << world;
+        EXPECT_EQ(diced("Hider \"raytrace\"\n", world, {.hider = Hider::Raytrace}).second, 0u) << world;
+    }
+}
+
+TEST(PictureSides, AllIsDicedWhereRaysMayCome) {
+    writeShader("mirrored", "surface mirrored() { Ci = trace(P, reflect(I, N)); Oi = 1; }");
+    writeShader("occluded", "surface occluded() { Ci = 1 - occlusion(P, N, 16); Oi = 1; }");
+    writeShader(
+        "looked",
+        "light looked(point from = point \"shader\" (0,0,0);) { illuminate(from) { Cl = 1 - shadow(\"raytrace\", Ps); } }");
+    writeShader("reflected", "surface reflected() { Ci = environment(\"raytrace\", reflect(I, N)); Oi = 1; }");
+    writeShader("gathered", "surface gathered() { Ci = 0; gather(\"\", P, N, .5, 4) { Ci += .25; } Oi = 1; }");
+    writeShader("through", "surface through() { Ci = transmission(P, P + N); Oi = 1; }");
+    writeShader(
+        "lampthrough",
+        "light lampthrough(point from = point \"shader\" (0,0,0);) { illuminate(from) { Cl = transmission(Ps, from); } }");
+    for (const char* world : {"Surface \"mirrored\"\n", "Surface \"occluded\"\n", "LightSource \"looked\" 1 Surface \"matte\"\n",
+                              "Surface \"reflected\"\n", "Surface \"gathered\"\n", "Surface \"through\"\n",
+                              "LightSource \"lampthrough\" 1 Surface \"matte\"\n",
+                              "Attribute \"light\" \"shadows\" \"on\" LightSource \"pointlight\" 1 Surface \"matte\"\n"})
+        EXPECT_GT(diced("", world).second, 0u) << world;
+    EXPECT_GT(diced("Hider \"path\"\n", "", {.hider = Hider::Path}).second, 0u);
+}

@@ -116,7 +116,6 @@ private:
     bool traceSlice(SampleBuffer&, int worker, std::span<const Wanted>);
     bool traceBehind(int worker, Kept&) const;
     bool showsDepthsAlone() const;
-    void takeDepths(std::span<transport::SampleResult>) const;
     void refine(SampleBuffer&, const Window& part, int b);
     std::vector<Wanted> differing(const SampleBuffer&, const Window& part) const;
     void reconstruct(const SampleBuffer&, const Window& part);
@@ -176,14 +175,6 @@ bool ImageLoop::showsDepthsAlone() const {
         for (const OutputVariable& v : p.variables)
             if (v.source != OutputVariable::Source::Z) return false;
     return true;
-}
-
-void ImageLoop::takeDepths(std::span<transport::SampleResult> results) const {
-    if (!unshaded_) return;
-    for (transport::SampleResult& r : results) {
-        r.z = r.left.empty() ? 1e38f : r.left.front().z;
-        r.zSecond = 1e38f;
-    }
 }
 
 void ImageLoop::plan() {
@@ -337,7 +328,6 @@ bool ImageLoop::traceBehind(int worker, Kept& k) const {
     if (k.behind.empty()) return true;
     k.found.resize(k.behind.size());
     if (!job_.trace(worker, k.behind, k.found)) return false;
-    takeDepths(k.found);
     for (size_t i = 0; i < k.of.size(); ++i) k.results[k.of[i]].zSecond = k.found[i].z;
     return true;
 }
@@ -356,10 +346,9 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
     for (const Wanted& w : wanted) kept.image.ask(w.x, w.y, w.k);
     kept.image.make();
     std::vector<transport::CameraRay>& rays = kept.image.rays();
-    for (transport::CameraRay& r : rays) r.depths = unshaded_;
+    for (transport::CameraRay& r : rays) r.depthOnly = unshaded_;
     kept.results.resize(rays.size());
     if (!job_.trace(worker, rays, kept.results)) return false;
-    takeDepths(kept.results);
     if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, kept)) return false;
     if (job_.unfinished(worker)) return true; // these are traced again
     for (size_t k = 0; k < rays.size(); ++k) {

@@ -73,7 +73,7 @@ bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<
     rays[size_t(worker)] = now;
     if (whole && !t.unfinished() && !(met && shone))
         for (const transport::SampleResult& r : out) {
-            if (!r.left.empty()) met = shone = true; // of depths no light is asked
+            if (!r.left.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // of depths no light is asked
             if (r.z < 1e38f || luminance(r.opacity) > 0) met = true;
             if (r.color.x != 0 || r.color.y != 0 || r.color.z != 0) shone = true;
         }

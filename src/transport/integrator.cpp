@@ -17,11 +17,24 @@ struct Integrator::Impl {
     Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : engine(std::move(w), d) {
         if (GridShading::takes(engine.world())) grids.emplace(engine);
     }
+    bool depths(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+        if (grids) return grids->depths(rays, out, stop);
+        std::vector<CameraRay> all(rays.begin(), rays.end());
+        for (CameraRay& r : all) r.depths = true;
+        if (!engine.trace(all, out, stop)) return false;
+        for (SampleResult& r : out) {
+            r.z = r.left.empty() ? 1e38f : r.left.front().z;
+            r.zSecond = 1e38f;
+            r.left.clear();
+        }
+        return true;
+    }
 };
 Integrator::Integrator(std::shared_ptr<const World> w, Diagnostics& d)
     : impl_(std::make_unique<Impl>(std::static_pointer_cast<const WorldImpl>(std::move(w)), d)) {}
 Integrator::~Integrator() = default;
 bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) {
+    if (!r.empty() && r[0].depthOnly) return impl_->depths(r, out, stop);
     if (impl_->grids && !r.empty() && !r[0].grid && !r[0].depths && !r[0].records) return impl_->grids->trace(r, out, stop);
     return impl_->engine.trace(r, out, stop);
 }

@@ -246,6 +246,17 @@ bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult>
     return whole;
 }
 
+bool GridShading::depths(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    engine_.setUnfinished(false);
+    begin(rays, out);
+    engine_.counters.paths += rays.size();
+    engine_.counters.camera += rays.size();
+    meet(rays);
+    for (size_t i = 0; i < rays.size(); ++i)
+        if (hits_[i].valid()) out[i].z = rays[i].origin.z + rays[i].direction.z * float(hits_[i].distance);
+    return !(stop && *stop);
+}
+
 bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
     begin(rays, out);
     engine_.counters.paths += rays.size();

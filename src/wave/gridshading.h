@@ -19,6 +19,8 @@ public:
     bool emptyIsBlack() const { return !seesSky_ && !world_.unmade_; }
     /// Integrator::trace() of camera samples of the picture. The same bits whatever was shaded before.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
+    /// The same for CameraRay::depthOnly.
+    bool depths(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
 
 private:
     struct Sample {

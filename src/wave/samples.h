@@ -41,6 +41,8 @@ struct CameraRay {
     bool records = false;
     /// Not for the picture either: only SampleResult::left is asked for. All rays of a call alike.
     bool depths = false;
+    /// Nor here: only SampleResult::z is asked for, and transport::depthsNeedNoShaders(). All rays of a call alike.
+    bool depthOnly = false;
     /// Not for the picture either: the ray meets this point, which outlives the call. Null: it meets what is there.
     const shading::GridPoint* grid = nullptr;
 };

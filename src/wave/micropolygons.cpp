@@ -79,6 +79,9 @@ Micropolygons::Lattice Micropolygons::latticeOf(uint32_t shape) const {
         l.kind = Kind::Single; // its hits are places on the sides of boxes
     } else {
         l.kind = base.exactPrims() == 1 ? Kind::Surface : Kind::Pieces;
+        const geometry::Bounds b = s.bounds();
+        constexpr float kLarge = 64; // pixels: then it has more hits than the table has places
+        l.large = length(b.hi - b.lo) > kLarge * camera_.pixelAt((b.lo + b.hi) * 0.5f);
     }
     return l;
 }
@@ -197,24 +200,50 @@ template <class Take> void Micropolygons::ofParameters(const Lattice& l, Micropo
     }
 }
 
+const Micropolygons::Partials& Micropolygons::partialsOf(uint32_t shape) {
+    std::unique_ptr<Partials>& p = lattices_[shape].partials;
+    if (p) return *p;
+    p = std::make_unique<Partials>();
+    constexpr int n = Partials::kSide;
+    std::vector<geometry::SurfacePoint> at(n * n);
+    std::vector<geometry::HitRef> run;
+    for (int k = 0; k < n * n; ++k) run.push_back({0, double(k % n) / (n - 1), double(k / n) / (n - 1), &at[size_t(k)], 0});
+    world_.shapes_[shape]->points(run, geometry::kNeedPartials);
+    for (int k = 0; k < n * n; ++k) p->u[k / n][k % n] = at[size_t(k)].dPdu, p->v[k / n][k % n] = at[size_t(k)].dPdv;
+    return *p;
+}
+
 /// hits: of one shape.
 template <class Take> void Micropolygons::ofSurfaces(std::span<const accel::Hit> hits, std::span<const Vec3> P, Take take) {
     const Lattice& l = lattices_[hits[0].shape];
+    const auto tabled = [&](const accel::Hit& h) { return l.large && inside(h.b1) && inside(h.b2); };
     surfaces_.resize(std::max(surfaces_.size(), hits.size()));
     run_.clear();
-    for (size_t i = 0; i < hits.size(); ++i) run_.push_back({hits[i].prim, hits[i].b1, hits[i].b2, &surfaces_[i], 0});
-    world_.shapes_[hits[0].shape]->points(run_, geometry::kNeedPartials | geometry::kNeedUV);
+    for (size_t i = 0; i < hits.size(); ++i)
+        if (!tabled(hits[i])) run_.push_back({hits[i].prim, hits[i].b1, hits[i].b2, &surfaces_[i], 0});
+    if (!run_.empty()) world_.shapes_[hits[0].shape]->points(run_, geometry::kNeedPartials | geometry::kNeedUV);
     for (size_t i = 0; i < hits.size(); ++i) {
-        const geometry::SurfacePoint& p = surfaces_[i];
-        MicropolygonShare s{{hits[i].shape, hits[i].prim, {}, {}, false}, p.b1, p.b2, 1};
-        if (inside(s.b1) && inside(s.b2)) {
-            const Vec3 d = camera_.towards(P[i]);
-            setSteps(s.key, {seenLength(p.dPdu, d), seenLength(p.dPdv, d)}, l, P[i]);
-            ofParameters(l, s, [&](const MicropolygonShare& share) { take(i, share); });
+        MicropolygonShare s{{hits[i].shape, hits[i].prim, {}, {}, false}, hits[i].b1, hits[i].b2, 1};
+        const Vec3 d = camera_.towards(P[i]);
+        Lengths lengths{0, 0};
+        if (tabled(hits[i])) { // the greatest of the corners about it: a pole has none along u
+            const Partials& table = partialsOf(hits[i].shape);
+            const int x = cellOf(s.b1, Partials::kSide - 1), y = cellOf(s.b2, Partials::kSide - 1);
+            for (int k = 0; k < 4; ++k) {
+                lengths.u = std::max(lengths.u, seenLength(table.u[y + k / 2][x + k % 2], d));
+                lengths.v = std::max(lengths.v, seenLength(table.v[y + k / 2][x + k % 2], d));
+            }
         } else {
-            s.b1 = hits[i].b1, s.b2 = hits[i].b2;
-            take(i, s);
+            const geometry::SurfacePoint& p = surfaces_[i];
+            if (!inside(p.b1) || !inside(p.b2)) {
+                take(i, s);
+                continue;
+            }
+            s.b1 = p.b1, s.b2 = p.b2;
+            lengths = {seenLength(p.dPdu, d), seenLength(p.dPdv, d)};
         }
+        setSteps(s.key, lengths, l, P[i]);
+        ofParameters(l, s, [&](const MicropolygonShare& share) { take(i, share); });
     }
 }
 

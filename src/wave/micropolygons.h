@@ -10,6 +10,7 @@
 #include "shading/gridpoint.h"
 #include "world/impl.h"
 #include <functional>
+#include <memory>
 #include <optional>
 
 namespace alpenglow::transport {
@@ -58,18 +59,26 @@ private:
         Surface,   ///< one parametric surface, met exactly
         Pieces     ///< many small ones: curves, points
     };
+    /// dPdu and dPdv of a surface that covers many pixels, at places evenly spaced over u and v.
+    struct Partials {
+        static constexpr int kSide = 17;
+        Vec3 u[kSide][kSide], v[kSide][kSide]; ///< by v, then u
+    };
     struct Lattice {
         Kind kind = Kind::Single;
         const geometry::TriMesh* mesh = nullptr;
         std::optional<geometry::Affine> place; ///< of the mesh, to camera space; none: it is there
         float edge = 1;                        ///< of a micropolygon, pixels
         bool smooth = false, paired = false;
+        bool large = false;                 ///< a surface that covers many pixels: steps are from a table,
+        std::unique_ptr<Partials> partials; ///< which is made when it is met
     };
     struct Lengths {
         float u, v;
     };
     Lattice latticeOf(uint32_t shape) const;
     template <class Take> void ofTriangle(const accel::Hit&, const Vec3& P, Take) const;
+    const Partials& partialsOf(uint32_t shape);
     template <class Take> void ofSurfaces(std::span<const accel::Hit>, std::span<const Vec3> P, Take);
     template <class Take> void ofParameters(const Lattice&, MicropolygonShare, Take) const;
     bool pair(const geometry::TriMesh&, MicropolygonShare&) const;

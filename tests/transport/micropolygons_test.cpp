@@ -1,5 +1,7 @@
 // Where hidden shades with Settings::micropolygons: once for all samples that see a micropolygon, with edges of sqrt(ShadingRate)
 // pixels, and what samples make of it. The pictures here are 32 x 32 pixels of a square of 2 x 2, so a pixel is 1/16 wide.
+#include "display/imageio.h"
+#include "render/renderer.h"
 #include "transport/floorscene.h"
 #include "wave/limits.h"
 #include <algorithm>
@@ -257,6 +259,90 @@ TEST(Micropolygons, PrintOnce) {
     s.world->flushPrints(true);
     const std::string text = ::testing::internal::GetCapturedStdout();
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text; // one a triangle
+}
+
+namespace {
+
+struct Rendered {
+    display::Image picture;
+    uint64_t points = 0;
+    int errors = 0;
+};
+
+/// A tracer that does not say what sees nothing.
+class Blind final : public render::Tracer {
+public:
+    explicit Blind(std::unique_ptr<render::Tracer> t) : tracer_(std::move(t)) {}
+    bool trace(std::span<const CameraRay> r, std::span<SampleResult> o, const StopFlag* s) override {
+        return tracer_->trace(r, o, s);
+    }
+    const Counters& counters() const override { return tracer_->counters(); }
+
+private:
+    std::unique_ptr<render::Tracer> tracer_;
+};
+
+Rendered render(const std::string& options, const std::string& scene, bool blind = false, int threads = 1) {
+    writeShaders();
+    const std::string file = shaderFolder() + "/micropolygons.exr";
+    Diagnostics diagnostics;
+    render::RenderSettings s;
+    s.threads = threads;
+    s.allowWrite = true;
+    s.shippedShaders = std::string(ALPENGLOW_SOURCE_DIR) + "/shaders";
+    s.shaderPaths = {shaderFolder()};
+    render::Progress progress(render::ProgressMode::None);
+    render::Engine engine = render::transportEngine();
+    if (blind)
+        engine.tracer = [seeing = engine.tracer](std::shared_ptr<const World> w,
+                                                 Diagnostics& d) -> std::unique_ptr<render::Tracer> {
+            return std::make_unique<Blind>(seeing(std::move(w), d));
+        };
+    render::Renderer renderer(s, std::move(engine), diagnostics, progress);
+    ri::RibReader reader(ri::ReaderOptions{}, renderer, diagnostics);
+    reader.readMemory("Format 96 64 1\nPixelSamples 2 2\nProjection \"perspective\" \"fov\" 50\n" + options + "Display \"" +
+                          file + "\" \"openexr\" \"rgbaz\"\nTranslate 0 0 4\nWorldBegin\n" + scene + "WorldEnd\n",
+                      "micropolygons.rib");
+    auto picture = display::readImage(file, diagnostics);
+    EXPECT_TRUE(picture);
+    std::filesystem::remove(file);
+    return {picture ? *picture : display::Image(), renderer.stats().shading.points, diagnostics.errors()};
+}
+bool samePicture(const display::Image& a, const display::Image& b) {
+    if (a.sampleCount() != b.sampleCount()) return false;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 96; ++x)
+            for (int c = 0; c < 5; ++c)
+                if (a.pixel(x, y)[c] != b.pixel(x, y)[c]) return false;
+    return true;
+}
+const std::string kBalls = "Surface \"wavy\"\nAttributeBegin Translate -1 0 0 Sphere .4 -.4 .4 360 AttributeEnd\n"
+                           "AttributeBegin Translate 1 .5 1 Torus .3 .1 0 360 360 AttributeEnd\n";
+
+} // namespace
+
+// What the scene says: by the hider, or by an option; what is no answer is an error.
+TEST(Micropolygons, TheSceneChooses) {
+    const std::string k16 = "PixelSamples 4 4\n";
+    const Rendered grids = render(k16, kBalls),
+                   samples = render(k16 + "Hider \"hidden\" \"string shading\" \"sample\"\n", kBalls);
+    EXPECT_LT(2 * grids.points, samples.points);
+    EXPECT_EQ(render(k16 + "Option \"hidden\" \"string shading\" \"sample\"\n", kBalls).points, samples.points);
+    EXPECT_EQ(render(k16 + "Hider \"hidden\" \"string shading\" \"micropolygon\"\n", kBalls).points, grids.points);
+    EXPECT_EQ(render(k16 + "Hider \"raytrace\"\n", kBalls).points, samples.points);
+    EXPECT_EQ(grids.errors + samples.errors, 0);
+    const Rendered wrong = render(k16 + "Hider \"hidden\" \"string shading\" \"grid\"\n", kBalls);
+    EXPECT_EQ(wrong.errors, 1);
+    EXPECT_TRUE(samePicture(wrong.picture, grids.picture));
+}
+
+// Tiles that see nothing are not sampled, and nobody can tell: not by a wide filter, nor with another number of threads.
+TEST(Micropolygons, TilesThatSeeNothingCannotBeTold) {
+    for (const char* filter : {"PixelFilter \"box\" 1 1\n", "PixelFilter \"sinc\" 9 7\n", "Projection \"orthographic\"\n"}) {
+        const Rendered seen = render(filter, kBalls);
+        EXPECT_TRUE(samePicture(render(filter, kBalls, true).picture, seen.picture)) << filter;
+        EXPECT_TRUE(samePicture(render(filter, kBalls, false, 3).picture, seen.picture)) << filter;
+    }
 }
 
 } // namespace micropolygons_test

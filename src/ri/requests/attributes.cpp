@@ -218,11 +218,13 @@ std::vector<Request> attributeRequests() {
              std::copy(v.begin(), v.end(), in.attributes().textureCoordinates);
          }},
         {"ShadingRate", "number size", k, s, false,
-         "Area in pixels of one shading sample: the size of diced facets, and of the footprint that textures and derivatives "
-         "see.",
+         "Area in pixels of a micropolygon: of what hidden shades once for all samples that see it, of diced facets, and of the "
+         "footprint that textures and derivatives see.",
          ".5", [](Interpreter& in, const Call& c) { in.attributes().shadingRate = c.real(0); }},
         {"ShadingInterpolation", "string type", k, s, false,
-         "\"constant\" or \"smooth\" between shading samples. Without effect: every sample is shaded.", "\"smooth\"",
+         "\"constant\": a micropolygon has one colour; \"smooth\": colours go linearly between its corners. For hidden; elsewhere "
+         "every sample is shaded.",
+         "\"smooth\"",
          [](Interpreter& in, const Call& c) {
              if (c.text(0) == "smooth" || c.text(0) == "constant") in.attributes().smoothShading = c.text(0) == "smooth";
              else

@@ -18,19 +18,13 @@ constexpr float kNarrowest = 0.25f;        ///< of an edge that the eye looks al
 constexpr float kSmallestSmooth = 1.5f;    ///< pixels: facets with shorter edges have one colour
 constexpr float kOrthographicFallback = 1; ///< cosine
 
-/// The number of steps that cover so many edges: a power of 2^(1/4), rounded.
-uint16_t stepsFor(float edges) {
-    if (!(edges > 1)) return 1;
-    const double x = std::min(double(edges), double(kMostSteps)), fourth = x * x * x * x * 1.4142135623730951;
-    const int quarters = int(std::bit_cast<uint64_t>(fourth) >> 52) - 1023; // floor(4 log2 x + 1/2)
+/// The number of steps that cover so many edges, squared: a power of 2^(1/4), rounded.
+uint16_t stepsFor(float square) {
+    if (!(square > 1)) return 1;
+    const double x = std::min(double(square), double(kMostSteps) * kMostSteps), fourth = x * x * 1.4142135623730951;
+    const int quarters = int(std::bit_cast<uint64_t>(fourth) >> 52) - 1023; // floor(4 log2 + 1/2)
     constexpr double kParts[] = {1, 1.189207115002721, 1.4142135623730951, 1.681792830507429};
     return uint16_t(std::min(kParts[quarters & 3] * double(1 << (quarters >> 2)) + 0.5, double(kMostSteps)));
-}
-
-/// The length of an edge as the eye sees it that looks at it in direction d.
-float seenLength(const Vec3& edge, const Vec3& d) {
-    const float whole = dot(edge, edge), along = dot(edge, d);
-    return std::sqrt(std::max(whole - along * along, whole * (kNarrowest * kNarrowest)));
 }
 
 /// The shape whose triangles or parameters rays meet, as the shutter opens.
@@ -86,10 +80,13 @@ Micropolygons::Lattice Micropolygons::latticeOf(uint32_t shape) const {
     return l;
 }
 
-void Micropolygons::setSteps(MicropolygonKey& key, Lengths l, const Lattice& of, const Vec3& P) const {
-    const float edge = camera_.pixelAt(P) * of.edge;
-    key.steps[0] = stepsFor(l.u / edge);
-    key.steps[1] = stepsFor(l.v / edge);
+Micropolygons::Seen::Seen(const MicropolygonCamera& c, const Vec3& at, float edge)
+    : P(c.perspective ? at : Vec3(0, 0, 1)), inverse(1 / std::max(dot(P, P), 1e-37f)),
+      scale(1 / std::max(c.pixel * c.pixel * edge * edge * (c.perspective ? dot(P, P) : 1), 1e-37f)) {}
+
+float Micropolygons::Seen::edges(const Vec3& step) const {
+    const float whole = dot(step, step), along = dot(step, P);
+    return std::max(whole - along * along * inverse, whole * (kNarrowest * kNarrowest)) * scale;
 }
 
 /// Of two triangles of a diced surface that are the halves of a quad: their micropolygon, shaded in its middle.
@@ -144,11 +141,11 @@ template <class Take> void Micropolygons::ofTriangle(const accel::Hit& h, const 
         if (l.place) corners[k] = Vec3(l.place->vector(Vec3d(corners[k])));
     }
     const Turned t(corners, h.b1, h.b2);
-    const Vec3 d = camera_.towards(P);
+    const Seen seen(camera_, P, l.edge);
     MicropolygonShare s;
     s.key.shape = h.shape;
     s.key.prim = h.prim;
-    setSteps(s.key, {seenLength(t.e1, d), seenLength(t.e2, d)}, l, P);
+    s.key.steps[0] = stepsFor(seen.edges(t.e1)), s.key.steps[1] = stepsFor(seen.edges(t.e2));
     const int n1 = s.key.steps[0], n2 = s.key.steps[1];
     const uint16_t i = cellOf(t.b1, n1), j = cellOf(t.b2, n2);
     s.key.at[0] = i, s.key.at[1] = j;
@@ -224,14 +221,14 @@ template <class Take> void Micropolygons::ofSurfaces(std::span<const accel::Hit>
     if (!run_.empty()) world_.shapes_[hits[0].shape]->points(run_, geometry::kNeedPartials | geometry::kNeedUV);
     for (size_t i = 0; i < hits.size(); ++i) {
         MicropolygonShare s{{hits[i].shape, hits[i].prim, {}, {}, false}, hits[i].b1, hits[i].b2, 1};
-        const Vec3 d = camera_.towards(P[i]);
-        Lengths lengths{0, 0};
+        const Seen seen(camera_, P[i], l.edge);
+        float u = 0, v = 0;
         if (tabled(hits[i])) { // the greatest of the corners about it: a pole has none along u
             const Partials& table = partialsOf(hits[i].shape);
             const int x = cellOf(s.b1, Partials::kSide - 1), y = cellOf(s.b2, Partials::kSide - 1);
             for (int k = 0; k < 4; ++k) {
-                lengths.u = std::max(lengths.u, seenLength(table.u[y + k / 2][x + k % 2], d));
-                lengths.v = std::max(lengths.v, seenLength(table.v[y + k / 2][x + k % 2], d));
+                u = std::max(u, seen.edges(table.u[y + k / 2][x + k % 2]));
+                v = std::max(v, seen.edges(table.v[y + k / 2][x + k % 2]));
             }
         } else {
             const geometry::SurfacePoint& p = surfaces_[i];
@@ -240,9 +237,9 @@ template <class Take> void Micropolygons::ofSurfaces(std::span<const accel::Hit>
                 continue;
             }
             s.b1 = p.b1, s.b2 = p.b2;
-            lengths = {seenLength(p.dPdu, d), seenLength(p.dPdv, d)};
+            u = seen.edges(p.dPdu), v = seen.edges(p.dPdv);
         }
-        setSteps(s.key, lengths, l, P[i]);
+        s.key.steps[0] = stepsFor(u), s.key.steps[1] = stepsFor(v);
         ofParameters(l, s, [&](const MicropolygonShare& share) { take(i, share); });
     }
 }
@@ -282,7 +279,10 @@ void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3>
             ofSurfaces(hits.subspan(i, end - i), points.subspan(i, end - i),
                        [&](size_t k, const MicropolygonShare& share) { take(i + k, share); });
         } else if (l.kind == Kind::Pieces && inside(h.b1) && inside(h.b2)) {
-            setSteps(s.key, lengthsOf(h.shape, h.prim), l, points[i]);
+            const float edge = camera_.pixelAt(points[i]) * l.edge;
+            const Lengths lengths = lengthsOf(h.shape, h.prim);
+            s.key.steps[0] = stepsFor(lengths.u * lengths.u / (edge * edge));
+            s.key.steps[1] = stepsFor(lengths.v * lengths.v / (edge * edge));
             ofParameters(l, s, one);
         } else {
             one(s);

@@ -73,6 +73,13 @@ private:
         bool large = false;                 ///< a surface that covers many pixels: steps are from a table,
         std::unique_ptr<Partials> partials; ///< which is made when it is met
     };
+    /// How the eye sees steps at a point.
+    struct Seen {
+        Vec3 P;
+        float inverse, scale;
+        Seen(const MicropolygonCamera&, const Vec3& at, float edge);
+        float edges(const Vec3& step) const; ///< its length in edges of micropolygons, squared
+    };
     struct Lengths {
         float u, v;
     };
@@ -83,7 +90,6 @@ private:
     template <class Take> void ofParameters(const Lattice&, MicropolygonShare, Take) const;
     bool pair(const geometry::TriMesh&, MicropolygonShare&) const;
     Lengths lengthsOf(uint32_t shape, uint32_t prim);
-    void setSteps(MicropolygonKey&, Lengths, const Lattice&, const Vec3& P) const;
     const WorldImpl& world_;
     MicropolygonCamera camera_;
     std::vector<Lattice> lattices_;                ///< by shape

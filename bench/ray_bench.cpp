@@ -49,12 +49,13 @@ struct Answers {
     std::vector<uint8_t> met;
 };
 
-void trace(const accel::Accel& accel, const bench::RaysOfKind& k, Answers& out) {
+void trace(const accel::Accel& accel, const bench::RaysOfKind& k, bool together, Answers& out) {
     constexpr size_t kSlice = 512;
     const std::span<const accel::Ray> rays(k.rays);
     for (size_t i = 0; i < rays.size(); i += kSlice) {
         const size_t n = std::min(kSlice, rays.size() - i);
         if (k.any) accel.occluded(rays.subspan(i, n), std::span(out.met).subspan(i, n));
+        else if (together) accel.intersectTogether(rays.subspan(i, n), std::span(out.hits).subspan(i, n));
         else accel.intersect(rays.subspan(i, n), std::span(out.hits).subspan(i, n));
     }
 }
@@ -96,7 +97,7 @@ void measure(const accel::Accel& accel, const bench::BareEmbree* embree, const s
     (k.any ? a.met.resize(n) : a.hits.resize(n));
     double ours = INFINITY, theirs = INFINITY;
     for (int i = 0; i < repeats; ++i) {
-        timed(ours, [&] { trace(accel, k, a); });
+        timed(ours, [&] { trace(accel, k, name == "camera", a); });
         if (embree) timed(theirs, [&] { k.any ? embree->occluded(k.rays, met.data()) : embree->intersect(k.rays, t.data()); });
     }
     size_t hit = 0;

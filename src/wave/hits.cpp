@@ -127,7 +127,8 @@ void Engine::cast(std::span<const Sched::Task> slice) {
         if (!beginsAtGrid(r)) rays_.push_back(rayOf(r));
         else given_.push_back(uint32_t(i));
     }
-    if (given_.empty()) return meet(rays_, hits_);
+    const auto first = [](const Sched::Task& t) { return t.payload.camera() && t.payload.bounces == 0; };
+    if (given_.empty()) return meet(rays_, hits_, std::all_of(slice.begin(), slice.end(), first));
     found_.resize(rays_.size());
     meet(rays_, found_);
     size_t next = 0, met = 0;

@@ -103,7 +103,8 @@ struct Kept {
 /// What the bands of a picture have in common.
 class ImageLoop {
 public:
-    ImageLoop(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples&, Reconstructions&);
+    ImageLoop(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples&, Reconstructions&,
+              std::vector<float>& memory);
     void run();
 
 private:
@@ -135,6 +136,7 @@ private:
     uint64_t seed_;
     DroppedSamples& dropped_;
     Reconstructions& result_;
+    std::vector<float>& memory_; ///< of the last band
     const Window window_;
     std::vector<Channel> aovs_;
     std::vector<const OutputSpec*>
@@ -152,9 +154,9 @@ private:
 };
 
 ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed,
-                     DroppedSamples& dropped, Reconstructions& result)
+                     DroppedSamples& dropped, Reconstructions& result, std::vector<float>& memory)
     : job_(job), nx_(nx), ny_(ny), jitter_(jitter), refinement_(refinement), seed_(seed), dropped_(dropped), result_(result),
-      window_(job.camera.window()) {
+      memory_(memory), window_(job.camera.window()) {
     if (refinement.on()) {
         nx_ = ny_ = refinement.side;
         jitter_ = Jitter::Grid;
@@ -221,7 +223,7 @@ void ImageLoop::run() {
 void ImageLoop::band(int b) {
     const Window part{window_.x0, window_.y0 + b * rows_, window_.x1, std::min(window_.y0 + (b + 1) * rows_, window_.y1)};
     if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // of samples that are not traced again
-    SampleBuffer buffer(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_);
+    SampleBuffer buffer(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_, std::move(memory_));
     const std::vector<Window> tiles = tilesOf(buffer.sampled());
     const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
     // Tasks that may be done again, for what their rays came to, are never over while others work.
@@ -241,6 +243,7 @@ void ImageLoop::band(int b) {
     growth_.reset();
     dropped_.count += buffer.nonFinite();
     reconstruct(buffer, part);
+    memory_ = std::move(buffer).takeMemory();
 }
 
 /// Lets who looks on see what is over.
@@ -446,10 +449,12 @@ PixelFilter ImageLoop::filterOf(size_t image) const {
 } // namespace
 
 Reconstructions renderImages(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed,
-                             DroppedSamples* dropped) {
+                             DroppedSamples* dropped, std::vector<float>& memory) {
+    constexpr size_t kKeptBytes = size_t(64) << 20;
     *dropped = {};
     Reconstructions result;
-    ImageLoop(job, nx, ny, jitter, refinement, seed, *dropped, result).run();
+    ImageLoop(job, nx, ny, jitter, refinement, seed, *dropped, result, memory).run();
+    if (memory.capacity() * sizeof(float) > kKeptBytes) memory = {};
     return result;
 }
 

@@ -115,10 +115,11 @@ private:
     std::set<std::string> read_;       ///< fileIdentity() of setScene()'s pictures
     std::vector<std::string> written_; ///< pictures and maps of this run, with links followed: scenes may read them
     Outcome outcome_;
-    RenderStats stats_;              ///< of the frame being rendered
-    RenderStats all_;                ///< of the frames before
-    std::vector<FrameStats> frames_; ///< those that were rendered
-    double parseMark_ = 0;           ///< since when the reader is at work
+    std::vector<float> sampleMemory_; ///< renderImages()
+    RenderStats stats_;               ///< of the frame being rendered
+    RenderStats all_;                 ///< of the frames before
+    std::vector<FrameStats> frames_;  ///< those that were rendered
+    double parseMark_ = 0;            ///< since when the reader is at work
     OutputNames names_;
     int pictures_ = 0, maps_ = 0; ///< frames of either kind
     int checkpoints_ = 0;         ///< worlds outside of frames that had one

@@ -364,7 +364,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     if (f.plan.onlyDeep()) made = noImages(job);
     else
         made = renderImages(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), refinementOf(f.o, job.camera, diagnostics_),
-                            settings_.seed, &dropped);
+                            settings_.seed, &dropped, sampleMemory_);
     stats_.classic.subsampledPixels += made.refined.pixels;
     stats_.classic.subsampledRays += made.refined.rays;
     f.nonFinite = dropped.count;

@@ -145,7 +145,9 @@ struct Reconstructions {
     std::vector<size_t> of;
     Refined refined;
 };
-/// When the user stops, pixels not reached stay black.
-Reconstructions renderImages(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples*);
+/// When the user stops, pixels not reached stay black. `memory`: of the samples, kept from frame to frame where it is little:
+/// pages that the system hands out anew are a tenth of the time of simple frames.
+Reconstructions renderImages(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples*,
+                             std::vector<float>& memory);
 
 } // namespace alpenglow::render

@@ -57,12 +57,15 @@ std::optional<DepthFilter> depthFilterByName(std::string_view n) {
 }
 
 SampleBuffer::SampleBuffer(Window w, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed,
-                           Jitter j)
+                           Jitter j, std::vector<float> memory)
     : window_(w), nx_(nx), ny_(ny), aovs_(std::move(aovs)), seed_(seed), jitter_(j), stride_(kAovs + aovs_.size()) {
     averagesAll_ = std::all_of(aovs_.begin(), aovs_.end(), [](const Channel& c) { return c.rule == ChannelRule::Average; });
     int bx = border(maxXw), by = border(maxYw);
     sampled_ = {w.x0 - bx, w.y0 - by, w.x1 + bx, w.y1 + by};
-    data_.assign(sampled_.pixels() * size_t(nx * ny) * stride_, 0);
+    const size_t floats = sampled_.pixels() * size_t(nx * ny) * stride_;
+    if (memory.capacity() >= floats) data_ = std::move(memory);
+    else memory = {}; // not two at a time
+    data_.assign(floats, 0);
     for (size_t i = 0; i < data_.size(); i += stride_) data_[i] = -1;
 }
 

@@ -67,7 +67,10 @@ inline constexpr int kImageFixedChannels = 8;
 class SampleBuffer {
 public:
     /// Samples for reconstructing `window` with filters whose full widths do not exceed maxXw, maxYw. nx, ny >= 1 per pixel.
-    SampleBuffer(Window window, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed, Jitter);
+    /// `memory`: of a buffer that is gone (takeMemory()), whatever it held.
+    SampleBuffer(Window window, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed, Jitter,
+                 std::vector<float> memory = {});
+    std::vector<float> takeMemory() && { return std::move(data_); }
 
     /// All pixels that need samples: the window and its border. Parts of it may lie outside the picture.
     const Window& sampled() const { return sampled_; }

@@ -153,6 +153,21 @@ TEST(SampleBuffer, PlacesDrawnTogetherHaveTheSameBits) {
     }
 }
 
+TEST(SampleBuffer, MemoryOfABufferThatIsGoneServesAgain) {
+    const Window all{0, 0, 9, 5};
+    SampleBuffer first(all, 2, 2, 2, 2, {{"a"}}, 1, Jitter::Jittered);
+    fill(first, [](Vec2 p, int, int, int) { return grey(p.x); });
+    std::vector<float> memory = std::move(first).takeMemory();
+    std::fill(memory.begin(), memory.end(), std::nanf("")); // whatever it held
+    const float* at = memory.data();
+    SampleBuffer again(all, 1, 1, 2, 2, {}, 1, Jitter::Jittered, std::move(memory)),
+        fresh(all, 1, 1, 2, 2, {}, 1, Jitter::Jittered);
+    EXPECT_EQ(again.reconstruct({}, DepthFilter::Average, all).data, fresh.reconstruct({}, DepthFilter::Average, all).data);
+    for (SampleBuffer* b : {&again, &fresh}) fill(*b, [](Vec2 p, int, int, int) { return grey(p.y); });
+    EXPECT_EQ(again.reconstruct({}, DepthFilter::Min, all).data, fresh.reconstruct({}, DepthFilter::Min, all).data);
+    EXPECT_EQ(std::move(again).takeMemory().data(), at);
+}
+
 TEST(SampleBuffer, DepthFilters) {
     const float inf = std::numeric_limits<float>::infinity();
     const float z[4] = {5, 2, inf, 8}, second[4] = {9, inf, inf, 10};

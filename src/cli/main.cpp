@@ -53,8 +53,8 @@ int main(int argc, char** argv) {
     // Long lists come and go while a scene is made. In pages of their own they go back to the system at once; the C library would
     // keep what lies between others, up to 32 MB at a time.
     mallopt(M_MMAP_THRESHOLD, 4 << 20);
-    // Of what lies last in use it keeps this much for the next frame: with its own 128 KiB an animation's frames get half of their
-    // pages anew, each time.
+    // Of what lies last in use it keeps this much for the next frame: with its own 128 KiB an animation's frames get half of
+    // their pages anew, each time.
     mallopt(M_TRIM_THRESHOLD, 16 << 20);
 #endif
     int status = kDone;

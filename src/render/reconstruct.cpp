@@ -22,7 +22,7 @@ int reach(double w) { return std::max(0, int(std::ceil(w / 2 - 0.5))); }
 struct SampleBuffer::Scratch {
     int bx = 0, by = 0;
     size_t samples = 0; ///< of a row: those of the block and of bx pixels on both sides
-    std::vector<float> across, weights;
+    std::vector<float> across, down, weights;
     std::vector<double> sums; ///< by pixel of the block
 };
 
@@ -39,6 +39,27 @@ void SampleBuffer::weigh(const FilterWeights& f, const Window& block, int row, S
     for (size_t i = 0; i < to.samples; ++i, s += stride_)
         for (int di = -to.bx; di <= to.bx; ++di)
             to.across[size_t(di + to.bx) * to.samples + i] = s[0] < 0 ? 0 : f.across(double(di) + s[0] - 0.5);
+}
+
+/// Makes the weights of a row of samples for row y of a block: of a filter that is a product, by its factors.
+void SampleBuffer::multiply(const FilterWeights& f, const Window& block, int row, int y, Scratch& to) const {
+    const float* s = &data_[base(block.x0 - to.bx, row, 0)];
+    for (size_t i = 0; i < to.samples; ++i, s += stride_) to.down[i] = f.down(double(row - y) + s[1] - 0.5);
+    const float* down = to.down.data();
+    for (int di = 0; di <= 2 * to.bx; ++di) {
+        const float* across = &to.across[size_t(di) * to.samples];
+        float* w = &to.weights[size_t(di) * to.samples];
+        for (size_t i = 0; i < to.samples; ++i) w[i] = across[i] * down[i];
+    }
+}
+
+/// The same of any filter.
+void SampleBuffer::weighEach(const FilterWeights& f, const Window& block, int row, int y, Scratch& to) const {
+    const float* s = &data_[base(block.x0 - to.bx, row, 0)];
+    for (size_t i = 0; i < to.samples; ++i, s += stride_)
+        for (int di = -to.bx; di <= to.bx; ++di)
+            to.weights[size_t(di + to.bx) * to.samples + i] =
+                s[0] < 0 ? 0 : f(double(di) + s[0] - 0.5, double(row - y) + s[1] - 0.5);
 }
 
 /// Adds a row of samples to the sums of row y of a block.
@@ -81,20 +102,14 @@ void SampleBuffer::block(const FilterWeights& f, const Window& block, Scratch& s
     const size_t nsum = kFixedSums + aovs_.size(), side = size_t(2 * scratch.bx + 1);
     scratch.samples = size_t(block.width() + 2 * scratch.bx) * size_t(nx_ * ny_);
     scratch.across.resize(f.separable() ? side * scratch.samples : 0);
+    scratch.down.resize(scratch.samples);
     scratch.weights.resize(side * scratch.samples);
     scratch.sums.assign(block.pixels() * nsum, 0);
     for (int row = block.y0 - scratch.by; row < block.y1 + scratch.by; ++row) {
         if (f.separable()) weigh(f, block, row, scratch);
         for (int y = std::max(block.y0, row - scratch.by); y < std::min(block.y1, row + scratch.by + 1); ++y) {
-            const float* s = &data_[base(block.x0 - scratch.bx, row, 0)];
-            for (size_t i = 0; i < scratch.samples; ++i, s += stride_) {
-                const double dy = double(row - y) + s[1] - 0.5;
-                const float down = f.separable() ? f.down(dy) : 0;
-                for (size_t di = 0, at = i; di < side; ++di, at += scratch.samples)
-                    scratch.weights[at] = f.separable() ? scratch.across[at] * down
-                                          : s[0] < 0    ? 0
-                                                        : f(double(int(di) - scratch.bx) + s[0] - 0.5, dy);
-            }
+            if (f.separable()) multiply(f, block, row, y, scratch);
+            else weighEach(f, block, row, y, scratch);
             addRow(block, row, y, scratch);
         }
     }

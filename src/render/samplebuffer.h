@@ -109,6 +109,8 @@ private:
     bool hasSamples(const Window&) const;
     void block(const FilterWeights&, const Window&, Scratch&, float* to, size_t rowFloats) const;
     void weigh(const FilterWeights&, const Window& block, int row, Scratch&) const;
+    void multiply(const FilterWeights&, const Window& block, int row, int y, Scratch&) const;
+    void weighEach(const FilterWeights&, const Window& block, int row, int y, Scratch&) const;
     void addRow(const Window& block, int row, int y, Scratch&) const;
     void finish(double* sums, int x, int y, float* out) const;
     void addSample(const float* sample, double weight, double* sums) const;

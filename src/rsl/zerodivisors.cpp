@@ -41,8 +41,7 @@ std::vector<std::string> zeroDivisors(const Program& program, const Shader& shad
     return {found.begin(), found.end()};
 }
 
-std::vector<SourcePlace> divisionsByZero(const Program& program, const Shader& shader, KernelOptions options,
-                                         const std::map<std::string, std::vector<float>>& numbers) {
+void fixParameters(KernelOptions& options, const std::map<std::string, std::vector<float>>& numbers) {
     for (const auto& [name, v] : numbers)
         if ((v.size() == 1 || v.size() == 3) && !isOneOf(options.varyingParameters, name) &&
             !isOneOf(options.computedParameters, name)) {
@@ -50,6 +49,11 @@ std::vector<SourcePlace> divisionsByZero(const Program& program, const Shader& s
             for (const float f : v) all += text(f) + " ";
             options.stringParameters.emplace_back(name, all);
         }
+}
+
+std::vector<SourcePlace> divisionsByZero(const Program& program, const Shader& shader, KernelOptions options,
+                                         const std::map<std::string, std::vector<float>>& numbers) {
+    fixParameters(options, numbers);
     Diagnostics quiet, said; // the kernel has said the rest
     std::vector<SourcePlace> places;
     const auto kernel = buildKernel(program, shader, options, quiet);

@@ -1,7 +1,9 @@
 // Displacement when shapes are diced: by displacement shaders, by classes that are both, and by surface shaders that move P.
 #include "geometry/dice.h"
 #include "geometry/picture_sides.h"
+#include "geometry/placed.h"
 #include "rsl/ir/edit.h"
+#include "rsl/moves.h"
 #include "scene/scene.h"
 #include "world/impl.h"
 #include "world/turned.h"
@@ -109,6 +111,20 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
     });
 }
 
+/// Whether shapes of a binding, of which this is one, have points that are not where the primitive has them.
+bool WorldImpl::movesPoints(const SurfaceBinding& b, const geometry::Shape& shape) const {
+    if (!b.displacement) return bool(b.moveS);
+    if (!b.displacementS || b.displacementS.kernel->facts().suspends) return true;
+    const auto& writes = b.displacementS.kernel->facts().writes;
+    if (std::find(writes.begin(), writes.end(), "P") == writes.end()) return false;
+    std::vector<std::string> varying;
+    for (const auto& v : shape.primvars()) varying.push_back(v.name);
+    const ShaderInstance& shader = *b.displacement;
+    return rsl::movesPoints(shader.program->program(), shader.program->shader(),
+                            kernelOptions(shader, {"P"}, varying, false, settings_.hider == Hider::Path),
+                            shader.parameters.numbers);
+}
+
 void WorldImpl::diceShapes(Diagnostics& d) {
     geometry::DiceOptions dice;
     dice.camera = geometry::DiceCamera::from(frame_->options);
@@ -116,7 +132,12 @@ void WorldImpl::diceShapes(Diagnostics& d) {
     const auto bindingOf = [&](const geometry::Shape& s) -> const SurfaceBinding& {
         return bindings_[size_t(bindingOf_[numberOfShape_.at(&s)])];
     };
-    dice.displaces = [&](const geometry::Shape& shape) { return bindingOf(shape).displacement || bindingOf(shape).moveS; };
+    std::vector<int8_t> moves(bindings_.size(), -1); // -1: not known yet
+    for (const geometry::ShapeRef& s : shapes_) {
+        const auto b = size_t(bindingOf_[numberOfShape_.at(s->placed() ? s->placed()->geometry().get() : s.get())]);
+        if (moves[b] < 0) moves[b] = movesPoints(bindings_[b], *s);
+    }
+    dice.displaces = [&](const geometry::Shape& shape) { return moves[size_t(bindingOf_[numberOfShape_.at(&shape)])] > 0; };
     dice.displace = [&](const geometry::Shape& shape, geometry::DiceGrid& grid) {
         displaceGrid(bindingOf(shape), shape, grid, d);
     };

@@ -92,6 +92,7 @@ public:
     void numberShapes();
     /// Makes the meshes that rays meet.
     void diceShapes(Diagnostics&);
+    bool movesPoints(const SurfaceBinding&, const geometry::Shape&) const;
     /// No shader and no light sends rays or wants points of whole surfaces: pictures are made of rays of the camera alone. Once
     /// surfaces are bound.
     bool onlyCameraRays() const;

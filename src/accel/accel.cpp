@@ -85,7 +85,7 @@ void Accel::Impl::meetDirect(Query& q) const {
     }
 }
 
-Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics& diag)
+Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics& diag, bool quick)
     : impl_(std::make_unique<Impl>()) {
     impl_->shapes = std::move(shapes);
     impl_->visibility = std::move(visibility);
@@ -104,7 +104,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
     for (const ShapeRef& s : impl_->shapes)
         if (s->exact()) impl_->bounds.add(s->bounds());
     try {
-        impl_->buildTree();
+        impl_->buildTree(quick ? Building::Quick : Building::Best);
         impl_->bounds.add(impl_->tree.bounds());
         if (impl_->tree.beyond()) impl_->sayBeyond(impl_->tree, *impl_->shapes[impl_->tree.beyondOf()], diag);
     } catch (const std::length_error&) { impl_->refuse(diag); }

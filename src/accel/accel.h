@@ -62,8 +62,9 @@ struct DirectRays;
 class Accel {
 public:
     /// shapes must have been diced (geometry/dice.h); the Accel keeps them. visibility: a mask a shape, or empty for kAll.
+    /// quick: Building::Quick, for frames of which few rays a facet are sent.
     /// Throws std::bad_alloc when memory is short. Other failures are reported: sound() is then false, and nothing will be met.
-    Accel(std::vector<geometry::ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics&);
+    Accel(std::vector<geometry::ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics&, bool quick = false);
     ~Accel();
     bool sound() const;
     Accel(const Accel&) = delete;

@@ -204,7 +204,7 @@ struct Accel::Impl {
     /// first, and passes what overlaps them (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial Re-Braiding",
     /// HPG 2017).
     std::vector<Tree::Part> partsOfPlaces();
-    void buildTree() { tree.build(shapes, {}, {}, partsOfPlaces()); } ///< after readyPlaced()
+    void buildTree(Building b = Building::Best) { tree.build(shapes, {}, {}, partsOfPlaces(), b); } ///< after readyPlaced()
     std::vector<const Shape*> trimmed; ///< by shape: who knows what of it is cut away, or null; empty: nothing is
     void readyTrimmed();
     /// A ray in the space of a placed geometry.

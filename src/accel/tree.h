@@ -22,6 +22,10 @@ namespace alpenglow::accel {
 
 struct Box;
 
+/// Quick: half the time for what is diced, whose triangles come as rows of quads, for rays that take a few parts in a hundred
+/// longer: where there are no more than some ten a triangle. What rays meet is the same.
+enum class Building { Best, Quick };
+
 class Tree {
 public:
     static constexpr int kWide = 8; ///< children of a node
@@ -73,7 +77,7 @@ public:
     /// what it is at several times from 0 to 1; its points go linearly between them. parts: of shapes that are in the tree by
     /// them alone, ordered by shape.
     void build(std::span<const geometry::ShapeRef>, std::span<const geometry::ShapeRef> keys = {},
-               std::span<const float> times = {}, std::span<const Part> parts = {});
+               std::span<const float> times = {}, std::span<const Part> parts = {}, Building = Building::Best);
 
     // ---- of a shape with keys
     /// The nodes with their boxes at time 1; those of nodes() are then the ones at time 0, and boxes between lie between. Else

@@ -1,40 +1,16 @@
 // Building: surface area heuristic over sixteen bins of centroids, the largest child first until there are eight.
-#include "accel/tree_boxes.h"
+#include "accel/tree_refs.h"
 #include "base/parallel.h"
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <mutex>
 #include <stdexcept>
+#include <utility>
 
 namespace alpenglow::accel {
 
 namespace {
-
-/// A triangle or a primitive of an exact shape; its number lies in the fourth lane of the lower corner.
-struct Ref {
-    Four lo, hi;
-    uint32_t id() const {
-        const float f = lo[3];
-        uint32_t i;
-        std::memcpy(&i, &f, 4);
-        return i;
-    }
-    void setId(uint32_t i) {
-        float f;
-        std::memcpy(&f, &i, 4);
-        lo[3] = f;
-    }
-    Four twiceCentre() const { return lo + hi; }
-};
-
-struct Range {
-    size_t begin = 0, end = 0;
-    Box box, centres;
-    bool leaf = false;
-    size_t size() const { return end - begin; }
-};
 
 constexpr int kBins = 16;
 constexpr size_t kParallel = 8192; // references below which a task of its own costs more than it brings
@@ -45,9 +21,11 @@ struct Tree::Builder {
     Tree& tree;
     std::span<const geometry::ShapeRef> shapes, keys;
     std::span<const Part> parts;
+    bool quick = false;     ///< over the leaves of grids
     uint32_t triangles = 0; // numbers from here on are primitives of exact shapes: exact[number - triangles]
     std::vector<Exact> exact;
     std::unique_ptr<Ref[]> refs;
+    size_t groups = 0; ///< references to triangles, the first ones
     // Nodes as they come, by any thread: pieces that stay where they are. A leaf's child is the number of its first reference,
     // and its size lies in `spare` by child.
     static constexpr size_t kPiece = 1024;
@@ -72,29 +50,31 @@ struct Tree::Builder {
     }
     /// The vertices of a leaf of these references, and its list of corners. False: they do not make one leaf.
     bool leafOf(const Range& r, Leaf* out) const {
-        if (r.size() == 1 && refs[r.begin].id() >= triangles) return true;
+        if (r.size() == 1 && (refs[r.begin].id() >= triangles || !out)) return true; // what comes together has room
         if (r.size() > kLeafTriangles) return false;
         Vec3 vertex[kLeafVertices];
-        size_t n = 0;
-        uint64_t corners = uint64_t(r.size()) << 59;
-        for (size_t i = 0; i < r.size(); ++i) {
-            const uint32_t id = refs[r.begin + i].id();
-            if (id >= triangles) return false;
-            Vec3 corner[3];
-            triangle(id, corner);
-            for (size_t k = 0; k < 3; ++k) {
-                const auto same = [&](const Vec3& v) { return std::memcmp(&v, &corner[k], sizeof v) == 0; };
-                const size_t v = size_t(std::find_if(vertex, vertex + n, same) - vertex);
-                if (v == n) {
-                    if (n == kLeafVertices) return false;
-                    vertex[n++] = corner[k];
+        size_t n = 0, t = 0;
+        uint64_t corners = 0;
+        for (size_t i = r.begin; i < r.end; ++i) {
+            const uint32_t first = refs[i].id(), many = refs[i].many();
+            if (first >= triangles || t + many > kLeafTriangles) return false;
+            for (uint32_t id = first; id < first + many; ++id, ++t) {
+                Vec3 corner[3];
+                triangle(id, corner);
+                for (size_t k = 0; k < 3; ++k) {
+                    const auto same = [&](const Vec3& v) { return std::memcmp(&v, &corner[k], sizeof v) == 0; };
+                    const size_t v = size_t(std::find_if(vertex, vertex + n, same) - vertex);
+                    if (v == n) {
+                        if (n == kLeafVertices) return false;
+                        vertex[n++] = corner[k];
+                    }
+                    corners |= uint64_t(v) << Leaf::cornerAt(t, int(k));
                 }
-                corners |= uint64_t(v) << Leaf::cornerAt(i, int(k));
+                if (out) out->id[t] = id;
             }
-            if (out) out->id[i] = id;
         }
         if (!out) return true;
-        out->corners = corners;
+        out->corners = corners | uint64_t(t) << 59;
         for (size_t v = 0; v < kLeafVertices; ++v)
             for (int a = 0; a < 3; ++a) out->p[a][v] = vertex[std::min(v, n - 1)][a];
         return true;
@@ -153,7 +133,7 @@ struct Tree::Builder {
             for (int a = 0; a < 3; ++a) {
                 Bin& b = bins[a][at[a]];
                 b.box.add(refs[i].lo, refs[i].hi);
-                ++b.n;
+                b.n += refs[i].many();
             }
         }
         // A leaf costs as much for one triangle as for four.
@@ -405,28 +385,67 @@ struct Tree::Builder {
         for (uint32_t s = 0; s < shapes.size(); ++s)
             for (uint32_t p = 0, many = primsOf(s); p < many; ++p) exact.push_back({s, p});
     }
-    Ref exactRef(uint32_t number, const geometry::Bounds& b) const {
-        const auto sound = [](float f, float otherwise) { return std::isfinite(f) ? std::clamp(f, -kHuge, kHuge) : otherwise; };
-        Ref r;
-        r.lo = Four{sound(b.lo.x, -kHuge), sound(b.lo.y, -kHuge), sound(b.lo.z, -kHuge), 0};
-        r.hi = Four{sound(b.hi.x, kHuge), sound(b.hi.y, kHuge), sound(b.hi.z, kHuge), 0};
-        r.setId(triangles + number);
-        return r;
-    }
-
-    static bool reaches(const Ref& r) {
-        return Tree::reaches({r.lo[0], r.lo[1], r.lo[2]}) || Tree::reaches({r.hi[0], r.hi[1], r.hi[2]});
-    }
     /// Triangles that reach too far, before all others are put into boxes.
-    void leaveOut(size_t count, uint32_t of) {
-        tree.beyond_ = count;
-        tree.beyondOf_ = of;
-        Ref* const end = &refs[0] + triangles + exact.size();
+    void leaveOut() {
+        Ref* const end = &refs[0] + groups + exact.size();
         [[maybe_unused]] const Ref* const kept =
-            std::remove_if(&refs[0], end, [&](const Ref& r) { return r.id() < triangles && reaches(r); });
+            std::remove_if(&refs[0], end, [&](const Ref& r) { return r.id() < triangles && tooFar(r); });
     }
 
-    void run() {
+    /// Triangles of one mesh that are looked at by one thread.
+    struct Run {
+        uint32_t mesh, from, to;
+        size_t at = 0; ///< of its references
+    };
+    template <class F> void eachTogether(const Run& run, F f) const {
+        const geometry::Shape& shape = *shapes[tree.meshes_[run.mesh].shape];
+        const bool grid = quick && keys.empty() && shape.diced();
+        for (uint32_t t = run.from; t < run.to;) {
+            const uint32_t many = grid ? together(shape.mesh(), t, run.to) : 1;
+            f(shape.mesh(), t, many);
+            t += many;
+        }
+    }
+    void makeTriangleRefs() {
+        constexpr uint32_t kRun = 3 * 8192;
+        std::vector<Run> runs;
+        for (uint32_t k = 0; k < tree.meshes_.size(); ++k) {
+            const uint32_t n = shapes[tree.meshes_[k].shape]->mesh().triangles();
+            for (uint32_t from = 0; from < n; from += kRun) runs.push_back({k, from, std::min(n, from + kRun)});
+        }
+        parallelFor(size_t(0), runs.size(), [&](size_t i) {
+            eachTogether(runs[i], [&](const geometry::TriMesh&, uint32_t, uint32_t) { ++runs[i].at; });
+        });
+        for (Run& r : runs) groups += std::exchange(r.at, groups);
+        refs.reset(new Ref[groups + exact.size()]);
+        std::atomic<size_t> beyond{0};
+        std::atomic<uint32_t> beyondOf{uint32_t(shapes.size())};
+        parallelFor(size_t(0), runs.size(), [&](size_t i) {
+            size_t at = runs[i].at;
+            const Mesh& mesh = tree.meshes_[runs[i].mesh];
+            eachTogether(runs[i], [&](const geometry::TriMesh& m, uint32_t first, uint32_t many) {
+                Box b;
+                for (size_t c = 3 * size_t(first); c < 3 * size_t(first + many); ++c) {
+                    const uint32_t v = m.index[c];
+                    const auto add = [&](const Vec3& p) { b.add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0}); };
+                    add(m.P[v]);
+                    for (const geometry::ShapeRef& key : keys) add(key->mesh().P[v]);
+                }
+                Ref& r = refs[at++];
+                r.lo = b.lo;
+                r.hi = b.hi;
+                r.setId(mesh.first + first);
+                r.hi[3] = float(many);
+                if (!tooFar(r)) return;
+                ++beyond;
+                for (uint32_t s = mesh.shape, known = beyondOf; s < known && !beyondOf.compare_exchange_weak(known, s);) {}
+            });
+        });
+        tree.beyond_ = beyond;
+        if (beyond > 0) tree.beyondOf_ = beyondOf;
+    }
+
+    void listMeshes() {
         size_t count = 0;
         for (uint32_t s = 0; s < shapes.size(); ++s) {
             if (shapes[s]->exact()) continue;
@@ -441,41 +460,22 @@ struct Tree::Builder {
             while (k + 1 < tree.meshes_.size() && tree.meshes_[k + 1].first <= i << kCoarse) ++k;
             tree.first_[i] = uint32_t(k);
         }
+    }
+
+    void run() {
+        listMeshes();
         listExact();
-        const size_t all = count + exact.size();
-        if (!all) return;
-        refs.reset(new Ref[all]);
-        std::atomic<size_t> beyond{0};
-        std::atomic<uint32_t> beyondOf{uint32_t(shapes.size())};
-        parallelFor(size_t(0), tree.meshes_.size(), [&](size_t k) {
-            const geometry::TriMesh& m = shapes[tree.meshes_[k].shape]->mesh();
-            parallelFor(uint32_t(0), m.triangles(), [&](uint32_t t) {
-                Ref r;
-                Box b;
-                for (uint32_t c = 0; c < 3; ++c) {
-                    const uint32_t v = m.index[3 * size_t(t) + c];
-                    const auto add = [&](const Vec3& p) { b.add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0}); };
-                    add(m.P[v]);
-                    for (const geometry::ShapeRef& key : keys) add(key->mesh().P[v]);
-                }
-                r.lo = b.lo;
-                r.hi = b.hi;
-                r.setId(tree.meshes_[k].first + t);
-                refs[tree.meshes_[k].first + t] = r;
-                if (!reaches(r)) return;
-                ++beyond;
-                for (uint32_t s = tree.meshes_[k].shape, known = beyondOf;
-                     s < known && !beyondOf.compare_exchange_weak(known, s);) {}
-            });
-        });
+        if (!triangles && exact.empty()) return;
+        makeTriangleRefs();
         tree.exact_.reserve(exact.size());
         parallelFor(size_t(0), exact.size(), [&](size_t i) {
-            refs[triangles + i] =
-                exactRef(uint32_t(i), i < parts.size() ? parts[i].bounds : shapes[exact[i].shape]->exactBounds(exact[i].prim));
+            refs[groups + i] = refOf(triangles + uint32_t(i),
+                                     i < parts.size() ? parts[i].bounds : shapes[exact[i].shape]->exactBounds(exact[i].prim));
         });
+        const size_t all = groups + exact.size();
         pieces.resize(all / kPiece + 2); // a node has two children at least
-        if (beyond > 0) leaveOut(beyond, beyondOf);
-        const size_t kept = all - beyond;
+        if (tree.beyond_ > 0) leaveOut();
+        const size_t kept = all - tree.beyond_;
         if (!kept) return;
         const Range root = measured(0, kept);
         for (int a = 0; a < 3; ++a) tree.bounds_.lo[a] = root.box.lo[a], tree.bounds_.hi[a] = root.box.hi[a];
@@ -491,8 +491,8 @@ struct Tree::Builder {
 };
 
 void Tree::build(std::span<const geometry::ShapeRef> shapes, std::span<const geometry::ShapeRef> keys,
-                 std::span<const float> times, std::span<const Part> parts) {
-    Builder b{.tree = *this, .shapes = shapes, .keys = keys, .parts = parts};
+                 std::span<const float> times, std::span<const Part> parts, Building building) {
+    Builder b{.tree = *this, .shapes = shapes, .keys = keys, .parts = parts, .quick = building == Building::Quick};
     b.run();
     if (keys.size() > 1 && !nodes_.empty()) followKeys(keys, times);
 }

@@ -247,7 +247,7 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), unset));
     takeDiced(*w, visibility);
     w->bindPhotons(visibility);
-    w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d);
+    w->accel_ = std::make_unique<accel::Accel>(w->shapes_, visibility, d, !path);
     if (!w->accel_->sound()) return nullptr;
     w->accel_->makeSolids(d);
     findLevels(*w);

@@ -259,6 +259,111 @@ TEST(Tree, PartsHoldAllOfIt) {
     }
 }
 
+namespace {
+
+/// A bent net of 8 by 8 points, as dicing cuts it.
+ShapeRef dicedNet(Diagnostics& diag, float far = 0) {
+    std::vector<float> P;
+    for (int j = 0; j < 8; ++j)
+        for (int i = 0; i < 8; ++i)
+            P.insert(P.end(), {float(i) - 3.5f, std::sin(float(i)) * std::cos(2.f * float(j)), float(j) + 6});
+    if (far > 0) P[3 * 63] = far;
+    ShapeRef s = build(patchMesh("bilinear", 8, "nonperiodic", 8, "nonperiodic", P), Matrix(), diag);
+    geometry::DiceOptions o;
+    o.camera.pixelsPerUnit = far > 0 ? 100 / double(far) : 25;
+    o.displaces = [](const geometry::Shape&) { return true; }; // facets of a pixel
+    o.displace = [](const geometry::Shape&, geometry::DiceGrid& g) {
+        for (size_t i = 0; i < g.P.size(); ++i) g.P[i].y += 0.05f * std::sin(7 * g.P[i].x + 5 * g.P[i].z);
+    };
+    s->dice(o, diag);
+    return s;
+}
+
+/// By triangle, in how many leaves it is; leaves: how many there are.
+std::vector<int> heldBy(const Tree& tree, uint32_t triangles, size_t& leaves) {
+    std::vector<int> held(triangles);
+    std::vector<Tree::Child> left{0};
+    for (leaves = 0; !left.empty();) {
+        const Tree::Child c = left.back();
+        left.pop_back();
+        if (!(c & Tree::kLeaf)) {
+            for (const Tree::Child k : tree.nodes()[c].child)
+                if (k != Tree::kNothing) left.push_back(k);
+            continue;
+        }
+        ++leaves;
+        const Tree::Leaf& leaf = tree.leaves()[c & Tree::kIndex];
+        for (uint32_t t = 0; t < leaf.size(); ++t) ++held[leaf.id[t]];
+    }
+    return held;
+}
+
+} // namespace
+
+// Rows of quads become full leaves: six triangles with eight corners.
+TEST(Tree, QuickOverAGridIsMadeOfItsLeaves) {
+    Diagnostics diag;
+    const ShapeRef net = dicedNet(diag);
+    const uint32_t n = net->mesh().triangles();
+    ASSERT_GT(n, 40'000u);
+    Tree quick;
+    quick.build({&net, 1}, {}, {}, {}, Building::Quick);
+    size_t leaves = 0;
+    const std::vector<int> held = heldBy(quick, n, leaves);
+    EXPECT_EQ(std::count(held.begin(), held.end(), 1), long(n));
+    EXPECT_LT(double(leaves), double(n) / 4.5); // the borders of blocks and ends of rows have fewer
+    Tree best;
+    best.build({&net, 1});
+    size_t others = 0;
+    heldBy(best, n, others);
+    EXPECT_LT(leaves, others);
+    // Neighbours of what reaches too far are there.
+    const ShapeRef wide = dicedNet(diag, 1e31f);
+    Tree quickWide;
+    quickWide.build({&wide, 1}, {}, {}, {}, Building::Quick);
+    const std::vector<int> some = heldBy(quickWide, wide->mesh().triangles(), leaves);
+    long far = 0;
+    for (uint32_t t = 0; t < wide->mesh().triangles(); ++t) {
+        bool reaches = false;
+        for (uint32_t k = 0; k < 3; ++k) reaches |= Tree::reaches(wide->mesh().P[wide->mesh().index[3 * t + k]]);
+        ASSERT_EQ(some[t], reaches ? 0 : 1) << t;
+        far += reaches;
+    }
+    EXPECT_GT(far, 0);
+    EXPECT_EQ(quickWide.beyond(), size_t(far));
+}
+
+TEST(Tree, QuickMeetsTheSame) {
+    Rng rng(11);
+    Diagnostics diag;
+    const ShapeRef net = dicedNet(diag);
+    const std::vector<ShapeRef> shapes{net, build(soup(rng, 300, {0, 0, 9}, 2), Matrix(), diag),
+                                       build(quadric("Sphere", {1, -1, 1, 360}), translateMatrix(0, 1, 9), diag)};
+    const Accel best(shapes, {}, diag), quick(shapes, {}, diag, true);
+    std::vector<Ray> rays;
+    for (int k = 0; k < 20'000; ++k) {
+        Ray r;
+        r.org = k % 2 ? Vec3(0.f) : within(rng, 12);
+        r.dir = Vec3(0, 0, 9) + within(rng, 5) - r.org;
+        rays.push_back(r);
+    }
+    std::vector<Hit> a(rays.size()), b(rays.size());
+    std::vector<uint8_t> c(rays.size()), d(rays.size());
+    best.intersect(rays, a), quick.intersect(rays, b);
+    best.occluded(rays, c), quick.occluded(rays, d);
+    size_t met = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(a[i].shape, b[i].shape) << i;
+        ASSERT_EQ(c[i], d[i]) << i;
+        if (!a[i].valid()) continue;
+        ++met;
+        ASSERT_EQ(a[i].prim, b[i].prim) << i;
+        ASSERT_EQ(a[i].distance, b[i].distance) << i;
+        ASSERT_EQ(a[i].b1, b[i].b1) << i;
+    }
+    EXPECT_GT(met, 4'000u);
+}
+
 // Whether anything is met, of rays that end or begin about where the only triangle is: as the triangle itself has it.
 TEST(Tree, AnyHitAtTheEndsOfRays) {
     Rng rng(5);

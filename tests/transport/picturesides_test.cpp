@@ -57,3 +57,37 @@ TEST(PictureSides, AllIsDicedWhereRaysMayCome) {
         EXPECT_GT(diced("", world).second, 0u) << world;
     EXPECT_GT(diced("Hider \"path\"\n", "", {.hider = Hider::Path}).second, 0u);
 }
+
+// Ground of 100 by 100 patches, each displaced, about an eye 2 above it: facets are there for what the picture shows.
+TEST(PictureSides, TenThousandDisplacedPatchesTakeWhatThePictureShows) {
+    writeShader("lifted", "displacement lifted(float Km = .05;) { P += Km * sin(9 * xcomp(P)) * normalize(N); }");
+    std::string rib = "Format 64 64 1 Projection \"perspective\" \"fov\" 60\nWorldBegin\nDisplacement \"lifted\"\n"
+                      "Attribute \"displacementbound\" \"sphere\" .06\n";
+    const double pixels = 32 / std::tan(kPi / 6); // of a unit at distance 1
+    double seen = 0, all = 0;
+    for (int j = -50; j < 50; ++j)
+        for (int i = -50; i < 50; ++i) {
+            char line[200];
+            std::snprintf(line, sizeof line, "Patch \"bilinear\" \"P\" [%d -2 %d %d -2 %d %d -2 %d %d -2 %d]\n", i, j, i + 1, j,
+                          i, j + 1, i + 1, j + 1);
+            rib += line;
+            // Facets are a pixel long where the patch is nearest, or half of one, as edges are cut in halves; and there is a
+            // ring.
+            const double x = i < 0 ? -i - 1 : i, z = j < 0 ? -j - 1 : j, edge = 2 * pixels / std::sqrt(x * x + z * z + 4) + 2;
+            all += 2 * edge * edge;
+            // Sides at 30 degrees, with eight pixels and the filter's one as margin, four facets, the bound and half a patch
+            // more.
+            const double far = j + 1 + .06, half = far * std::tan(kPi / 6) * (1 + 13.0 / 32) + .06 + .5;
+            if (far > 0 && x <= half) seen += 2 * edge * edge;
+        }
+    const Scene s(rib + "WorldEnd\n");
+    size_t facets = 0, bytes = 0;
+    for (const geometry::ShapeRef& shape : static_cast<const WorldImpl&>(*s.world).shapes_) {
+        facets += shape->mesh().triangles();
+        bytes += shape->mesh().P.size() * sizeof(Vec3) + shape->mesh().made.size() * sizeof(uint32_t);
+    }
+    EXPECT_GT(facets, 64u * 32) << "half of the picture shows ground";
+    EXPECT_LT(double(facets), seen);
+    EXPECT_LT(seen, all / 3) << "what is said here is worth something";
+    EXPECT_LT(bytes, size_t(8) << 20);
+}

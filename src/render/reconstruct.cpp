@@ -8,7 +8,7 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr int kRows = 16;           // of a block
 constexpr int kSamplesOfRow = 2048; // of a row of a block, about: their weights stay in the nearest cache
 constexpr size_t kFixedSums = 8;    // of a pixel: weights, their absolute values, colour, opacity; then the AOVs
@@ -147,7 +147,7 @@ void SampleBuffer::ownValues(int x, int y, float* out) const {
     for (size_t i = 0; i < aovs_.size(); ++i) {
         if (aovs_[i].rule == ChannelRule::Average) continue;
         const bool least = aovs_[i].rule == ChannelRule::Min;
-        float v = least ? kInf : -kInf;
+        float v = least ? kFar : -kFar;
         for (int k = 0; k < nx_ * ny_; ++k) {
             const float* s = &data_[base(x, y, k)];
             if (s[0] >= 0) v = least ? std::min(v, s[kAovs + i]) : std::max(v, s[kAovs + i]);
@@ -157,7 +157,7 @@ void SampleBuffer::ownValues(int x, int y, float* out) const {
 }
 
 float SampleBuffer::depthOf(DepthFilter depth, int x, int y) const {
-    float least = kInf, most = -kInf, middle = kInf;
+    float least = kFar, most = -kFar, middle = kFar;
     double sum = 0;
     int hits = 0, samples = 0;
     const float* s = &data_[base(x, y, 0)];
@@ -176,9 +176,9 @@ float SampleBuffer::depthOf(DepthFilter depth, int x, int y) const {
     case DepthFilter::Min:
         return least;
     case DepthFilter::Max:
-        return samples ? most : kInf;
+        return samples ? most : kFar;
     case DepthFilter::Average:
-        return hits ? float(sum / hits) : kInf;
+        return hits ? float(sum / hits) : kFar;
     case DepthFilter::Midpoint:
         break;
     }

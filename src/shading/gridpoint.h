@@ -1,5 +1,5 @@
-// Points of primitives that are shaded whatever lies before them: of whole grids, for what shaders bake there, seen or not; and of
-// the micropolygons that camera samples see.
+// Points of primitives that are shaded whatever lies before them: of whole grids, for what shaders bake there, seen or not; and
+// of the micropolygons that camera samples see.
 #pragma once
 #include <cstdint>
 

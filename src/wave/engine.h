@@ -56,8 +56,7 @@ public:
     /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet (Unmade): its results are void.
     bool unfinished() const { return unfinished_; }
     void setUnfinished(bool u) { unfinished_ = u; }
-    /// What rays meet, whether anything is in their way: all of the engine's go here. At such a bound they end. together: those
-    /// one behind the other go about the same way.
+    /// What rays meet, or whether anything is in their way. At such a bound they end. together: neighbours go the same way.
     void meet(std::span<const accel::Ray>, std::span<accel::Hit>, bool together = false);
     bool meet(const accel::Ray&, accel::Hit&);
     void block(std::span<const accel::Ray>, std::span<uint8_t>);

@@ -12,11 +12,10 @@ namespace {
 
 using geometry::Shape;
 
-constexpr int kMostSteps = 32767;          ///< of a lattice along a parameter
-constexpr size_t kPieces = 1 << 18;        ///< primitives whose lengths are kept, at most
-constexpr float kNarrowest = 0.25f;        ///< of an edge that the eye looks along: the part of its length that counts
-constexpr float kSmallestSmooth = 1.5f;    ///< pixels: facets with shorter edges have one colour
-constexpr float kOrthographicFallback = 1; ///< cosine
+constexpr int kMostSteps = 32767;       ///< of a lattice along a parameter
+constexpr size_t kPieces = 1 << 18;     ///< primitives whose lengths are kept, at most
+constexpr float kNarrowest = 0.25f;     ///< of an edge that the eye looks along: the part of its length that counts
+constexpr float kSmallestSmooth = 1.5f; ///< pixels: facets with shorter edges have one colour
 
 /// The number of steps that cover so many edges, squared: a power of 2^(1/4), rounded.
 uint16_t stepsFor(float square) {
@@ -50,12 +49,15 @@ uint64_t MicropolygonKey::hash() const {
 MicropolygonCamera::MicropolygonCamera(const scene::Options& o) {
     const geometry::DiceCamera c = geometry::DiceCamera::from(o);
     perspective = c.perspective;
-    pixel = float(kOrthographicFallback / c.pixelsPerUnit);
+    pixel = float(1 / c.pixelsPerUnit);
 }
 
-Micropolygons::Micropolygons(const WorldImpl& w) : world_(w), camera_(w.frame_->options) {
-    lattices_.reserve(w.shapes_.size());
-    for (uint32_t i = 0; i < w.shapes_.size(); ++i) lattices_.push_back(latticeOf(i));
+Micropolygons::Micropolygons(const WorldImpl& w) : world_(w), camera_(w.frame_->options) { lattices_.resize(w.shapes_.size()); }
+
+const Micropolygons::Lattice& Micropolygons::lattice(uint32_t shape) {
+    std::unique_ptr<Lattice>& l = lattices_[shape];
+    if (!l) l = std::make_unique<Lattice>(latticeOf(shape));
+    return *l;
 }
 
 Micropolygons::Lattice Micropolygons::latticeOf(uint32_t shape) const {
@@ -132,8 +134,7 @@ struct Turned {
 
 } // namespace
 
-template <class Take> void Micropolygons::ofTriangle(const accel::Hit& h, const Vec3& P, Take take) const {
-    const Lattice& l = lattices_[h.shape];
+template <class Take> void Micropolygons::ofTriangle(const Lattice& l, const accel::Hit& h, const Vec3& P, Take take) const {
     const uint32_t* index = &l.mesh->index[3 * size_t(h.prim)];
     Vec3 corners[3];
     for (int k = 0; k < 3; ++k) {
@@ -198,7 +199,7 @@ template <class Take> void Micropolygons::ofParameters(const Lattice& l, Micropo
 }
 
 const Micropolygons::Partials& Micropolygons::partialsOf(uint32_t shape) {
-    std::unique_ptr<Partials>& p = lattices_[shape].partials;
+    std::unique_ptr<Partials>& p = lattices_[shape]->partials;
     if (p) return *p;
     p = std::make_unique<Partials>();
     constexpr int n = Partials::kSide;
@@ -211,8 +212,8 @@ const Micropolygons::Partials& Micropolygons::partialsOf(uint32_t shape) {
 }
 
 /// hits: of one shape.
-template <class Take> void Micropolygons::ofSurfaces(std::span<const accel::Hit> hits, std::span<const Vec3> P, Take take) {
-    const Lattice& l = lattices_[hits[0].shape];
+template <class Take>
+void Micropolygons::ofSurfaces(const Lattice& l, std::span<const accel::Hit> hits, std::span<const Vec3> P, Take take) {
     const auto tabled = [&](const accel::Hit& h) { return l.large && inside(h.b1) && inside(h.b2); };
     surfaces_.resize(std::max(surfaces_.size(), hits.size()));
     run_.clear();
@@ -268,15 +269,15 @@ void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3>
             ++i;
             continue;
         }
-        const Lattice& l = lattices_[h.shape];
+        const Lattice& l = lattice(h.shape);
         const auto one = [&](const MicropolygonShare& s) { take(i, s); };
         MicropolygonShare s{{h.shape, h.prim, {}, {}, false}, h.b1, h.b2, 1};
         size_t end = i + 1;
         if (l.kind == Kind::Triangles) {
-            ofTriangle(h, points[i], one);
+            ofTriangle(l, h, points[i], one);
         } else if (l.kind == Kind::Surface) {
             while (end < hits.size() && hits[end].shape == h.shape) ++end;
-            ofSurfaces(hits.subspan(i, end - i), points.subspan(i, end - i),
+            ofSurfaces(l, hits.subspan(i, end - i), points.subspan(i, end - i),
                        [&](size_t k, const MicropolygonShare& share) { take(i + k, share); });
         } else if (l.kind == Kind::Pieces && inside(h.b1) && inside(h.b2)) {
             const float edge = camera_.pixelAt(points[i]) * l.edge;

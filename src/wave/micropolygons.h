@@ -84,17 +84,18 @@ private:
         float u, v;
     };
     Lattice latticeOf(uint32_t shape) const;
-    template <class Take> void ofTriangle(const accel::Hit&, const Vec3& P, Take) const;
+    const Lattice& lattice(uint32_t shape);
+    template <class Take> void ofTriangle(const Lattice&, const accel::Hit&, const Vec3& P, Take) const;
     const Partials& partialsOf(uint32_t shape);
-    template <class Take> void ofSurfaces(std::span<const accel::Hit>, std::span<const Vec3> P, Take);
+    template <class Take> void ofSurfaces(const Lattice&, std::span<const accel::Hit>, std::span<const Vec3> P, Take);
     template <class Take> void ofParameters(const Lattice&, MicropolygonShare, Take) const;
     bool pair(const geometry::TriMesh&, MicropolygonShare&) const;
     Lengths lengthsOf(uint32_t shape, uint32_t prim);
     const WorldImpl& world_;
     MicropolygonCamera camera_;
-    std::vector<Lattice> lattices_;                ///< by shape
-    std::unordered_map<uint64_t, Lengths> pieces_; ///< by shape and primitive
-    std::vector<geometry::SurfacePoint> surfaces_; ///< of a run of hits of one surface
+    std::vector<std::unique_ptr<Lattice>> lattices_; ///< by shape; null: no ray has met it
+    std::unordered_map<uint64_t, Lengths> pieces_;   ///< by shape and primitive
+    std::vector<geometry::SurfacePoint> surfaces_;   ///< of a run of hits of one surface
     std::vector<geometry::HitRef> run_;
 };
 

@@ -8,7 +8,7 @@ namespace alpenglow::render {
 namespace {
 
 // Straight pieces of length h are off by h^2 / 8 times the second derivative. By pixel that is at most 7.8 (bessel, whose
-// greatest value is pi); by the half width of a filter that grows with its width, 23 (blackman-harris).
+// greatest value is pi); by the half width of a filter that grows with its width, 16 (mitchell, whose greatest value is 8/9).
 constexpr int kSegments = 2048; ///< a pixel, or the half width where that is less
 
 int piecesOf(double end) { return kSegments * std::max(1, int(std::ceil(end))); }

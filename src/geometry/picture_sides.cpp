@@ -2,6 +2,7 @@
 #include "base/exact.h"
 #include "base/limits.h"
 #include "geometry/dice.h"
+#include "scene/anycamera.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
 #include <algorithm>
@@ -30,6 +31,7 @@ double filterReach(const scene::Options& o) {
 } // namespace
 
 std::optional<PictureSides> PictureSides::from(const scene::Options& o) {
+    if (o.values.count(scene::kAnyCamera)) return {};
     PictureSides p;
     p.perspective_ = o.projection == "perspective";
     if ((!p.perspective_ && o.projection != "orthographic" && !o.projection.empty()) || o.worldToCamera.moves()) return {};

@@ -10,7 +10,8 @@ namespace alpenglow::geometry {
 
 class PictureSides {
 public:
-    /// From the frame's options, with room for the widest filter and the lens. None: the camera moves, or there are two eyes.
+    /// From the frame's options, with room for the widest filter and the lens. None: the camera moves, there are two eyes, or
+    /// others look (scene/anycamera.h).
     static std::optional<PictureSides> from(const scene::Options&);
     /// No ray of the camera comes to the box, in camera space, nor to what lies so many pixels beside it.
     bool outside(const Bounds&, double pixels) const;

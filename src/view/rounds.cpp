@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "render/camera.h"
 #include "render/levels.h"
+#include "scene/anycamera.h"
 #include "scene/scene.h"
 #include "view/session.h"
 #include <algorithm>
@@ -98,7 +99,10 @@ render::Engine Session::engine() {
         setPhase(Phase::Building);
         world_.reset();
         // For the whole picture, whatever the resolution of this pass: it is kept.
-        world_ = own.build(render::drawnLevels(round_.frame, render::Camera(round_.frame->options, diags)), settings, diags);
+        auto frame =
+            std::make_shared<scene::Frame>(*render::drawnLevels(round_.frame, render::Camera(round_.frame->options, diags)));
+        frame->options.values[scene::kAnyCamera] = {}; // while it is turned, rays go through this world from elsewhere
+        world_ = own.build(std::move(frame), settings, diags);
         worldKey_ = round_.worldKey;
         worldPose_ = round_.pose;
         if (world_) {

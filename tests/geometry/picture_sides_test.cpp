@@ -1,6 +1,7 @@
 // What camera rays cannot come to is not diced, and what they can is as it was, to the bit.
 #include "geometry/picture_sides.h"
 #include "make.h"
+#include "scene/anycamera.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
 #include <array>
@@ -138,6 +139,9 @@ TEST(PictureSides, NearPlaneLensWindowAndFilterMoveThem) {
     o.worldToCamera.times = {0, 1};
     o.worldToCamera.keys = {Matrix(), translateMatrix(1, 0, 0)};
     EXPECT_FALSE(PictureSides::from(o).has_value()) << "the camera moves";
+    o = square();
+    o.values[scene::kAnyCamera] = {};
+    EXPECT_FALSE(PictureSides::from(o).has_value()) << "others look";
 }
 
 TEST(PictureSides, WhatLiesWithinIsDicedAsBeforeAndTheRestIsNot) {

@@ -1,0 +1,10 @@
+// A frame that is looked at from elsewhere, too.
+#pragma once
+
+namespace alpenglow::scene {
+
+/// Key in Options::values: rays of other cameras than the frame's are sent, so that what lies outside of its picture must be
+/// there. No request can set it.
+inline constexpr const char* kAnyCamera = "dice:__anycamera";
+
+} // namespace alpenglow::scene

@@ -4,6 +4,7 @@
 #include "base/exact.h"
 #include "geometry/shape.h"
 #include "lobes/sampling.h"
+#include "shading/gridpoint.h"
 #include "wave/engine.h"
 #include "world/raysets.h"
 
@@ -76,7 +77,10 @@ TurnedAway::Tally* Engine::tallyOf(const BatchContext& c, const SiteInfo& s, con
             {at.file >= 0 && at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column},
             s.kind == SiteKind::Trace ? "indirectdiffuse" : s.site->op, *p.shape);
     }
-    if (const float towards = dot(normal, p.I); towards != 0) TurnedAway::Tally::set(towards > 0 ? t->away : t->facing);
+    // The middle of a micropolygon at the rim of a surface may lie behind it: what is seen along says nothing.
+    const bool rim = p.ray && p.ray->sample && p.ray->sample->grid && p.ray->sample->grid->micropolygon;
+    const float towards = dot(normal, p.I), least = rim ? 0.5f * length(normal) * length(p.I) : 0;
+    if (std::fabs(towards) > least) TurnedAway::Tally::set(towards > 0 ? t->away : t->facing);
     return t;
 }
 

@@ -161,8 +161,8 @@ void Engine::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     r.setStart(c.start);
     r.media = world_->eye_.count && !c.grid ? &world_->eye_ : nullptr;
     if (c.grid && c.grid->micropolygon) {
-        const uint64_t key = c.grid->micropolygon;
-        sample.numbers = render::SampleNumbers(render::Sampler(seed_, int(uint32_t(key)), int(uint32_t(key >> 32))), c.sample);
+        const auto half = [&](int shift) { return int(c.grid->micropolygon >> shift & 0x3fffffff) - (1 << 29); }; // as of pixels
+        sample.numbers = render::SampleNumbers(render::Sampler(seed_, half(0), half(32)), c.sample);
     }
     if (world_->fades_) sample.level = levelOfSample(c);
     r.counts = true;

@@ -193,7 +193,8 @@ bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit,
     }
     geometry::SurfacePoint p;
     world_.accel_->point(hit, p, 0);
-    s.origin = geometry::offsetOrigin(p, ray.direction);
+    s.origin = p.displaced ? geometry::offsetOrigin(p.displacedP, p.displacedN, p.facetError, ray.direction)
+                           : geometry::offsetOrigin(p, ray.direction);
     s.weight *= clear;
     return true;
 }

@@ -36,6 +36,7 @@ void writeShaders() {
                     "surface glass(uniform color o = .5; output varying color tint = 0) { Oi = o; tint = color(1, .5, .25);"
                     " Ci = o * Cs; }");
         writeShader("prints", "surface prints() { printf(\"at %f\\n\", xcomp(P)); Ci = Cs; Oi = 1; }");
+        writeShader("pushes", "displacement pushes(float way = 0) { P += way * normalize(N); }");
         writeShader("noisy", "surface noisy() { Ci = random(); Oi = 1; }");
         return true;
     }();
@@ -217,6 +218,21 @@ TEST(Micropolygons, AreCompositedSampleBySample) {
         EXPECT_NEAR(r.aovs[2], .25 * (1 + 1), 1e-6);
         EXPECT_EQ(r.z, 3);
         EXPECT_EQ(r.zSecond, 4);
+    }
+}
+
+// A displaced pane is gone through where rays meet it, not where it was: once, whichever way it went.
+TEST(Micropolygons, DisplacedPanesAreGoneThroughOnce) {
+    for (const char* way : {"-.7", ".7"}) {
+        Scene s(picture("Displacement \"pushes\" \"float way\" [" + std::string(way) +
+                        "]\nAttribute \"displacementbound\" "
+                        "\"float sphere\" [1]\nSurface \"glass\"\n" +
+                        kSquare),
+                bySettings(true));
+        for (const SampleResult& r : s.trace(samplesOf(1))) {
+            EXPECT_EQ(r.opacity.x, .5f) << way;
+            EXPECT_NEAR(std::fabs(r.z - 5), .7, 1e-4) << way;
+        }
     }
 }
 

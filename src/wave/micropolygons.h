@@ -19,14 +19,15 @@ namespace alpenglow::transport {
 struct MicropolygonKey {
     uint32_t shape = 0, prim = 0;
     uint16_t steps[2] = {0, 0}; ///< of the lattice along its two parameters; 0: the point is shaded for one sample alone
-    uint16_t at[2] = {0, 0};
+    uint16_t at[2] = {0, 0};    ///< its cell, or corner, of the lattice
     bool corner = false;
     bool operator==(const MicropolygonKey&) const = default;
     bool shared() const { return steps[0] > 0; }
     uint64_t hash() const;
 };
 
-/// What a sample takes of it, and the point where it is shaded (MicropolygonKey, then shape parameters as accel::Hit has them).
+/// What a sample takes of a micropolygon: `weight`, 0 to 1, of what it shows. b1, b2: where on its primitive it is shaded, as
+/// accel::Hit has them.
 struct MicropolygonShare {
     MicropolygonKey key;
     double b1 = 0, b2 = 0;
@@ -44,6 +45,7 @@ struct MicropolygonCamera {
     float pixelAt(const Vec3& p) const { return perspective ? pixel * length(p) : pixel; }
 };
 
+/// Finds the micropolygons that camera samples see. Of one thread; the world must outlive it.
 class Micropolygons {
 public:
     explicit Micropolygons(const WorldImpl&);

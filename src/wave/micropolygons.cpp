@@ -27,10 +27,10 @@ uint16_t stepsFor(float square) {
 }
 
 /// The shape whose triangles or parameters rays meet, as the shutter opens.
-const Shape& baseOf(const Shape& s) {
+const Shape* baseOf(const Shape& s) {
     const geometry::Placed* placed = s.placed();
-    if (!placed) return s;
-    return placed->deforming() ? *placed->deforming()->keys()[0] : *placed->geometry();
+    if (!placed) return &s;
+    return placed->deforming() ? placed->deforming()->keys()[0].get() : placed->geometry().get();
 }
 
 bool inside(double b) { return b >= 0 && b <= 1; }
@@ -62,7 +62,7 @@ const Micropolygons::Lattice& Micropolygons::lattice(uint32_t shape) {
 
 Micropolygons::Lattice Micropolygons::latticeOf(uint32_t shape) const {
     const Shape& s = *world_.shapes_[shape];
-    const Shape& base = baseOf(s);
+    const Shape& base = *baseOf(s);
     Lattice l;
     l.edge = float(geometry::diceEdge(s.attributes()));
     l.smooth = s.attributes().smoothShading;

@@ -328,6 +328,39 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
     return r;
 }
 
+void Camera::plainRays(std::span<const Vec2> raster, transport::CameraRay* out) const {
+    constexpr size_t kAtOnce = 16; // loops over these become vectors
+    const transport::CameraRay like = ray(0, 0, {0.5f, 0.5f}, 0);
+    const double width = right_ - left_, height = top_ - bottom_, tangent = perspective_ ? tangent_ : 1;
+    for (size_t first = 0; first < raster.size(); first += kAtOnce) {
+        double x[kAtOnce] = {}, y[kAtOnce] = {}, l[kAtOnce];
+        const size_t n = std::min(kAtOnce, raster.size() - first);
+        for (size_t i = 0; i < n; ++i) x[i] = double(raster[first + i].x), y[i] = double(raster[first + i].y);
+        for (size_t i = 0; i < kAtOnce; ++i) {
+            x[i] = (left_ + width * x[i] / width_) * tangent;
+            y[i] = (top_ - height * y[i] / height_) * tangent;
+        }
+        if (!perspective_) {
+            for (size_t i = 0; i < n; ++i) {
+                out[first + i] = like;
+                out[first + i].origin = Vec3(Vec3d(x[i], y[i], near_));
+            }
+            continue;
+        }
+        for (size_t i = 0; i < kAtOnce; ++i) l[i] = std::sqrt(x[i] * x[i] + y[i] * y[i] + 1);
+        const double pixel = 0.5 * (pixel_ * tangent_);
+        for (size_t i = 0; i < n; ++i) {
+            transport::CameraRay& r = out[first + i] = like;
+            const double cosine = 1 / l[i];
+            r.spread = float(pixel * cosine);
+            r.origin = Vec3(Vec3d(x[i] * near_, y[i] * near_, near_));
+            r.direction = Vec3(Vec3d(x[i] / l[i], y[i] / l[i], cosine));
+            r.cosine = float(cosine);
+            r.start = float(near_ * l[i]);
+        }
+    }
+}
+
 Matrix Camera::worldToNDC() const {
     Matrix m = worldToCamera_;
     if (perspective_) m = m * perspectiveMatrix(fov_);

@@ -63,6 +63,10 @@ public:
     /// opens, where the scene is kept; `cosine` belongs to the camera at the ray's own time. width and spread describe
     /// half the larger side of a pixel.
     transport::CameraRay ray(double rx, double ry, Vec2 lens, float time01) const;
+    /// Whether rays differ by their places alone: one eye that stands still, and no lens.
+    bool plain() const { return stereo_ == Stereo::None && !(lensRadius_ > 0) && !transform_.moves(); }
+    /// ray() of such a camera, when the shutter opens, for many raster positions: out[i] for the i-th, with the same bits.
+    void plainRays(std::span<const Vec2> raster, transport::CameraRay* out) const;
 
     /// Half-spaces in camera space that hold between them all that rays of a part of the picture can meet. Empty: nothing is
     /// known (a lens, a camera that moves, a stereo pair).

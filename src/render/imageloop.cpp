@@ -110,6 +110,9 @@ public:
 private:
     using Done = std::function<void(size_t)>;
     void plan();
+    void planBands();
+    int rowOf(int band) const;
+    Window beginBand(const Window& part);
     void band(int b);
     void tell(double fraction, bool last);
     Done told(int b, double begin, size_t tasks);
@@ -136,7 +139,7 @@ private:
     uint64_t seed_;
     DroppedSamples& dropped_;
     Reconstructions& result_;
-    std::vector<float>& memory_; ///< of the last band
+    std::vector<float>& memory_; ///< of a buffer that is gone
     const Window window_;
     std::vector<Channel> aovs_;
     std::vector<const OutputSpec*>
@@ -146,7 +149,9 @@ private:
     bool depthsAlone_ = false;           ///< no display shows more than z
     bool unshaded_ = false;              ///< and no shader is needed for that
     double xw_ = 1, yw_ = 1;
-    int rows_ = 0, bands_ = 0;
+    int rows_ = 0, bands_ = 0, lower_ = 0;
+    bool movesDown_ = false; ///< bands share the samples of the rows between them
+    std::optional<SampleBuffer> buffer_;
     double reached_ = 0;
     std::mutex mutex_;
     std::optional<Growth> growth_; ///< of the band under way, where somebody looks on
@@ -202,33 +207,63 @@ void ImageLoop::plan() {
         for (const Channel& c : aovs_) i.channels.push_back(c.name);
         i.data.assign(window_.pixels() * i.channels.size(), 0.f);
     }
-    // Bands of rows, so that the samples in memory stay bounded. The samples of a band's border are made again by the next band,
-    // with the same bits, so bands cannot be seen.
+    planBands();
+    if (job_.settings.watcher) there_.assign(window_.pixels(), 0);
+}
+
+/// Bands of rows bound the memory of samples: few for what starts anew in each band, else so small that caches hold them.
+void ImageLoop::planBands() {
+    const int rowsAbout = 2 * int(std::ceil(yw_ / 2));
     const size_t perRow =
         size_t(window_.width() + 2 * int(std::ceil(xw_ / 2))) * size_t(nx_ * ny_) * (10 + aovs_.size()) * sizeof(float);
-    const int border = 2 * int(std::ceil(yw_ / 2));
-    rows_ = int(std::clamp(kPassBytes / std::max(perRow, size_t(1)), size_t(1), size_t(limits::kImageSide))) - border;
-    rows_ = std::max({rows_, 2 * border, kTile});
-    if (job_.settings.watcher) there_.assign(window_.pixels(), 0);
-    bands_ = (window_.height() + rows_ - 1) / rows_;
+    movesDown_ = !job_.settings.watcher && !refinement_.on();
+    const size_t bytes = movesDown_ ? kBandBytes * size_t(job_.team.threads()) : kPassBytes;
+    rows_ = int(std::clamp(bytes / std::max(perRow, size_t(1)), size_t(1), size_t(limits::kImageSide))) - rowsAbout;
+    rows_ = (std::max({rows_, 2 * rowsAbout, kTile}) + kTile - 1) / kTile * kTile;
+    // The first band is lower by its samples above and below, so that those after it, which have some already, are whole tiles.
+    lower_ = movesDown_ ? 2 * border(yw_) % rows_ : 0;
+    bands_ = (window_.height() + lower_ + rows_ - 1) / rows_;
 }
+
+/// Where a band begins; of the one after the last, where the picture ends.
+int ImageLoop::rowOf(int b) const { return std::clamp(window_.y0 + b * rows_ - lower_, window_.y0, window_.y1); }
 
 void ImageLoop::run() {
     for (int b = 0; b < bands_ && !job_.pollStop(); ++b) band(b);
+    if (buffer_) memory_ = std::move(*buffer_).takeMemory();
     if (job_.world) job_.world->flushPrints(true);
     tell(job_.interrupted ? reached_ : 1, true);
     job_.halt = 0;
 }
 
+/// Makes buffer_ hold the samples of a band. Returns the pixels that have none yet.
+Window ImageLoop::beginBand(const Window& part) {
+    if (buffer_ && movesDown_) {
+        const int fresh = buffer_->moveDown(part);
+        const Window& all = buffer_->sampled();
+        return {all.x0, fresh, all.x1, all.y1};
+    }
+    if (buffer_) memory_ = std::move(*buffer_).takeMemory();
+    if (movesDown_) { // what the bands that follow take, or there would be two at a time
+        const int height = std::min(rows_, window_.height());
+        const size_t most = SampleBuffer::floats(part.width(), height, xw_, yw_, nx_ * ny_, aovs_.size());
+        if (memory_.capacity() < most) memory_ = {}, memory_.reserve(most);
+    }
+    buffer_.emplace(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_, std::move(memory_));
+    return buffer_->sampled();
+}
+
 void ImageLoop::band(int b) {
-    const Window part{window_.x0, window_.y0 + b * rows_, window_.x1, std::min(window_.y0 + (b + 1) * rows_, window_.y1)};
+    const Window part{window_.x0, rowOf(b), window_.x1, rowOf(b + 1)};
     if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // of samples that are not traced again
-    SampleBuffer buffer(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_, std::move(memory_));
-    const std::vector<Window> tiles = tilesOf(buffer.sampled());
+    const Window fresh = beginBand(part);
+    SampleBuffer& buffer = *buffer_;
+    const std::vector<Window> tiles = tilesOf(fresh);
     const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
     // Tasks that may be done again, for what their rays came to, are never over while others work.
     const bool watched = job_.settings.watcher && !(job_.world && transport::hasUnmade(*job_.world));
     if (watched) growth_.emplace(buffer, part, kTile);
+    const uint64_t dropped = buffer.nonFinite();
     trace(
         buffer, tiles.size(),
         [&](size_t i, std::vector<Wanted>& wanted) {
@@ -241,9 +276,8 @@ void ImageLoop::band(int b) {
         told(b, 0, tiles.size()));
     if (refinement_.on() && !job_.pollStop()) refine(buffer, part, b);
     growth_.reset();
-    dropped_.count += buffer.nonFinite();
+    dropped_.count += buffer.nonFinite() - dropped;
     reconstruct(buffer, part);
-    memory_ = std::move(buffer).takeMemory();
 }
 
 /// Lets who looks on see what is over.

@@ -22,6 +22,7 @@ void ImageRays::make() {
     rays_.resize(asked_.size());
     const LensGrid& grid = camera_->lensGrid();
     std::optional<PixelNet::Pixel> pixel;
+    if (camera_->plain() && !net_.asked()) return makePlain();
     for (size_t i = 0; i < asked_.size(); ++i) {
         const Asked& a = asked_[i];
         PixelNet::Numbers n;
@@ -35,6 +36,21 @@ void ImageRays::make() {
         rays_[i].px = a.x;
         rays_[i].py = a.y;
         rays_[i].sample = uint32_t(a.k);
+    }
+}
+
+/// The same where rays differ by their place in the picture alone.
+void ImageRays::makePlain() {
+    raster_.resize(asked_.size());
+    for (size_t i = 0; i < asked_.size(); ++i) {
+        const Vec2 place = places_.places()[i];
+        raster_[i] = {float(asked_[i].x) + place.x, float(asked_[i].y) + place.y};
+    }
+    camera_->plainRays(raster_, rays_.data());
+    for (size_t i = 0; i < asked_.size(); ++i) {
+        rays_[i].px = asked_[i].x;
+        rays_[i].py = asked_[i].y;
+        rays_[i].sample = uint32_t(asked_[i].k);
     }
 }
 

@@ -13,9 +13,6 @@ constexpr int kRows = 16;           // of a block
 constexpr int kSamplesOfRow = 2048; // of a row of a block, about: their weights stay in the nearest cache
 constexpr size_t kFixedSums = 8;    // of a pixel: weights, their absolute values, colour, opacity; then the AOVs
 
-/// Whole pixels beyond its own that a filter of full width w, centred on a pixel, can reach.
-int reach(double w) { return std::max(0, int(std::ceil(w / 2 - 0.5))); }
-
 } // namespace
 
 /// What a block of pixels needs. Weights are by column beside the pixel, then by sample of a row.
@@ -192,8 +189,8 @@ void SampleBuffer::reconstructDepth(DepthFilter depth, Window out, float* to, si
 
 void SampleBuffer::reconstruct(const FilterWeights& f, DepthFilter depth, Window out, float* to, size_t rowFloats) const {
     Scratch scratch;
-    scratch.bx = reach(f.filter().xw);
-    scratch.by = reach(f.filter().yw);
+    scratch.bx = border(f.filter().xw);
+    scratch.by = border(f.filter().yw);
     const int columns = std::clamp(kSamplesOfRow / (nx_ * ny_), 8, 64);
     for (int y = out.y0; y < out.y1; y += kRows)
         for (int x = out.x0; x < out.x1; x += columns) {

@@ -21,8 +21,11 @@ enum CameraUse : uint32_t { kUseFilter = 1u << 24, kUseLens, kUseTime, kUseNet }
 
 /// Pixels a side of the squares that threads take.
 inline constexpr int kTile = 16;
-/// Bytes of samples that are held back until their pass is whole, and of image samples that wait for their filter.
+/// Bytes of samples that are held back until their pass is whole, and of image samples that wait for their filter where bands
+/// share none.
 inline constexpr size_t kPassBytes = size_t(256) << 20;
+/// Bytes of image samples that wait for their filter, a thread, where bands share those between them: what caches hold.
+inline constexpr size_t kBandBytes = size_t(2) << 20;
 
 /// One frame while it is rendered.
 struct Job {
@@ -124,6 +127,7 @@ public:
     std::vector<transport::CameraRay>& rays() { return rays_; }
 
 private:
+    void makePlain();
     const Camera* camera_;
     SeedKey seed_;
     PixelNet net_;
@@ -132,6 +136,7 @@ private:
         int x, y, k;
     };
     std::vector<Asked> asked_;
+    std::vector<Vec2> raster_;
     std::vector<transport::CameraRay> rays_;
 };
 /// Samples that are not finite numbers: how many, and sample, y and x of the first in the picture.

@@ -10,9 +10,6 @@ namespace {
 constexpr uint32_t kPositionSite = 0;
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-// Whole pixels beyond the window that a filter of full width w, centred on a pixel, can reach.
-int border(double w) { return std::max(0, int(std::ceil(w / 2 - 0.5))); }
-
 bool drawn(Jitter j) { return j == Jitter::Jittered || j == Jitter::Scrambled; }
 
 // u: the two numbers of the sample, where they are drawn.
@@ -24,6 +21,8 @@ Vec2 placeOf(int k, int nx, int ny, Jitter jitter, Vec2 u) {
 }
 
 } // namespace
+
+int border(double w) { return std::max(0, int(std::ceil(w / 2 - 0.5))); }
 
 Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter jitter) {
     Vec2 u{0.5f, 0.5f};
@@ -38,7 +37,9 @@ void PlaceRows::clear() {
 
 void PlaceRows::ask(int x, int y, int k) {
     asked_.push_back(k);
-    if (drawn(jitter_)) numbers_.askPair({Sampler(seed_, x, y), uint32_t(k)}, 0, kPositionSite, 0);
+    if (!drawn(jitter_)) return;
+    if (!pixel_ || x != x_ || y != y_) pixel_.emplace(seed_, x_ = x, y_ = y);
+    numbers_.askPair({*pixel_, uint32_t(k)}, 0, kPositionSite, 0);
 }
 
 void PlaceRows::draw() {
@@ -67,6 +68,20 @@ SampleBuffer::SampleBuffer(Window w, double maxXw, double maxYw, int nx, int ny,
     else memory = {}; // not two at a time
     data_.assign(floats, 0);
     for (size_t i = 0; i < data_.size(); i += stride_) data_[i] = -1;
+}
+
+int SampleBuffer::moveDown(const Window& w) {
+    const int above = window_.y0 - sampled_.y0, below = sampled_.y1 - window_.y1;
+    const Window from = sampled_;
+    window_ = w;
+    sampled_ = {from.x0, w.y0 - above, from.x1, w.y1 + below};
+    const size_t row = size_t(from.width()) * size_t(nx_ * ny_) * stride_;
+    const size_t kept = size_t(std::clamp(from.y1 - sampled_.y0, 0, sampled_.height())) * row;
+    std::copy_n(data_.end() - long(kept), kept, data_.begin());
+    data_.resize(size_t(sampled_.height()) * row);
+    std::fill(data_.begin() + long(kept), data_.end(), 0.f);
+    for (size_t i = kept; i < data_.size(); i += stride_) data_[i] = -1;
+    return sampled_.y0 + int(kept / row);
 }
 
 Vec2 SampleBuffer::position(int x, int y, int k) const {

@@ -37,6 +37,8 @@ private:
     int nx_, ny_;
     Jitter jitter_;
     NumberRows numbers_;
+    int x_ = 0, y_ = 0;
+    std::optional<Sampler> pixel_; ///< the last one's, x_ and y_
     std::vector<int> asked_;
     std::vector<Vec2> places_;
 };
@@ -64,13 +66,23 @@ struct Image {
 };
 inline constexpr int kImageFixedChannels = 8;
 
+/// Whole pixels beyond its own that a filter of full width w pixels, centred on a pixel, can reach.
+int border(double w);
+
 class SampleBuffer {
 public:
     /// Samples for reconstructing `window` with filters whose full widths do not exceed maxXw, maxYw. nx, ny >= 1 per pixel.
     /// `memory`: of a buffer that is gone (takeMemory()), whatever it held.
     SampleBuffer(Window window, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed, Jitter,
                  std::vector<float> memory = {});
+    /// Numbers that are kept for a window of so many pixels.
+    static size_t floats(int width, int height, double maxXw, double maxYw, int samplesPerPixel, size_t aovs) {
+        return size_t(width + 2 * border(maxXw)) * size_t(height + 2 * border(maxYw)) * size_t(samplesPerPixel) * (kAovs + aovs);
+    }
     std::vector<float> takeMemory() && { return std::move(data_); }
+    /// Goes on to the window below, of the same width, and keeps the samples of rows that both need. Returns the first row that
+    /// has none.
+    int moveDown(const Window&);
 
     /// All pixels that need samples: the window and its border. Parts of it may lie outside the picture.
     const Window& sampled() const { return sampled_; }
@@ -118,7 +130,8 @@ private:
     float depthOf(DepthFilter, int x, int y) const;
     size_t channels() const { return size_t(kImageFixedChannels) + aovs_.size(); }
 
-    static constexpr int kColor = 2, kOpacity = 5, kDepth = 8, kDepth2 = 9, kAovs = 10; ///< floats of a sample
+    static constexpr int kColor = 2, kOpacity = 5, kDepth = 8, kDepth2 = 9; ///< floats of a sample
+    static constexpr size_t kAovs = 10;
     Window window_, sampled_;
     int nx_, ny_;
     std::vector<Channel> aovs_;

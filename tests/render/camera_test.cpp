@@ -112,6 +112,30 @@ TEST(Camera, FrameAspectRatio) {
     EXPECT_EQ(d.errors(), 0);
 }
 
+TEST(Camera, PlainRaysTogetherHaveTheBitsOfOne) {
+    scene::Options orthographic;
+    orthographic.xres = 300;
+    scene::Options close = perspective(35);
+    close.clipNear = 0.7f;
+    for (const scene::Options& o : {perspective(90), close, orthographic}) {
+        Diagnostics d;
+        const Camera c(o, d);
+        ASSERT_TRUE(c.plain());
+        std::vector<Vec2> raster;
+        for (int i = 0; i < 37; ++i) raster.push_back({float(i) * 17.3f - 20, 600 - float(i) * 19.7f});
+        std::vector<transport::CameraRay> rays(raster.size());
+        c.plainRays(raster, rays.data());
+        for (size_t i = 0; i < raster.size(); ++i) {
+            const transport::CameraRay one = c.ray(double(raster[i].x), double(raster[i].y), kMiddle, 0);
+            EXPECT_EQ(rays[i].origin, one.origin);
+            EXPECT_EQ(rays[i].direction, one.direction);
+            for (const auto part : {&transport::CameraRay::width, &transport::CameraRay::spread, &transport::CameraRay::cosine,
+                                    &transport::CameraRay::start, &transport::CameraRay::time})
+                EXPECT_EQ(rays[i].*part, one.*part);
+        }
+    }
+}
+
 TEST(Camera, DepthOfFieldMeetsInFocus) {
     Diagnostics d;
     scene::Options o = perspective(60);

@@ -2,7 +2,9 @@
 #include "display/imageio.h"
 #include "plain_world.h"
 #include "render/renderer.h"
+#include "render/rendering.h"
 #include "scene/scene.h"
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -61,6 +63,24 @@ struct Keeper final : Tracer {
     bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult> out, const StopFlag*) override {
         fresh += out[0].aovs.capacity() < 100;
         out[0].aovs.reserve(100);
+        return true;
+    }
+    const transport::Counters& counters() const override { return counts; }
+};
+
+/// Counts its samples; each has a colour of its own.
+struct Marks final : Tracer {
+    std::atomic<size_t>& samples;
+    transport::Counters counts;
+    explicit Marks(std::atomic<size_t>& n) : samples(n) {}
+    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out, const StopFlag*) override {
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const transport::CameraRay& r = rays[i];
+            out[i].color = Color(float((r.px * 31 + r.py * 17 + int(r.sample)) % 101));
+            out[i].opacity = Color(1.f);
+            out[i].z = 1;
+        }
+        samples += rays.size();
         return true;
     }
     const transport::Counters& counters() const override { return counts; }
@@ -200,6 +220,35 @@ TEST(ImageLoop, ResultsAreKeptFromTaskToTask) {
                       diags, progress, {});
     renderer.render(f);
     EXPECT_EQ(fresh, 1); // of the six tiles
+}
+
+// A picture of 64 x 300 pixels and 36 samples has more than one band of kBandBytes a thread: no sample is traced twice, and the
+// pixels are those of one band.
+TEST(ImageLoop, BandsShareTheSamplesBetweenThem) {
+    Folder dir;
+    auto f = slopeFrame();
+    f->options.xres = 64;
+    f->options.yres = 300;
+    f->options.pixelSamplesX = f->options.pixelSamplesY = 6;
+    f->options.filter = {"gaussian", 3, 3};
+    ASSERT_GT(size_t(66 * 302 * 36 * 10) * sizeof(float), 3 * kBandBytes);
+    std::vector<display::Image> pictures;
+    for (const int threads : {1, 2, 32}) {
+        RenderSettings s;
+        s.output = dir / "a.exr";
+        s.threads = threads;
+        s.allowWrite = true;
+        Diagnostics diags;
+        Progress progress{ProgressMode::None};
+        std::atomic<size_t> samples{0};
+        Renderer renderer(s, test::plainEngine<World>([&](const transport::World&) { return std::make_unique<Marks>(samples); }),
+                          diags, progress, {});
+        renderer.render(f);
+        EXPECT_EQ(samples, 66u * 302 * 36);
+        pictures.push_back(read(s.output));
+    }
+    EXPECT_EQ(pictures[0].data, pictures[2].data); // 32 threads have one band
+    EXPECT_EQ(pictures[1].data, pictures[2].data);
 }
 
 } // namespace imageloop_test

@@ -168,6 +168,26 @@ TEST(SampleBuffer, MemoryOfABufferThatIsGoneServesAgain) {
     EXPECT_EQ(std::move(again).takeMemory().data(), at);
 }
 
+TEST(SampleBuffer, MovedDownItIsTheBufferOfThere) {
+    const auto shade = [](Vec2 at, int, int, int k) { return grey(at.x * at.y + float(k)); };
+    const PixelFilter f{FilterKind::Gaussian, 3, 4};
+    SampleBuffer moving({0, 0, 9, 5}, f.xw, f.yw, 2, 3, {}, 7, Jitter::Jittered);
+    fill(moving, shade);
+    // The border is of two rows: what both buffers have is kept.
+    const std::pair<Window, int> steps[] = {{{0, 5, 9, 12}, 7}, {{0, 12, 9, 13}, 14}, {{0, 13, 9, 30}, 15}, {{0, 60, 9, 64}, 58}};
+    for (const auto& [w, fresh] : steps) {
+        SampleBuffer there(w, f.xw, f.yw, 2, 3, {}, 7, Jitter::Jittered);
+        fill(there, shade);
+        const int first = moving.moveDown(w);
+        ASSERT_EQ(moving.sampled(), there.sampled());
+        EXPECT_EQ(first, fresh);
+        for (int y = first; y < moving.sampled().y1; ++y)
+            for (int x = moving.sampled().x0; x < moving.sampled().x1; ++x)
+                for (int k = 0; k < 6; ++k) moving.set(x, y, k, shade(moving.position(x, y, k), x, y, k));
+        EXPECT_EQ(moving.reconstruct(f, DepthFilter::Min, w).data, there.reconstruct(f, DepthFilter::Min, w).data);
+    }
+}
+
 TEST(SampleBuffer, DepthFilters) {
     const float inf = std::numeric_limits<float>::infinity();
     const float z[4] = {5, 2, inf, 8}, second[4] = {9, inf, inf, 10};

@@ -105,7 +105,10 @@ void PictureDriver::quantiseInto(Image& m) const {
 bool PictureDriver::close(Diagnostics& diags) {
     WriteOptions o = chooseSamples(diags);
     if (!o.quantised) return writeImage(setup_.name, image_, o, diags);
-    Image codes = image_; // the floats stay, for a later close()
+    std::vector<float> floats = std::move(image_.data); // they stay, for a later close()
+    Image codes = image_;
+    image_.data = std::move(floats);
+    codes.data = image_.data;
     quantiseInto(codes);
     return writeImage(setup_.name, codes, o, diags);
 }

@@ -100,6 +100,7 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
         if (g->tree.beyond()) impl_->sayBeyond(g->tree, *g->shape, diag);
     impl_->readyTrimmed();
     if (impl_->readyDirect()) return;
+    impl_->readyForms();
     impl_->bounds = {};
     for (const ShapeRef& s : impl_->shapes)
         if (s->exact()) impl_->bounds.add(s->bounds());
@@ -108,6 +109,17 @@ Accel::Accel(std::vector<ShapeRef> shapes, std::vector<uint32_t> visibility, Dia
         impl_->bounds.add(impl_->tree.bounds());
         if (impl_->tree.beyond()) impl_->sayBeyond(impl_->tree, *impl_->shapes[impl_->tree.beyondOf()], diag);
     } catch (const std::length_error&) { impl_->refuse(diag); }
+}
+
+void Accel::Impl::readyForms() {
+    for (size_t s = 0; s < shapes.size(); ++s) {
+        if (isPlaced(uint32_t(s))) continue;
+        const auto form = geometry::quadricForm(*shapes[s]);
+        if (!form) continue;
+        formNumbers.resize(shapes.size(), kNone);
+        formNumbers[s] = uint32_t(forms.size());
+        forms.push_back(*form);
+    }
 }
 
 void Accel::Impl::refuse(Diagnostics& diag) { // a scene without its tree would be a black picture

@@ -6,6 +6,7 @@
 #include "accel/solids.h"
 #include "accel/tree.h"
 #include "geometry/placed.h"
+#include "geometry/quadricform.h"
 #include <cmath>
 #include <utility>
 
@@ -68,6 +69,13 @@ struct Accel::Impl {
     Tree tree;
     std::unique_ptr<Solids> solids; ///< null: there are none
     bool ofSolid(uint32_t s) const { return solids && solids->in(s); }
+
+    std::vector<geometry::QuadricForm> forms; ///< of the shapes that have one
+    std::vector<uint32_t> formNumbers;        ///< by shape, into forms, or kNone; empty: none has one
+    void readyForms();
+    const geometry::QuadricForm* formOf(uint32_t s) const {
+        return formNumbers.empty() || formNumbers[s] == kNone ? nullptr : &forms[formNumbers[s]];
+    }
 
     /// Scenes of few primitives have no tree.
     struct Ball {

@@ -213,6 +213,22 @@ int Quadric::exactHits(uint32_t, const Vec3d& org, const Vec3d& dir, double lo, 
     return m;
 }
 
+std::optional<QuadricForm> Quadric::form() const {
+    if (!affine_) return {};
+    QuadricForm f{};
+    for (int i = 0; i < 4; ++i) std::copy_n(toObject_.m[i], 3, f.toObject[i]);
+    f.middle = 0.5 * (zLo_ + zHi_);
+    const Implicit i = implicit();
+    f.kind = i.plane ? QuadricForm::Kind::Plane : QuadricForm::Kind::Quadratic;
+    f.height = i.height, f.zz = i.zz, f.z1 = i.z1, f.c = i.c;
+    return f;
+}
+
+std::optional<QuadricForm> quadricForm(const Shape& s) {
+    const Quadric* q = s.exact() ? dynamic_cast<const Quadric*>(&s) : nullptr;
+    return q ? q->form() : std::nullopt;
+}
+
 size_t Quadric::classCount(Class c) const { return c == Class::Constant || c == Class::Uniform ? 1 : 4; }
 
 int Quadric::weights(Class c, const SurfacePoint& p, Weight w[16]) const {

@@ -2,6 +2,7 @@
 // (ri.md 8.1): P = (a cos - b sin, a sin + b cos, z). Only the hyperboloid has b != 0.
 #pragma once
 #include "geometry/parametric.h"
+#include "geometry/quadricform.h"
 #include <optional>
 
 namespace alpenglow::geometry {
@@ -25,6 +26,8 @@ public:
     int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted,
                   ExactHit out[4]) const override;
     Bounds bounds() const override;
+    /// Of exactHits(); none where a perspective distorts the surface.
+    virtual std::optional<QuadricForm> form() const;
 
 protected:
     /// To be called once the derived object is whole: bounds of the error, primitive variables.

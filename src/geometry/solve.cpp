@@ -39,7 +39,7 @@ double refine(const double* c, const double* dc, int degree, double a, double b,
         double d = value(dc, degree - 1, t), next = t - f / d;
         if (!(next > a && next < b)) next = 0.5 * (a + b);
         if (next == t || std::fabs(b - a) <= 1e-16 * (std::fabs(a) + std::fabs(b))) return next;
-        if (std::fabs(next - t) <= 1e-16 * std::fabs(next)) return next;
+        if (std::fabs(next - t) <= 1e-8 * std::fabs(next)) return next; // steps of Newton's: the next would be the square of this
         t = next;
     }
     return t;
@@ -55,6 +55,14 @@ int polynomialRoots(const double* c, int degree, double lo, double hi, double t[
         if (!(r >= lo && r <= hi)) return 0;
         t[0] = r;
         return 1;
+    }
+    if (degree == 2) {
+        double both[2];
+        if (solveQuadratic(c[2], c[1] / 2, c[0], both) != 2 || both[0] == both[1]) return 0;
+        int n = 0;
+        for (const double r : both)
+            if (r >= lo && r <= hi) t[n++] = r;
+        return n;
     }
     double dc[4], edge[6];
     for (int i = 1; i <= degree; ++i) dc[i - 1] = i * c[i];

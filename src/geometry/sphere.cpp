@@ -44,6 +44,11 @@ public:
     int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted,
                   ExactHit out[4]) const override;
     bool empty() const { return phi0_ == phi1_; }
+    std::optional<QuadricForm> form() const override {
+        std::optional<QuadricForm> f = Quadric::form();
+        if (f && radius_ > 0) f->kind = QuadricForm::Kind::Ball, f->centre = centre_, f->radius = radius_;
+        return f;
+    }
 
 private:
     Profile profile(double v) const override {

@@ -12,8 +12,14 @@ namespace {
 class Torus final : public Quadric {
 public:
     Torus(ShapeSource s, double R, double r, double phi0, double phi1, double sweep, Diagnostics& d)
-        : Quadric(std::move(s), sweep, d), R_(R), r_(r), phi0_(phi0), phi1_(phi1) {
+        : Quadric(std::move(s), sweep, d), R_(R), r_(r), phi0_(phi0), phi1_(phi1), size_(std::fabs(R) + std::fabs(r)),
+          high_(std::fabs(r) / size_ + kRoom), hole_((std::fabs(R) - std::fabs(r)) / size_ - kRoom) {
         finish(d);
+    }
+    std::optional<QuadricForm> form() const override {
+        std::optional<QuadricForm> f = Quadric::form();
+        if (f) f->kind = QuadricForm::Kind::Torus, f->size = size_, f->high = high_, f->hole = hole_, f->room = kRoom;
+        return f;
     }
 
 private:
@@ -25,38 +31,61 @@ private:
     Implicit implicit() const override { return {}; }
     bool closedV() const override { return std::fabs(phi1_ - phi0_) >= 2 * kPi - 1e-6; }
 
-    // Signed distance from the tube, well conditioned however thin it is.
-    double distance(const Vec3d& p) const {
-        double rho = exact::hypot(p.x, p.y), near = exact::hypot(rho - R_, p.z) - std::fabs(r_);
+    /// Signed distance from the tube, well conditioned however thin it is, and its slope along a line that goes on by d.
+    struct Distance {
+        double f, slope;
+    };
+    Distance distance(const Vec3d& p, const Vec3d& d) const {
+        const double rho = exact::hypot(p.x, p.y), near = exact::hypot(rho - R_, p.z), r = std::fabs(r_);
         // Self-crossing tori have an inner sheet, where the circle is on the other side of the axis.
-        double far = exact::hypot(rho + R_, p.z) - std::fabs(r_);
-        return std::fabs(far) < std::fabs(near) ? far : near;
+        const double far = exact::hypot(rho + R_, p.z);
+        const bool other = std::fabs(far - r) < std::fabs(near - r);
+        const double across = other ? rho + R_ : rho - R_, length = other ? far : near;
+        return {length - r, (across * (p.x * d.x + p.y * d.y) / rho + p.z * d.z) / length};
+    }
+
+    /// Where a line p + s q, scaled to a torus of size 1 and unit speed, may meet it: inside of the enclosing sphere, no higher
+    /// than the tube, and not where all of it passes through the hole. False: nowhere.
+    bool clip(const Vec3d& p, const Vec3d& q, double s[2]) const {
+        if (solveQuadratic(1, dot(p, q), dot(p, p) - (1 + kRoom), s) != 2) return false;
+        if (q.z != 0) {
+            const double a = (-high_ - p.z) / q.z, b = (high_ - p.z) / q.z;
+            s[0] = std::max(s[0], std::min(a, b));
+            s[1] = std::min(s[1], std::max(a, b));
+        } else if (std::fabs(p.z) > high_) {
+            return false;
+        }
+        if (!(s[0] <= s[1])) return false;
+        const auto far = [&](double at) { // from the axis, squared: greatest at one of the ends
+            const double x = p.x + q.x * at, y = p.y + q.y * at;
+            return x * x + y * y;
+        };
+        return !(hole_ > 0 && far(s[0]) < hole_ * hole_ && far(s[1]) < hole_ * hole_);
     }
 
     int roots(const Vec3d& o, const Vec3d& d, double t[4]) const override {
-        // Scaled to size 1 and unit speed, and only where the line is inside the enclosing sphere.
-        double size = std::fabs(R_) + std::fabs(r_), speed = length(d);
-        Vec3d p = o / size, q = d / speed;
-        double R2 = R_ * R_ / (size * size), r2 = r_ * r_ / (size * size);
+        const double size = size_, speed = length(d);
+        const Vec3d p = o / size, q = d / speed;
         double s[2];
-        if (solveQuadratic(1, dot(p, q), dot(p, p) - 1.0001, s) != 2) return 0;
+        if (!clip(p, q, s)) return 0;
+        const double R2 = R_ * R_ / (size * size), r2 = r_ * r_ / (size * size);
         // (|p + s q|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + y^2)
-        double b = dot(p, q), k = dot(p, p) + R2 - r2;
-        double xy0 = p.x * p.x + p.y * p.y, xy1 = p.x * q.x + p.y * q.y, xy2 = q.x * q.x + q.y * q.y;
-        double c[5] = {k * k - 4 * R2 * xy0, 4 * b * k - 8 * R2 * xy1, 4 * b * b + 2 * k - 4 * R2 * xy2, 4 * b, 1};
+        const double b = dot(p, q), k = dot(p, p) + R2 - r2;
+        const double xy0 = p.x * p.x + p.y * p.y, xy1 = p.x * q.x + p.y * q.y, xy2 = q.x * q.x + q.y * q.y;
+        const double c[5] = {k * k - 4 * R2 * xy0, 4 * b * k - 8 * R2 * xy1, 4 * b * b + 2 * k - 4 * R2 * xy2, 4 * b, 1};
         double x[4];
-        int n = polynomialRoots(c, 4, s[0], s[1], x);
+        const int n = polynomialRoots(c, 4, s[0], s[1], x);
         for (int i = 0; i < n; ++i) {
-            // The quartic squares the distance; a few secant-like steps on the distance itself win the digits back.
+            // The quartic squares the distance; a few steps of Newton's on the distance itself win the digits back.
             double at = x[i] * size / speed;
+            Distance here = distance(o + d * at, d);
             for (int step = 0; step < 3; ++step) {
-                Vec3d h = o + d * at;
-                double f = distance(h), e = 1e-6 * size / speed;
-                double slope = (distance(o + d * (at + e)) - distance(o + d * (at - e))) / (2 * e);
-                double next = at - f / slope;
+                const double next = at - here.f / here.slope;
                 if (!std::isfinite(next) || std::fabs(next - at) > 1e-6 * size / speed) break;
-                if (!(std::fabs(distance(o + d * next)) < std::fabs(f))) break;
+                const Distance there = distance(o + d * next, d);
+                if (!(std::fabs(there.f) < std::fabs(here.f))) break;
                 at = next;
+                here = there;
             }
             t[i] = at;
         }
@@ -76,7 +105,10 @@ private:
         if (v > 1 && v - std::fabs(turn) > -1e-7) v -= std::fabs(turn);
         return v;
     }
+    static constexpr double kRoom = 1e-4;
     double R_, r_, phi0_, phi1_;
+    double size_;        ///< greatest radius
+    double high_, hole_; ///< half the tube's height, and the hole's radius, with room; by size_
 };
 
 } // namespace

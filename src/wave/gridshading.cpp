@@ -30,6 +30,8 @@ GridShading::GridShading(Engine& e)
         for (int k = 0; k < width; ++k) colour_.push_back(width % 3 == 0 ? uint8_t(k % 3) : 3);
         stride_ += size_t(width);
     }
+    values_.reserve(limits::kMicropolygonBytes / sizeof(float));
+    keys_.reserve(limits::kMicropolygonBytes / sizeof(float) / stride_);
     forget();
 }
 
@@ -102,6 +104,7 @@ uint32_t GridShading::slotOf(const MicropolygonShare& s) {
     }
     keys_.push_back(s.key);
     fresh_.push_back(s);
+    lattices_.place(fresh_.back());
     return last_ = next;
 }
 
@@ -110,26 +113,41 @@ void GridShading::findShares() {
     fresh_.clear();
     firstFresh_ = uint32_t(keys_.size());
     for (Sample& s : samples_) s.n = 0;
-    lattices_.find(hits_, points_, [&](size_t i, const MicropolygonShare& share) {
-        Sample& s = samples_[i];
+    lattices_.find(hits_, points_, found_);
+    for (const Micropolygons::Found& f : found_) {
+        Sample& s = samples_[f.hit];
         if (s.n++ == 0) s.first = uint32_t(shares_.size());
-        shares_.push_back({slotOf(share), share.weight});
-    });
+        shares_.push_back({slotOf(f.share), f.share.weight});
+    }
 }
 
-/// The ray by which the eye sees a micropolygon.
-CameraRay GridShading::rayTo(const MicropolygonShare& s, shading::GridPoint& point) const {
+/// The rays by which the eye sees micropolygons: work_.
+void GridShading::aimAt(std::span<const MicropolygonShare> some) {
+    work_.points.resize(some.size());
+    work_.places.resize(some.size());
+    work_.rays.clear();
+    for (size_t i = 0; i < some.size();) { // runs of one shape
+        work_.hits.clear();
+        const size_t first = i;
+        for (; i < some.size() && some[i].key.shape == some[first].key.shape; ++i)
+            work_.hits.push_back({some[i].key.prim, some[i].b1, some[i].b2, &work_.places[i], 0});
+        world_.shapes_[some[first].key.shape]->points(work_.hits, 0);
+    }
+    const uint64_t run = world_.prints_.newRun();
+    for (size_t i = 0; i < some.size(); ++i) {
+        const geometry::SurfacePoint& p = work_.places[i];
+        work_.points[i].run = run;
+        work_.rays.push_back(rayTo(some[i], p.displaced ? p.displacedP : p.P, work_.points[i]));
+    }
+}
+
+/// The ray by which the eye sees a micropolygon at P.
+CameraRay GridShading::rayTo(const MicropolygonShare& s, const Vec3& P, shading::GridPoint& point) const {
     MicropolygonKey key = s.key; // numbers do not depend on which procedurals were made
     key.shape = world_.keyOfShape(s.key.shape);
-    point = {s.key.shape, s.key.prim, s.b1, s.b2};
-    point.micropolygon = key.hash();
+    point = {s.key.shape, s.key.prim, s.b1, s.b2, 0, 0, 0, false, key.hash(), point.run};
     if (!key.shared())
         point.micropolygon += render::mix64(std::bit_cast<uint64_t>(s.b1)) + 3 * render::mix64(std::bit_cast<uint64_t>(s.b2));
-    point.corner = false;
-    geometry::SurfacePoint p;
-    const geometry::HitRef at{s.key.prim, s.b1, s.b2, &p, 0};
-    world_.shapes_[s.key.shape]->points({&at, 1}, 0);
-    const Vec3 P = p.displaced ? p.displacedP : p.P;
     CameraRay r;
     r.direction = camera_.towards(P);
     if (camera_.perspective) {
@@ -160,22 +178,14 @@ void GridShading::keep(uint32_t slot, const SampleResult& r) {
 bool GridShading::shade(const StopFlag* stop) {
     values_.resize(keys_.size() * stride_);
     constexpr size_t kAtOnce = 4096;
-    std::vector<shading::GridPoint> points;
-    std::vector<CameraRay> rays;
-    std::vector<SampleResult> results;
     for (size_t first = 0; first < fresh_.size(); first += kAtOnce) {
         const size_t n = std::min(kAtOnce, fresh_.size() - first);
-        points.resize(n);
-        rays.clear();
+        aimAt(std::span(fresh_).subspan(first, n));
+        std::vector<SampleResult>& results = work_.results;
         results.resize(n);
-        const uint64_t run = world_.prints_.newRun();
-        for (size_t i = 0; i < n; ++i) {
-            rays.push_back(rayTo(fresh_[first + i], points[i]));
-            points[i].run = run;
-        }
         Counters& c = engine_.counters;
         const uint64_t paths = c.paths, camera = c.camera;
-        const bool whole = engine_.trace(rays, results, stop);
+        const bool whole = engine_.trace(work_.rays, results, stop);
         c.paths = paths, c.camera = camera; // these are counted by sample
         unfinished_ |= engine_.unfinished();
         if (!whole) return false;

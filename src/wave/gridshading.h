@@ -45,7 +45,8 @@ private:
     void show(std::span<const CameraRay>, std::span<SampleResult>);
     bool ownWay(const Sample&, const accel::Hit&) const;
     bool goesOn(Sample&, const CameraRay&, const accel::Hit&, const Color& clear) const;
-    CameraRay rayTo(const MicropolygonShare&, shading::GridPoint&) const;
+    void aimAt(std::span<const MicropolygonShare>);
+    CameraRay rayTo(const MicropolygonShare&, const Vec3& P, shading::GridPoint&) const;
     float* values(uint32_t slot) { return values_.data() + size_t(slot) * stride_; }
     void grow();
     void forget();
@@ -71,10 +72,18 @@ private:
     std::vector<accel::Ray> rays_;
     std::vector<accel::Hit> hits_;
     std::vector<Vec3> points_;
+    std::vector<Micropolygons::Found> found_;
     std::vector<Share> shares_;
     std::vector<MicropolygonShare> fresh_; ///< to be shaded
     uint32_t firstFresh_ = 0;              ///< slot of the first
     std::vector<uint32_t> own_;            ///< samples, by number, that are shaded where they lie
+    struct {
+        std::vector<geometry::SurfacePoint> places;
+        std::vector<geometry::HitRef> hits;
+        std::vector<shading::GridPoint> points;
+        std::vector<CameraRay> rays;
+        std::vector<SampleResult> results;
+    } work_; ///< of micropolygons that are shaded
 };
 
 } // namespace alpenglow::transport

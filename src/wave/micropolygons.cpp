@@ -91,6 +91,13 @@ float Micropolygons::Seen::edges(const Vec3& step) const {
     return std::max(whole - along * along * inverse, whole * (kNarrowest * kNarrowest)) * scale;
 }
 
+float Micropolygons::Seen::edges(const Four (&s)[3]) const {
+    const Four whole = s[0] * s[0] + s[1] * s[1] + s[2] * s[2], along = s[0] * P.x + s[1] * P.y + s[2] * P.z;
+    const Four across = whole - along * along * inverse, least = whole * (kNarrowest * kNarrowest);
+    const Four e = (across > least ? across : least) * scale;
+    return std::max(std::max(e[0], e[1]), std::max(e[2], e[3]));
+}
+
 /// Of two triangles of a diced surface that are the halves of a quad: their micropolygon, shaded in its middle.
 bool Micropolygons::pair(const geometry::TriMesh& mesh, MicropolygonShare& s) const {
     const uint32_t even = s.key.prim & ~1u;
@@ -134,14 +141,19 @@ struct Turned {
 
 } // namespace
 
-template <class Take> void Micropolygons::ofTriangle(const Lattice& l, const accel::Hit& h, const Vec3& P, Take take) const {
-    const uint32_t* index = &l.mesh->index[3 * size_t(h.prim)];
-    Vec3 corners[3];
+/// Up to a shift.
+Micropolygons::Corners Micropolygons::cornersOf(const Lattice& l, uint32_t prim) const {
+    const uint32_t* index = &l.mesh->index[3 * size_t(prim)];
+    Corners c;
     for (int k = 0; k < 3; ++k) {
-        corners[k] = l.mesh->P[index[k]];
-        if (l.place) corners[k] = Vec3(l.place->vector(Vec3d(corners[k])));
+        c.p[k] = l.mesh->P[index[k]];
+        if (l.place) c.p[k] = Vec3(l.place->vector(Vec3d(c.p[k])));
     }
-    const Turned t(corners, h.b1, h.b2);
+    return c;
+}
+
+template <class Take> void Micropolygons::ofTriangle(const Lattice& l, const accel::Hit& h, const Vec3& P, Take take) const {
+    const Turned t(cornersOf(l, h.prim).p, h.b1, h.b2);
     const Seen seen(camera_, P, l.edge);
     MicropolygonShare s;
     s.key.shape = h.shape;
@@ -162,21 +174,36 @@ template <class Take> void Micropolygons::ofTriangle(const Lattice& l, const acc
             at.key.corner = true;
             at.key.at[0] = uint16_t(i + end.i), at.key.at[1] = uint16_t(j + end.j);
             at.weight = float(end.weight);
-            const double x = double(at.key.at[0]) / n1, y = double(at.key.at[1]) / n2, sum = std::max(x + y, 1.);
-            t.put(x / sum, y / sum, at); // of a cell that the edge cuts: onto the edge
             take(at);
         }
         return;
     }
-    if (n1 == 1 && n2 == 1) {
+    if (n1 == 1 && n2 == 1 && l.paired) pair(*l.mesh, s);
+    take(s);
+}
+
+void Micropolygons::place(MicropolygonShare& s) const {
+    if (!s.key.shared()) return;
+    const Lattice& l = *lattices_[s.key.shape];
+    const int n1 = s.key.steps[0], n2 = s.key.steps[1];
+    if (l.kind != Kind::Triangles) {
+        const double half = s.key.corner ? 0 : 0.5;
+        s.b1 = (s.key.at[0] + half) / n1, s.b2 = (s.key.at[1] + half) / n2;
+        return;
+    }
+    if (n1 == 1 && n2 == 1 && !s.key.corner) {
         if (!l.paired || !pair(*l.mesh, s)) s.b1 = s.b2 = 1 / 3.;
-        return take(s);
+        return;
+    }
+    const Turned t(cornersOf(l, s.key.prim).p, 0, 0);
+    const double x = double(s.key.at[0]) / n1, y = double(s.key.at[1]) / n2;
+    if (s.key.corner) { // of a cell that the edge cuts: onto the edge
+        const double sum = std::max(x + y, 1.);
+        return t.put(x / sum, y / sum, s);
     }
     // The middle of the cell; of one that the edge cuts, the middle of what is there.
-    const double x = double(i) / n1, y = double(j) / n2, left = 1 - x - y;
-    const double part = std::min(0.5, std::max(left, 0.) / (1. / n1 + 1. / n2) * (2 / 3.));
+    const double left = 1 - x - y, part = std::min(0.5, std::max(left, 0.) / (1. / n1 + 1. / n2) * (2 / 3.));
     t.put(x + part / n1, y + part / n2, s);
-    take(s);
 }
 
 /// s: with its steps; b1 and b2 are the hit's, within 0 and 1.
@@ -185,14 +212,12 @@ template <class Take> void Micropolygons::ofParameters(const Lattice& l, Micropo
     const uint16_t i = cellOf(s.b1, nu), j = cellOf(s.b2, nv);
     if (!l.smooth) {
         s.key.at[0] = i, s.key.at[1] = j;
-        s.b1 = (i + 0.5) / nu, s.b2 = (j + 0.5) / nv;
         return take(s);
     }
     const double fx = s.b1 * nu - i, fy = s.b2 * nv - j;
     s.key.corner = true;
     for (int k = 0; k < 4; ++k) {
         s.key.at[0] = uint16_t(i + (k & 1)), s.key.at[1] = uint16_t(j + (k >> 1));
-        s.b1 = double(s.key.at[0]) / nu, s.b2 = double(s.key.at[1]) / nv;
         s.weight = float((k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy));
         take(s);
     }
@@ -202,12 +227,20 @@ const Micropolygons::Partials& Micropolygons::partialsOf(uint32_t shape) {
     std::unique_ptr<Partials>& p = lattices_[shape]->partials;
     if (p) return *p;
     p = std::make_unique<Partials>();
-    constexpr int n = Partials::kSide;
+    constexpr int n = Partials::kCells + 1;
     std::vector<geometry::SurfacePoint> at(n * n);
     std::vector<geometry::HitRef> run;
     for (int k = 0; k < n * n; ++k) run.push_back({0, double(k % n) / (n - 1), double(k / n) / (n - 1), &at[size_t(k)], 0});
     world_.shapes_[shape]->points(run, geometry::kNeedPartials);
-    for (int k = 0; k < n * n; ++k) p->u[k / n][k % n] = at[size_t(k)].dPdu, p->v[k / n][k % n] = at[size_t(k)].dPdv;
+    for (int y = 0; y < Partials::kCells; ++y)
+        for (int x = 0; x < Partials::kCells; ++x)
+            for (int k = 0; k < 4; ++k) {
+                const geometry::SurfacePoint& corner = at[size_t((y + k / 2) * n + x + k % 2)];
+                for (int a = 0; a < 3; ++a) {
+                    p->cells[y][x].u[a][k] = corner.dPdu[a];
+                    p->cells[y][x].v[a][k] = corner.dPdv[a];
+                }
+            }
     return *p;
 }
 
@@ -225,12 +258,9 @@ void Micropolygons::ofSurfaces(const Lattice& l, std::span<const accel::Hit> hit
         const Seen seen(camera_, P[i], l.edge);
         float u = 0, v = 0;
         if (tabled(hits[i])) { // the greatest of the corners about it: a pole has none along u
-            const Partials& table = partialsOf(hits[i].shape);
-            const int x = cellOf(s.b1, Partials::kSide - 1), y = cellOf(s.b2, Partials::kSide - 1);
-            for (int k = 0; k < 4; ++k) {
-                u = std::max(u, seen.edges(table.u[y + k / 2][x + k % 2]));
-                v = std::max(v, seen.edges(table.v[y + k / 2][x + k % 2]));
-            }
+            constexpr int n = Partials::kCells;
+            const Partials::Cell& cell = partialsOf(hits[i].shape).cells[cellOf(s.b2, n)][cellOf(s.b1, n)];
+            u = seen.edges(cell.u), v = seen.edges(cell.v);
         } else {
             const geometry::SurfacePoint& p = surfaces_[i];
             if (!inside(p.b1) || !inside(p.b2)) {
@@ -261,8 +291,8 @@ Micropolygons::Lengths Micropolygons::lengthsOf(uint32_t shape, uint32_t prim) {
     return at->second = l;
 }
 
-void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3> points,
-                         const std::function<void(size_t i, const MicropolygonShare&)>& take) {
+void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3> points, std::vector<Found>& found) {
+    found.clear();
     for (size_t i = 0; i < hits.size();) {
         const accel::Hit& h = hits[i];
         if (!h.valid()) {
@@ -270,7 +300,7 @@ void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3>
             continue;
         }
         const Lattice& l = lattice(h.shape);
-        const auto one = [&](const MicropolygonShare& s) { take(i, s); };
+        const auto one = [&](const MicropolygonShare& s) { found.push_back({uint32_t(i), s}); };
         MicropolygonShare s{{h.shape, h.prim, {}, {}, false}, h.b1, h.b2, 1};
         size_t end = i + 1;
         if (l.kind == Kind::Triangles) {
@@ -278,7 +308,7 @@ void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3>
         } else if (l.kind == Kind::Surface) {
             while (end < hits.size() && hits[end].shape == h.shape) ++end;
             ofSurfaces(l, hits.subspan(i, end - i), points.subspan(i, end - i),
-                       [&](size_t k, const MicropolygonShare& share) { take(i + k, share); });
+                       [&](size_t k, const MicropolygonShare& share) { found.push_back({uint32_t(i + k), share}); });
         } else if (l.kind == Kind::Pieces && inside(h.b1) && inside(h.b2)) {
             const float edge = camera_.pixelAt(points[i]) * l.edge;
             const Lengths lengths = lengthsOf(h.shape, h.prim);

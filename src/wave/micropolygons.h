@@ -9,7 +9,6 @@
 #include "geometry/dice.h"
 #include "shading/gridpoint.h"
 #include "world/impl.h"
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -27,7 +26,7 @@ struct MicropolygonKey {
 };
 
 /// What a sample takes of a micropolygon: `weight`, 0 to 1, of what it shows. b1, b2: where on its primitive it is shaded, as
-/// accel::Hit has them.
+/// accel::Hit has them; of one that is shared(), after Micropolygons::place().
 struct MicropolygonShare {
     MicropolygonKey key;
     double b1 = 0, b2 = 0;
@@ -49,10 +48,15 @@ struct MicropolygonCamera {
 class Micropolygons {
 public:
     explicit Micropolygons(const WorldImpl&);
-    /// Calls take(i, share) for what each valid hit takes of micropolygons: of one, or with ShadingInterpolation "smooth" of up
-    /// to four corners, whose weights sum to 1. points: where the hits are, camera space.
-    void find(std::span<const accel::Hit> hits, std::span<const Vec3> points,
-              const std::function<void(size_t i, const MicropolygonShare&)>& take);
+    struct Found {
+        uint32_t hit; ///< number
+        MicropolygonShare share;
+    };
+    /// Finds what each valid hit takes of micropolygons: of one, or with ShadingInterpolation "smooth" of up to four corners,
+    /// whose weights sum to 1. By hit in their order. points: where the hits are, camera space.
+    void find(std::span<const accel::Hit> hits, std::span<const Vec3> points, std::vector<Found>&);
+    /// Says where a micropolygon that was found is shaded.
+    void place(MicropolygonShare&) const;
 
 private:
     enum class Kind : uint8_t {
@@ -61,10 +65,14 @@ private:
         Surface,   ///< one parametric surface, met exactly
         Pieces     ///< many small ones: curves, points
     };
-    /// dPdu and dPdv of a surface that covers many pixels, at places evenly spaced over u and v.
+    typedef float Four __attribute__((vector_size(16)));
+    /// dPdu and dPdv of a surface that covers many pixels, at the corners of cells evenly spaced over u and v.
     struct Partials {
-        static constexpr int kSide = 17;
-        Vec3 u[kSide][kSide], v[kSide][kSide]; ///< by v, then u
+        static constexpr int kCells = 16; ///< along each parameter
+        struct Cell {
+            Four u[3], v[3]; ///< by component, then corner
+        };
+        Cell cells[kCells][kCells]; ///< by v, then u
     };
     struct Lattice {
         Kind kind = Kind::Single;
@@ -80,7 +88,8 @@ private:
         Vec3 P;
         float inverse, scale;
         Seen(const MicropolygonCamera&, const Vec3& at, float edge);
-        float edges(const Vec3& step) const; ///< its length in edges of micropolygons, squared
+        float edges(const Vec3& step) const;       ///< its length in edges of micropolygons, squared
+        float edges(const Four (&steps)[3]) const; ///< the greatest of four
     };
     struct Lengths {
         float u, v;
@@ -92,6 +101,10 @@ private:
     template <class Take> void ofSurfaces(const Lattice&, std::span<const accel::Hit>, std::span<const Vec3> P, Take);
     template <class Take> void ofParameters(const Lattice&, MicropolygonShare, Take) const;
     bool pair(const geometry::TriMesh&, MicropolygonShare&) const;
+    struct Corners {
+        Vec3 p[3];
+    };
+    Corners cornersOf(const Lattice&, uint32_t prim) const;
     Lengths lengthsOf(uint32_t shape, uint32_t prim);
     const WorldImpl& world_;
     MicropolygonCamera camera_;

@@ -17,8 +17,13 @@
 namespace alpenglow::geometry {
 
 double DiceCamera::pixels(const Vec3d& p, const Vec3d& d) const {
-    double l = length(d) * pixelsPerUnit;
     const double away = length(p);
+    double whole = length(d);
+    if (narrowest < 1) {
+        const double along = perspective ? dot(d, p) / std::max(away, 1e-30) : d.z;
+        whole = std::max(std::sqrt(std::max(0.0, whole * whole - along * along)), narrowest * whole);
+    }
+    double l = whole * pixelsPerUnit;
     if (perspective) l /= std::max(away, 1e-30);
     if (away > limits::kDiceDistance) l *= limits::kDiceDistance / away;
     return std::isfinite(l) ? l : 1e30;
@@ -43,6 +48,15 @@ DiceCamera DiceCamera::from(const scene::Options& o) {
     c.pixelsPerUnit = std::max(std::isfinite(x) ? x : 1, std::isfinite(y) ? y : 1);
     c.perspective = o.projection == "perspective";
     if (c.perspective) c.pixelsPerUnit /= std::max(1e-6, exact::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360));
+    return c;
+}
+
+DiceCamera diceCamera(const DiceOptions& o, const scene::Attributes& a, bool displaced) {
+    constexpr double kNarrowest = 0.25;
+    DiceCamera c = o.camera;
+    const scene::Param* orient = a.value("dice:rasterorient");
+    const bool asSeen = !orient || orient->numbers.empty() || orient->numbers[0] != 0;
+    if (displaced && o.picture && asSeen) c.narrowest = kNarrowest;
     return c;
 }
 

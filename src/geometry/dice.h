@@ -11,6 +11,7 @@ namespace alpenglow::geometry {
 struct DiceCamera {
     bool perspective = false;
     double pixelsPerUnit = 1; ///< at distance 1 for a perspective camera, anywhere for an orthographic one
+    double narrowest = 1;     ///< part of the length of a step along the line of sight that counts at least; 1: all of it
     /// Length in pixels of a step d at p (camera space). By distance, not by depth: what is beside or behind the camera is
     /// seen in mirrors and must not degenerate.
     double pixels(const Vec3d& p, const Vec3d& d) const;
@@ -60,6 +61,9 @@ struct DiceOptions {
     std::function<bool(const Shape&, const std::string& space, Matrix& out)> spaceOf;
 };
 
+/// The camera by which a shape is diced: of a displaced one that only camera rays meet, steps count as the eye sees them
+/// (Attribute "dice" "rasterorient"), but at least by a quarter, for displacement turns micropolygons towards the eye.
+DiceCamera diceCamera(const DiceOptions&, const scene::Attributes&, bool displaced);
 /// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.
 double diceEdge(const scene::Attributes&);
 /// GeometricApproximation "flatness": pixels that facets of what is not displaced may stray from the surface, within limits,

@@ -17,7 +17,8 @@ constexpr int kDeepestHalving = 12;      ///< halvings of a patch
 constexpr size_t kMostBlocks = 1u << 16; ///< that patches are cut into, beyond one a patch
 } // namespace
 
-Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool moves) : s(shape), opt(o), displaced(moves) {
+Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool moves)
+    : s(shape), opt(o), displaced(moves), camera(diceCamera(o, shape.attributes(), moves)) {
     for (const ShapeRef& key : opt.keys)
         if (const auto* k = dynamic_cast<const Parametric*>(key.get());
             k && k->patchesU() == s.patchesU() && k->patchesV() == s.patchesV())
@@ -37,11 +38,11 @@ void Parametric::Dicing::probe(const Parametric& shape, Block& k, Block& least, 
         for (int a = 0; a < kProbe; ++a) {
             const LocalPoint p = shape.cameraPoint(k.u0 + wu * (a + 0.5) / kProbe, k.v0 + wv * (b + 0.5) / kProbe);
             if (leavesOut()) box.add(p.P, p.Pu * (0.5 * wu / kProbe), p.Pv * (0.5 * wv / kProbe));
-            double lu = opt.camera.pixels(p.P, p.Pu) * wu / micro, lv = opt.camera.pixels(p.P, p.Pv) * wv / micro;
+            double lu = camera.pixels(p.P, p.Pu) * wu / micro, lv = camera.pixels(p.P, p.Pv) * wv / micro;
             if (!displaced) {
-                const double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)) * wu;
-                const double cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol)) * wv;
-                const double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol)) * std::sqrt(wu * wv);
+                const double cu = std::sqrt(camera.pixels(p.P, p.Puu) / (8 * tol)) * wu;
+                const double cv = std::sqrt(camera.pixels(p.P, p.Pvv) / (8 * tol)) * wv;
+                const double twist = std::sqrt(camera.pixels(p.P, p.Puv) / (4 * tol)) * std::sqrt(wu * wv);
                 // 1.5: the probes miss the peak of what they sample.
                 const double bu = 1.5 * std::max(cu, twist), bv = 1.5 * std::max(cv, twist);
                 lu = flat ? bu : std::min(lu, bu);
@@ -166,7 +167,7 @@ void Parametric::Dicing::giveEdge(int side, Line& line, const std::vector<double
         for (size_t k = 0; k + 1 < ends.size(); ++k) {
             if (ends.size() > 2) curves = {own = EdgeCurve::line(Vec3d(ends[k].P), Vec3d(ends[k + 1].P))};
             const double width = ends[k + 1].t - ends[k].t;
-            for (double t : EdgeCuts(curves, opt.camera, micro, tolerance(), displaced).places()) {
+            for (double t : EdgeCuts(curves, camera, micro, tolerance(), displaced).places()) {
                 if ((c > 0 || k > 0) && t == 0) continue;
                 const double whole = t == 1 ? ends[k + 1].t : ends[k].t + width * t;
                 at.push_back(whole == 1 ? to : from + (to - from) * whole);

@@ -42,6 +42,7 @@ struct Parametric::Dicing {
     const Parametric& s;
     const DiceOptions& opt;
     const bool displaced;
+    const DiceCamera camera;
     const Unseen* unseen = nullptr; ///< set: what may be left out
     std::vector<const Parametric*> keys;
     bool closed[2];

@@ -23,6 +23,7 @@ constexpr int kDeepest = 20; ///< parts of parts: where the eye lies on a face, 
 struct PolygonMesh::Dicing {
     const PolygonMesh& s;
     const DiceOptions& opt;
+    const DiceCamera camera;
     Unseen unseen;
     std::vector<const PolygonMesh*> keys; ///< this, or all keys
     std::vector<uint8_t> open;            ///< by side of a triangle: no other triangle of the mesh has it
@@ -72,14 +73,15 @@ struct PolygonMesh::Dicing {
     }
     EdgeCuts cutsOf(std::span<const EdgeCurve> curves, bool isOpen) const {
         const double edge = diceEdge(s.attributes());
-        EdgeCuts c(curves, opt.camera, edge, edge, true);
+        EdgeCuts c(curves, camera, edge, edge, true);
         if (!isOpen) c.coarsen(coarse);
         return c;
     }
 };
 
 PolygonMesh::Dicing::Dicing(const PolygonMesh& shape, const DiceOptions& o)
-    : s(shape), opt(o), unseen(shape, o), most(std::max(2.0 * double(limits::kDiceQuads), 2.0 * shape.triangles_)) {
+    : s(shape), opt(o), camera(diceCamera(o, shape.attributes(), true)), unseen(shape, o),
+      most(std::max(2.0 * double(limits::kDiceQuads), 2.0 * shape.triangles_)) {
     for (const ShapeRef& key : opt.keys)
         if (const auto* k = dynamic_cast<const PolygonMesh*>(key.get()); k && k->triangles_ == s.triangles_) keys.push_back(k);
     if (keys.empty()) keys.push_back(&s);

@@ -20,6 +20,7 @@ struct Subdivision::Dicing {
     const LimitSurface& limit;
     const DiceOptions& opt;
     bool displaced;
+    DiceCamera camera;
     Unseen unseen;
 
     /// A point of the mesh, shared by all pieces that meet there: where it is evaluated.
@@ -66,13 +67,12 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
     const auto probe = [&](double u, double v) {
         const LocalPoint p = of.cameraPoint(piece, u, v, displaced ? 1 : 2);
         if (!unseen.none()) probed.push_back(p);
-        double a = opt.camera.pixels(p.P, p.Pu) / edge, b = opt.camera.pixels(p.P, p.Pv) / edge;
-        if (three) a = b = std::max({a, b, opt.camera.pixels(p.P, p.Pu - p.Pv) / edge});
+        double a = camera.pixels(p.P, p.Pu) / edge, b = camera.pixels(p.P, p.Pv) / edge;
+        if (three) a = b = std::max({a, b, camera.pixels(p.P, p.Pu - p.Pv) / edge});
         if (!displaced) {
-            double cu = std::sqrt(opt.camera.pixels(p.P, p.Puu) / (8 * tol)),
-                   cv = std::sqrt(opt.camera.pixels(p.P, p.Pvv) / (8 * tol));
-            const double twist = std::sqrt(opt.camera.pixels(p.P, p.Puv) / (4 * tol));
-            if (three) cu = cv = std::max({cu, cv, std::sqrt(opt.camera.pixels(p.P, p.Puu - p.Puv * 2 + p.Pvv) / (8 * tol))});
+            double cu = std::sqrt(camera.pixels(p.P, p.Puu) / (8 * tol)), cv = std::sqrt(camera.pixels(p.P, p.Pvv) / (8 * tol));
+            const double twist = std::sqrt(camera.pixels(p.P, p.Puv) / (4 * tol));
+            if (three) cu = cv = std::max({cu, cv, std::sqrt(camera.pixels(p.P, p.Puu - p.Puv * 2 + p.Pvv) / (8 * tol))});
             cu = 1.5 * std::max(cu, twist); // 1.5: the probes miss the peak of what they sample
             cv = 1.5 * std::max(cv, twist);
             a = flat > 0 ? cu : std::min(a, cu);
@@ -144,7 +144,7 @@ void Subdivision::Dicing::cutBorder() {
         std::vector<EdgeCurve> curves;
         for (const Subdivision* k : keys) curves.push_back(rim->border.curve(i, [k](int v) { return k->controlPoint(v); }));
         // In equal parts, as small as the smallest.
-        const std::vector<double> places = EdgeCuts(curves, opt.camera, micro, tolerance, displaced).places();
+        const std::vector<double> places = EdgeCuts(curves, camera, micro, tolerance, displaced).places();
         double least = 1;
         for (size_t n = 1; n < places.size(); ++n) least = std::min(least, places[n] - places[n - 1]);
         rim->rate.push_back(int(std::min(1 / least, double(limits::kDiceEdge))));
@@ -304,7 +304,8 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
 
 /// Without what no ray comes to. False: displacement went beyond its bound.
 bool Subdivision::diceSeen(const DiceOptions& opt, const Unseen& unseen, Diagnostics& diag) {
-    Dicing d{*this, *limit_, opt, displaced_, unseen, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+    const DiceCamera camera = diceCamera(opt, attributes(), displaced_);
+    Dicing d{*this, *limit_, opt, displaced_, camera, unseen, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     d.need.resize(limit_->pieces());
     d.away.assign(limit_->pieces(), 0);
     parallelFor(uint32_t(0), limit_->pieces(), [&](uint32_t k) {

@@ -31,9 +31,10 @@ constexpr OptionDescription kAttributes[] = {
     {"dice:hair", "int", "0", "1", Asked, "Curves are not diced."},
     {"dice:maxlength", "", "", "", Ignored, kPrman},
     {"dice:minlength", "float", "", "", Ignored, kSeveral},
-    {"dice:rasterorient", "int", "1", "0", Asked,
-     "Shapes are diced by the length of their edges as if they faced the eye, which is what 0 asks for: mirrors show them from "
-     "elsewhere."},
+    {"dice:rasterorient", "int", "1", "0", Used,
+     "Displaced shapes are diced as the eye sees their edges, which count by at least a quarter of their length; 0: by their "
+     "length, as if they faced the eye. Where rays may come from elsewhere (path, ray-traced shadows, mirrors) lengths always "
+     "count."},
     {"dice:referencecamera", "string", "", "", Ignored, kSeveral},
     {"dice:roundcurve", "int", "0", "1", Used, "Curves without \"N\" are tubes instead of ribbons that face the ray (PRMan)."},
     {"dice:strategy", "string", "", "", Ignored, kSeveral},

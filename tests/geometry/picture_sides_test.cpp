@@ -62,9 +62,11 @@ bool inPicture(const Triangle& t) {
                        [](const auto& p) { return p[2] > 0 && std::fabs(p[0]) <= p[2] && std::fabs(p[1]) <= p[2]; });
 }
 
+/// radius < 0: nothing is said. Facets are measured by their length, whoever sees them.
 scene::Attributes bounded(float radius) {
     scene::Attributes a;
-    a.values["displacementbound:sphere"] = param("sphere", scene::Class::Constant, scene::Type::Float, {radius});
+    a.values["dice:rasterorient"] = param("rasterorient", scene::Class::Constant, scene::Type::Float, {0});
+    if (radius >= 0) a.values["displacementbound:sphere"] = param("sphere", scene::Class::Constant, scene::Type::Float, {radius});
     return a;
 }
 
@@ -202,10 +204,8 @@ TEST(PictureSides, WhatDisplacementBringsInIsThere) {
         Diagnostics d;
         Lots o;
         o.displace(left);
-        ShapeRef all = build(patch("bilinear", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}), m, d,
-                             bound < 0 ? scene::Attributes() : bounded(bound)),
-                 seen = build(patch("bilinear", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}), m, d,
-                              bound < 0 ? scene::Attributes() : bounded(bound));
+        ShapeRef all = build(patch("bilinear", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}), m, d, bounded(bound)),
+                 seen = build(patch("bilinear", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}), m, d, bounded(bound));
         all->dice(o.all, d);
         seen->dice(o.seen, d);
         if (bound == .5f) EXPECT_EQ(seen->mesh().triangles(), 0u) << "nothing of it was seen that could tell";
@@ -243,4 +243,23 @@ TEST(PictureSides, EmittersSolidsAndWhatMovesStayWhole) {
     o.seen.keys = keys;
     a->dice(o.seen, d);
     EXPECT_GT(a->mesh().triangles(), 0u);
+}
+
+// A floor that the eye looks along: a step away from it counts by a quarter of its length, one across it by all of it.
+TEST(PictureSides, DisplacedShapesAreDicedAsTheEyeSeesThem) {
+    Lots lots;
+    lots.displace(ripple);
+    const auto facets = [&](const DiceOptions& o, float rasterorient) {
+        scene::Attributes a = bounded(0.1f);
+        a.values["dice:rasterorient"] = param("rasterorient", scene::Class::Constant, scene::Type::Float, {rasterorient});
+        Diagnostics d;
+        const ShapeRef s = build(patch("bilinear", {-8, -1, 40, 8, -1, 40, -8, -1, 60, 8, -1, 60}), Matrix(), d, a);
+        s->dice(o, d);
+        return double(s->mesh().triangles());
+    };
+    // Pixels are a fiftieth of the distance: 40 to 60 units away 16 across are 13 to 20 of them, 20 along the sight 17 to 25.
+    const double whole = facets(lots.seen, 0);
+    EXPECT_GT(whole, 2 * 13 * 17);
+    EXPECT_NEAR(facets(lots.seen, 1), whole / 4, whole / 12); // whole numbers of facets
+    EXPECT_EQ(facets(lots.all, 1), whole) << "rays may come from elsewhere";
 }

@@ -20,6 +20,16 @@ PhotonMap::PhotonMap(std::vector<Photon> from) {
     build(from, order, 0, order.size());
     photons_.resize(from.size());
     for (size_t i = 0; i < order.size(); ++i) photons_[i] = from[order[i]];
+    for (std::vector<float>& p : place_) p.resize(photons_.size());
+    directions_.resize(photons_.size());
+    for (size_t i = 0; i < photons_.size(); ++i) {
+        const Vec3 n = unpackUnit(photons_[i].normal), d = photons_[i].direction();
+        for (int k = 0; k < 3; ++k) {
+            place_[k][i] = photons_[i].P[k];
+            directions_[i].normal[k] = int8_t(std::lround(n[k] * 127));
+            directions_[i].from[k] = int8_t(std::lround(d[k] * 127));
+        }
+    }
     bounds_.resize(photons_.size() / kBoundStep + 1);
     if (!photons_.empty()) bound(0, photons_.size());
 }
@@ -51,13 +61,11 @@ PhotonMap::Bounds PhotonMap::bound(size_t begin, size_t end) {
 
 /// Whether a photon of this node may be nearer than those that were found, and face the right way. The distance is rounded as
 /// those of photons are, each of which is at least as far along each axis, so none that would count is passed over.
-bool PhotonMap::mayCount(const Lookup& l, size_t begin, size_t end, const std::vector<Found>& heap, size_t most) const {
+bool PhotonMap::mayCount(const Lookup& l, size_t begin, size_t end, float within2) const {
     const Bounds& b = bounds_[middleOf(begin, end) / kBoundStep];
-    if (heap.size() == most) {
-        Vec3 away(0.f);
-        for (int k = 0; k < 3; ++k) away[k] = std::max(std::max(b.lo[k] - l.P[k], l.P[k] - b.hi[k]), 0.f);
-        if (dot(away, away) >= heap.front().distance2) return false;
-    }
+    Vec3 away(0.f);
+    for (int k = 0; k < 3; ++k) away[k] = std::max(std::max(b.lo[k] - l.P[k], l.P[k] - b.hi[k]), 0.f);
+    if (dot(away, away) > within2) return false;
     float facing = 0, size = 0;
     for (int k = 0; k < 3; ++k) {
         facing += std::max(float(b.normalLo[k]) * l.N[k], float(b.normalHi[k]) * l.N[k]);
@@ -95,12 +103,59 @@ Color PhotonMap::power() const {
     return Color(sum);
 }
 
-/// The nearest photons that count, one more than are asked for, as a heap with the farthest on top.
-void PhotonMap::nearest(const Lookup& l, std::vector<Found>& heap) const {
-    const size_t most = size_t(std::clamp(l.estimator, 1, kMostAsked)) + 1;
-    const auto nearer = [](const Found& a, const Found& b) {
-        return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && a.at < b.at);
-    };
+/// The nearest of what is offered. More than are asked for are kept until there are twice as many, so that few are moved.
+class PhotonMap::Nearest {
+public:
+    Nearest(std::vector<Found>& found, size_t most) : found_(found), most_(most) { found_.clear(); }
+    float within2() const { return within2_; } ///< what is farther does not count
+    void offer(float distance2, size_t at) {
+        found_.push_back({distance2, uint32_t(at)});
+        if (found_.size() >= 2 * most_ + 32) cut();
+    }
+    void cut() {
+        if (found_.size() <= most_) return;
+        std::nth_element(found_.begin(), found_.begin() + long(most_ - 1), found_.end());
+        found_.resize(most_);
+        within2_ = found_.back().distance2;
+    }
+
+private:
+    std::vector<Found>& found_;
+    const size_t most_;
+    float within2_ = std::numeric_limits<float>::infinity();
+};
+
+/// Whether a photon faces the right way and is one of those that are asked for. What its unit vectors in coarse steps leave open
+/// is decided by themselves.
+bool PhotonMap::counts(const Lookup& l, size_t at) const {
+    const Photon& p = photons_[at];
+    if (p.bounces < l.minBounces) return false;
+    constexpr float kStep = 0.0075f; // more than the half of a step, 1/254, along each of three axes
+    const Directions& d = directions_[at];
+    float normal = 0, from = 0;
+    for (int k = 0; k < 3; ++k) normal += float(d.normal[k]) * l.N[k], from += float(d.from[k]) * l.N[k];
+    normal *= 1 / 127.f, from *= 1 / 127.f;
+    if (normal < kSameSide - kStep || from < -kStep) return false;
+    if (normal > kSameSide + kStep && from > kStep) return true;
+    return dot(unpackUnit(p.normal), l.N) > kSameSide && dot(p.direction(), l.N) > 0;
+}
+
+/// All photons of a small node.
+void PhotonMap::scan(const Lookup& l, size_t begin, size_t end, Nearest& nearest) const {
+    float d2[kScanned];
+    const size_t n = end - begin;
+    const float *x = &place_[0][begin], *y = &place_[1][begin], *z = &place_[2][begin];
+    for (size_t i = 0; i < n; ++i) {
+        const float dx = x[i] - l.P.x, dy = y[i] - l.P.y, dz = z[i] - l.P.z;
+        d2[i] = dx * dx + dy * dy + dz * dz;
+    }
+    for (size_t i = 0; i < n; ++i)
+        if (d2[i] <= nearest.within2() && counts(l, begin + i)) nearest.offer(d2[i], begin + i);
+}
+
+/// The nearest photons that count, one more than are asked for.
+void PhotonMap::nearest(const Lookup& l, std::vector<Found>& found) const {
+    Nearest nearest(found, size_t(std::clamp(l.estimator, 1, kMostAsked)) + 1);
     struct Part {
         size_t begin, end;
         float beyond2;
@@ -111,23 +166,19 @@ void PhotonMap::nearest(const Lookup& l, std::vector<Found>& heap) const {
     while (depth > 0) {
         Part part = waiting[--depth];
         while (part.begin < part.end) {
-            if (heap.size() == most && part.beyond2 > heap.front().distance2) break;
-            if (part.end - part.begin >= kBounded && !mayCount(l, part.begin, part.end, heap, most)) break;
-            if (l.visited) ++*l.visited;
-            const size_t at = middleOf(part.begin, part.end);
-            const Photon& p = photons_[at];
-            const Vec3 away = p.P - l.P;
-            const float d2 = dot(away, away);
-            if ((heap.size() < most || d2 < heap.front().distance2) && p.bounces >= l.minBounces &&
-                dot(unpackUnit(p.normal), l.N) > kSameSide && dot(p.direction(), l.N) > 0) {
-                if (heap.size() == most) {
-                    std::pop_heap(heap.begin(), heap.end(), nearer);
-                    heap.pop_back();
-                }
-                heap.push_back({d2, uint32_t(at)});
-                std::push_heap(heap.begin(), heap.end(), nearer);
+            const size_t size = part.end - part.begin;
+            if (part.beyond2 > nearest.within2()) break;
+            if (size >= kBounded && !mayCount(l, part.begin, part.end, nearest.within2())) break;
+            if (size < kScanned) {
+                if (l.visited) *l.visited += size;
+                scan(l, part.begin, part.end, nearest);
+                break;
             }
-            const float side = coordinate(l.P, axis_[at]) - coordinate(p.P, axis_[at]);
+            const size_t at = middleOf(part.begin, part.end);
+            if (l.visited) ++*l.visited;
+            scan(l, at, at + 1, nearest);
+            const int axis = axis_[at];
+            const float side = l.P[axis] - place_[axis][at];
             const Part below{part.begin, at, 0}, above{at + 1, part.end, 0};
             Part far = side < 0 ? above : below;
             far.beyond2 = side * side;
@@ -135,21 +186,19 @@ void PhotonMap::nearest(const Lookup& l, std::vector<Found>& heap) const {
             part = {side < 0 ? below.begin : above.begin, side < 0 ? below.end : above.end, part.beyond2};
         }
     }
+    nearest.cut();
 }
 
 PhotonMap::Estimate PhotonMap::estimate(const Lookup& l) const {
     Estimate e;
     if (photons_.empty() || !std::isfinite(dot(l.P, l.P)) || !(dot(l.N, l.N) > 0)) return e;
-    thread_local std::vector<Found> heap;
-    heap.clear();
-    nearest(l, heap);
-    if (heap.size() < 2) return e;
-    std::sort(heap.begin(), heap.end(), [](const Found& a, const Found& b) {
-        return a.distance2 < b.distance2 || (a.distance2 == b.distance2 && a.at < b.at);
-    });
-    e.area = float(kPi) * heap.back().distance2;
-    for (size_t i = 0; i + 1 < heap.size(); ++i) {
-        const Photon& p = photons_[heap[i].at];
+    thread_local std::vector<Found> found;
+    nearest(l, found);
+    if (found.size() < 2) return e;
+    std::sort(found.begin(), found.end());
+    e.area = float(kPi) * found.back().distance2;
+    for (size_t i = 0; i + 1 < found.size(); ++i) {
+        const Photon& p = photons_[found[i].at];
         e.power += p.power;
         e.given += p.power * (Color(p.reflected[0], p.reflected[1], p.reflected[2]) / 255.f);
     }

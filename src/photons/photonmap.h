@@ -37,7 +37,9 @@ private:
     struct Found {
         float distance2;
         uint32_t at;
+        bool operator<(const Found& b) const { return distance2 < b.distance2 || (distance2 == b.distance2 && at < b.at); }
     };
+    class Nearest;
     struct Estimate {
         Color power, given;
         float area = 0;
@@ -49,14 +51,23 @@ private:
     };
     Estimate estimate(const Lookup&) const;
     Bounds bound(size_t begin, size_t end);
-    bool mayCount(const Lookup&, size_t begin, size_t end, const std::vector<Found>& heap, size_t most) const;
+    bool mayCount(const Lookup&, size_t begin, size_t end, float within2) const;
     void build(std::vector<Photon>& from, std::vector<uint32_t>& order, size_t begin, size_t end);
-    void nearest(const Lookup&, std::vector<Found>& heap) const;
+    void nearest(const Lookup&, std::vector<Found>& found) const;
+    void scan(const Lookup&, size_t begin, size_t end, Nearest&) const;
+    bool counts(const Lookup&, size_t at) const;
     std::vector<Photon> photons_;
+    /// What look-ups read of photons first: places, and unit vectors in steps of 1/127.
+    std::vector<float> place_[3];
+    struct Directions {
+        int8_t normal[3], from[3];
+    };
+    std::vector<Directions> directions_;
     std::vector<uint8_t> axis_; ///< by photon: along which its node divides
     /// Of nodes of kBounded photons or more, by their middle / kBoundStep: the middles of two such nodes are that far apart.
     std::vector<Bounds> bounds_;
     static constexpr size_t kBounded = 16, kBoundStep = 8;
+    static constexpr size_t kScanned = 32; ///< nodes of fewer photons are looked through from end to end
 };
 
 /// The distance to the n-th nearest other photon, of a photon in the middle of `asked` that are picked evenly: how dense photons

@@ -24,11 +24,10 @@ std::vector<Shadeop> derivativeShadeops() {
     for (const char* name : {"Du", "Dv"}) {
         const std::string n = name;
         Shadeop& op = add(name, {}, Lowering::Special, "", "");
-        op.doc =
-            "Derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
-            ": exact under path, the difference over the footprint under hidden and raytrace (docs/language.md); in an imager " +
-            (n == "Du" ? "u runs from 0 to 1 across" : "v runs from 0 to 1 down") +
-            " the picture. Results of rays and lights count as constant; those of maps have the slope of the map (texture).";
+        op.doc = "Derivative of the argument per unit of the surface parameter " + std::string(n == "Du" ? "u" : "v") +
+                 ": exact under path, the difference over du or dv under hidden and raytrace (docs/language.md); in an imager " +
+                 (n == "Du" ? "u runs from 0 to 1 across" : "v runs from 0 to 1 down") +
+                 " the picture. Results of rays and lights count as constant; those of maps have the slope of the map (texture).";
         op.signatures = sigs({{("float " + n + "(float x)").c_str()},
                               {("color " + n + "(color x)").c_str()},
                               {("vector " + n + "(point x)").c_str()},
@@ -52,9 +51,8 @@ vector Deriv(normal num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(de
         .source = "seed; formula (k)";
     list.back().examples = {{"Deriv(u * u, u)", "1"}};
     add("area", sigs({{"float area(point p)"}, {"float area(point p; string strategy)"}}), Lowering::Rsl,
-        "Area of one micropolygon of the surface p: length(Du(p) ^ Dv(p)) du dv. A hit is a grid of one point, so both "
-        "strategies, \"shading\" and "
-        "\"dicing\", give this.",
+        "Area of one micropolygon of the surface p: length(Du(p) ^ Dv(p)) du dv; of the footprint of a sample that has none. "
+        "Both strategies, \"shading\" and \"dicing\", give this.",
         R"(
 float area(point p) { extern float du, dv; return length(Du(p) ^ Dv(p)) * abs(du * dv); }
 float area(point p; string strategy) { extern float du, dv; return length(Du(p) ^ Dv(p)) * abs(du * dv); }

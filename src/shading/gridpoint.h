@@ -12,6 +12,8 @@ struct GridPoint {
     float radius = 0;   ///< of a disk that covers its part of the surface; camera space
     float area = 0;     ///< of its part of the surface: of all points of a grid they add up to the shape
     bool corner = true; ///< of micropolygons; else the middle of one
+    /// What u and v change by over its micropolygon, both more than 0: du and dv of shaders. 0: they have those of its ray.
+    float du = 0, dv = 0;
     /// Not 0: not for what it bakes, but a micropolygon that camera samples take, by this key of its random numbers.
     uint64_t micropolygon = 0;
     uint64_t run = 0; ///< rsl::PrintKey::run

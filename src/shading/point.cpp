@@ -48,7 +48,7 @@ Vec2 footprintAt(const geometry::SurfacePoint& p, const Footprint& footprint, co
         best[0] = std::max(best[0], std::fabs(u));
         best[1] = std::max(best[1], std::fabs(v));
     }
-    float rate = std::sqrt(std::max(shadingRate, 1e-6f));
+    const float rate = std::sqrt(std::clamp(shadingRate > 0 ? shadingRate : 0, 1e-6f, 1e30f));
     return {std::max(best[0] * rate, 1e-12f), std::max(best[1] * rate, 1e-12f)};
 }
 

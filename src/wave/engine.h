@@ -447,8 +447,6 @@ private:
     std::vector<accel::Ray> rays_, shadowRays_;
     std::vector<accel::Hit> hits_, found_;
     std::vector<uint32_t> given_; ///< of a slice, the rays whose points are given
-    /// Whether a ray meets the point that its sample gives, whatever is there.
-    static bool beginsAtGrid(const PathRay& r) { return r.sample->grid && r.camera() && r.bounces == 0 && r.layers == 0; }
     std::vector<geometry::HitRef> run_;
     std::vector<uint8_t> blocked_;
     std::vector<shading::InstanceView> views_;

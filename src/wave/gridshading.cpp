@@ -131,23 +131,25 @@ void GridShading::aimAt(std::span<const MicropolygonShare> some) {
         const size_t first = i;
         for (; i < some.size() && some[i].key.shape == some[first].key.shape; ++i)
             work_.hits.push_back({some[i].key.prim, some[i].b1, some[i].b2, &work_.places[i], 0});
-        world_.shapes_[some[first].key.shape]->points(work_.hits, 0);
+        world_.shapes_[some[first].key.shape]->points(work_.hits, world_.footprints_ ? geometry::kNeedPartials : 0);
     }
     const uint64_t run = world_.prints_.newRun();
     for (size_t i = 0; i < some.size(); ++i) {
-        const geometry::SurfacePoint& p = work_.places[i];
+        work_.rays.push_back(rayTo(some[i], work_.places[i], work_.points[i]));
         work_.points[i].run = run;
-        work_.rays.push_back(rayTo(some[i], p.displaced ? p.displacedP : p.P, work_.points[i]));
     }
 }
 
-/// The ray by which the eye sees a micropolygon at P.
-CameraRay GridShading::rayTo(const MicropolygonShare& s, const Vec3& P, shading::GridPoint& point) const {
+/// The ray by which the eye sees a micropolygon at p.
+CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::SurfacePoint& p, shading::GridPoint& point) const {
     MicropolygonKey key = s.key; // numbers do not depend on which procedurals were made
     key.shape = world_.keyOfShape(s.key.shape);
-    point = {s.key.shape, s.key.prim, s.b1, s.b2, 0, 0, 0, false, key.hash(), point.run};
+    point = {s.key.shape, s.key.prim, s.b1, s.b2};
+    point.corner = false;
+    point.micropolygon = key.hash();
     if (!key.shared())
         point.micropolygon += render::mix64(std::bit_cast<uint64_t>(s.b1)) + 3 * render::mix64(std::bit_cast<uint64_t>(s.b2));
+    const Vec3 P = p.displaced ? p.displacedP : p.P;
     CameraRay r;
     r.direction = camera_.towards(P);
     if (camera_.perspective) {
@@ -163,6 +165,12 @@ CameraRay GridShading::rayTo(const MicropolygonShare& s, const Vec3& P, shading:
     r.px = int(s.key.prim);
     r.py = int(key.shape);
     r.grid = &point;
+    if (world_.footprints_) {
+        const float rate = world_.bindings_[size_t(world_.bindingOf_[s.key.shape])].shadingRate;
+        const Vec2 seen = shading::footprintAt(p, {r.width, r.spread}, r.direction, length(p.P - r.origin), rate);
+        const Vec2 steps = lattices_.stepsOf(s, seen);
+        point.du = steps.x, point.dv = steps.y;
+    }
     return r;
 }
 

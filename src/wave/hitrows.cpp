@@ -2,6 +2,7 @@
 #include "accel/directblock.h"
 #include "integrator/stages.h"
 #include "wave/engine.h"
+#include "wave/gridrays.h"
 #include "wave/raywords.h"
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // Stages meet and settle: a slice of rays meets surfaces; hits wait by group (same program and lights) until enough of them are
 // there to fill the lanes of its kernel; then their points are worked out, emitters among them shine, and the kernel runs.
-#include "shading/gridpoint.h"
+#include "wave/gridrays.h"
 #include "wave/rowshading.h"
 #include <algorithm>
 #include <cmath>
@@ -262,7 +262,8 @@ void Engine::completePoint(BatchContext& c, size_t i) {
     if (r.extra >= 0) fade(c.rays[i], length(p.P - r.origin));
     if (!world_->footprints_) return;
     const float rate = r.camera() ? world_->bindings_[size_t(c.bindings[i])].shadingRate : 1;
-    shading::setFootprint(p, r.footprint, r.dir, length(p.P - r.origin), rate);
+    const Vec2 steps = stepsAt(r, p.surface, rate);
+    p.du = steps.x, p.dv = steps.y;
 }
 
 void Engine::pointsOfRows(BatchContext& c) {

@@ -206,6 +206,59 @@ void Micropolygons::place(MicropolygonShare& s) const {
     t.put(x + part / n1, y + part / n2, s);
 }
 
+Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s) const {
+    Vec3 corners[3];
+    for (int k = 0; k < 3; ++k) {
+        corners[k] = l.mesh->P[l.mesh->index[3 * size_t(s.key.prim) + size_t(k)]];
+        if (l.place) corners[k] = Vec3(l.place->vector(Vec3d(corners[k])));
+    }
+    const Turned t(corners, s.b1, s.b2);
+    const bool whole = s.key.steps[0] == 1 && s.key.steps[1] == 1 && !s.key.corner;
+    const bool quad = whole && (s.b1 == 0.5 || s.b2 == 0.5); // of pair(): the other half lies opposite its own corner
+    const int first = !quad ? t.first : s.b1 == 0 ? 1 : s.b2 == 0 ? 2 : 0;
+    geometry::SurfacePoint at[3];
+    geometry::HitRef refs[3];
+    for (int k = 0; k < 3; ++k) {
+        const int corner = (first + k) % 3;
+        refs[k] = {s.key.prim, double(corner == 1), double(corner == 2), &at[k], 0};
+    }
+    world_.shapes_[s.key.shape]->points(refs, geometry::kNeedUV);
+    float u[2], v[2]; // along an edge of the cell each
+    for (int k = 0; k < 2; ++k) {
+        u[k] = (at[k + 1].u - at[0].u) / float(s.key.steps[k]);
+        v[k] = (at[k + 1].v - at[0].v) / float(s.key.steps[k]);
+    }
+    const float du = std::max(std::fabs(u[0]), std::fabs(u[1])), dv = std::max(std::fabs(v[0]), std::fabs(v[1]));
+    const float box = du * dv, area = std::fabs(u[0] * v[1] - u[1] * v[0]);
+    if (!(box > 0) || !std::isfinite(area)) return {0, 0};
+    const float wider = std::sqrt(std::max(area / box, 1.f));
+    return {du * wider, dv * wider};
+}
+
+Vec2 Micropolygons::spanOf(const Lattice& l, const MicropolygonShare& s) const {
+    if (!s.key.shared()) return {0, 0};
+    if (l.kind == Kind::Triangles) return spanOfTriangle(l, s);
+    const Vec2 steps(1.f / s.key.steps[0], 1.f / s.key.steps[1]);
+    if (l.kind == Kind::Surface) return steps;
+    geometry::SurfacePoint at[2]; // pieces of a curve share its v
+    const geometry::HitRef refs[2] = {{s.key.prim, 0, 0, &at[0], 0}, {s.key.prim, 1, 1, &at[1], 0}};
+    world_.shapes_[s.key.shape]->points(refs, geometry::kNeedUV);
+    return {steps.x * std::fabs(at[1].u - at[0].u), steps.y * std::fabs(at[1].v - at[0].v)};
+}
+
+Vec2 Micropolygons::stepsOf(const MicropolygonShare& s, const Vec2& footprint) const {
+    const Lattice& l = *lattices_[s.key.shape];
+    const Vec2 cell = spanOf(l, s);
+    if (!(cell.x > 0 && cell.y > 0)) return {0, 0};
+    // Cells of surfaces that are seen under a flat angle, and triangles smaller than a pixel, are not all shaded: those that are
+    // stand for the others, too.
+    const auto over = [&](float step, float seen) {
+        const float most = l.kind == Kind::Triangles ? INFINITY : 1; // all of the surface
+        return std::max(step, std::min({seen, 2 * (seen - step), most}));
+    };
+    return {over(cell.x, footprint.x), over(cell.y, footprint.y)};
+}
+
 /// s: with its steps; b1 and b2 are the hit's, within 0 and 1.
 template <class Take> void Micropolygons::ofParameters(const Lattice& l, MicropolygonShare s, Take take) const {
     const int nu = s.key.steps[0], nv = s.key.steps[1];

@@ -57,6 +57,10 @@ public:
     void find(std::span<const accel::Hit> hits, std::span<const Vec3> points, std::vector<Found>&);
     /// Says where a micropolygon that was found is shaded.
     void place(MicropolygonShare&) const;
+    /// What u and v change by over a micropolygon that find() has named. Of a lattice over parameters: its steps. Of one over a
+    /// triangle: as much as along either of its edges, and so that their product is no less than its area in (u, v). Where the
+    /// footprint of the ray is longer by half and more, it counts. Both 0: it has no lattice, or its parameters do not change.
+    Vec2 stepsOf(const MicropolygonShare&, const Vec2& footprint) const;
 
 private:
     enum class Kind : uint8_t {
@@ -96,6 +100,9 @@ private:
     };
     Lattice latticeOf(uint32_t shape) const;
     const Lattice& lattice(uint32_t shape);
+    /// What u and v change by over a cell; 0 as stepsOf().
+    Vec2 spanOf(const Lattice&, const MicropolygonShare&) const;
+    Vec2 spanOfTriangle(const Lattice&, const MicropolygonShare&) const;
     template <class Take> void ofTriangle(const Lattice&, const accel::Hit&, const Vec3& P, Take) const;
     const Partials& partialsOf(uint32_t shape);
     template <class Take> void ofSurfaces(const Lattice&, std::span<const accel::Hit>, std::span<const Vec3> P, Take);

@@ -1,4 +1,5 @@
 #include "wave/rowshading.h"
+#include "wave/gridrays.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
@@ -74,7 +75,7 @@ void RowShading::run(BatchContext& c) {
         }
         if (!world_.footprints_) continue;
         const float rate = r.camera() ? world_.bindings_[size_t(c.bindings[i])].shadingRate : 1;
-        const Vec2 size = shading::footprintAt(c.surfaces[i], r.footprint, r.dir, length(c.surfaces[i].P - r.origin), rate);
+        const Vec2 size = stepsAt(r, c.surfaces[i], rate);
         c.ways[6 * n + i] = size.x;
         c.ways[7 * n + i] = size.y;
     }

@@ -1,8 +1,8 @@
 // Where hidden shades with Settings::micropolygons: once for all samples that see a micropolygon, with edges of sqrt(ShadingRate)
-// pixels, and what samples make of it. The pictures here are 32 x 32 pixels of a square of 2 x 2, so a pixel is 1/16 wide.
+// pixels, and what samples make of it.
 #include "display/imageio.h"
 #include "render/renderer.h"
-#include "transport/floorscene.h"
+#include "transport/gridscene.h"
 #include "wave/limits.h"
 #include <algorithm>
 #include <array>
@@ -15,17 +15,10 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-constexpr int kSide = 32;
-constexpr float kPixel = 2.f / kSide;
 /// Of a sample from the point whose colour it takes, in edges: two thirds where the diagonal cuts a micropolygon into triangles,
 /// and steps are rounded by up to an eighth of an octave.
-constexpr float kFarthest = 2 / 3.f * 1.0906f;
+constexpr float kFarthest = 2 / 3.f * kRounding;
 
-Settings bySettings(bool micropolygons) {
-    Settings s = withShaders(Hider::Hidden);
-    s.micropolygons = micropolygons;
-    return s;
-}
 /// Ci is linear in P; the coordinates of the square are its red and green.
 void writeShaders() {
     static const bool once = [] {
@@ -44,25 +37,7 @@ void writeShaders() {
 }
 std::string picture(const std::string& inside, const std::string& options = "") {
     writeShaders();
-    return "Format 32 32 1\nScreenWindow -1 1 -1 1\nProjection \"orthographic\"\n" + options + "WorldBegin\n" + inside +
-           "\nWorldEnd\n";
-}
-const std::string kSquare = "Polygon \"P\" [-1 -1 5  -1 1 5  1 1 5  1 -1 5]\n";
-
-/// side x side samples of each pixel, in the middles of its cells.
-std::vector<CameraRay> samplesOf(int side) {
-    std::vector<CameraRay> rays;
-    for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x)
-            for (int k = 0; k < side * side; ++k) {
-                const float at[2] = {float(x) + (float(k % side) + .5f) / float(side),
-                                     float(y) + (float(k / side) + .5f) / float(side)};
-                CameraRay r = rayTo({-1 + kPixel * at[0], 1 - kPixel * at[1], 0}, {-1 + kPixel * at[0], 1 - kPixel * at[1], 1});
-                r.width = kPixel / 2;
-                r.px = x, r.py = y, r.sample = uint32_t(k);
-                rays.push_back(r);
-            }
-    return rays;
+    return gridPicture(inside, options);
 }
 /// The largest distance of a sample's red and green from where it lies.
 float farthest(const std::vector<CameraRay>& rays, const std::vector<SampleResult>& results) {
@@ -136,22 +111,7 @@ TEST(Micropolygons, SmoothInterpolatesBetweenCorners) {
 TEST(Micropolygons, ShowWhatSamplesShow) {
     constexpr float kFar = 10 * 2 / 160.f * 1.0906f;
     const auto rays = samplesOf(1);
-    const std::string shapes[] = {
-        "Translate 0 0 5\nSphere .9 -.9 .9 360\n",
-        "Translate 0 0 5\nSphere .9 -.5 .7 200\n",
-        "Translate 0 0 5\nRotate 60 1 1 0\nTorus .6 .25 0 360 360\n",
-        "Translate 0 0 5\nRotate 80 1 .3 0\nCylinder .6 -.8 .8 360\n",
-        "Translate 0 0 5\nRotate 80 1 .3 0\nCone 1 .7 360\n",
-        "Translate 0 0 5\nDisk 0 .9 360\n",
-        "Scale 1 1 2\nPatch \"bicubic\" \"Pz\" [2.5 2 3 2.5  2.5 2 3 2.5  2.5 2 3 2.5  2.5 2 3 2.5]\n",
-        "SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [\"interpolateboundary\"] [0 0] [] []"
-        " \"P\" [-1 -1 5 0 -1 4 0 1 5 -1 1 5 1 1 5 1 -1 4]\n",
-        "Curves \"cubic\" [4] \"nonperiodic\" \"P\" [-.9 -.9 5 -.3 .9 5 .3 -.9 5 .9 .9 5] \"constantwidth\" [.4]\n",
-        "Points \"P\" [-.5 -.5 5 .5 .5 5] \"constantwidth\" [.7]\n",
-        "Blobby 1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1] [\"\"]\n",
-        "ObjectBegin 1\nSphere .4 -.4 .4 360\nObjectEnd\nTranslate -.5 0 5\nObjectInstance 1\nTranslate 1 0 0\nObjectInstance 1",
-    };
-    for (const std::string& shape : shapes) {
+    for (const std::string& shape : kShapes) {
         const std::string rib = picture("Surface \"wavy\"\nShadingRate .04\n" + shape);
         Scene fine(rib, bySettings(true)), exact(rib, bySettings(false));
         const auto a = fine.trace(rays), b = exact.trace(rays);

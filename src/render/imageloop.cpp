@@ -43,15 +43,26 @@ Jitter jitterOf(const scene::Options& o, Diagnostics& diags) {
     return Jitter::Jittered;
 }
 
-bool shadesMicropolygons(const scene::Options& o, Diagnostics& diags) {
+bool shadesMicropolygons(const scene::Options& o, bool hidden, const Camera& camera, Diagnostics& diags) {
+    const std::string otherwise = hidden ? "micropolygon" : "sample";
     const scene::Param* p = scene::find(o.hiderParams, "shading");
-    if (!p)
+    if (!p && hidden)
         if (auto i = o.values.find("hidden:shading"); i != o.values.end()) p = &i->second;
-    if (!p || p->strings.empty() || p->strings[0] == "micropolygon") return true;
-    if (p->strings[0] == "sample") return false;
-    diags.report(Severity::Error, Rie::Range, p->place,
-                 "\"shading\" of hidden is \"micropolygon\" or \"sample\"; \"micropolygon\" is used");
-    return true;
+    std::string how = p && !p->strings.empty() ? p->strings[0] : otherwise;
+    if (how != "micropolygon" && how != "sample") {
+        diags.report(Severity::Error, Rie::Range, p->place,
+                     "\"shading\" of a hider is \"micropolygon\" or \"sample\"; \"" + otherwise + "\" is used");
+        how = otherwise;
+    }
+    if (how == "sample") return false;
+    if (!hidden && (camera.hasLens() || camera.lensGrid().on() || camera.shutterClose() > camera.shutterOpen())) {
+        diags.report(Severity::Warning, Rie::Incapable, p->place,
+                     "\"shading\" \"micropolygon\" is ignored: under raytrace a lens or an open shutter has every sample shaded "
+                     "where and when it is",
+                     "Hider \"hidden\" shades micropolygons once, when the shutter opens, and moves them");
+        return false;
+    }
+    return !camera.stereo(); // eyes see micropolygons of their own
 }
 
 Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnostics& diags) {

@@ -191,7 +191,7 @@ transport::Settings Renderer::engineSettings(const FrameWork& f) const {
     t.lightPaths = f.plan.lightPaths;
     t.firstSeen = f.path && f.plan.needsFirstSeen();
     t.stop = settings_.stop;
-    t.micropolygons = f.hider == Hider::Hidden && !f.camera.stereo() && shadesMicropolygons(f.o, diagnostics_);
+    t.micropolygons = !f.path && shadesMicropolygons(f.o, f.hider == Hider::Hidden, f.camera, diagnostics_);
     return t;
 }
 

@@ -99,8 +99,9 @@ bool findRecords(Job&);
 /// The samples nx x ny of a pixel under hidden and raytrace.
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
 Jitter jitterOf(const scene::Options&, Diagnostics&);
-/// Where hidden shades, as the hider's parameter "shading" or Option "hidden" "shading" says: "micropolygon" or "sample".
-bool shadesMicropolygons(const scene::Options&, Diagnostics&);
+/// Where `hidden`, or else raytrace, shades, as the hider's parameter "shading" or Option "hidden" "shading" says: "micropolygon"
+/// or "sample". What is no answer is reported, as is raytrace with a lens or an open shutter, which cannot do the former.
+bool shadesMicropolygons(const scene::Options&, bool hidden, const Camera&, Diagnostics&);
 /// Anti-aliasing by difference of colours, of the hider raytrace: a ray through the middle of each pixel; where two pixels
 /// side by side or one above the other differ, both get side x side of them, evenly spaced. A pixel is the mean of its own
 /// rays.

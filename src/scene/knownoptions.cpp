@@ -187,8 +187,9 @@ constexpr OptionDescription kHiderParameters[] = {
      "hidden: surfaces are shaded at the time of each sample, not when the shutter opens."},
     {"samplepattern", "", "", "", Ignored, kSeveral},
     {"shading", "string", "\"micropolygon\"", "\"sample\"", Used,
-     "hidden: \"micropolygon\": surfaces are shaded on micropolygons of ShadingRate, once for all samples that see them, as "
-     "ShadingInterpolation says; \"sample\": each sample is shaded where it lies."},
+     "hidden and raytrace: \"micropolygon\": surfaces are shaded on micropolygons of ShadingRate, once for all samples that see "
+     "them, as ShadingInterpolation says; \"sample\": each sample is shaded where it lies, which is the default of raytrace. "
+     "Under raytrace a lens or an open shutter has samples shaded one by one."},
     {"sigma", "", "", "", Ignored, kPrman},
     {"sigmablur", "", "", "", Ignored, kPrman},
     {"subpixel", "", "", "", Ignored, kPrman},
@@ -232,7 +233,7 @@ constexpr HiderDescription kHiders[] = {
     {"photon",
      "No picture: photons are emitted and the photon maps written that surfaces (Attribute \"photon\") and shaders name. "
      "docs/light.md has the rules."},
-    {"raytrace", "The same as hidden, with the name that ray-traced scenes give."},
+    {"raytrace", "The same as hidden, with the name that ray-traced scenes give, but that each sample is shaded where it lies."},
 };
 
 template <size_t N> constexpr bool sorted(const OptionDescription (&t)[N]) {

@@ -18,7 +18,10 @@ void put(float* to, const Color& c) { to[0] = c.x, to[1] = c.y, to[2] = c.z; }
 
 } // namespace
 
-bool GridShading::takes(const WorldImpl& w) { return w.settings_.micropolygons && w.shadesAtOpen_ && w.eye_.count == 0; }
+bool GridShading::takes(const WorldImpl& w) {
+    const bool ownTime = w.settings_.hider == Hider::Raytrace ? w.shutter_.opens() : !w.shadesAtOpen_;
+    return w.settings_.micropolygons && w.settings_.hider != Hider::Path && !ownTime && w.eye_.count == 0;
+}
 
 GridShading::GridShading(Engine& e)
     : engine_(e), world_(e.world()), lattices_(world_), camera_(world_.frame_->options), stride_(kOutputs) {

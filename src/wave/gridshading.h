@@ -12,8 +12,8 @@ class GridShading {
 public:
     /// The engine shades, and counts. It must outlive this.
     explicit GridShading(Engine&);
-    /// Whether samples of this world take micropolygons: with Settings::micropolygons, under hidden, unless something asks for
-    /// what samples have of their own: their time, or a volume about the eye.
+    /// Whether samples of this world take micropolygons: with Settings::micropolygons, under hidden and raytrace, unless
+    /// something asks for what samples have of their own: their time (under raytrace an open shutter), or a volume about the eye.
     static bool takes(const WorldImpl&);
     /// Whether samples that meet nothing bring nothing.
     bool emptyIsBlack() const { return !seesSky_ && !world_.unmade_; }

@@ -35,8 +35,8 @@ struct Settings {
     bool bsdfOnly = false;  ///< no light sampling, emission counts in full (tests, T6)
     bool lightOnly = false; ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
     bool blocks = true;     ///< vertices of lobes alone are followed 16 at a time (tests: one by one they have the same bits)
-    /// hidden: camera samples take the colours of micropolygons, which are shaded once for all samples that see them; false: each
-    /// sample is shaded where it lies.
+    /// hidden, raytrace: camera samples take the colours of micropolygons, which are shaded once for all samples that see them;
+    /// false: each sample is shaded where it lies.
     bool micropolygons = false;
     bool evenLights = false; ///< many lights: each is as likely to be sampled as any other (tests, measurements)
     MediumSampling mediumSampling = MediumSampling::Both;

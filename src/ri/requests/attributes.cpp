@@ -222,7 +222,7 @@ std::vector<Request> attributeRequests() {
          "footprint that textures and derivatives see.",
          ".5", [](Interpreter& in, const Call& c) { in.attributes().shadingRate = c.real(0); }},
         {"ShadingInterpolation", "string type", k, s, false,
-         "\"constant\": one colour a micropolygon; \"smooth\": linear between corners. For hidden alone.", "\"smooth\"",
+         "\"constant\": one colour a micropolygon; \"smooth\": linear between corners (on micropolygons).", "\"smooth\"",
          [](Interpreter& in, const Call& c) {
              if (c.text(0) == "smooth" || c.text(0) == "constant") in.attributes().smoothShading = c.text(0) == "smooth";
              else

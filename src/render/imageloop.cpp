@@ -159,6 +159,7 @@ private:
     std::vector<Kept> kept_;             ///< by worker
     bool depthsAlone_ = false;           ///< no display shows more than z
     bool unshaded_ = false;              ///< and no shader is needed for that
+    bool behindUnshaded_ = false;        ///< nor for the depths of second surfaces
     double xw_ = 1, yw_ = 1;
     int rows_ = 0, bands_ = 0, lower_ = 0;
     bool movesDown_ = false; ///< bands share the samples of the rows between them
@@ -182,7 +183,9 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
     plan();
     // Under motion surfaces are shaded where they were when the shutter opened: what rays meet has other depths.
     const bool still = job.camera.shutterClose() <= job.camera.shutterOpen();
-    unshaded_ = depthsAlone_ && still && job.world && transport::depthsNeedNoShaders(*job.world);
+    const bool ofDepth = depthsAlone_ || job.plan.needsDepth(DepthFilter::Midpoint);
+    behindUnshaded_ = ofDepth && still && job.world && transport::depthsNeedNoShaders(*job.world);
+    unshaded_ = depthsAlone_ && behindUnshaded_;
 }
 
 /// Whether z is all that is shown: then neither filters nor samples about a pixel are needed.
@@ -370,6 +373,7 @@ bool ImageLoop::traceBehind(int worker, Kept& k) const {
         r.origin += r.direction * way;
         r.start += way;
         r.width += r.spread * way;
+        r.depthOnly = behindUnshaded_;
         k.behind.push_back(r);
         k.of.push_back(i);
     }

@@ -240,4 +240,15 @@ TEST(GridProof, RaytraceKeepsLensesAndTimes) {
     }
 }
 
+// Depth filter "midpoint" asks for the depths of second surfaces alone: nothing is shaded for them.
+TEST(GridProof, MidpointShadesNoSecondSurfaces) {
+    for (const std::string hider :
+         {"Hider \"hidden\" ", "Hider \"hidden\" \"string shading\" \"sample\" ", "Hider \"raytrace\" "}) {
+        const Rendered nearest = render(hider + "\"string depthfilter\" \"min\"\n", "rgbaz"),
+                       middle = render(hider + "\"string depthfilter\" \"midpoint\"\n", "rgbaz");
+        EXPECT_EQ(middle.points, nearest.points) << hider;
+        EXPECT_NE(middle.pixels, nearest.pixels) << hider;
+    }
+}
+
 } // namespace gridproof_test

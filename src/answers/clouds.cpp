@@ -69,7 +69,8 @@ bool keyOf(const shading::PathRay* r, const ShadePoint& p, bool centre, uint32_t
 /// The radius of the disk about a point, and the part of the surface that it stands for. Camera space.
 std::pair<float, float> extentOf(const shading::PathRay& r, const ShadePoint& p) {
     if (r.sample->grid && !r.sample->grid->micropolygon) return {r.sample->grid->radius, r.sample->grid->area};
-    const float half = r.footprint.at(length(p.P - r.origin)); // of a pixel
+    const float edge = r.sample->grid ? float(geometry::diceEdge(p.shape->attributes())) : 1;
+    const float half = edge * r.footprint.at(length(p.P - r.origin)); // of a micropolygon, or of a sample's pixel
     return {half * 1.41421356f, 4 * half * half};
 }
 

@@ -372,7 +372,7 @@ SurfacePoint Curves::pointAt(uint32_t prim, double b1, double b2, float time) co
     p.v = float((place.local + std::clamp(b2, 0.0, 1.0)) / n);
     p.orientation = orientation_;
     p.face = int(place.face);
-    p.prim = prim;
+    p.prim = segment * parts_; // the same for all of its parts
     p.b1 = u;
     p.b2 = b2;
     p.time = time;

@@ -334,9 +334,13 @@ Micropolygons::Lengths Micropolygons::lengthsOf(uint32_t shape, uint32_t prim) {
     const auto [at, fresh] = pieces_.try_emplace(uint64_t(shape) << 32 | prim);
     if (!fresh) return at->second;
     Vec3 p[3][3];
+    Lengths l{0, 0, prim};
     for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) p[j][i] = world_.shapes_[shape]->evaluateHit(prim, i * 0.5, j * 0.5).P;
-    Lengths l{0, 0};
+        for (int i = 0; i < 3; ++i) {
+            const geometry::SurfacePoint point = world_.shapes_[shape]->evaluateHit(prim, i * 0.5, j * 0.5);
+            p[j][i] = point.P;
+            l.prim = point.prim;
+        }
     for (int k = 0; k < 3; ++k) {
         l.u = std::max(l.u, length(p[k][1] - p[k][0]) + length(p[k][2] - p[k][1]));
         l.v = std::max(l.v, length(p[1][k] - p[0][k]) + length(p[2][k] - p[1][k]));
@@ -365,6 +369,7 @@ void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3>
         } else if (l.kind == Kind::Pieces && inside(h.b1) && inside(h.b2)) {
             const float edge = camera_.pixelAt(points[i]) * l.edge;
             const Lengths lengths = lengthsOf(h.shape, h.prim);
+            s.key.prim = lengths.prim;
             s.key.steps[0] = stepsFor(lengths.u * lengths.u / (edge * edge));
             s.key.steps[1] = stepsFor(lengths.v * lengths.v / (edge * edge));
             ofParameters(l, s, one);

@@ -97,6 +97,7 @@ private:
     };
     struct Lengths {
         float u, v;
+        uint32_t prim; ///< under which all parts of a piece that rays meet one by one have their lattice
     };
     Lattice latticeOf(uint32_t shape) const;
     const Lattice& lattice(uint32_t shape);

@@ -144,7 +144,7 @@ void GridShading::aimAt(std::span<const MicropolygonShare> some) {
 }
 
 /// The ray by which the eye sees a micropolygon at p.
-CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::SurfacePoint& p, shading::GridPoint& point) const {
+CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::SurfacePoint& p, shading::GridPoint& point) {
     MicropolygonKey key = s.key; // numbers do not depend on which procedurals were made
     key.shape = world_.keyOfShape(s.key.shape);
     point = {s.key.shape, s.key.prim, s.b1, s.b2};

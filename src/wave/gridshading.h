@@ -46,7 +46,7 @@ private:
     bool ownWay(const Sample&, const accel::Hit&) const;
     bool goesOn(Sample&, const CameraRay&, const accel::Hit&, const Color& clear) const;
     void aimAt(std::span<const MicropolygonShare>);
-    CameraRay rayTo(const MicropolygonShare&, const geometry::SurfacePoint&, shading::GridPoint&) const;
+    CameraRay rayTo(const MicropolygonShare&, const geometry::SurfacePoint&, shading::GridPoint&);
     float* values(uint32_t slot) { return values_.data() + size_t(slot) * stride_; }
     void grow();
     void forget();

@@ -206,7 +206,7 @@ void Micropolygons::place(MicropolygonShare& s) const {
     t.put(x + part / n1, y + part / n2, s);
 }
 
-Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s) const {
+Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s) {
     Vec3 corners[3];
     for (int k = 0; k < 3; ++k) {
         corners[k] = l.mesh->P[l.mesh->index[3 * size_t(s.key.prim) + size_t(k)]];
@@ -216,17 +216,19 @@ Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s)
     const bool whole = s.key.steps[0] == 1 && s.key.steps[1] == 1 && !s.key.corner;
     const bool quad = whole && (s.b1 == 0.5 || s.b2 == 0.5); // of pair(): the other half lies opposite its own corner
     const int first = !quad ? t.first : s.b1 == 0 ? 1 : s.b2 == 0 ? 2 : 0;
-    geometry::SurfacePoint at[3];
-    geometry::HitRef refs[3];
-    for (int k = 0; k < 3; ++k) {
-        const int corner = (first + k) % 3;
-        refs[k] = {s.key.prim, double(corner == 1), double(corner == 2), &at[k], 0};
+    if (corners_.shape != s.key.shape || corners_.prim != s.key.prim) {
+        corners_.shape = s.key.shape, corners_.prim = s.key.prim;
+        const geometry::HitRef refs[3] = {{s.key.prim, 0, 0, &corners_.at[0], 0},
+                                          {s.key.prim, 1, 0, &corners_.at[1], 0},
+                                          {s.key.prim, 0, 1, &corners_.at[2], 0}};
+        world_.shapes_[s.key.shape]->points(refs, geometry::kNeedUV);
     }
-    world_.shapes_[s.key.shape]->points(refs, geometry::kNeedUV);
+    const geometry::SurfacePoint& from = corners_.at[first];
     float u[2], v[2]; // along an edge of the cell each
     for (int k = 0; k < 2; ++k) {
-        u[k] = (at[k + 1].u - at[0].u) / float(s.key.steps[k]);
-        v[k] = (at[k + 1].v - at[0].v) / float(s.key.steps[k]);
+        const geometry::SurfacePoint& to = corners_.at[(first + 1 + k) % 3];
+        u[k] = (to.u - from.u) / float(s.key.steps[k]);
+        v[k] = (to.v - from.v) / float(s.key.steps[k]);
     }
     const float du = std::max(std::fabs(u[0]), std::fabs(u[1])), dv = std::max(std::fabs(v[0]), std::fabs(v[1]));
     const float box = du * dv, area = std::fabs(u[0] * v[1] - u[1] * v[0]);
@@ -235,7 +237,7 @@ Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s)
     return {du * wider, dv * wider};
 }
 
-Vec2 Micropolygons::spanOf(const Lattice& l, const MicropolygonShare& s) const {
+Vec2 Micropolygons::spanOf(const Lattice& l, const MicropolygonShare& s) {
     if (!s.key.shared()) return {0, 0};
     if (l.kind == Kind::Triangles) return spanOfTriangle(l, s);
     const Vec2 steps(1.f / s.key.steps[0], 1.f / s.key.steps[1]);
@@ -246,7 +248,7 @@ Vec2 Micropolygons::spanOf(const Lattice& l, const MicropolygonShare& s) const {
     return {steps.x * std::fabs(at[1].u - at[0].u), steps.y * std::fabs(at[1].v - at[0].v)};
 }
 
-Vec2 Micropolygons::stepsOf(const MicropolygonShare& s, const Vec2& footprint) const {
+Vec2 Micropolygons::stepsOf(const MicropolygonShare& s, const Vec2& footprint) {
     const Lattice& l = *lattices_[s.key.shape];
     const Vec2 cell = spanOf(l, s);
     if (!(cell.x > 0 && cell.y > 0)) return {0, 0};

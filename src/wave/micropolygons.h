@@ -60,7 +60,7 @@ public:
     /// What u and v change by over a micropolygon that find() has named. Of a lattice over parameters: its steps. Of one over a
     /// triangle: as much as along either of its edges, and so that their product is no less than its area in (u, v). Where the
     /// footprint of the ray is longer by half and more, it counts. Both 0: it has no lattice, or its parameters do not change.
-    Vec2 stepsOf(const MicropolygonShare&, const Vec2& footprint) const;
+    Vec2 stepsOf(const MicropolygonShare&, const Vec2& footprint);
 
 private:
     enum class Kind : uint8_t {
@@ -99,11 +99,16 @@ private:
         float u, v;
         uint32_t prim; ///< under which all parts of a piece that rays meet one by one have their lattice
     };
+    /// Of the triangle whose span was asked for last: a large one has many cells.
+    struct Corners {
+        uint32_t shape = geometry::kNone, prim = 0;
+        geometry::SurfacePoint at[3];
+    };
     Lattice latticeOf(uint32_t shape) const;
     const Lattice& lattice(uint32_t shape);
     /// What u and v change by over a cell; 0 as stepsOf().
-    Vec2 spanOf(const Lattice&, const MicropolygonShare&) const;
-    Vec2 spanOfTriangle(const Lattice&, const MicropolygonShare&) const;
+    Vec2 spanOf(const Lattice&, const MicropolygonShare&);
+    Vec2 spanOfTriangle(const Lattice&, const MicropolygonShare&);
     template <class Take> void ofTriangle(const Lattice&, const accel::Hit&, const Vec3& P, Take) const;
     const Partials& partialsOf(uint32_t shape);
     template <class Take> void ofSurfaces(const Lattice&, std::span<const accel::Hit>, std::span<const Vec3> P, Take);
@@ -120,6 +125,7 @@ private:
     std::unordered_map<uint64_t, Lengths> pieces_;   ///< by shape and primitive
     std::vector<geometry::SurfacePoint> surfaces_;   ///< of a run of hits of one surface
     std::vector<geometry::HitRef> run_;
+    Corners corners_;
 };
 
 } // namespace alpenglow::transport

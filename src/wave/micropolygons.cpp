@@ -142,9 +142,9 @@ struct Turned {
 } // namespace
 
 /// Up to a shift.
-Micropolygons::Corners Micropolygons::cornersOf(const Lattice& l, uint32_t prim) const {
+Micropolygons::Triangle Micropolygons::triangleOf(const Lattice& l, uint32_t prim) const {
     const uint32_t* index = &l.mesh->index[3 * size_t(prim)];
-    Corners c;
+    Triangle c;
     for (int k = 0; k < 3; ++k) {
         c.p[k] = l.mesh->P[index[k]];
         if (l.place) c.p[k] = Vec3(l.place->vector(Vec3d(c.p[k])));
@@ -153,7 +153,7 @@ Micropolygons::Corners Micropolygons::cornersOf(const Lattice& l, uint32_t prim)
 }
 
 template <class Take> void Micropolygons::ofTriangle(const Lattice& l, const accel::Hit& h, const Vec3& P, Take take) const {
-    const Turned t(cornersOf(l, h.prim).p, h.b1, h.b2);
+    const Turned t(triangleOf(l, h.prim).p, h.b1, h.b2);
     const Seen seen(camera_, P, l.edge);
     MicropolygonShare s;
     s.key.shape = h.shape;
@@ -195,7 +195,7 @@ void Micropolygons::place(MicropolygonShare& s) const {
         if (!l.paired || !pair(*l.mesh, s)) s.b1 = s.b2 = 1 / 3.;
         return;
     }
-    const Turned t(cornersOf(l, s.key.prim).p, 0, 0);
+    const Turned t(triangleOf(l, s.key.prim).p, 0, 0);
     const double x = double(s.key.at[0]) / n1, y = double(s.key.at[1]) / n2;
     if (s.key.corner) { // of a cell that the edge cuts: onto the edge
         const double sum = std::max(x + y, 1.);
@@ -207,12 +207,7 @@ void Micropolygons::place(MicropolygonShare& s) const {
 }
 
 Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s) {
-    Vec3 corners[3];
-    for (int k = 0; k < 3; ++k) {
-        corners[k] = l.mesh->P[l.mesh->index[3 * size_t(s.key.prim) + size_t(k)]];
-        if (l.place) corners[k] = Vec3(l.place->vector(Vec3d(corners[k])));
-    }
-    const Turned t(corners, s.b1, s.b2);
+    const Turned t(triangleOf(l, s.key.prim).p, s.b1, s.b2);
     const bool whole = s.key.steps[0] == 1 && s.key.steps[1] == 1 && !s.key.corner;
     const bool quad = whole && (s.b1 == 0.5 || s.b2 == 0.5); // of pair(): the other half lies opposite its own corner
     const int first = !quad ? t.first : s.b1 == 0 ? 1 : s.b2 == 0 ? 2 : 0;

@@ -114,10 +114,10 @@ private:
     template <class Take> void ofSurfaces(const Lattice&, std::span<const accel::Hit>, std::span<const Vec3> P, Take);
     template <class Take> void ofParameters(const Lattice&, MicropolygonShare, Take) const;
     bool pair(const geometry::TriMesh&, MicropolygonShare&) const;
-    struct Corners {
+    struct Triangle {
         Vec3 p[3];
     };
-    Corners cornersOf(const Lattice&, uint32_t prim) const;
+    Triangle triangleOf(const Lattice&, uint32_t prim) const;
     Lengths lengthsOf(uint32_t shape, uint32_t prim);
     const WorldImpl& world_;
     MicropolygonCamera camera_;

@@ -55,8 +55,7 @@ const std::vector<std::string> kOthers = {
     "PointsGeneralPolygons [1 1] [4 3] [0 1 2 3 4 5 6] \"P\" [-1 -1 5 -1 1 5 0 1 5 0 -1 5  .1 -1 5 .1 1 5 1 0 6]\n",
     "PatchMesh \"bilinear\" 3 \"nonperiodic\" 2 \"nonperiodic\" \"P\" [-1 -1 5 0 -1 4 1 -1 5  -1 1 5 0 1 6 1 1 5]\n",
     "NuPatch 3 3 [0 0 0 1 1 1] 0 1 2 2 [0 0 1 1] 0 1 \"P\" [-1 -1 5 0 -1 4 1 -1 5  -1 1 5 0 1 6 1 1 5]\n",
-    "Curves \"linear\" [3] \"nonperiodic\" \"P\" [-.9 -.9 5 0 .9 5 .9 -.9 5] \"constantwidth\" [.3] \"constant string type\" "
-    "\"ribbon\" \"N\" [0 0 -1 0 0 -1 0 0 -1]\n",
+    "Curves \"linear\" [2] \"nonperiodic\" \"P\" [-.9 -.9 5 .9 .9 5] \"constantwidth\" [.3] \"N\" [0 0 -1 0 0 -1]\n",
     "SubdivisionMesh \"loop\" [3 3] [0 1 2 0 2 3] [\"interpolateboundary\"] [0 0] [] [] \"P\" [-1 -1 5 -1 1 5 1 1 4 1 -1 5]\n",
     "MotionBegin [0 1]\nTranslate 0 0 0\nTranslate .2 0 0\nMotionEnd\nTranslate 0 0 5\nSphere .7 -.7 .7 360\n",
 };

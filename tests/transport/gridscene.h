@@ -46,8 +46,8 @@ inline const std::vector<std::string> kShapes = {
     "Translate 0 0 5\nRotate 80 1 .3 0\nCone 1 .7 360\n",
     "Translate 0 0 5\nDisk 0 .9 360\n",
     "Scale 1 1 2\nPatch \"bicubic\" \"Pz\" [2.5 2 3 2.5  2.5 2 3 2.5  2.5 2 3 2.5  2.5 2 3 2.5]\n",
-    "SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [\"interpolateboundary\"] [0 0] [] []"
-    " \"P\" [-1 -1 5 0 -1 4 0 1 5 -1 1 5 1 1 5 1 -1 4]\n",
+    std::string("SubdivisionMesh \"catmull-clark\" [4 4] [0 1 2 3 3 2 4 5] [\"interpolateboundary\"] [0 0] [] []") +
+        " \"P\" [-1 -1 5 0 -1 4 0 1 5 -1 1 5 1 1 5 1 -1 4]\n",
     "Curves \"cubic\" [4] \"nonperiodic\" \"P\" [-.9 -.9 5 -.3 .9 5 .3 -.9 5 .9 .9 5] \"constantwidth\" [.4]\n",
     "Points \"P\" [-.5 -.5 5 .5 .5 5] \"constantwidth\" [.7]\n",
     "Blobby 1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1] [\"\"]\n",

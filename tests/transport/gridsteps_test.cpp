@@ -44,8 +44,9 @@ const std::string kSmooth[] = {
     "Translate 0 0 5\nRotate 20 1 1 0\nTorus .6 .25 0 360 360\n",
     "Translate 0 0 5\nRotate 90 1 0 0\nCylinder .6 -.8 .8 360\n",
     "Patch \"bilinear\" \"P\" [-.9 -.9 5  .9 -.8 5  -.8 .9 5  .9 .9 6]\n",
-    "Displacement \"lifts\"\nAttribute \"displacementbound\" \"float sphere\" .1\nTranslate 0 0 5\nRotate 90 1 0 0\n"
-    "Sphere .8 -.5 .5 360\n",
+    std::string(
+        "Displacement \"lifts\"\nAttribute \"displacementbound\" \"float sphere\" .1\nTranslate 0 0 5\nRotate 90 1 0 0\n") +
+        "Sphere .8 -.5 .5 360\n",
 };
 void writeDisplacement() { writeShader("lifts", "displacement lifts() { P += .1 * normalize(N); N = calculatenormal(P); }"); }
 

@@ -1,5 +1,6 @@
 #include "base/largepages.h"
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <new>
@@ -26,13 +27,25 @@ void adviseLargePages(void* from, size_t bytes) {
 #if !defined(__SANITIZE_ADDRESS__) && !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)
 namespace {
 
-/// allocate() until there is memory, as operator new does; large blocks in large pages.
-template <class Allocate> void* allocated(size_t bytes, Allocate allocate) {
+/// A block that begins at a large page and has whole ones as far as it fills a half of the last; null: there is no memory.
+void* largeBlock(size_t bytes, size_t alignment) {
+    const size_t whole = (bytes + alpenglow::kLargePage - 1) / alpenglow::kLargePage * alpenglow::kLargePage;
+    const size_t size = whole - bytes <= alpenglow::kLargePage / 2 ? whole : (bytes + alignment - 1) / alignment * alignment;
+    void* p = std::aligned_alloc(std::max(alignment, size_t(alpenglow::kLargePage)), size);
+    if (p) alpenglow::adviseLargePages(p, size);
+    return p;
+}
+
+/// As operator new: asks its handler until there is memory.
+void* allocated(size_t bytes, size_t alignment) {
+    constexpr size_t kLeast = alpenglow::kLargePage / 2;
+    if (bytes > PTRDIFF_MAX - alpenglow::kLargePage - alignment) throw std::bad_alloc();
     for (;;) {
-        if (void* p = allocate()) {
-            if (bytes >= alpenglow::kLargePage) alpenglow::adviseLargePages(p, bytes);
-            return p;
-        }
+        void* p = bytes >= kLeast ? largeBlock(bytes, alignment)
+                  : alignment <= alignof(max_align_t)
+                      ? std::malloc(std::max(bytes, size_t(1)))
+                      : std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+        if (p) return p;
         const std::new_handler handler = std::get_new_handler();
         if (!handler) throw std::bad_alloc();
         handler();
@@ -42,12 +55,6 @@ template <class Allocate> void* allocated(size_t bytes, Allocate allocate) {
 } // namespace
 
 // As the library's, of which operator delete stays: it calls free().
-void* operator new(size_t bytes) {
-    return allocated(bytes, [&] { return std::malloc(bytes ? bytes : 1); });
-}
-void* operator new(size_t bytes, std::align_val_t alignment) {
-    const size_t a = std::max(size_t(alignment), sizeof(void*));
-    if (bytes > SIZE_MAX - a) throw std::bad_alloc();
-    return allocated(bytes, [&] { return std::aligned_alloc(a, (std::max(bytes, size_t(1)) + a - 1) / a * a); });
-}
+void* operator new(size_t bytes) { return allocated(bytes, alignof(max_align_t)); }
+void* operator new(size_t bytes, std::align_val_t alignment) { return allocated(bytes, size_t(alignment)); }
 #endif

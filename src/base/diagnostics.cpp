@@ -83,6 +83,7 @@ void Diagnostics::reportOnce(const std::string& key, Diagnostic d) {
         std::lock_guard lock(mutex_);
         if (!seen_.insert(key).second) return;
     }
+    d.once = key;
     report(std::move(d));
 }
 

@@ -69,6 +69,7 @@ struct Diagnostic {
     std::vector<std::string> notes{}; ///< candidates and why they were rejected, one a line
     std::vector<FixIt> fixes{};
     bool always = false; ///< a note that users see without asking for notes (-v)
+    std::string once{};  ///< the key of Diagnostics::reportOnce(), which sets it; empty: report()
 };
 
 /// "file:line:column: error: message [id]", then the line, a caret and its range, then "  note: ..." and "  hint: ...", as far as

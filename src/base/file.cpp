@@ -454,6 +454,7 @@ std::optional<FoundFile> findFile(const std::string& name, const std::vector<std
                                   std::string* outside) {
     outside->clear();
     if (name.empty() || name.find('\0') != std::string::npos) return {};
+    if (policy.before) policy.before(name);
     std::string slashed = name;
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     bool absolute = fs::path(slashed).is_absolute();

@@ -4,6 +4,7 @@
 #include "base/diagnostics.h"
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -95,6 +96,8 @@ std::optional<FoundFile> findFile(const std::string& name, const std::vector<std
 struct ReadPolicy {
     bool anywhere = true;               ///< --allow-read; or the user gave the name
     std::vector<std::string> folders{}; ///< what is below them may be read, beside what is below the folders that are searched
+    /// Called with each name before it is looked for, by any thread; may wait until the file is written. May be empty.
+    std::function<void(const std::string& name)> before{};
 };
 /// The policy of a scene in this folder: below it, and below the folder that holds it ("../textures" is how old projects lie).
 ReadPolicy readPolicyOf(const std::string& sceneFolder, bool anywhere);

@@ -101,6 +101,16 @@ extern "C" void onInterrupt(int) {
     signalled = 1;
 }
 
+extern "C" void onStopSignal(int) { signalled = 1; }
+
+void handle(std::initializer_list<int> signals, void (*handler)(int)) {
+    struct sigaction a;
+    std::memset(&a, 0, sizeof a);
+    a.sa_handler = handler;
+    a.sa_flags = SA_RESTART;
+    for (const int s : signals) sigaction(s, &a, nullptr);
+}
+
 } // namespace
 
 std::span<const StatusText> statusTexts() {
@@ -120,14 +130,13 @@ bool standardInputHasData() {
 }
 
 const StopFlag* watchInterrupts() {
-    struct sigaction a;
-    std::memset(&a, 0, sizeof a);
-    a.sa_handler = onInterrupt;
-    a.sa_flags = SA_RESTART;
-    sigaction(SIGINT, &a, nullptr);
-    sigaction(SIGTERM, &a, nullptr);
+    handle({SIGINT, SIGTERM}, onInterrupt);
     return &signalled;
 }
+
+void watchStopSignal(int signal) { handle({signal}, onStopSignal); }
+
+void leaveInterrupts() { handle({SIGINT, SIGTERM}, SIG_IGN); }
 
 std::vector<std::string> environmentShaders() {
     const char* e = std::getenv("ALPENGLOW_SHADERS");

@@ -57,6 +57,11 @@ Diagnostics::Handler printer(Severity least = Severity::Warning);
 /// Flags of the process that a signal sets: 0, then 1 after the first Ctrl-C. A second ends the process at once with status 130.
 const StopFlag* watchInterrupts();
 
+/// As if the first Ctrl-C had come, as often as this signal comes: how a process asks those that it began to stop.
+void watchStopSignal(int signal);
+/// Leaves Ctrl-C to the process that began this one.
+void leaveInterrupts();
+
 /// Whether standard input is a file or a pipe: what a program reads that is given no names.
 bool standardInputHasData();
 

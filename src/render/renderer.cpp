@@ -7,6 +7,7 @@
 #include "render/curve.h"
 #include "render/digest.h"
 #include "render/filmpicture.h"
+#include "render/frameprocesses.h"
 #include "render/imagertext.h"
 #include "render/imaging.h"
 #include "render/lacks.h"
@@ -16,7 +17,6 @@
 #include "render/provenance.h"
 #include "render/rendering.h"
 #include "scene/scene.h"
-#include "texture/maketexture.h"
 #include <cmath>
 #include <filesystem>
 #include <new>
@@ -109,6 +109,7 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     stats_.errors = -diagnostics_.errors();
     stats_.warnings = -diagnostics_.warnings();
     FrameStats told;
+    if (processes_) processes_->openFrame();
     const int before = outcome_.rendered;
     const bool map = isMapPass(frame->options);
     ++(map ? maps_ : pictures_);
@@ -124,15 +125,18 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
         outcome_.outOfMemory = true;
         ++outcome_.refused;
         diagnostics_.report(Severity::Severe, Rie::NoMem, {}, "out of memory; this frame is given up",
-                            settings_.memoryLimit
-                                ? "the limit is " + memorySizeText(settings_.memoryLimit) + "; --memory-limit sets another"
-                                : "");
+                            settings_.memoryLimit ? "the limit is " + memorySizeText(settings_.memoryLimit) + ofEachFrame() +
+                                                        "; --memory-limit sets another"
+                                                  : "");
     } catch (const std::exception& e) { // of libraries that could not get what they need: threads, mostly
         outcome_.outOfMemory = true;
         ++outcome_.refused;
         diagnostics_.report(Severity::Severe, Rie::System, {}, std::string("this frame is given up: ") + e.what());
     }
-    if (outcome_.rendered > before) closeFrame(std::move(told));
+    if (!processes_ || inProcess()) {
+        if (outcome_.rendered > (processes_ ? 0 : before)) closeFrame(std::move(told));
+    }
+    if (processes_) endFrame();
     if (map) settings_ = std::move(all);
     parseMark_ = clockSeconds();
 }
@@ -213,45 +217,16 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
     stats_.spp = end - begin;
 }
 
-void Renderer::makeTexture(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
-                           const SourcePlace& place) {
-    double now = clockSeconds();
-    stats_.parseSec += now - parseMark_;
-    passOverTexture(files);
-    texture::MakeOptions m;
-    m.policy.allowWrite = settings_.allowWrite;
-    m.read = readPolicy();
-    m.place = place;
-    m.searchPath = {""};
-    if (!settings_.scenePath.empty()) m.searchPath.push_back(settings_.scenePath);
-    m.searchPath.insert(m.searchPath.end(), settings_.texturePaths.begin(), settings_.texturePaths.end());
-    std::vector<float> numbers;
-    for (const scene::Param& p : args)
-        if (p.strings.empty()) numbers.insert(numbers.end(), p.numbers.begin(), p.numbers.end());
-    int before = diagnostics_.errors();
-    const size_t said = diagnostics_.all().size();
-    const auto unwritten = [](const Diagnostic& d) { return d.code == Rie::DiskFull || d.code == Rie::System; };
-    const bool made = texture::runMakeRequest(kind, files, numbers, m, diagnostics_);
-    if (made) {
-        ++outcome_.textures;
-        const size_t map = kind == "MakeBrickMap" ? files.size() - 1 : kind == "MakeCubeFaceEnvironment" ? 6 : 1;
-        written_.push_back(followedPath(files[map]));
-    }
-    const auto all = diagnostics_.all();
-    outcome_.outputFailed |= !made && std::any_of(all.begin() + long(said), all.end(), unwritten);
-    if (!made && diagnostics_.errors() == before) diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
-    parseMark_ = clockSeconds();
-}
-
 RenderStats Renderer::stats() const {
     RenderStats s = all_, rest = stats_; // rest: a frame that was given up, maps made after the last one
     if (frames_.empty()) s = rest;
     else s.parseSec += rest.parseSec;
     s.threads = settings_.threads;
-    s.peakMemoryBytes = peakMemoryBytes();
+    s.peakMemoryBytes = std::max(s.peakMemoryBytes, peakMemoryBytes());
     s.settle();
-    s.errors = diagnostics_.errors();
-    s.warnings = diagnostics_.warnings();
+    const Diagnostics& told = processes_ ? processes_->told() : diagnostics_;
+    s.errors = told.errors();
+    s.warnings = told.warnings();
     return s;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "render/engine.h"
 #include "render/framestats.h"
+#include "render/outcome.h"
 #include "render/outputnames.h"
 #include "render/progress.h"
 #include "render/settings.h"
@@ -13,6 +14,8 @@
 #include <span>
 
 namespace alpenglow::render {
+
+class FrameProcesses;
 
 class Renderer final : public scene::FrameConsumer {
 public:
@@ -30,6 +33,10 @@ public:
     /// For ri::ReaderOptions::defers: makes what is in procedurals of a frame that is being rendered (ri::RibReader::make()).
     using MakeProcedurals = std::function<std::shared_ptr<const scene::Frame>(const scene::Frame&, std::span<const int>)>;
     void setProcedurals(MakeProcedurals make) { makeProcedurals_ = std::move(make); }
+    /// Frames are drawn by these from here on, which outlive the renderer and tell what its diagnostics get.
+    void setProcesses(FrameProcesses&);
+    /// Waits until all frames are drawn that were handed over.
+    void settle();
     /// Whether the files that are known before a scene is read (-o, --checkpoint, --stats) can be written. False: an error was
     /// reported.
     bool canBegin();
@@ -39,17 +46,12 @@ public:
                      const SourcePlace&) override;
     void passOver(const scene::Options&) override;
     void passOverTexture(const std::vector<std::string>& files) override;
+    void beforeRead(const std::string& name) override;
     /// To be called after the last scene: says so when options about pictures found maps only, which they leave alone.
     void finish();
 
-    struct Outcome {
-        int rendered = 0;          ///< frames of which something could be rendered
-        int refused = 0;           ///< frames of which nothing could be
-        int textures = 0;          ///< Make requests that were obeyed
-        bool outputFailed = false; ///< a file could not be written
-        bool outOfMemory = false;
-        bool interrupted = false;
-    };
+    using Outcome = render::Outcome;
+    /// Of what is drawn by now; settle() makes that everything.
     const Outcome& outcome() const { return outcome_; }
     /// Figures of all frames so far: times, rays and counts are sums; size, samples and noise are the last frame's.
     RenderStats stats() const;
@@ -60,6 +62,8 @@ private:
     // renderframe.cpp
     void renderFrame(std::shared_ptr<const scene::Frame>, FrameStats&);
     struct FrameWork;
+    void drawFrame(FrameWork&);
+    void drawPictures(FrameWork&, int threads);
     bool planFrame(FrameWork&);
     bool buildFrame(FrameWork&);
     void makeAll(FrameWork&);
@@ -68,6 +72,25 @@ private:
     std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> imagerOf(FrameWork&);
     void describeFrame(FrameWork&);
     void writtenPictures(FrameWork&, bool fine);
+    // rendererprocesses.cpp
+    bool inProcess() const; ///< this is a process of setProcesses()
+    /// Hands a frame that is planned to a process. True: this is that process, or there are none.
+    bool drawsHere(const FrameWork&);
+    void beginProcess(bool alone);
+    std::string ofEachFrame() const; ///< for messages: whose memory is limited
+    /// Ends the process, or in the one that reads what was begun for the frame.
+    void endFrame();
+    void takeResult(FrameResult);
+    /// Says, in a process, whether the frame bakes, since later frames may read what it does.
+    void declareBakes(const FrameWork&);
+    /// Waits, in a process, until what this frame writes may be written.
+    void awaitTurn();
+    void awaitTurn(const FrameWork&); ///< where there is a map among its pictures
+    // rendermaps.cpp
+    void makeInProcess(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
+                       const SourcePlace&);
+    void runMakeRequest(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
+                        const SourcePlace&);
     /// Where names of maps in the scene may lead.
     ReadPolicy readPolicy() const;
     FilmDescription filmOf(const FrameWork&) const;
@@ -112,8 +135,10 @@ private:
     Progress& progress_;
     Print print_;
     MakeProcedurals makeProcedurals_;
-    std::set<std::string> read_;       ///< fileIdentity() of setScene()'s pictures
-    std::vector<std::string> written_; ///< pictures and maps of this run, with links followed: scenes may read them
+    FrameProcesses* processes_ = nullptr; ///< null: frames are drawn here
+    bool handedOver_ = false;             ///< the frame that came last is drawn by a process
+    std::set<std::string> read_;          ///< fileIdentity() of setScene()'s pictures
+    std::vector<std::string> written_;    ///< pictures and maps of this run, with links followed: scenes may read them
     Outcome outcome_;
     std::vector<float> sampleMemory_; ///< renderImages()
     RenderStats stats_;               ///< of the frame being rendered

@@ -1,6 +1,7 @@
 // The files of a run: what they are called, whether they can be written, and what is there already.
 #include "display/driver.h"
 #include "render/filmpicture.h"
+#include "render/frameprocesses.h"
 #include "render/outputnames.h"
 #include "render/partfile.h"
 #include "render/renderer.h"
@@ -55,6 +56,7 @@ bool Renderer::numbersFrame() {
 
 void Renderer::numberFirstPicture() {
     if (!firstPicture_) return;
+    settle(); // it is to be there
     const FirstPicture first = *std::exchange(firstPicture_, {});
     std::error_code e;
     // What could not be written is not there; a name may also lead to a device.
@@ -113,6 +115,7 @@ void Renderer::passOverTexture(const std::vector<std::string>& files) {
 ReadPolicy Renderer::readPolicy() const {
     ReadPolicy policy = readPolicyOf(settings_.scenePath, settings_.allowRead);
     policy.folders.insert(policy.folders.end(), written_.begin(), written_.end()); // each below itself
+    if (inProcess()) policy.before = [p = processes_](const std::string& name) { p->awaitRead(name); };
     return policy;
 }
 

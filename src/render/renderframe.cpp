@@ -77,6 +77,12 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
         return;
     }
     if (settings_.seedByFrame) settings_.seed = uint64_t(std::max(0, frame->options.frameNumber));
+    FrameWork f(std::move(frame), told, diagnostics_);
+    if (f.o.hider != "photon" && !planFrame(f)) return;
+    if (drawsHere(f)) drawFrame(f);
+}
+
+void Renderer::drawFrame(FrameWork& f) {
     const int team = Team::startable(settings_.threads);
     if (team < settings_.threads)
         diagnostics_.reportOnce("threads", {Severity::Warning,
@@ -87,10 +93,13 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
                                             {},
                                             {}});
     tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
-
-    FrameWork f(std::move(frame), told, diagnostics_);
     if (f.o.hider == "photon") return renderPhotons(f, team);
-    if (!planFrame(f) || !buildFrame(f)) return;
+    if (!buildFrame(f)) return;
+    declareBakes(f);
+    drawPictures(f, team);
+}
+
+void Renderer::drawPictures(FrameWork& f, int team) {
     double cpu = processCpuSeconds();
     Job job(settings_, f.camera, f.plan, engine_, f.world, team, progress_, diagnostics_);
     job.what = f.plan.pictures.front().name;
@@ -334,6 +343,7 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
                             std::to_string(film.saturated()) + " values beyond 2^60 were cut there");
     if (!writesFiles(settings_)) return;
     if (settings_.stamp) addStamp(f.picture, settings_, renderSec);
+    awaitTurn(f);
     writtenPictures(f, writeFilm(film, f.plan, f.picture, f.imager, settings_.allowWrite, diagnostics_));
     if (f.part) {
         const OutputSpec& first = f.plan.pictures.front();
@@ -389,6 +399,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     }
     if (!writesFiles(settings_)) return;
     if (settings_.stamp) addStamp(f.picture, settings_, job.elapsed());
+    awaitTurn(f);
     writtenPictures(f, writeOutputs(f.plan, f.picture, pixels, f.imager, settings_.allowWrite, diagnostics_));
 }
 
@@ -397,6 +408,7 @@ void Renderer::writeBaked(FrameWork& f, const Job& job) {
     if (!transport::bakes(*f.world)) return;
     if (job.interrupted)
         return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what shaders bake is not written");
+    awaitTurn();
     clouds::FileOwners others;
     for (const OutputSpec& s : f.plan.pictures) {
         const display::DriverDescriptor* driver = display::findDriver(s.type);

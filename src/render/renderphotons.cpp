@@ -40,6 +40,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
         return;
     }
     ++outcome_.rendered;
+    awaitTurn();
     for (const auto& [name, photons] : transport::photonsByMap(*f.world, maps, stored)) {
         if (photons.empty())
             diagnostics_.report(Severity::Warning, Rie::NoError, {},

@@ -125,6 +125,7 @@ std::string Interpreter::depthMap(const std::string& name, const SourcePlace& pl
     if (!sceneFolder_.empty()) folders.push_back(sceneFolder_);
     folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
     std::string outside;
+    consumer.beforeRead(name);
     const auto found = alpenglow::findFile(name, folders, readPolicyOf(sceneFolder_, settings.allowRead), &outside);
     if (settings.reads && found) settings.reads->add(found->path);
     if (found || outside.empty()) return found ? found->path : name;
@@ -217,7 +218,7 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         return;
     }
     if (!calls && openArchives_.empty() && !settings.comments && !making_) {
-        if (!unscanned_.empty()) ahead_.scan(std::exchange(unscanned_, {}));
+        if (!unscanned_.empty() && settings.threads) ahead_.scan(std::exchange(unscanned_, {}));
         parsed = ahead_.take(name, file);
     }
     if (!calls && !parsed && !settings.comments && archivesRead_.count(key)) {

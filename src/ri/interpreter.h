@@ -63,6 +63,8 @@ public:
     void nextScene();
     /// RibReader::make(). unmade.cpp
     std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
+    void leavePrograms(); ///< RibReader::leavePrograms(). procedural.cpp
+    void endPrograms();
 
     // --- for handlers ---
     Reporter reporter;

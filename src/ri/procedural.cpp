@@ -198,6 +198,16 @@ Program* Interpreter::programOf(const std::string& command, const SourcePlace& p
     return slot->second.get();
 }
 
+void Interpreter::leavePrograms() {
+    // Those that could not be started, or did not answer, are not asked again here either.
+    std::erase_if(programs_, [](auto& p) {
+        if (p.second) p.second->leave();
+        return p.second != nullptr;
+    });
+}
+
+void Interpreter::endPrograms() { programs_.clear(); }
+
 bool Interpreter::mayMake(const Call& call) {
     if (++programCalls_ > limits::kProgramCalls) {
         reporter.once("ri:programcalls", Severity::Error, Rie::Limit, call.place,

@@ -115,6 +115,11 @@ void Program::kill() {
     process_ = -1;
 }
 
+void Program::leave() {
+    process_ = -1;
+    kill();
+}
+
 Program::~Program() {
     if (to_ >= 0) {
         close(to_);

@@ -18,6 +18,8 @@ public:
     /// Its input ends; it is given a second to end by itself and then killed.
     ~Program();
     Program(const Program&) = delete;
+    /// Leaves the process to another one of ours, whose copy this one is.
+    void leave();
     Program& operator=(const Program&) = delete;
 
     /// Sends a line and waits for the answer, at most `seconds`. False with a reason when it ended, took too long, said too much

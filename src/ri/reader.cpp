@@ -33,6 +33,9 @@ bool RibReader::readStream(std::istream& in, const std::string& name) { return i
 
 void RibReader::nextScene() { in_->interpreter.nextScene(); }
 
+void RibReader::leavePrograms() { in_->interpreter.leavePrograms(); }
+void RibReader::endPrograms() { in_->interpreter.endPrograms(); }
+
 std::shared_ptr<const scene::Frame> RibReader::make(const scene::Frame& frame, std::span<const int> which) {
     return in_->interpreter.make(frame, which);
 }

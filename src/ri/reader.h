@@ -26,6 +26,7 @@ struct ReaderOptions {
     /// Procedurals that nothing need meet (ri/unmade.cpp says which) stand in their frame as primitives of the kind
     /// scene::kUnmade, until RibReader::make() is asked for what is in them. False: all are expanded where they stand.
     bool defers = false;
+    bool threads = true;            ///< archives may be parsed by several threads; false: none is started
     std::vector<int> frames;        ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
     std::shared_ptr<ReadLog> reads; ///< gets every scene and archive that is read or missed; may be null
     /// Called with the number of each FrameBegin, rendered or not.
@@ -55,6 +56,11 @@ public:
     /// last, with what is in some of its procedurals, which are named by scene::unmadeNumber(); none named: in all, and in those
     /// within them. Where light sources come to light that way, all are made. Null: no frame is being rendered.
     std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
+    /// In a process that began as a copy of another: programs that were started stay with that one, and are started again here
+    /// once they are asked.
+    void leavePrograms();
+    /// Ends the programs that were started.
+    void endPrograms();
 
 private:
     struct Inside;

@@ -20,6 +20,9 @@ public:
     /// A world, or a Make request, of a frame that is not wanted: nothing is made.
     virtual void passOver(const Options&) {}
     virtual void passOverTexture(const std::vector<std::string>& /*files*/) {}
+    /// Frames may be drawn while what is behind them is read. When this returns, those are that may write a file of this name,
+    /// which is read next.
+    virtual void beforeRead(const std::string& /*name*/) {}
 };
 
 } // namespace alpenglow::scene

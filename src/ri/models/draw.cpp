@@ -61,6 +61,7 @@ void Interpreter::drawModel(const std::string& name, const Call& call, const sce
                       fmt::format("more than {} archives are read", limits::kArchiveReads));
         return;
     }
+    consumer.beforeRead(name);
     const std::string file = locate("model", name, call.place, namedAsModel);
     if (file.empty()) return;
     if (!lastModel_ || lastModel_->file != file) {

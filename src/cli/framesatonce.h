@@ -1,0 +1,37 @@
+// The processes of render --frames-at-once.
+#pragma once
+#include "base/memory.h"
+#include "render/frameprocesses.h"
+#include "render/settings.h"
+#include "ri/reader.h"
+#include <memory>
+#include <optional>
+
+namespace alpenglow::cli {
+
+/// What a run has of them.
+class FramesAtOnce {
+public:
+    /// most: 1: frames are drawn one by one. `told` prints, and outlives this.
+    FramesAtOnce(int most, const render::RenderSettings&, Diagnostics& told);
+    FramesAtOnce(const FramesAtOnce&) = delete;
+    FramesAtOnce& operator=(const FramesAtOnce&) = delete;
+    /// Null: frames are drawn one by one.
+    render::FrameProcesses* processes() { return processes_ ? &*processes_ : nullptr; }
+    /// Where what is reported comes out in the order of the frames.
+    Diagnostics& said() { return processes_ ? said_ : told_; }
+    /// Who reads; outlives all frames.
+    void setReader(ri::RibReader& r) { reader_ = &r; }
+
+private:
+    void begin(bool alone);
+    Diagnostics& told_;
+    Diagnostics said_;
+    std::optional<render::FrameProcesses> processes_;
+    std::optional<MemoryLimit> share_; ///< in a process: of the run's memory
+    size_t memory_;                    ///< of the run, bytes; 0: unlimited
+    int threads_;                      ///< of the run
+    ri::RibReader* reader_ = nullptr;
+};
+
+} // namespace alpenglow::cli

@@ -1,0 +1,31 @@
+// What the command line of render says.
+#pragma once
+#include "render/settings.h"
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace alpenglow::cli {
+
+/// Options as they are given, and the settings that checkRenderArguments() makes of them.
+struct RenderArguments {
+    render::RenderSettings settings;
+    std::vector<std::string> scenes, searchPaths, displays, rib;
+    std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
+    std::string gamma, preview;
+    std::vector<std::pair<std::string, int>> tev; ///< hosts and ports
+    bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
+    std::vector<int> frameList;
+    int framesAtOnce = 1; ///< 1 to limits::kFramesAtOnce
+};
+
+/// Describes the options to the parser, which writes them to the arguments; these outlive it.
+void addRenderOptions(CLI::App&, RenderArguments&);
+/// To be called when the command line was read: checks what the parser cannot. Throws CLI::ValidationError.
+void checkRenderArguments(RenderArguments&, const CLI::App&);
+
+} // namespace alpenglow::cli

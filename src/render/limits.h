@@ -1,0 +1,9 @@
+// Limits of this room (base/limits.h says what they are for).
+#pragma once
+
+namespace alpenglow::limits {
+
+inline constexpr int kFramesAtOnce = 256; ///< processes that draw frames at a time (--frames-at-once)
+inline constexpr int kFramesAhead = 4;    ///< times their number: frames behind the first that is not told of, drawn or not
+
+} // namespace alpenglow::limits

@@ -182,10 +182,10 @@ void FrameProcesses::split(Part& p) {
 }
 
 void FrameProcesses::take(Part& p, Kind kind, std::string bytes) {
-    if (kind == Kind::Message) p.events.push_back({kind, std::move(bytes)});
     if (kind == Kind::Result) p.result = unpack(bytes, p.made);
     if (kind == Kind::Declare) p.writes.settled = true, p.writes.others |= bytes == "+";
-    if (kind == Kind::Ask) p.asks = true, p.asked = std::move(bytes);
+    if (kind == Kind::Ask) p.asks = true, p.asked = bytes;
+    if (kind == Kind::Message) p.events.push_back({kind, std::move(bytes)});
 }
 
 /// A process that has handed over its result, or is gone, is done with.

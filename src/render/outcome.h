@@ -1,6 +1,7 @@
 // What came of the frames of a run.
 #pragma once
 #include "render/framestats.h"
+#include <cstdint>
 #include <optional>
 
 namespace alpenglow::render {
@@ -27,6 +28,7 @@ struct FrameResult {
     Outcome outcome;
     std::optional<FrameStats> told; ///< of a frame of which something was rendered
     double parseSec = 0;            ///< of another
+    uint64_t grown = 0;             ///< bytes that its process took for it; 0 where it took them at once
 };
 
 } // namespace alpenglow::render

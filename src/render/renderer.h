@@ -137,6 +137,8 @@ private:
     MakeProcedurals makeProcedurals_;
     FrameProcesses* processes_ = nullptr; ///< null: frames are drawn here
     bool handedOver_ = false;             ///< the frame that came last is drawn by a process
+    uint64_t grown_ = 0;                  ///< bytes that the first frames took in their processes
+    uint64_t begun_ = 0;                  ///< that a process began with
     std::set<std::string> read_;          ///< fileIdentity() of setScene()'s pictures
     std::vector<std::string> written_;    ///< pictures and maps of this run, with links followed: scenes may read them
     Outcome outcome_;

@@ -3,14 +3,22 @@
 #include "display/driver.h"
 #include "render/frameprocesses.h"
 #include "render/framework.h"
+#include "render/heap.h"
+#include "shadeops/bitcode.h"
 #include "transport/bakes.h"
 #include "transport/unmade.h"
 #include <algorithm>
+#include <tbb/cache_aligned_allocator.h>
+#include <utility>
 
 namespace alpenglow::render {
 
 void Renderer::setProcesses(FrameProcesses& p) {
     processes_ = &p;
+    // Each process would do these again: tables of the language, and TBB's look for its allocator.
+    rsl::runtimeHash();
+    tbb::cache_aligned_allocator<char> allocator;
+    allocator.deallocate(allocator.allocate(1), 1);
     p.setTake([this](FrameResult r) { takeResult(std::move(r)); });
 }
 
@@ -43,6 +51,8 @@ void Renderer::beginProcess(bool alone) {
     if (alone) return;
     settings_.threads = std::max(1, settings_.threads / processes_->most());
     settings_.memoryLimit /= size_t(processes_->most());
+    begun_ = ownBytes();
+    fillHeap(grown_, settings_.threads == 1); // frames are like each other
 }
 
 void Renderer::endFrame() {
@@ -50,6 +60,7 @@ void Renderer::endFrame() {
         FrameResult r;
         r.outcome = outcome_;
         r.parseSec = stats_.parseSec;
+        if (grown_ == 0) r.grown = ownBytes() - std::min(ownBytes(), begun_);
         if (!frames_.empty()) r.told = std::move(frames_.back());
         processes_->finish(std::move(r));
     }
@@ -59,6 +70,7 @@ void Renderer::endFrame() {
 
 void Renderer::takeResult(FrameResult r) {
     outcome_.add(r.outcome);
+    grown_ = std::max(grown_, r.grown);
     if (!r.told) {
         stats_.parseSec += r.parseSec;
         return;

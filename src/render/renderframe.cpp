@@ -77,9 +77,12 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
         return;
     }
     if (settings_.seedByFrame) settings_.seed = uint64_t(std::max(0, frame->options.frameNumber));
-    FrameWork f(std::move(frame), told, diagnostics_);
+    auto work = std::make_unique<FrameWork>(std::move(frame), told, diagnostics_);
+    FrameWork& f = *work;
     if (f.o.hider != "photon" && !planFrame(f)) return;
-    if (drawsHere(f)) drawFrame(f);
+    if (!drawsHere(f)) return;
+    drawFrame(f);
+    if (inProcess()) static_cast<void>(work.release()); // it ends next; what is taken apart here would be copied for that
 }
 
 void Renderer::drawFrame(FrameWork& f) {

@@ -2,6 +2,7 @@
 #include "base/realpath.h"
 #include "render/frameprocesses.h"
 #include "render/renderer.h"
+#include "render/rendering.h"
 #include "texture/maketexture.h"
 #include <algorithm>
 #include <new>

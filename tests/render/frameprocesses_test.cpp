@@ -1,7 +1,9 @@
 // Processes that draw frames: what they say comes out in the order of the frames, and they wait for each other where they must.
 #include "render/frameprocesses.h"
 #include "render/framerecords.h"
+#include "render/heap.h"
 #include "render/limits.h"
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -151,6 +153,21 @@ TEST_F(Processes, NoMoreThanSoManyFramesAreAhead) {
     EXPECT_GE(taken, 1);
     p.settle();
     EXPECT_EQ(taken, ahead + 1);
+}
+
+// The system rounds to pages, which may be of 2 MB.
+TEST_F(Processes, MemoryIsTakenAtOnceUpToALimit) {
+    FrameProcesses p({.most = 2}, told);
+    for (const size_t bytes : {size_t(0), size_t(64) << 20, 2 * limits::kHeapAtOnce})
+        frame(p, nothing, [&] {
+            const uint64_t before = ownBytes();
+            fillHeap(bytes, true);
+            const uint64_t grown = ownBytes() - std::min(ownBytes(), before), most = std::min(bytes, limits::kHeapAtOnce);
+            if (before == 0) return p.say(message("memory is not known"));
+            p.say(message(grown <= most + (size_t(24) << 20) ? "bounded" : std::to_string(grown)));
+        });
+    p.settle();
+    EXPECT_EQ(said, (std::vector<std::string>{"bounded", "bounded", "bounded"}));
 }
 
 TEST_F(Processes, AProcessThatEndsByItselfIsToldOf) {

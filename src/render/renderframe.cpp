@@ -82,7 +82,8 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (f.o.hider != "photon" && !planFrame(f)) return;
     if (!drawsHere(f)) return;
     drawFrame(f);
-    if (inProcess()) static_cast<void>(work.release()); // it ends next; what is taken apart here would be copied for that
+    if (!inProcess()) return;
+    [[maybe_unused]] const FrameWork* kept = work.release(); // the process ends: to take it apart would copy its pages
 }
 
 void Renderer::drawFrame(FrameWork& f) {

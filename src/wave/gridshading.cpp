@@ -58,7 +58,6 @@ void GridShading::grow() {
 }
 
 void GridShading::begin(std::span<const CameraRay> rays, std::span<SampleResult> out) {
-    if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget();
     samples_.resize(rays.size());
     own_.clear();
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -284,6 +283,7 @@ bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult
     engine_.counters.paths += rays.size();
     engine_.counters.camera += rays.size();
     while (!samples_.empty()) {
+        if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget(); // between layers: none keeps slots of another
         engine_.setUnfinished(false);
         meet(rays);
         if (stop && *stop) return false;

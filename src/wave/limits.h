@@ -5,5 +5,6 @@
 namespace alpenglow::limits {
 
 inline constexpr size_t kMicropolygonBytes = size_t(1) << 20; ///< of shaded micropolygons that a thread keeps, about
+inline constexpr size_t kPartialsBytes = size_t(16) << 20;    ///< of tables of large surfaces that a thread keeps
 
 } // namespace alpenglow::limits

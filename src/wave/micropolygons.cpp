@@ -2,9 +2,11 @@
 #include "base/hash.h"
 #include "geometry/placed.h"
 #include "scene/scene.h"
+#include "wave/limits.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace alpenglow::transport {
 
@@ -276,7 +278,10 @@ template <class Take> void Micropolygons::ofParameters(const Lattice& l, Micropo
 const Micropolygons::Partials& Micropolygons::partialsOf(uint32_t shape) {
     std::unique_ptr<Partials>& p = lattices_[shape]->partials;
     if (p) return *p;
+    if ((tabled_.size() + 1) * sizeof(Partials) > limits::kPartialsBytes)
+        for (const uint32_t of : std::exchange(tabled_, {})) lattices_[of]->partials.reset();
     p = std::make_unique<Partials>();
+    tabled_.push_back(shape);
     constexpr int n = Partials::kCells + 1;
     std::vector<geometry::SurfacePoint> at(n * n);
     std::vector<geometry::HitRef> run;

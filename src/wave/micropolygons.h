@@ -122,6 +122,7 @@ private:
     const WorldImpl& world_;
     MicropolygonCamera camera_;
     std::vector<std::unique_ptr<Lattice>> lattices_; ///< by shape; null: no ray has met it
+    std::vector<uint32_t> tabled_;                   ///< shapes that have Partials
     std::unordered_map<uint64_t, Lengths> pieces_;   ///< by shape and primitive
     std::vector<geometry::SurfacePoint> surfaces_;   ///< of a run of hits of one surface
     std::vector<geometry::HitRef> run_;

@@ -1,6 +1,7 @@
 // Where hidden shades with Settings::micropolygons: once for all samples that see a micropolygon, with edges of sqrt(ShadingRate)
 // pixels, and what samples make of it.
 #include "display/imageio.h"
+#include "render/heap.h"
 #include "render/renderer.h"
 #include "transport/gridscene.h"
 #include "wave/limits.h"
@@ -156,6 +157,52 @@ TEST(Micropolygons, WhatIsForgottenIsShadedAgain) {
     ASSERT_TRUE(i.trace(rays, again, nullptr));
     EXPECT_EQ(i.counters().points, 2 * once);
     for (size_t k = 0; k < rays.size(); ++k) ASSERT_TRUE(same(first[k], again[k]));
+}
+
+// Samples of one call go through panes, each of which has micropolygons of as many bytes as a thread keeps of all.
+TEST(Micropolygons, LayersAreForgottenAsTheyAreLeft) {
+    std::string panes = "ShadingRate .01\nSurface \"glass\" \"color o\" [.05 .05 .05]\n";
+    for (int k = 0; k < 60; ++k) {
+        const std::string z = std::to_string(3 + k);
+        panes += "Polygon \"P\" [-1 -1 " + z + "  -1 1 " + z + "  1 1 " + z + "  1 -1 " + z + "]\n";
+    }
+    Scene s(picture(panes), bySettings(true));
+    const auto rays = samplesOf(6);
+    ASSERT_GT(rays.size() * 9 * sizeof(float), limits::kMicropolygonBytes);
+    Integrator i(s.world, s.diagnostics);
+    std::vector<SampleResult> results(rays.size());
+    const uint64_t before = render::ownBytes();
+    ASSERT_TRUE(i.trace(rays, results, nullptr));
+    EXPECT_LT(render::ownBytes() - std::min(render::ownBytes(), before), 64 * limits::kMicropolygonBytes);
+    EXPECT_NEAR(results[0].opacity.x, 1 - std::pow(.95f, 60.f), 1e-4);
+}
+
+// Four times as many large surfaces, beside each other, as tables are kept of; those that are made again are as before.
+TEST(Micropolygons, TablesOfLargeSurfacesAreBounded) {
+    constexpr size_t kTable = 24576; // bytes: 16 x 16 cells of 24 numbers
+    const size_t n = 4 * limits::kPartialsBytes / kTable;
+    std::string disks = "Surface \"constant\"\n";
+    std::vector<CameraRay> rays;
+    for (size_t i = 0; i < n; ++i) { // each of 64 pixels and more
+        const std::string x = std::to_string(10 * i);
+        disks += "TransformBegin\nTranslate " + x + " 0 50\nDisk 0 3 360\nTransformEnd\n";
+        rays.push_back(rayTo({10 * float(i) + .5f, .5f, 0}, {10 * float(i) + .5f, .5f, 1}));
+    }
+    Scene s(picture(disks), bySettings(true));
+    Integrator i(s.world, s.diagnostics);
+    std::vector<SampleResult> first(n), again(n);
+    const auto trace = [&](size_t from, size_t to, std::vector<SampleResult>& out) {
+        for (size_t k = from; k < to; ++k) ASSERT_TRUE(i.trace({&rays[k], 1}, {&out[k], 1}, nullptr));
+    };
+    trace(0, n / 8, first); // what the first take besides
+    const uint64_t before = render::ownBytes();
+    trace(n / 8, n, first);
+    EXPECT_LT(render::ownBytes() - std::min(render::ownBytes(), before), 2 * limits::kPartialsBytes);
+    trace(0, n, again);
+    for (size_t k = 0; k < n; ++k) {
+        ASSERT_LT(first[k].z, 51) << k;
+        ASSERT_TRUE(same(first[k], again[k])) << k;
+    }
 }
 
 // Opacity sample by sample: two panes before a wall, with a colour each; outputs are weighed as colours are.

@@ -93,7 +93,8 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
                 for (double u : {0.1, 0.5, 0.9})
                     if (u != 0.5 || v != 0.5) probe(u, v);
     }
-    need[piece] = {std::max(need[piece][0], float(lu)), std::max(need[piece][1], float(lv))};
+    constexpr double kMost = 1e9; // what rates() brings down to one by the least scale
+    need[piece] = {std::max(need[piece][0], float(std::min(lu, kMost))), std::max(need[piece][1], float(std::min(lv, kMost)))};
     if (unseen.none()) return;
     ProbedBox box;
     const double part = three ? (probed.size() > 1 ? 0.35 : 0.7) : probed.size() > 1 ? 0.2 : 0.5; // as far as a probe stands for

@@ -98,6 +98,25 @@ TEST(GeometryLimits, MicropolygonsWhereAWeightVanishes) {
     EXPECT_LE(s->mesh().triangles(), 3 * limits::kDiceQuads); // sides may have twice as many
 }
 
+// A corner lies so far away that a face is longer than its least scale brings down.
+TEST(GeometryLimits, MicropolygonsOfAFaceOfEndlessLength) {
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "SubdivisionMesh";
+    p->strings = {"catmull-clark"};
+    p->ints = {4, 4, 4, 4, 4, 4};
+    p->ints2 = {0, 1, 3, 2, 2, 3, 5, 4, 4, 5, 7, 6, 6, 7, 1, 0, 1, 7, 5, 3, 6, 0, 2, 4};
+    p->params = {points({-.5f, -.5f, .5f,  .5f, -.5f, .5f,  -.5f, .5f,  .5f,  .5f, .5f,  .5f,
+                         -.5f, .5f,  -.5f, .5f, .5f,  -.5f, -.5f, -.5f, -.5f, .5f, -.5f, -1e30f})};
+    Diagnostics d;
+    const ShapeRef s = build(p, Matrix(), d);
+    ASSERT_TRUE(s);
+    DiceOptions o;
+    o.camera.pixelsPerUnit = 1e20;
+    diceShapes({s}, o, d);
+    EXPECT_LE(s->mesh().triangles(), 2 * limits::kDiceQuads);
+    EXPECT_EQ(limitsSaid(d), 1);
+}
+
 TEST(GeometryLimits, DisplacementTooFar) {
     Diagnostics d;
     ShapeRef s = displaced(patch("bilinear", square(1, 1)), 4, limits::kDisplacementBound * 1.5f, d);

@@ -27,24 +27,15 @@ void adviseLargePages(void* from, size_t bytes) {
 #if !defined(__SANITIZE_ADDRESS__) && !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)
 namespace {
 
-/// A block that begins at a large page and has whole ones as far as it fills a half of the last; null: there is no memory.
-void* largeBlock(size_t bytes, size_t alignment) {
-    const size_t whole = (bytes + alpenglow::kLargePage - 1) / alpenglow::kLargePage * alpenglow::kLargePage;
-    const size_t size = whole - bytes <= alpenglow::kLargePage / 2 ? whole : (bytes + alignment - 1) / alignment * alignment;
-    void* p = std::aligned_alloc(std::max(alignment, size_t(alpenglow::kLargePage)), size);
-    if (p) alpenglow::adviseLargePages(p, size);
-    return p;
-}
-
-/// As operator new: asks its handler until there is memory.
+/// As operator new: asks its handler until there is memory. Blocks lie where malloc() puts them: to begin them at large pages
+/// would take two more megabytes of address space each, which --memory-limit counts.
 void* allocated(size_t bytes, size_t alignment) {
-    constexpr size_t kLeast = alpenglow::kLargePage / 2;
-    if (bytes > PTRDIFF_MAX - alpenglow::kLargePage - alignment) throw std::bad_alloc();
+    if (bytes > PTRDIFF_MAX - alignment) throw std::bad_alloc();
     for (;;) {
-        void* p = bytes >= kLeast ? largeBlock(bytes, alignment)
-                  : alignment <= alignof(max_align_t)
+        void* p = alignment <= alignof(max_align_t)
                       ? std::malloc(std::max(bytes, size_t(1)))
                       : std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+        if (p && bytes >= alpenglow::kLargePage) alpenglow::adviseLargePages(p, bytes);
         if (p) return p;
         const std::new_handler handler = std::get_new_handler();
         if (!handler) throw std::bad_alloc();

@@ -21,8 +21,8 @@ target_compile_options(alpenglow_jit PRIVATE -fvisibility=hidden)
 # names of kinds and instructions: the only code shared with the program
 target_sources(alpenglow_jit PRIVATE ${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.cpp)
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/rsl/ir/ir.cpp PROPERTIES ALPENGLOW_ALONE ON) # in two libraries
-# Where LLVM's archives are there the module holds what it uses of them: it loads in 20 ms of processor time, with the shared library,
-# all its targets and the libraries that these need, in 65.
+# Where LLVM's archives are there the module holds what it uses of them: it loads in 20 ms of processor time. With the shared
+# library, which has all targets and the libraries that these need, it takes 65.
 if(TARGET LLVMX86CodeGen)
   llvm_map_components_to_libnames(jit_llvm bitreader coroutines linker passes x86codegen)
   target_link_options(alpenglow_jit PRIVATE LINKER:--as-needed,--gc-sections,--exclude-libs,ALL)

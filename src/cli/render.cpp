@@ -119,10 +119,10 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
             terminal->scrolled();
         });
     render::Progress progress(settings.pixel ? render::ProgressMode::None : settings.progress);
-    FramesAtOnce beside(a.framesAtOnce, settings, diags);
-    render::Renderer renderer(settings, render::transportEngine(), beside.said(), progress,
+    FramesAtOnce atOnce(a.framesAtOnce, settings, diags);
+    render::Renderer renderer(settings, render::transportEngine(), atOnce.said(), progress,
                               [](const std::string& line) { std::printf("%s\n", line.c_str()); });
-    if (beside.processes()) renderer.setProcesses(*beside.processes());
+    if (atOnce.processes()) renderer.setProcesses(*atOnce.processes());
     ri::ReaderOptions options = readerOptions(a, settings);
     std::vector<int> seen;
     options.frameSeen = [&](int frame) { seen.push_back(frame); };
@@ -130,14 +130,14 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
     bool memory = false;
     if (!renderer.canBegin()) return kOutputFailed;
     try {
-        ri::RibReader reader(options, renderer, beside.said());
-        beside.setReader(reader);
+        ri::RibReader reader(options, renderer, atOnce.said());
+        atOnce.setReader(reader);
         renderer.setProcedurals([&reader](const scene::Frame& f, std::span<const int> which) { return reader.make(f, which); });
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         readScenes(a.scenes, settings, options, reader, renderer);
     } catch (const std::bad_alloc&) {
         memory = true;
-        beside.said().report(Severity::Severe, Rie::NoMem, {}, "out of memory while the scene was read",
+        atOnce.said().report(Severity::Severe, Rie::NoMem, {}, "out of memory while the scene was read",
                              "the limit is " + memorySizeText(settings.memoryLimit) + "; --memory-limit sets another");
     }
     renderer.settle();

@@ -1,4 +1,4 @@
-// The options of render: what the parser is told of them, and what it cannot check.
+// The options of render: their declarations for the parser, and the checks that the parser cannot make.
 #include "base/installation.h"
 #include "base/limits.h"
 #include "base/memory.h"

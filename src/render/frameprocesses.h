@@ -1,5 +1,5 @@
-// Frames that are drawn beside each other, each in a process that begins as a copy of the one that reads the scene; and what they
-// say, in the order of the frames.
+// Several frames drawn at a time, each in a process that begins as a copy of the one that reads the scene. Their messages and
+// figures come out in the order of the frames.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/stopflag.h"
@@ -53,12 +53,12 @@ public:
     void say(const Diagnostic&);
 
     // --- in the process that reads ---
-    /// A frame comes: waits until one process more may draw. What is said from here on is the frame's.
+    /// Waits until one process more may draw. Messages from here on belong to the frame that comes.
     void openFrame();
     /// Makes the process. what: names the frame in messages. alone: no other draws meanwhile, openFrame() has been called behind
     /// settle(). Throws std::system_error where there can be no further process.
     bool start(const std::string& what, Writes, bool alone);
-    /// Ends what openFrame() began: what is said now is the reader's.
+    /// Messages from here on belong to the reader again.
     void closeFrame();
     /// Waits until all frames are drawn and told of.
     void settle();

@@ -4,11 +4,11 @@
 #include "bench/box_embree.h"
 #include "bench/box_oracle_runs.h"
 #include "bench/profile.h"
+#include "integrator/integrator.h"
 #include "lobes/sampling.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
 #include "scene/scene.h"
-#include "transport/integrator.h"
 #include "world/impl.h"
 #include <algorithm>
 #include <cstdio>

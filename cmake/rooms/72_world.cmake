@@ -1,1 +1,1 @@
-room(world DEPS lobes integrator clouds photons ptex shading)
+room(world DEPS lobes lanes clouds photons ptex shading)

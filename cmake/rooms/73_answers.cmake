@@ -1,2 +1,2 @@
 room(answers DEPS world)
-room_tests(integrator DEPS integrator answers)
+room_tests(lanes DEPS lanes answers)

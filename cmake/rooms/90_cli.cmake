@@ -4,7 +4,7 @@ file(GLOB cli_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/cli/*.cpp)
 list(FILTER cli_sources EXCLUDE REGEX "/main[.]cpp$")
 find_package(CLI11 REQUIRED)
 add_library(cli STATIC ${cli_sources})
-target_link_libraries(cli PUBLIC view render ri transport shading texture display clouds photons ptex rsl_jit shadeops base
+target_link_libraries(cli PUBLIC view render ri integrator shading texture display clouds photons ptex rsl_jit shadeops base
                       CLI11::CLI11 nlohmann_json::nlohmann_json)
 add_executable(alpenglow ${CMAKE_SOURCE_DIR}/src/cli/main.cpp)
 target_link_libraries(alpenglow PRIVATE cli)
@@ -14,7 +14,7 @@ add_custom_target(commit_header
 add_dependencies(cli commit_header)
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/cli/version.cpp PROPERTIES ALPENGLOW_ALONE ON) # a new commit compiles it again
 target_include_directories(cli PRIVATE ${CMAKE_BINARY_DIR}/generated)
-room_tests(cli DEPS render display transport)
+room_tests(cli DEPS render display integrator)
 if(TARGET test_cli)
   target_compile_definitions(test_cli PRIVATE ALPENGLOW_PROGRAM="$<TARGET_FILE:alpenglow>")
   add_dependencies(test_cli alpenglow)

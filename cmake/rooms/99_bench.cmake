@@ -48,7 +48,7 @@ if(TARGET test_bench)
   target_include_directories(test_bench PRIVATE ${CMAKE_SOURCE_DIR})
 endif()
 add_executable(lobe_bench EXCLUDE_FROM_ALL bench/lobe_bench.cpp)
-target_link_libraries(lobe_bench PRIVATE transport)
+target_link_libraries(lobe_bench PRIVATE integrator)
 add_dependencies(bench lobe_bench)
 # Lookups in maps, beside OpenImageIO's where it is there.
 add_executable(texture_bench EXCLUDE_FROM_ALL bench/texture_bench.cpp)

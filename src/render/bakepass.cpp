@@ -1,6 +1,6 @@
 // A pass before the picture: primitives whose shaders bake are shaded whole, on grids of micropolygons.
 #include "render/bakepass.h"
-#include "transport/bakes.h"
+#include "integrator/bakes.h"
 #include <algorithm>
 
 namespace alpenglow::render {

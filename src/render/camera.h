@@ -4,10 +4,10 @@
 // covers [i, i+1) x [j, j+1).
 #pragma once
 #include "base/diagnostics.h"
+#include "integrator/integrator.h"
 #include "render/film.h"
 #include "render/shutter.h"
 #include "scene/motion.h"
-#include "transport/integrator.h"
 #include <vector>
 
 namespace alpenglow::render {

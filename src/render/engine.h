@@ -1,7 +1,7 @@
 // The door from render/ to transport/: a pair of functions, so that tests can put a scene of closed forms behind it.
 #pragma once
 #include "base/stopflag.h"
-#include "transport/integrator.h"
+#include "integrator/integrator.h"
 #include <functional>
 #include <memory>
 #include <span>

@@ -1,14 +1,14 @@
 // `hidden` and `raytrace`: PixelSamples image samples a pixel, reconstructed by each display's own filter, in bands of rows.
 #include "base/limits.h"
 #include "base/sampler.h"
+#include "integrator/depths.h"
+#include "integrator/unmade.h"
 #include "render/growth.h"
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/rendering.h"
 #include "render/watcher.h"
 #include "scene/scene.h"
-#include "transport/depths.h"
-#include "transport/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <mutex>

@@ -1,7 +1,7 @@
 // What an imager sees of its frame as JSON, for part files: merging runs it without the scene.
 #pragma once
+#include "integrator/integrator.h"
 #include "scene/fwd.h"
-#include "transport/integrator.h"
 #include <optional>
 #include <string>
 

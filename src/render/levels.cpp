@@ -1,7 +1,7 @@
 #include "render/levels.h"
 #include "geometry/instance_attributes.h"
+#include "integrator/integrator.h"
 #include "scene/scene.h"
-#include "transport/integrator.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -4,13 +4,13 @@
 #include "base/file.h"
 #include "display/imageio.h"
 #include "display/quantize.h"
+#include "integrator/integrator.h"
 #include "render/film.h"
 #include "render/samplebuffer.h"
 #include "render/settings.h"
 #include "scene/display.h"
 #include "scene/fwd.h"
 #include "scene/lightpaths.h"
-#include "transport/integrator.h"
 #include <functional>
 
 namespace alpenglow::render {

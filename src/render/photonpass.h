@@ -1,7 +1,7 @@
 // Photon passes of a frame: maps that are written or made for its shaders, and the caustics of the hider path. Inside render/.
 #pragma once
+#include "integrator/photons.h"
 #include "render/rendering.h"
-#include "transport/photons.h"
 #include <functional>
 
 namespace alpenglow::render {

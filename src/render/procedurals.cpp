@@ -1,11 +1,11 @@
 // Procedurals that wait until a ray comes to their bound: whose content the frame needs from the beginning, and worlds with
 // what was met.
+#include "integrator/unmade.h"
 #include "render/framework.h"
 #include "render/lacks.h"
 #include "render/levels.h"
 #include "render/photonpass.h"
 #include "scene/unmade.h"
-#include "transport/unmade.h"
 #include <algorithm>
 #include <set>
 

@@ -1,12 +1,12 @@
 // The renderer's part in frames that processes draw (frameprocesses.h): what is handed to them, and what comes back.
 #include "base/realpath.h"
 #include "display/driver.h"
+#include "integrator/bakes.h"
+#include "integrator/unmade.h"
 #include "render/frameprocesses.h"
 #include "render/framework.h"
 #include "render/heap.h"
 #include "shadeops/bitcode.h"
-#include "transport/bakes.h"
-#include "transport/unmade.h"
 #include <algorithm>
 #include <tbb/cache_aligned_allocator.h>
 #include <utility>

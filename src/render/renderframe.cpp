@@ -3,6 +3,7 @@
 #include "base/processors.h"
 #include "base/realpath.h"
 #include "display/driver.h"
+#include "integrator/bakes.h"
 #include "render/bakepass.h"
 #include "render/curve.h"
 #include "render/deeppass.h"
@@ -18,7 +19,6 @@
 #include "render/provenance.h"
 #include "render/rendering.h"
 #include "render/watcher.h"
-#include "transport/bakes.h"
 #include <cmath>
 #include <tbb/global_control.h>
 

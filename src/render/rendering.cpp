@@ -1,5 +1,5 @@
 #include "render/rendering.h"
-#include "transport/unmade.h"
+#include "integrator/unmade.h"
 #include <algorithm>
 #include <chrono>
 #include <numeric>

@@ -49,7 +49,7 @@ struct Job {
 
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,
         Progress&, Diagnostics&);
-    /// The world with procedurals that rays came to (transport/unmade.h), by number; null: there is none, because the user
+    /// The world with procedurals that rays came to (integrator/unmade.h), by number; null: there is none, because the user
     /// wants to end or because it was reported. Unset: there are no such procedurals.
     std::function<std::shared_ptr<const transport::World>(std::span<const int>)> make;
     /// Does tasks 0 to count - 1 as Team::run() does. Those whose rays came to procedurals that are not made yet are done

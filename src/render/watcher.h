@@ -1,7 +1,7 @@
 // Who looks on while frames are rendered: a viewer, a preview in the terminal.
 #pragma once
+#include "integrator/integrator.h"
 #include "render/outputs.h"
-#include "transport/integrator.h"
 #include <functional>
 #include <memory>
 

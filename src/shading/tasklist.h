@@ -1,4 +1,4 @@
-// Tasks one behind the other, each in cache lines of its own, that may be written out of rows (integrator/stages.h).
+// Tasks one behind the other, each in cache lines of its own, that may be written out of rows (lanes/stages.h).
 #pragma once
 #include <algorithm>
 #include <cstddef>

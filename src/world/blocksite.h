@@ -1,4 +1,4 @@
-// Calls whose lobes are made for whole blocks of points (integrator/stages.h).
+// Calls whose lobes are made for whole blocks of points (lanes/stages.h).
 #pragma once
 #include "world/sites.h"
 

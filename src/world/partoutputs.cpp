@@ -1,4 +1,4 @@
-// Outputs that displays ask for and that light reaches get kernels of their own (wave/lightoutputs.cpp): which they are.
+// Outputs that displays ask for and that light reaches get kernels of their own (integrator/lightoutputs.cpp): which they are.
 #include "world/surfaces.h"
 #include <algorithm>
 #include <tuple>

@@ -1,7 +1,7 @@
 // What the call sites of a kernel mean, worked out when the kernel is bound, so that no name is compared while it runs.
 #pragma once
 #include "accel/accel.h"
-#include "integrator/blocks.h"
+#include "lanes/blocks.h"
 #include "lobes/lobe.h"
 #include "rsl/compiler.h"
 #include "rsl/front/protocol.h"

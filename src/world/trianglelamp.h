@@ -1,7 +1,7 @@
 // Lamps of a few triangles, near by: points that are even in the solid angle which they fill.
 #pragma once
 #include "geometry/shape.h"
-#include "integrator/blocks.h"
+#include "lanes/blocks.h"
 #include <array>
 
 namespace alpenglow::transport {

@@ -103,9 +103,9 @@ Arguments filled(const Shadeop& op, const Signature& s, Arguments a) {
 /// Derivatives pass through these where no table of calls can show it.
 const std::map<std::string, std::string>& elsewhere() {
     static const std::map<std::string, std::string> all = {
-        {"texture", "needs a map: tests/transport/derivatives_test.cpp"},
-        {"environment", "needs a map: tests/transport/derivatives_test.cpp"},
-        {"bump", "RSL over texture(), which needs a map: tests/transport/derivatives_test.cpp"},
+        {"texture", "needs a map: tests/integrator/derivatives_test.cpp"},
+        {"environment", "needs a map: tests/integrator/derivatives_test.cpp"},
+        {"bump", "RSL over texture(), which needs a map: tests/integrator/derivatives_test.cpp"},
         {"visibility", "what rays bring counts as constant"},
         {"rayhittest", "what rays bring counts as constant"},
         {"fulltrace", "what rays bring counts as constant"},
@@ -115,10 +115,10 @@ const std::map<std::string, std::string>& elsewhere() {
         {"generateSamplesEnv", "samples are drawn"},
         {"evaluateSamplesEnv", "what a map of the sky shows counts as constant"},
         {"generateSamplesAS", "samples are drawn"},
-        {"evaluateSamplesAS", "takes an array of structures: tests/transport/plausiblesamples_test.cpp"},
-        {"directlighting", "asks lights and another shader: tests/transport/plausible_test.cpp"},
-        {"diffuselighting", "asks lights and another shader: tests/transport/plausible_test.cpp"},
-        {"specularlighting", "asks lights and another shader: tests/transport/plausible_test.cpp"},
+        {"evaluateSamplesAS", "takes an array of structures: tests/integrator/plausiblesamples_test.cpp"},
+        {"directlighting", "asks lights and another shader: tests/integrator/plausible_test.cpp"},
+        {"diffuselighting", "asks lights and another shader: tests/integrator/plausible_test.cpp"},
+        {"specularlighting", "asks lights and another shader: tests/integrator/plausible_test.cpp"},
         {"indirectspecular", "what rays bring counts as constant"},
     };
     return all;

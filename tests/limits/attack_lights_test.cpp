@@ -1,6 +1,6 @@
 // Scenes that ended the program: lights whose shaders are not there, and lights that ask about what they light.
+#include "integrator/harness.h"
 #include "scene/scene.h"
-#include "transport/harness.h"
 
 namespace attack_lights_test {
 

@@ -1,7 +1,7 @@
 // Local arrays of shaders: what is large lives outside the stack, and their sum has a limit.
 #include "base/limits.h"
+#include "integrator/harness.h"
 #include "rsl/evaluate.h"
-#include "transport/harness.h"
 
 namespace local_arrays_test {
 

@@ -1,6 +1,6 @@
 // How deep paths go.
 #include "base/limits.h"
-#include "transport/harness.h"
+#include "integrator/harness.h"
 
 namespace path_limits_test {
 

@@ -1,8 +1,8 @@
 // Hider "path" "caustics": photons bring what comes by way of mirrors and glass, paths bring the rest. Both together are the
 // light that paths alone find, and closed forms where there are some.
+#include "integrator/floorscene.h"
+#include "integrator/photons.h"
 #include "photons/photonmap.h"
-#include "transport/floorscene.h"
-#include "transport/photons.h"
 
 namespace caustics_test {
 

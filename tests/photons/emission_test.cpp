@@ -1,9 +1,9 @@
 // Photons as lights emit them and surfaces scatter them: their power against closed forms, maps against closed forms, the same
 // bits in any company.
+#include "integrator/floorscene.h"
+#include "integrator/photons.h"
 #include "lobes/sampling.h"
 #include "photons/photonmap.h"
-#include "transport/floorscene.h"
-#include "transport/photons.h"
 #include <cstring>
 
 namespace emission_test {

@@ -1,8 +1,8 @@
 // Levels of detail: sizes of boxes worked out by hand, and which representations of a frame are left.
 #include "geometry/instance_attributes.h"
+#include "integrator/integrator.h"
 #include "render/levels.h"
 #include "scene/scene.h"
-#include "transport/integrator.h"
 #include <gtest/gtest.h>
 
 namespace levels_test {

@@ -1,0 +1,1 @@
+room(integrator DEPS answers lanes)

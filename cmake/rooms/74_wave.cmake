@@ -1,1 +1,0 @@
-room(wave DEPS answers integrator)

@@ -1,1 +1,0 @@
-room(transport DEPS wave)

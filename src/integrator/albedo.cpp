@@ -1,0 +1,47 @@
+// The output "albedo": what lobes give back of even light. Of those whose albedo is no more than an estimate (facets with Fresnel
+// reflection, highlights) it is measured, by directions drawn as their rays are: right on average.
+#include "integrator/gather.h"
+
+namespace alpenglow::transport {
+
+namespace {
+constexpr uint32_t kDraws = 8;
+} // namespace
+
+bool Gather::albedoIsMeasured(const LobeVertex& l) const {
+    return world_.settings_.firstSeen && !l.ownsTarget && !l.delta && l.below < 0 &&
+           (l.kind->distribution || l.rays->type != RayType::Diffuse);
+}
+
+void Gather::measureAlbedos() {
+    if (!world_.settings_.firstSeen || c_->aside) return;
+    std::vector<const LobeVertex*> lobes;
+    for (const LobeVertex& l : e_.lobes)
+        if (rayOf(l).counts && albedoIsMeasured(l)) lobes.push_back(&l);
+    if (lobes.empty()) return;
+    LobeColumns& rows = e_.lobeRows_;
+    std::vector<Color> sum(lobes.size(), Color(0));
+    std::vector<Vec3> ways(lobes.size());
+    std::vector<uint8_t> drawn(lobes.size());
+    for (uint32_t k = 0; k < kDraws; ++k) {
+        numbers_.clear();
+        for (const LobeVertex* l : lobes)
+            numbers_.askPair(e_.random(rayOf(*l)).draw(k, kDraws).numbers(), rayOf(*l).vertex, kAlbedo,
+                             l->site * 4096 + l->occurrence);
+        numbers_.draw();
+        for (size_t i = 0; i < lobes.size(); ++i) rows.ask(lobes[i]->place, numbers_.pair(i));
+        rows.sample();
+        for (size_t i = 0; i < lobes.size(); ++i)
+            if ((drawn[i] = rows.drawn(lobes[i]->place, ways[i]))) rows.ask(lobes[i]->place, ways[i]);
+        rows.evaluate();
+        for (size_t i = 0; i < lobes.size(); ++i)
+            if (const LobeValue v = drawn[i] ? rows.value(lobes[i]->place) : LobeValue{}; v.pdf > 0) sum[i] += v.colour / v.pdf;
+    }
+    for (size_t i = 0; i < lobes.size(); ++i) {
+        const PathRay& from = rayOf(*lobes[i]);
+        const Color seen = from.weight * lobes[i]->weight * (sum[i] / float(kDraws));
+        if (isFinite(seen)) e_.results[size_t(from.sample->path)]->albedo += seen;
+    }
+}
+
+} // namespace alpenglow::transport

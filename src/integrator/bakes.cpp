@@ -1,0 +1,131 @@
+#include "integrator/bakes.h"
+#include "scene/scene.h"
+#include "shading/grids.h"
+#include "world/cloudsite.h"
+#include "world/cloudstore.h"
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+
+namespace {
+
+const WorldImpl& implOf(const World& w) { return static_cast<const WorldImpl&>(w); }
+
+bool bakesAt(const BoundKernel& k) {
+    return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.cloud && s.cloud->writes; });
+}
+
+/// Whether some shader bakes at the points of a surface: of those that run there.
+bool bakesAt(const WorldImpl& w, const SurfaceBinding& b) {
+    bool bakes = false;
+    for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) bakes |= bakesAt(*k);
+    if (!bakes) w.eachLight(b.lights, [&](int l) { return bakes |= bakesAt(w.lights_[size_t(l)].kernel); });
+    return bakes;
+}
+
+Vec3 placeOf(const WorldImpl& w, const shading::GridPoint& p) {
+    const geometry::SurfacePoint at = w.shapes_[p.shape]->evaluateHit(p.prim, p.b1, p.b2);
+    return at.displaced ? at.displacedP : at.P;
+}
+
+} // namespace
+
+bool bakes(const World& world) {
+    const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of others have worlds of their own
+    return w && w->clouds_ && w->clouds_->bakes;
+}
+
+std::vector<uint32_t> bakedShapes(const World& world) {
+    const WorldImpl& w = implOf(world);
+    std::vector<uint32_t> all;
+    for (uint32_t i = 0; i < w.shapes_.size(); ++i) {
+        const SurfaceBinding& b = w.bindings_[size_t(w.bindingOf_[i])];
+        if (bakesAt(w, b) && shading::hasGrid(*w.shapes_[i])) all.push_back(i);
+    }
+    return all;
+}
+
+bool bakesAllOrNone(const World& world, uint32_t shape) {
+    const WorldImpl& w = implOf(world);
+    const SurfaceBinding& b = w.bindings_[size_t(w.bindingOf_[shape])];
+    bool varies = false;
+    const auto look = [&](const BoundKernel& k) {
+        return varies |= std::any_of(k.sites.begin(), k.sites.end(),
+                                     [](const SiteInfo& s) { return s.cloud && s.cloud->writes && !s.cloud->steady; });
+    };
+    for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) look(*k);
+    w.eachLight(b.lights, [&](int l) {
+        for (const auto& [strings, k] : w.lights_[size_t(l)].variants) look(k);
+        return look(w.lights_[size_t(l)].kernel);
+    });
+    return !varies;
+}
+
+void noteLightsOfBakes(const World& world) {
+    CloudStore& c = *implOf(world).clouds_;
+    c.lightsRan.clear();
+    c.notesLights = true;
+}
+
+bool bakingLightsRan(const World& world, uint32_t shape) {
+    const WorldImpl& w = implOf(world);
+    w.clouds_->notesLights = false;
+    bool missing = false;
+    w.eachLight(w.bindings_[size_t(w.bindingOf_[shape])].lights, [&](int l) {
+        const BoundLight& light = w.lights_[size_t(l)];
+        return missing |= bakesAt(light.kernel) && !w.clouds_->lightsRan.count(&light);
+    });
+    return !missing;
+}
+
+void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPoint>& to) {
+    const WorldImpl& w = implOf(world);
+    const size_t before = to.size();
+    std::vector<Vec3> P;
+    const geometry::Shape& s = *w.shapes_[shape];
+    shading::gridOf(s, geometry::DiceCamera::from(w.frame_->options), w.clouds_->centres, to, P);
+    size_t kept = before;
+    for (size_t i = before; i < to.size(); ++i) {
+        to[i].shape = shape;
+        if (w.accel_->hasSolids() && !w.accel_->keeps(shape, P[i - before], s.evaluateHit(to[i].prim, to[i].b1, to[i].b2).n, 0))
+            continue;
+        to[kept++] = to[i];
+    }
+    to.resize(kept);
+}
+
+CameraRay rayTo(const World& world, shading::GridPoint& point, int number, const CameraRay& pixel) {
+    const WorldImpl& w = implOf(world);
+    CameraRay r = pixel;
+    const Vec3 at = placeOf(w, point);
+    r.width = std::max(0.f, pixel.width - pixel.spread * pixel.start);
+    r.start = 0;
+    const float l = length(at);
+    if (w.frame_->options.projection == "perspective") {
+        r.origin = Vec3(0.f);
+        r.direction = l > 0 ? at / l : Vec3(0, 0, 1);
+        point.distance = l;
+    } else {
+        r.origin = Vec3(at.x, at.y, std::min(0.f, at.z - 1));
+        r.direction = Vec3(0, 0, 1);
+        point.distance = at.z - r.origin.z;
+    }
+    r.cosine = r.direction.z;
+    r.py = int(point.shape);
+    r.px = number;
+    r.grid = &point;
+    return r;
+}
+
+bool bakedNow(const World& world) { return implOf(world).clouds_->baked.pending(); }
+
+void settleBakes(const World& world, bool keep) {
+    clouds::BakeLog& log = implOf(world).clouds_->baked;
+    keep ? log.settle() : log.discard();
+}
+
+bool writeBakes(const World& world, bool allowWrite, const clouds::FileOwners& others, Diagnostics& d) {
+    return implOf(world).clouds_->baked.write({".", allowWrite}, d, others);
+}
+
+} // namespace alpenglow::transport

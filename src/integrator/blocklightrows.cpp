@@ -1,0 +1,165 @@
+// Samples of lights for vertices in blocks whose points, kernel and values are rows, no structure a point: of emitters of a few
+// flat triangles, and of lights without geometry. What the others do in blocklights.cpp, with the same bits.
+#include "base/direction.h"
+#include "integrator/blockvertices.h"
+#include "integrator/lightsample.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+/// Whether points of the light come from the stage `place` or are one, and its kernel asks for nothing but what that gives.
+bool BlockVertices::inRows(const BoundLight& l) const {
+    const bool emitter = l.kind == LightKind::Area;
+    if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.sky || l.cone) return false;
+    const auto& k = *l.kernel.kernel;
+    return l.kernel.plan->readsLightRows() && k.sites().empty() && !k.facts().suspends && !k.facts().lightLoops &&
+           !l.instance->moving;
+}
+
+void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
+    placeInRows(light);
+    const size_t n = litBlocks_.size() * kBlock;
+    auto call = e_.takeContext();
+    call->engine = &e_;
+    call->bound = &light.kernel;
+    call->lit = nullptr;
+    call->light = &light;
+    call->ownShadows.clear();
+    if (!call->batch) call->batch = std::make_shared<shading::Batch>();
+    const std::span<const float> rows(lamp_);
+    parameters_.resize(world_.lights_.size());
+    auto& parameters = parameters_[size_t(&light - world_.lights_.data())];
+    if (!parameters) parameters = std::make_unique<const shading::ParameterRows>(*light.kernel.plan, light.instance->parameters);
+    call->batch->assign(light.kernel.kernel, *light.kernel.plan,
+                        {rows.first(3 * n), rows.subspan(3 * n, 3 * n), rows.subspan(6 * n, 3 * n)},
+                        {&light.instance->parameters, &light.instance->toCurrent, nullptr, parameters.get()});
+    e_.bindCall(call->batch->call(), *call);
+    light.kernel.kernel->run(&call->batch->call());
+    call->ran();
+    takeRows(light, *call->batch, c);
+    e_.giveBack(std::move(call));
+    connect(light, c);
+}
+
+/// A point of the light for each point of blocks where some sample it.
+void BlockVertices::placeInRows(const BoundLight& light) {
+    beginLights(light);
+    const size_t n = litBlocks_.size() * kBlock;
+    lamp_.resize(9 * n);
+    placed_.assign(litBlocks_.size(), {0xffffu, 0xffffu, 0xffffu});
+    if (light.kind == LightKind::Area) {
+        const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+        drawNumbers(use << 1, pairs_);
+        if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
+    } else {
+        const Vec3 origin = originOfLight(*light.instance, 0);
+        for (size_t q = 0; q < 3; ++q) std::fill_n(lamp_.data() + q * n, n, origin[int(q)]);
+        std::fill_n(lamp_.data() + 3 * n, 3 * n, 0.f);
+    }
+    for (size_t k = 0; k < litBlocks_.size(); ++k) {
+        if (light.kind == LightKind::Area) placeOnEmitter(k, *light.emitter);
+        for (size_t q = 0; q < 3; ++q)
+            std::copy_n(vertices_[litBlocks_[k]].P[q], kBlock, lamp_.data() + (6 + q) * n + k * kBlock);
+    }
+}
+
+/// The same for one of litBlocks_: shape by shape, of each the points that chance gives it.
+void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
+    const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
+    float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
+    LightBlock& l = lights_[b];
+    const std::span<const FlatEmitter> shapes = emitter.flat();
+    const VertexBlock& v = vertices_[b];
+    Lanes of[limits::kLightsSampled] = {};
+    alignas(64) double share[kBlock];
+    for (size_t i = 0; i < size_t(kBlock); ++i) {
+        const float choose = shapes.size() > 1 ? choices_[b].x[i] : 0;
+        of[emitter.flatFrom({v.P[0][i], v.P[1][i], v.P[2][i]}, choose, share[i])] |= 1u << i;
+    }
+    Placed& placed = placed_[k] = {};
+    for (size_t s = 0; s < shapes.size(); ++s) {
+        if (!(of[s] & lit_[b])) continue;
+        LightBlock mine;
+        alignas(64) Row rows[6];
+        const bool all = of[s] == 0xffffu;
+        const Lanes there =
+            of[s] & (all ? stages_.place(v, shapes[s], pairs_[b].x, pairs_[b].y, share, l, P, N, int(n))
+                         : stages_.place(v, shapes[s], pairs_[b].x, pairs_[b].y, share, mine, rows[0], rows[3], kBlock));
+        for (Lanes left = all ? 0 : of[s]; left; left &= left - 1) {
+            const size_t i = size_t(std::countr_zero(left));
+            for (size_t q = 0; q < 3; ++q) {
+                P[q * n + i] = rows[q][i], N[q * n + i] = rows[3 + q][i];
+                l.w[q][i] = mine.w[q][i], l.end[q][i] = mine.end[q][i];
+            }
+            l.density[i] = mine.density[i];
+        }
+        placed.points |= there;
+        if (emitter.flatVisibility(s) & visibilityBit(RayType::Diffuse)) placed.metDiffuse |= there;
+        if (emitter.flatVisibility(s) & visibilityBit(RayType::Specular)) placed.metSpecular |= there;
+    }
+}
+
+/// The light at the points, from the outputs of its kernel.
+void BlockVertices::takeRows(const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
+    values_.clear();
+    queryAt_.clear();
+    if (light.shadowRadius >= 0) queryAt_.resize(points_, -1);
+    for (size_t k = 0; k < litBlocks_.size(); ++k) {
+        LightBlock& l = lights_[litBlocks_[k]];
+        takeLightOf(k, light, from, c);
+        l.metDiffuse = l.asked & placed_[k].metDiffuse;
+        l.metSpecular = l.asked & placed_[k].metSpecular;
+    }
+}
+
+/// The same of one of litBlocks_.
+void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
+    const size_t b = litBlocks_[k], first = k * kBlock;
+    LightBlock& l = lights_[b];
+    const auto row = [&](int output, int component) { return from.row(output, component).data() + first; };
+    const auto way = [&](int i) {
+        return light.outL < 0 ? Vec3() : Vec3(row(light.outL, 0)[i], row(light.outL, 1)[i], row(light.outL, 2)[i]);
+    };
+    for (int q = 0; q < 3; ++q) std::copy_n(row(light.outCl, q), kBlock, l.Cl[q]);
+    for (int i = 0; light.intensityScale > 0 && i < kBlock;
+         ++i) { // the kernel divided by the squared distance: radiance does not
+        const float scale = dot(way(i), way(i)) * light.intensityScale;
+        for (int q = 0; q < 3; ++q) l.Cl[q][i] *= scale;
+    }
+    const auto kept = [&](int output, Row& to) {
+        for (int i = 0; i < kBlock; ++i) to[i] = std::max(0.f, 1 - (output < 0 ? 0 : row(output, 0)[i]));
+    };
+    kept(light.nonDiffuse, l.keptDiffuse);
+    kept(light.nonSpecular, l.keptSpecular);
+    for (Lanes left = lit_[b] & placed_[k].points; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        if (light.outLit >= 0 && row(light.outLit, 0)[i] == 0) continue;
+        const Color Cl{l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};
+        const size_t point = b * kBlock + size_t(i);
+        if (!isFinite(Cl)) e_.notFinite(&c.rays[point], "Cl", light.instance.get());
+        else if (!(Cl == Color(0))) l.asked |= 1u << i;
+        if (light.kind != LightKind::Area && l.asked >> i & 1) takePlace(light, point, way(i), from, first + size_t(i));
+    }
+}
+
+/// Where a light without geometry stands as seen from a point. at: in the batch.
+void BlockVertices::takePlace(const BoundLight& light, size_t point, const Vec3& L, const shading::Batch& from, size_t at) {
+    LightBlock& l = lights_[point / kBlock];
+    const size_t i = point % kBlock;
+    const Vec3 w = directionOr(-L, Vec3(0, 0, 1));
+    for (int q = 0; q < 3; ++q) l.w[q][i] = w[q];
+    l.density[i] = 1;
+    const float far = light.kind == LightKind::Distant ? 1e38f : length(L);
+    l.far[i] = far < 1e30f ? far * (1 - 1e-5f) : far;
+    if (light.shadowRadius < 0) return;
+    LightValue v;
+    v.L = L;
+    e_.takeShadowSays(v, light, from.value(light.shadowRadius, 0, int(at)),
+                      light.shadowSamples < 0 ? 1 : from.value(light.shadowSamples, 0, int(at)));
+    if (!(v.shadowRadius > 0)) return;
+    queryAt_[point] = int32_t(values_.size());
+    values_.push_back(v);
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,180 @@
+// Samples of lights for vertices in blocks, and what their lobes give back of them.
+#include "base/direction.h"
+#include "integrator/blockvertices.h"
+#include "integrator/lightsample.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+void BlockVertices::light(BatchContext& c) {
+    const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
+    for (const int number : list.sampled) {
+        const BoundLight& light = world_.lights_[size_t(number)];
+        if (!light.importance) continue; // rays alone find it
+        lit_.assign(blocks_, 0);
+        for (size_t k = 0; k < count_; ++k)
+            for (size_t b = 0; b < blocks_ && samples(sites_[k], light); ++b) lit_[b] |= sites_[k].lobes[b].lights;
+        litBlocks_.clear();
+        for (size_t b = 0; b < blocks_; ++b)
+            if (lit_[b]) litBlocks_.push_back(b);
+        if (litBlocks_.empty()) continue;
+        if (inRows(light)) {
+            lightInRows(light, c);
+            continue;
+        }
+        sampleLight(light, c);
+        if (asked_.empty()) continue;
+        values_.assign(asked_.size(), {});
+        e_.evaluateLight(light, queries_, values_);
+        takeValues(light, c);
+        connect(light, c);
+    }
+}
+
+/// Whether lobes of a site ask a light for samples. trace() knows emitters and skies, and not those that are illuminance's.
+bool BlockVertices::samples(const Site& s, const BoundLight& light) {
+    if (!s.lights || s.lighting) return s.lights;
+    return (light.kind == LightKind::Area || light.sky) && light.strategy != LightStrategy::Illuminance;
+}
+
+/// The numbers of a stream (NumberBlock) at all points.
+void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock>& to) {
+    to.resize(blocks_);
+    for (size_t b = 0; b < blocks_; ++b) {
+        const VertexBlock& v = vertices_[b];
+        render::NumberBlock& n = to[b];
+        std::copy_n(v.low, kBlock, n.low);
+        std::copy_n(v.high, kBlock, n.high);
+        std::copy_n(v.index, kBlock, n.index);
+        std::copy_n(v.vertex, kBlock, n.vertex);
+        std::fill_n(n.stream, kBlock, stream);
+        std::fill_n(n.occurrence, kBlock, 0u);
+    }
+    render::drawBlocks(to);
+}
+
+/// A point of the light for each point that samples it.
+void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
+    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+    if (takesPair(light, true)) drawNumbers(use << 1, pairs_);
+    if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
+    asked_.clear();
+    e_.pointsOfRows(c);
+    for (size_t b = 0; b < blocks_; ++b)
+        for (Lanes left = lit_[b]; left; left &= left - 1) {
+            const int lane = std::countr_zero(left), point = int(b) * kBlock + lane;
+            if (asked_.size() == queries_.size()) queries_.emplace_back(); // those of the light before are written again
+            ShadePoint& q = queries_[asked_.size()];
+            Query& a = asked_.emplace_back();
+            a.point = point;
+            tellLit(q, c.points[size_t(point)]);
+            LightNumbers u;
+            if (takesPair(light, true)) u.pair = {pairs_[b].x[lane], pairs_[b].y[lane]};
+            if (takesChoice(light)) u.choose = choices_[b].x[lane];
+            bool placed = placeLightSample(world_, light, u, true, q, a.sample);
+            // Sides 1: from where rays pass through the emitter they cannot meet it, and it sends nothing.
+            if (placed && light.kind == LightKind::Area && !light.mean && a.sample.shape->oneSided())
+                placed = dot(meetsNormal(q.surface), a.sample.direction) < 0;
+            if (!placed) asked_.pop_back();
+        }
+    queries_.resize(asked_.size());
+}
+
+/// Room for what a light sends, nothing yet.
+void BlockVertices::beginLights(const BoundLight& light) {
+    lights_.resize(blocks_);
+    for (LightBlock& l : lights_) {
+        l.asked = l.metDiffuse = l.metSpecular = 0;
+        l.emitter = light.kind == LightKind::Area;
+        l.met = light.hasDensity();
+    }
+}
+
+/// The light at the points, in rows.
+void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
+    beginLights(light);
+    queryAt_.resize(points_);
+    for (size_t k = 0; k < asked_.size(); ++k) {
+        const LightValue& value = values_[k];
+        const Query& a = asked_[k];
+        if (value.lit && !isFinite(value.Cl)) e_.notFinite(&c.rays[size_t(a.point)], "Cl", light.instance.get());
+        else if (value.lit && value.Cl != Color(0)) {
+            LightBlock& l = lights_[size_t(a.point / kBlock)];
+            const int lane = a.point % kBlock;
+            const bool drawn = l.emitter || light.sky;
+            const Vec3 w = drawn ? a.sample.direction : directionOr(-value.L, Vec3(0, 0, 1));
+            const Vec3 end = l.emitter ? leavesFrom(queries_[k].surface, -w) : Vec3();
+            for (int q = 0; q < 3; ++q) l.w[q][lane] = w[q], l.Cl[q][lane] = value.Cl[q], l.end[q][lane] = end[q];
+            l.density[lane] = drawn ? a.sample.pdf : 1;
+            const float far = light.sky || light.kind == LightKind::Distant ? 1e38f : length(value.L);
+            l.far[lane] = far < 1e30f ? far * (1 - 1e-5f) : far;
+            queryAt_[size_t(a.point)] = int32_t(k);
+            l.keptDiffuse[lane] = value.kept(RayType::Diffuse);
+            l.keptSpecular[lane] = value.kept(RayType::Specular);
+            l.asked |= 1u << lane;
+            l.metDiffuse |= Lanes((a.sample.visibility & visibilityBit(RayType::Diffuse)) != 0) << lane;
+            l.metSpecular |= Lanes((a.sample.visibility & visibilityBit(RayType::Specular)) != 0) << lane;
+        }
+    }
+}
+
+void BlockVertices::connect(const BoundLight& light, BatchContext& c) {
+    for (size_t b = 0; b < blocks_; ++b)
+        if (lights_[b].asked) connectBlock(b, light, c);
+}
+
+/// Shadow rays from the points of a block: one from each, for all of its lobes.
+void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
+    const LightBlock& l = lights_[b];
+    stages_.aim(vertices_[b], l, shadow_);
+    int32_t sent[kBlock];
+    std::fill_n(sent, kBlock, -1);
+    for (size_t k = 0; k < count_; ++k) {
+        Site& s = sites_[k];
+        const LobeBlock& lobe = s.lobes[b];
+        const Lanes asked = lobe.lights & l.asked;
+        if (!asked || !samples(s, of)) continue;
+        s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
+        Lanes failed = 0;
+        const float* kept = !s.lighting ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
+        Lanes some = stages_.contribute(vertices_[b], lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting,
+                                        value_[0], shadow_, &failed);
+        for (; failed; failed &= failed - 1)
+            e_.notFinite(c, c.rays[b * kBlock + size_t(std::countr_zero(failed))], uint32_t(s.number));
+        for (; some; some &= some - 1) {
+            const int lane = std::countr_zero(some);
+            const size_t point = b * kBlock + size_t(lane);
+            const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};
+            if (sent[lane] >= 0) {
+                ShadowRay& first = e_.shadows[size_t(sent[lane])];
+                e_.moreLight_.push_back({light, c.targets[point], -1, false, 0, first.more});
+                first.more = int32_t(e_.moreLight_.size()) - 1;
+                continue;
+            }
+            sent[lane] = int32_t(e_.shadows.size());
+            sendShadow(point, of, light, c);
+        }
+    }
+}
+
+void BlockVertices::sendShadow(size_t point, const BoundLight& of, const Color& light, BatchContext& c) {
+    const size_t lane = point % kBlock;
+    const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
+    ShadowRay& s = e_.shadows.emplace_back();
+    s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], light,
+         c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
+    const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
+    if (query < 0) return;
+    const LightValue& value = values_[size_t(query)];
+    if (value.shadowRadius > 0) { // to a point of the disk
+        const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
+        const Vec2 u = e_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
+        const Vec3 to = onShadowDisk(row3(vertices_[point / kBlock].P) - value.L, s.dir, value.shadowRadius, u) - s.origin;
+        s.dir = normalizeOr(to, s.dir);
+        s.distance = length(to) * (1 - 1e-5f);
+    }
+    if (value.ownShadow) s.distance = 0; // the light's shader looked for itself
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,155 @@
+// The rays on which paths go on from vertices in blocks.
+#include "integrator/blockvertices.h"
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace alpenglow::transport {
+
+void BlockVertices::scatter(BatchContext& c, Sched& sched) {
+    const bool chooses = count_ > 1 || !c.clear.empty();
+    if (chooses) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_);
+    pairs_.resize(1);
+    for (size_t b = 0; b < blocks_; ++b) {
+        stages_.pick(vertices_[b], lobesOf(b).data(), int(count_), chooses ? choices_[b].x : nullptr, next_);
+        for (size_t i = b * kBlock; i < std::min(points_, (b + 1) * kBlock) && !c.clear.empty(); ++i)
+            c.passes[i] = vertices_[b].passes[i % kBlock];
+        drawDirections(b);
+        if (next_.goes) sendRays(b, c, sched);
+    }
+}
+
+/// Points whose lobe is that of a site.
+static Lanes pickedOf(const ScatterBlock& s, int site) {
+    Lanes picked = 0;
+    for (int i = 0; i < kBlock; ++i) picked |= Lanes(s.site[i] == site) << i;
+    return picked;
+}
+
+/// Directions of the lobes that were picked, and what they give back from there.
+void BlockVertices::drawDirections(size_t b) {
+    const VertexBlock& v = vertices_[b];
+    render::NumberBlock& n = pairs_[0];
+    std::copy_n(v.low, kBlock, n.low);
+    std::copy_n(v.high, kBlock, n.high);
+    std::copy_n(v.index, kBlock, n.index);
+    std::copy_n(v.vertex, kBlock, n.vertex);
+    for (int i = 0; i < kBlock; ++i) n.stream[i] = next_.site[i] < 0 ? 0 : uint32_t(sites_[size_t(next_.site[i])].number) << 1;
+    std::fill_n(n.occurrence, kBlock, 0u);
+    render::drawBlocks(std::span(pairs_).first(1));
+    for (size_t k = 0; k < count_; ++k) {
+        const Lanes picked = pickedOf(next_, int(k));
+        if (!picked) continue;
+        Site& s = sites_[k];
+        const LobeBlock& lobe = s.lobes[b];
+        s.lanes->sample(lobe.lobe[0], picked, n.x, drawn_[0]);
+        stages_.takeDirections(lobe, int(k), s.lighting, drawn_[0], next_);
+    }
+    for (size_t k = 0; k < count_; ++k) {
+        const Lanes picked = pickedOf(next_, int(k)) & next_.goes & ~next_.single;
+        if (!picked) continue;
+        const LobeBlock& lobe = sites_[k].lobes[b];
+        sites_[k].lanes->evaluate(lobe.lobe[0], picked, next_.direction[0], value_[0]);
+        stages_.takeValues(lobe, int(k), value_[0], next_);
+    }
+}
+
+/// Numbers that decide whether paths go on.
+void BlockVertices::throwDice(size_t b) {
+    const VertexBlock& v = vertices_[b];
+    uint32_t keys[kMostSites];
+    for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
+    stages_.name(v, keys, next_);
+    if (!e_.rules().roulette || std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; })) {
+        std::fill_n(next_.dice, kBlock, 0.f);
+        return;
+    }
+    render::NumberBlock& n = pairs_[0];
+    std::copy_n(next_.vertex, kBlock, n.vertex);
+    std::fill_n(n.stream, kBlock, kRoulette << 1 | render::SampleNumbers::kSingle);
+    render::drawBlocks(std::span(pairs_).first(1));
+    std::copy_n(n.x, kBlock, next_.dice);
+}
+
+void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
+    throwDice(b);
+    for (Lanes bad = stages_.extend(vertices_[b], e_.rules().roulette, next_); bad; bad &= bad - 1) {
+        const int lane = std::countr_zero(bad);
+        e_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
+    }
+    if (!next_.goes) return;
+    turnRays(b, c);
+    keepLobes(b, c);
+    spawn(rays_[b], sched);
+}
+
+/// The rays of a block go on from its vertices.
+void BlockVertices::turnRays(size_t b, BatchContext&) {
+    const VertexBlock& v = vertices_[b];
+    RayBlock& r = rays_[b];
+    alignas(64) Row towards, from;
+    for (int i = 0; i < kBlock; ++i) {
+        const auto dotOfNormal = [&](const Row* w) { return w[0][i] * v.n[0][i] + w[1][i] * v.n[1][i] + w[2][i] * v.n[2][i]; };
+        towards[i] = dotOfNormal(next_.direction);
+        from[i] = dotOfNormal(r.direction);
+        const float x = v.P[0][i] - r.origin[0][i], y = v.P[1][i] - r.origin[1][i], z = v.P[2][i] - r.origin[2][i];
+        r.width[i] = r.width[i] + r.spread[i] * std::sqrt(x * x + y * y + z * z);
+        r.spread[i] = std::max(r.spread[i], next_.spread[i] * 0.5f);
+    }
+    for (int q = 0; q < 3; ++q) {
+        std::copy_n(v.P[q], kBlock, r.lobeOrigin[q]);
+        std::copy_n(next_.origin[q], kBlock, r.origin[q]);
+        std::copy_n(next_.direction[q], kBlock, r.direction[q]);
+        std::copy_n(next_.weight[q], kBlock, r.weight[q]);
+    }
+    std::fill_n(r.maxDistance, kBlock, 1e38f);
+    std::copy_n(next_.vertex, kBlock, r.vertex);
+    Counters& n = e_.counters;
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const Site& s = sites_[size_t(next_.site[i])];
+        const int bounces = v.bounces[i] + 1;
+        r.depth[i] = bounces + int16_t(r.specular[i] >> 16);
+        r.bounces[i] += 1 + (uint32_t(s.diffuse) << 16);
+        r.specular[i] = (r.specular[i] & 0xffff0000u) | uint16_t(r.specular[i] + !s.diffuse);
+        n.depthMax = std::max(n.depthMax, bounces);
+        n.depthSum += 1; // over camera rays: the mean number of bounces
+        if (s.diffuse) continue;
+        if (s.rays->label == e_.totalReflection_) ++n.totalReflected;
+        else ++(towards[i] * from[i] > 0 ? n.refracted : n.reflected);
+    }
+}
+
+/// What the rays of a block tell of the lobes that drew them.
+void BlockVertices::keepLobes(size_t b, BatchContext& c) {
+    RayBlock& r = rays_[b];
+    const VertexBlock& v = vertices_[b];
+    for (int i = 0; i < kBlock; ++i) r.flags[i] &= kAskedBits; // and no trail
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const Site& s = sites_[size_t(next_.site[i])];
+        const uint64_t kind = reinterpret_cast<uintptr_t>(s.rays);
+        r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
+        const bool sampled = s.lights && !(next_.single >> i & 1); // then an emitter that it meets counts with the weight of both
+        r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
+        r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
+        r.extra[i] = -1;
+        if (next_.indirect[i] == 0 || v.energyScale[i] == 1) continue;
+        RayExtra extra;
+        extra.indirect = v.energyScale[i];
+        r.extra[i] = e_.newExtra(extra);
+    }
+}
+
+void BlockVertices::spawn(const RayBlock& rays, Sched& sched) {
+    if (sched.plain()) {
+        sched.spawned(size_t(stages_.store(&rays, kTaskWords, next_.goes, sched.room(kBlock, 1))));
+        return;
+    }
+    std::array<Sched::Task, kBlock + 1> tasks;
+    const int count = stages_.store(&rays, kTaskWords, next_.goes, tasks.data());
+    for (int k = 0; k < count; ++k) sched.spawn(tasks[size_t(k)]);
+}
+
+} // namespace alpenglow::transport

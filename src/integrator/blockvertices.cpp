@@ -1,0 +1,226 @@
+// From requests of a kernel to lobes in blocks, and the chances that their rays are followed.
+#include "integrator/blockvertices.h"
+#include "world/emitterfootprint.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+namespace {
+Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
+} // namespace
+
+BlockVertices::BlockVertices(Engine& e) : e_(e), world_(e.world()), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+    std::fill_n(whole_, kBlock, 1.f);
+    const Settings& s = world_.settings_;
+    lastSkies_ = std::any_of(world_.skies_.begin(), world_.skies_.end(),
+                             [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
+    const bool rules = e.rules().pickOne && e.rules().lightsAtRequests && !s.localRoulette && !s.lightOnly && s.indirect;
+    const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
+    usable_ = s.blocks && rules && lights && world_.media_.empty() && !s.firstSeen && !s.lightPaths &&
+              world_.lightOutputs_.empty() && !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
+}
+
+/// Whether a light's samples are what blocks hold: an emitter or a light with a place, told nothing and asked for nothing more.
+static bool isPlainLight(const BoundLight& l) {
+    return !l.asksSurface && !l.channels && l.sentCl < 0 && !l.hazy && !usesFootprint(l);
+}
+
+bool BlockVertices::takes(const BatchContext& c) const {
+    return takes(*c.binding, *c.bound) && !c.aside && !c.between && !c.below && !e_.photonTrace();
+}
+
+bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
+    if (!usable_ || !kernel.blocks || b.displacement) return false;
+    const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
+    if (list.ofAll || !world_.chooserOf(list).empty()) return false;
+    return std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) { return isPlainLight(world_.lights_[size_t(l)]); });
+}
+
+bool BlockVertices::run(BatchContext& c, Sched& sched) {
+    if (c.emits.empty()) return true;
+    points_ = c.rays.size();
+    blocks_ = (points_ + kBlock - 1) / kBlock;
+    if (!loadVertices(c) || !findSites(c) || !request(c)) return false;
+    prepare();
+    if (!select(c)) return false;
+    light(c);
+    scatter(c, sched);
+    return true;
+}
+
+/// The points and rays, from their structures to rows.
+bool BlockVertices::loadVertices(const BatchContext& c) {
+    vertices_.resize(std::max(vertices_.size(), blocks_));
+    rays_.resize(std::max(rays_.size(), blocks_));
+    for (size_t b = 0; b < blocks_; ++b) {
+        const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
+        RayBlock& rays = rays_[b];
+        stages_.load(&c.rays[first], int(sizeof(PathRay)), int(n), kRayWords, rays.origin);
+        for (size_t k = 0; k < size_t(kBlock); ++k) rays.target[k] = c.targets[first + std::min(k, n - 1)];
+        if (!takeRays(rays) || !loadPoints(b, c)) return false;
+    }
+    return true;
+}
+
+/// What paths need to know of the rays that came to a block. False: some ray needs a look by itself.
+bool BlockVertices::takeRays(const RayBlock& rays) {
+    VertexBlock& v = vertices_[size_t(&rays - rays_.data())];
+    v.last = 0;
+    bool usual = true;
+    for (int k = 0; k < kBlock; ++k) {
+        v.bounces[k] = int16_t(rays.bounces[k]);
+        v.last |= Lanes(v.bounces[k] >= world_.maxDepth_) << k;
+        usual &= !(rays.flags[k] & kQuietBit);
+    }
+    for (int k = 0; k < kBlock; ++k) {
+        const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
+        v.low[k] = sample->numbers.low();
+        v.high[k] = sample->numbers.high();
+        v.index[k] = sample->numbers.index();
+        if (rays.extra[k] >= 0) usual &= e_.extras_[size_t(rays.extra[k])].share < 0;
+        if (world_.photons_) usual &= !world_.photons_->pass(sample->sample);
+    }
+    usual &= v.last == 0 || !lastSkies_;
+    for (int q = 0; q < 3; ++q) std::copy_n(rays.weight[q], kBlock, v.weight[q]);
+    std::copy_n(rays.vertex, kBlock, v.vertex);
+    return usual;
+}
+
+bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
+    VertexBlock& v = vertices_[b];
+    const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
+    v.points = firstPoints(n);
+    v.through = !c.clear.empty();
+    const bool rows = c.points.empty();
+    for (size_t k = 0; k < size_t(kBlock); ++k) {
+        const size_t i = first + std::min(k, n - 1); // the last point again
+        const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
+        const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
+        if (s.matte || s.maxDiffuse >= 0 || s.maxSpecular >= 0 || p.displaced || !(rows || c.points[i].P == p.P)) return false;
+        for (int q = 0; q < 3; ++q) {
+            v.P[q][k] = p.P[q];
+            v.n[q][k] = p.n[q];
+            v.I[q][k] = rows ? c.ways[size_t(q) * points_ + i] : c.points[i].I[q];
+            v.clear[q][k] = v.through ? c.clear[i][q] : 0;
+        }
+        v.error[k] = p.pError;
+        v.bias[k] = s.bias;
+    }
+    return true;
+}
+
+/// The sites that ask, in the order of the calls. A site that asks twice at a point is in a loop: false.
+bool BlockVertices::findSites(const BatchContext& c) {
+    count_ = 0;
+    int first = -1;
+    size_t next = 0; // behind the place of the call before
+    for (const EmitRecord& e : c.emits) {
+        if (!c.bound->sites[size_t(e.site)].block) continue;
+        if (e.first != first) next = 0;
+        first = e.first;
+        size_t at = 0;
+        while (at < count_ && sites_[at].number != e.site) ++at;
+        if (at < count_) {
+            if (at < next) return false;
+            next = at + 1;
+            continue;
+        }
+        if (count_ == kMostSites) return false;
+        if (count_ == sites_.size()) sites_.emplace_back();
+        std::rotate(sites_.begin() + long(next), sites_.begin() + long(count_), sites_.begin() + long(count_) + 1);
+        beginSite(sites_[next++], e.site, c);
+        ++count_;
+    }
+    return true;
+}
+
+void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
+    s.number = number;
+    s.info = &c.bound->sites[size_t(number)];
+    s.lanes = &lanes_.lobes[s.info->lobe->index];
+    s.lighting = s.info->kind != SiteKind::Trace;
+    s.lights = s.lighting || s.info->rowLights >= 0;
+    if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;
+    else s.rays = e_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, false});
+    s.diffuse = s.rays->type == RayType::Diffuse;
+    s.lobes.resize(std::max(s.lobes.size(), blocks_));
+    for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = 0;
+    s.narrow.clear();
+}
+
+bool BlockVertices::request(const BatchContext& c) {
+    for (const EmitRecord& e : c.emits) {
+        if (!c.bound->sites[size_t(e.site)].block) continue;
+        const auto site = std::find_if(sites_.begin(), sites_.end(), [&](const Site& s) { return s.number == e.site; });
+        if (!requestOf(*site, e, c)) return false;
+    }
+    for (size_t k = 0; k < count_; ++k) { // strips below a block: their rows are together now
+        Site& s = sites_[k];
+        for (size_t b = 0; b < blocks_ && !s.narrow.empty(); ++b) {
+            const Lanes asked = std::exchange(s.lobes[b].asked, 0) & vertices_[b].points;
+            const size_t rows = s.narrow.size() / (blocks_ * kBlock);
+            if (stages_.request(vertices_[b], *s.info->block, s.narrow.data() + b * rows * kBlock, kBlock, asked, s.lobes[b]))
+                return false;
+        }
+    }
+    return true;
+}
+
+/// What a site asks for at the points of a strip.
+bool BlockVertices::requestOf(Site& s, const EmitRecord& e, const BatchContext& c) {
+    const float* rows = c.arena.data() + e.offset;
+    if (e.lanes >= kBlock) {
+        for (int at = 0; at < e.lanes && size_t(e.first + at) < points_; at += kBlock) {
+            const size_t b = size_t(e.first + at) / kBlock;
+            const Lanes asked = Lanes(e.mask >> at) & vertices_[b].points;
+            if (asked && stages_.request(vertices_[b], *s.info->block, rows + at, e.lanes, asked, s.lobes[b])) return false;
+        }
+        return true;
+    }
+    const size_t count = size_t(rowsOfArguments(*s.info)) + 3, b = size_t(e.first) / kBlock, at = size_t(e.first) % kBlock;
+    s.narrow.resize(count * blocks_ * kBlock);
+    for (size_t r = 0; r < count; ++r)
+        std::copy_n(rows + r * size_t(e.lanes), e.lanes, s.narrow.data() + (b * count + r) * kBlock + at);
+    s.lobes[b].asked |= Lanes(e.mask) << at;
+    return true;
+}
+
+void BlockVertices::prepare() {
+    for (size_t k = 0; k < count_; ++k) {
+        Site& s = sites_[k];
+        for (size_t b = 0; b < blocks_; ++b) {
+            LobeBlock& l = s.lobes[b];
+            if (!l.asked) {
+                std::fill_n(l.chosen, kBlock, 0.f);
+                continue;
+            }
+            s.lanes->prepare(l.lobe[0], l.asked);
+            for (int i = 0; s.lights && i < kBlock; ++i) l.lights |= Lanes((l.asked >> i & 1) && l.lobe[kRowDelta][i] == 0) << i;
+        }
+    }
+}
+
+std::span<LobeBlock*> BlockVertices::lobesOf(size_t b) {
+    block_.clear();
+    for (size_t k = 0; k < count_; ++k) block_.push_back(&sites_[k].lobes[b]);
+    return block_;
+}
+
+bool BlockVertices::select(const BatchContext& c) {
+    SelectRules rules{0, world_.settings_.unbiased};
+    for (size_t k = 0; k < count_; ++k) rules.lighting |= uint32_t(sites_[k].lighting) << k;
+    std::vector<Selected> found(blocks_);
+    for (size_t b = 0; b < blocks_; ++b) {
+        found[b] = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);
+        if (found[b].failed & vertices_[b].points) return false;
+    }
+    for (size_t b = 0; b < blocks_; ++b) e_.counters.depthCap += uint64_t(std::popcount(found[b].cut & vertices_[b].points));
+    for (size_t b = 0; b < blocks_; ++b)
+        for (const bool more : {true, false})
+            for (Lanes left = more ? found[b].bright : found[b].brightWithClear; left; left &= left - 1)
+                e_.tellScaled(world_.bindings_[size_t(c.bindings[b * kBlock + size_t(std::countr_zero(left))])], more);
+    return true;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,117 @@
+// Vertices whose kernel asks for lobes and nothing else, under path: from the kernel's requests to the next rays, 16 points at a
+// time (lanes/stages.h). What it does not take goes point by point (gather.h), with the same bits.
+#pragma once
+#include "integrator/engine.h"
+#include "integrator/raywords.h"
+#include "lanes/stages.h"
+
+namespace alpenglow::transport {
+
+class BlockVertices {
+public:
+    static constexpr size_t kMostSites = 32; ///< that ask, of a kernel
+    explicit BlockVertices(Engine&);
+    /// Whether all that this kernel of a binding asks for is of this kind, with the lights of the binding.
+    bool takes(const SurfaceBinding&, const BoundKernel&) const;
+    /// Whether all that a batch whose kernel has run asks for is of this kind.
+    bool takes(const BatchContext&) const;
+    /// Lights its points and sends their rays; shadow rays are left in Engine::shadows. False: nothing was done, for some point
+    /// needs a look by itself.
+    bool run(BatchContext&, Sched&);
+
+private:
+    /// A call site of the kernel that asks for lobes of some points.
+    struct Site {
+        int number = 0; ///< of the kernel
+        const SiteInfo* info = nullptr;
+        const LobeLanes* lanes = nullptr;
+        const RayKind* rays = nullptr;
+        bool lighting = false; ///< a lighting shadeop
+        bool lights = false;   ///< its lobe samples lights
+        bool diffuse = false;  ///< of its rays
+        std::vector<LobeBlock> lobes;
+        std::vector<float> narrow; ///< of kernels with strips below a block: arguments, by block
+    };
+    /// What a light is asked at points.
+    struct Query {
+        int point = 0;
+        Emitter::Sample sample;
+    };
+
+    /// Points that have one of a light; of these, those whose rays could meet it by chance.
+    struct Placed {
+        Lanes points = 0, metDiffuse = 0, metSpecular = 0;
+    };
+
+    // blockvertices.cpp
+    bool loadVertices(const BatchContext&);
+    bool takeRays(const RayBlock&);
+    bool loadPoints(size_t block, const BatchContext&);
+    bool findSites(const BatchContext&);
+    void beginSite(Site&, int number, const BatchContext&);
+    bool request(const BatchContext&);
+    bool requestOf(Site&, const EmitRecord&, const BatchContext&);
+    void prepare();
+    bool select(const BatchContext&);
+    std::span<LobeBlock*> lobesOf(size_t block);
+
+    // blocklights.cpp
+    void light(BatchContext&);
+    static bool samples(const Site&, const BoundLight&);
+    void sampleLight(const BoundLight&, BatchContext&);
+    void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&);
+    void takeValues(const BoundLight&, const BatchContext&);
+    void beginLights(const BoundLight&);
+    void connect(const BoundLight&, BatchContext&);
+    void connectBlock(size_t block, const BoundLight&, BatchContext&);
+    void sendShadow(size_t point, const BoundLight&, const Color& light, BatchContext&);
+
+    // blocklightrows.cpp
+    bool inRows(const BoundLight&) const;
+    void lightInRows(const BoundLight&, BatchContext&);
+    void placeInRows(const BoundLight&);
+    void placeOnEmitter(size_t k, const Emitter&);
+    void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
+    void takeLightOf(size_t k, const BoundLight&, const shading::Batch&, const BatchContext&);
+    void takePlace(const BoundLight&, size_t point, const Vec3& L, const shading::Batch&, size_t at);
+
+    // blockscatter.cpp
+    void scatter(BatchContext&, Sched&);
+    void drawDirections(size_t block);
+    void throwDice(size_t block);
+    void sendRays(size_t block, BatchContext&, Sched&);
+    void turnRays(size_t block, BatchContext&);
+    void keepLobes(size_t block, BatchContext&);
+    void spawn(const RayBlock&, Sched&);
+
+    Engine& e_;
+    const WorldImpl& world_;
+    const Stages& stages_;
+    LobeLanesList lanes_;
+    bool usable_ = false;    ///< by what the world is
+    bool lastSkies_ = false; ///< where paths end by their length skies must be asked (Gather::lastSkies)
+    size_t blocks_ = 0, points_ = 0;
+    std::vector<VertexBlock> vertices_;
+    std::vector<RayBlock> rays_; ///< that came to them, then those that go on
+    std::vector<Site> sites_;    ///< the first `count_`, in the order of the calls
+    size_t count_ = 0;
+    std::vector<LobeBlock*> block_; ///< lobesOf()
+    std::vector<Lanes> lit_;        ///< by block: points that sample lights
+    std::vector<LightBlock> lights_;
+    std::vector<render::NumberBlock> pairs_, choices_;
+    std::vector<ShadePoint> queries_;
+    std::vector<Query> asked_;
+    std::vector<LightValue> values_;
+    std::vector<int32_t> queryAt_;  ///< by point: in values_; -1, or empty: that says nothing more than lights_
+    std::vector<size_t> litBlocks_; ///< blocks of which some points sample lights
+    std::vector<float> lamp_;       ///< LightRows of their points
+    std::vector<Placed> placed_;    ///< of litBlocks_
+    std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
+    ScatterBlock next_{};
+    ShadowBlock shadow_{};
+    alignas(64) Row whole_; ///< 1
+    alignas(64) float value_[kValueRows][kBlock] = {};
+    alignas(64) float drawn_[kDrawnRows][kBlock] = {};
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,31 @@
+#include "integrator/depths.h"
+#include "integrator/bakes.h"
+#include "integrator/unmade.h"
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+namespace {
+
+bool tells(const BoundKernel& k) {
+    return std::any_of(k.sites.begin(), k.sites.end(),
+                       [](const SiteInfo& s) { return s.kind == SiteKind::Printf || s.kind == SiteKind::Other; });
+}
+
+} // namespace
+
+bool depthsNeedNoShaders(const World& world) {
+    const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of others have worlds of their own
+    if (!w || !w->allOpaque_ || !w->media_.empty() || !w->clippingPlanes_.empty() || hasUnmade(world) || bakes(world))
+        return false;
+    for (const SurfaceBinding& b : w->bindings_)
+        for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel})
+            if (tells(*k)) return false;
+    for (const BoundLight& l : w->lights_) {
+        if (tells(l.kernel)) return false;
+        for (const auto& [strings, k] : l.variants)
+            if (tells(k)) return false;
+    }
+    return true;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,77 @@
+// Where a walk below a surface comes out, the shader there may say what light enters: by "irradiance" of its own subsurface().
+#include "integrator/subsurface.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+void Walks::askSurfaces(Sched& sched) {
+    if (e_.photonTrace()) return;
+    const WorldImpl& world = e_.world();
+    const auto number = [&](const Exit& x) { return world.bindingOf_[x.shape]; };
+    const auto silent = [&](const Exit& x) { return !world.bindings_[size_t(number(x))].entering; };
+    const auto middle = std::stable_partition(exits_.begin(), exits_.end(), silent);
+    std::stable_sort(middle, exits_.end(), [&](const Exit& a, const Exit& b) { return number(a) < number(b); });
+    const std::span<Exit> asked(middle, exits_.end());
+    std::vector<Exit> left;
+    for (size_t first = 0, end; first < asked.size(); first = end) {
+        for (end = first; end < asked.size() && number(asked[end]) == number(asked[first]);) ++end;
+        const std::span<Exit> same = asked.subspan(first, end - first);
+        const size_t kept = askAt(same, sched);
+        left.insert(left.end(), same.begin(), same.begin() + long(kept));
+    }
+    exits_.erase(middle, exits_.end());
+    exits_.insert(exits_.end(), left.begin(), left.end());
+}
+
+size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
+    const WorldImpl& world = e_.world();
+    const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
+    auto c = e_.takeContext();
+    c->engine = &e_;
+    c->bound = &b.entering;
+    c->binding = &b;
+    c->again = true;
+    settleAt(*c, exits);
+    for (ShadePoint& p : c->points) {
+        p.P = p.surface.P; // as surface and displacement shaders begin
+        shading::setFootprint(p, p.ray->footprint, p.ray->dir, 0, 1);
+    }
+    if (b.displacement) e_.takeDisplacement(*c);
+    for (ShadePoint& p : c->points) p.I = p.ray->dir;
+    e_.fillBatch(*c);
+    if (c->displaced) c->batch->tell(*c->displaced->batch);
+    c->bound->kernel->run(&c->batch->call());
+    c->ran();
+    const shading::Batch& batch = *c->batch;
+    const int irradiance = batch.output(rsl::OutputName::of(rsl::kEntering));
+    const int given = batch.output(rsl::OutputName::given(rsl::kEntering));
+    const auto said = [&](size_t i) { return batch.value(given, 0, int(i)) != 0; };
+    for (size_t i = 0; i < exits.size(); ++i) {
+        const PathRay& ray = c->rays[i];
+        const Color light = batch.color(irradiance, int(i));
+        if (said(i) && isFinite(light))
+            e_.deposit(sched,
+                       {c->targets[i], ray.weight * light, LightEvent::Surface, &ray, e_.extraOf(ray).share, b.surface.get()});
+    }
+    askLights(*c, exits, sched);
+    size_t kept = 0;
+    for (size_t i = 0; i < exits.size(); ++i)
+        if (!said(i)) exits[kept++] = exits[i];
+    e_.giveBack(std::move(c));
+    return kept;
+}
+
+/// What that light is made of besides, where the shader gathers it.
+void Walks::askLights(BatchContext& c, std::span<const Exit> exits, Sched& sched) {
+    const size_t had = e_.lobes.size();
+    const std::vector<Color> whole(c.points.size(), Color(1));
+    e_.requestPairs(c, whole, nullptr, sched);
+    for (size_t i = had; i < e_.lobes.size(); ++i) {
+        LobeVertex& l = e_.lobes[i];
+        l.indirect *= asked_[size_t(exits[size_t(l.point)].asked)].indirect;
+    }
+    e_.gather(c, sched);
+    e_.flushShadows(sched);
+}
+
+} // namespace alpenglow::transport

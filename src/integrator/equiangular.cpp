@@ -1,0 +1,178 @@
+// Lights with a place inside of media or near them: their light falls off with the square of the distance, which points that are
+// chosen by how far rays come do not know.
+#include "base/exact.h"
+#include "integrator/medium.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+std::optional<Equiangular> Equiangular::of(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
+    if (!l.placed || how == MediumSampling::Distance) return {};
+    Equiangular q;
+    const Vec3d to = Vec3d(l.place) - Vec3d(f.origin), dir(f.dir);
+    q.length_ = f.length;
+    q.nearest_ = dot(to, dir);
+    const Vec3d beside = to - dir * q.nearest_;
+    q.away_ = std::max({std::sqrt(dot(beside, beside)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
+    const double sigma = (double(f.extinction.x) + f.extinction.y + f.extinction.z) / 3;
+    const double reach = sigma * f.length > 4 ? 4 / sigma : double(f.length); // beyond it little is left
+    if (!(q.away_ > 0) || (how == MediumSampling::Both && !(q.away_ < 2 * reach))) return {};
+    q.from_ = exact::atan2(-q.nearest_, q.away_);
+    q.to_ = exact::atan2(q.length_ - q.nearest_, q.away_);
+    if (!(q.to_ - q.from_ > 1e-9)) return {};
+    return q;
+}
+
+float Equiangular::at(float u) const {
+    const double t = nearest_ + away_ * exact::tan(from_ + double(u) * (to_ - from_));
+    return float(std::clamp(t, 0.0, length_));
+}
+
+double Equiangular::density(float t) const {
+    const double d = double(t) - nearest_;
+    return away_ / ((to_ - from_) * (away_ * away_ + d * d));
+}
+
+/// Where lights are chosen for a way as a whole.
+static Vec3 middle(const FreeFlight& f) { return f.origin + f.dir * (0.5f * f.length); }
+
+float MediumFlights::shareOfDistance(const Engine& e, const FreeFlight& f, const BoundLight& l) {
+    const WorldImpl& w = e.world();
+    const MediumSampling how = w.settings_.mediumSampling;
+    const auto q = Equiangular::of(f, l, how);
+    if (!q || !e.rules().lightsAtRequests) return 1;
+    if (how == MediumSampling::Equiangular) return 0;
+    const float chance = e.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f), 0);
+    return misWeight(float(f.density(f.t)), float(q->density(f.t) * chance));
+}
+
+namespace {
+
+/// A point that was chosen for a light, and the part of the light of that point that it stands for.
+struct Near {
+    const FreeFlight* way;
+    const Flight* flight;
+    const Color* weight;
+    float t, scale;
+};
+
+/// What one light brings to points that were chosen for it.
+class NearLight {
+public:
+    NearLight(Engine& e, const Medium& m, const BoundLight& l, std::span<const Near> points)
+        : e_(e), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area), at_(points.size()),
+          drawn_(area_ ? points.size() : 0), query_(points.size()), value_(points.size()) {}
+    void run() {
+        for (size_t i = 0; i < points_.size(); ++i) ask(i);
+        const std::vector<char> inMedium(points_.size(), 1);
+        LightCall call;
+        call.inMedium = &inMedium;
+        e_.evaluateLight(light_, query_, value_, call);
+        for (size_t i = 0; i < points_.size(); ++i) send(i);
+    }
+
+private:
+    void ask(size_t i) {
+        const WorldImpl& w = e_.world();
+        const PathRay& r = *points_[i].flight->ray;
+        ShadePoint& p = query_[i];
+        p.Ps = at_[i].P = r.origin + r.dir * points_[i].t;
+        p.lit = &at_[i];
+        p.Ns = -r.dir;
+        p.viewI = p.I = p.Ps - r.begin();
+        p.E = r.origin;
+        p.shutter = w.shadesAtOpen_ ? 0 : r.shutter();
+        w.tellTime(p);
+        p.P = Vec3(transformPoint(light_.instance->toCurrentAt(p.shutter), {0, 0, 0}));
+        p.ray = &r;
+        if (!area_) return;
+        Emitter::Sample& s = drawn_[i];
+        const Random numbers = e_.random(r);
+        const uint32_t vertex = childVertex(r.vertex, kFlight, 5), use = kLightPoint + uint32_t(&light_ - w.lights_.data());
+        const float choose = light_.emitter->chooses() ? numbers.one(vertex, use, 0) : 0;
+        const Vec2 u = numbers.pair(vertex, use, 0);
+        bool there = light_.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light_.pointNeeds);
+        if (there && w.accel_->hasSolids())
+            there = w.accel_->keeps(w.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter);
+        if (!there || (s.shape->oneSided() && dot(meetsNormal(p.surface), s.direction) >= 0)) s.pdf = 0; // or from behind
+        p.shape = s.shape;
+        p.P = meetsAt(p.surface);
+        p.N = p.surface.n;
+    }
+    void send(size_t i) {
+        static const LobeKind* const kind = findLobe("henyey-greenstein");
+        const Near& n = points_[i];
+        const PathRay& r = *n.flight->ray;
+        const LightValue& v = value_[i];
+        const ShadePoint& p = query_[i];
+        if (!v.lit || (area_ && !(drawn_[i].pdf > 0))) return;
+        if (!isFinite(v.Cl)) return e_.notFinite(&r, "Cl", light_.instance.get());
+        const Vec3 way = area_ ? leavesFrom(p.surface, -drawn_[i].direction) - p.Ps : -v.L;
+        const float far = length(way);
+        if (!(far > 0)) return;
+        const Vec3 to = area_ ? drawn_[i].direction : way / far;
+        const float phase = OneLobe(*kind, {r.dir, -r.dir, {}, medium_.homogeneous->anisotropy}).value(to).fcos;
+        Color c = *n.weight * medium_.homogeneous->scattering * medium_.homogeneous->left(n.t) * v.Cl;
+        c *= phase * n.scale * v.kept(RayType::Diffuse) * (area_ ? 1 / drawn_[i].pdf : float(kPi)); // Cl is irradiance / pi
+        if (c == Color(0)) return;
+        ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter, &r};
+        if (v.shadowRadius > 0) {
+            const uint32_t use = kLightPoint + uint32_t(&light_ - e_.world().lights_.data());
+            const Vec2 u = e_.random(r).pair(childVertex(r.vertex, kFlight, 5), use, 0);
+            const Vec3 onDisk = onShadowDisk(p.Ps - v.L, to, v.shadowRadius, u) - p.Ps;
+            shadow.dir = normalizeOr(onDisk, to);
+            shadow.distance = length(onDisk) * (1 - 1e-5f);
+        }
+        if (v.ownShadow) shadow.distance = 0;
+        shadow.media = r.media;
+        shadow.share = e_.extraOf(r).share;
+        shadow.path = e_.pathEvent(r.path, e_.volume_);
+        if (shadow.path) shadow.light = e_.lightSymbols_[size_t(&light_ - e_.world().lights_.data())];
+        e_.shadows.push_back(shadow);
+    }
+
+    Engine& e_;
+    const Medium& medium_;
+    const BoundLight& light_;
+    std::span<const Near> points_;
+    const bool area_;
+    std::vector<geometry::SurfacePoint> at_;
+    std::vector<Emitter::Sample> drawn_;
+    std::vector<ShadePoint> query_;
+    std::vector<LightValue> value_;
+};
+
+} // namespace
+
+void MediumFlights::nearLights(Engine& e, std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
+    const WorldImpl& w = e.world();
+    const Medium& m = w.media_[size_t(crossings[0].way.medium)];
+    const MediumSampling how = w.settings_.mediumSampling;
+    const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
+    const LightChooser& chooser = w.chooserOf(list);
+    const std::vector<int>& on = w.sampledOf(list);
+    std::map<int, std::vector<Near>> near; // by light
+    LightChooser::Chosen chosen;
+    for (size_t k = 0; k < on.size() && chooser.empty(); ++k) chosen.emplace_back(int(k), 1.f);
+    for (const Crossing& x : crossings) {
+        const Flight& f = flights[x.flight];
+        const uint32_t vertex = childVertex(f.ray->vertex, kFlight, 2);
+        if (!chooser.empty()) chooser.choose(middle(x.way), e.random(*f.ray).one(vertex, kChooseLight, 0), chosen);
+        for (const auto& [k, chance] : chosen) {
+            const int light = on[size_t(k)];
+            if (list.ofAll && !list.lights.contains(light)) continue;
+            const auto q = Equiangular::of(x.way, w.lights_[size_t(light)], how);
+            if (!q) continue;
+            const float t = q->at(e.random(*f.ray).one(vertex, kLightPoint + uint32_t(light), 0));
+            const double density = q->density(t) * chance;
+            const float share = how == MediumSampling::Equiangular ? 1 : misWeight(float(density), float(x.way.density(t)));
+            if (density > 0 && share > 0) near[light].push_back({&x.way, &f, &x.weight, t, float(share / density)});
+        }
+    }
+    for (const auto& [light, points] : near) {
+        NearLight(e, m, w.lights_[size_t(light)], points).run();
+        if (e.shadows.size() > kShadowsAtOnce) e.flushShadows(sched);
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,316 @@
+#include "integrator/gridshading.h"
+#include "base/hash.h"
+#include "integrator/engine.h"
+#include "integrator/limits.h"
+#include "scene/scene.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+namespace {
+
+constexpr int kColour = 0, kOpacity = 3, kClear = 6, kOutputs = 9; ///< floats of a slot
+constexpr uint32_t kFree = 0xffffffffu;
+
+Color colourAt(const float* v) { return {v[0], v[1], v[2]}; }
+void put(float* to, const Color& c) { to[0] = c.x, to[1] = c.y, to[2] = c.z; }
+
+} // namespace
+
+bool GridShading::takes(const WorldImpl& w) {
+    const bool ownTime = w.settings_.hider == Hider::Raytrace ? w.shutter_.opens() : !w.shadesAtOpen_;
+    return w.settings_.micropolygons && w.settings_.hider != Hider::Path && !ownTime && w.eye_.count == 0;
+}
+
+GridShading::GridShading(Engine& e)
+    : engine_(e), world_(e.world()), lattices_(world_), camera_(world_.frame_->options), stride_(kOutputs) {
+    seesSky_ = std::any_of(world_.skies_.begin(), world_.skies_.end(), [&](int l) {
+        const BoundLight& sky = world_.lights_[size_t(l)];
+        return sky.kind == LightKind::Environment && sky.strategy == LightStrategy::Trace;
+    });
+    for (const int width : world_.outputWidths_) {
+        for (int k = 0; k < width; ++k) colour_.push_back(width % 3 == 0 ? uint8_t(k % 3) : 3);
+        stride_ += size_t(width);
+    }
+    values_.reserve(limits::kMicropolygonBytes / sizeof(float));
+    keys_.reserve(limits::kMicropolygonBytes / sizeof(float) / stride_);
+    forget();
+}
+
+void GridShading::forget() {
+    keys_.clear();
+    values_.clear();
+    table_.assign(1024, {kFree, 0});
+    last_ = kFree;
+}
+
+/// Doubles the table.
+void GridShading::grow() {
+    table_.assign(2 * table_.size(), {kFree, 0});
+    for (uint32_t slot = 0; slot < keys_.size(); ++slot) {
+        if (!keys_[slot].shared()) continue;
+        const uint64_t hash = keys_[slot].hash();
+        size_t at = hash & (table_.size() - 1);
+        while (table_[at].slot != kFree) at = (at + 1) & (table_.size() - 1);
+        table_[at] = {slot, uint32_t(hash >> 32)};
+    }
+}
+
+void GridShading::begin(std::span<const CameraRay> rays, std::span<SampleResult> out) {
+    samples_.resize(rays.size());
+    own_.clear();
+    for (size_t i = 0; i < rays.size(); ++i) {
+        std::vector<float> outputs = std::move(out[i].aovs); // its memory is used again
+        outputs.assign(colour_.size(), 0.f);
+        out[i] = SampleResult{};
+        out[i].aovs = std::move(outputs);
+        samples_[i] = Sample{};
+        samples_[i].number = uint32_t(i);
+        samples_[i].origin = rays[i].origin;
+    }
+}
+
+/// What the samples that go on meet next: hits_, points_.
+void GridShading::meet(std::span<const CameraRay> rays) {
+    rays_.resize(samples_.size());
+    hits_.assign(samples_.size(), {});
+    points_.resize(samples_.size());
+    for (size_t i = 0; i < samples_.size(); ++i) {
+        const CameraRay& c = rays[samples_[i].number];
+        accel::Ray& r = rays_[i] = accel::Ray{};
+        r.org = samples_[i].origin;
+        r.dir = c.direction;
+        r.time = c.shutter;
+        r.mask = visibilityBit(RayType::Camera);
+        r.sides = shading::kCameraKind.set.sides;
+        if (world_.fades_) r.level = engine_.levelOfSample(c);
+        engine_.clip(r);
+    }
+    engine_.meet(rays_, hits_, true);
+    unfinished_ |= engine_.unfinished();
+    for (size_t i = 0; i < samples_.size(); ++i) points_[i] = rays_[i].org + rays_[i].dir * float(hits_[i].distance);
+}
+
+/// The slot of a micropolygon; a new one is noted, to be shaded.
+uint32_t GridShading::slotOf(const MicropolygonShare& s) {
+    if (last_ < keys_.size() && keys_[last_] == s.key && s.key.shared()) return last_; // samples of a pixel come together
+    const uint32_t next = uint32_t(keys_.size());
+    if (s.key.shared()) {
+        if (2 * keys_.size() >= table_.size()) grow();
+        const uint64_t hash = s.key.hash();
+        size_t at = hash & (table_.size() - 1);
+        for (; table_[at].slot != kFree; at = (at + 1) & (table_.size() - 1))
+            if (table_[at].tag == uint32_t(hash >> 32) && keys_[table_[at].slot] == s.key) return last_ = table_[at].slot;
+        table_[at] = {next, uint32_t(hash >> 32)};
+    }
+    keys_.push_back(s.key);
+    fresh_.push_back(s);
+    lattices_.place(fresh_.back());
+    return last_ = next;
+}
+
+void GridShading::findShares() {
+    shares_.clear();
+    fresh_.clear();
+    firstFresh_ = uint32_t(keys_.size());
+    for (Sample& s : samples_) s.n = 0;
+    lattices_.find(hits_, points_, found_);
+    for (const Micropolygons::Found& f : found_) {
+        Sample& s = samples_[f.hit];
+        if (s.n++ == 0) s.first = uint32_t(shares_.size());
+        shares_.push_back({slotOf(f.share), f.share.weight});
+    }
+}
+
+/// The rays by which the eye sees micropolygons: work_.
+void GridShading::aimAt(std::span<const MicropolygonShare> some) {
+    work_.points.resize(some.size());
+    work_.places.resize(some.size());
+    work_.rays.clear();
+    for (size_t i = 0; i < some.size();) { // runs of one shape
+        work_.hits.clear();
+        const size_t first = i;
+        for (; i < some.size() && some[i].key.shape == some[first].key.shape; ++i)
+            work_.hits.push_back({some[i].key.prim, some[i].b1, some[i].b2, &work_.places[i], 0});
+        world_.shapes_[some[first].key.shape]->points(work_.hits, world_.footprints_ ? geometry::kNeedPartials : 0);
+    }
+    const uint64_t run = world_.prints_.newRun();
+    for (size_t i = 0; i < some.size(); ++i) {
+        work_.rays.push_back(rayTo(some[i], work_.places[i], work_.points[i]));
+        work_.points[i].run = run;
+    }
+}
+
+/// The ray by which the eye sees a micropolygon at p.
+CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::SurfacePoint& p, shading::GridPoint& point) {
+    MicropolygonKey key = s.key; // numbers do not depend on which procedurals were made
+    key.shape = world_.keyOfShape(s.key.shape);
+    point = {s.key.shape, s.key.prim, s.b1, s.b2};
+    point.corner = false;
+    point.micropolygon = key.hash();
+    if (!key.shared())
+        point.micropolygon += render::mix64(std::bit_cast<uint64_t>(s.b1)) + 3 * render::mix64(std::bit_cast<uint64_t>(s.b2));
+    const Vec3 P = p.displaced ? p.displacedP : p.P;
+    CameraRay r;
+    r.direction = camera_.towards(P);
+    if (camera_.perspective) {
+        r.spread = camera_.pixel * r.direction.z / 2;
+        point.distance = length(P);
+    } else {
+        r.origin = Vec3(P.x, P.y, std::min(0.f, P.z - 1));
+        r.width = camera_.pixel / 2;
+        point.distance = P.z - r.origin.z;
+    }
+    r.cosine = r.direction.z;
+    r.time = world_.shutter_.opens() ? float(world_.shutter_.open) : 0;
+    r.px = int(s.key.prim);
+    r.py = int(key.shape);
+    r.grid = &point;
+    if (world_.footprints_) {
+        const float rate = world_.bindings_[size_t(world_.bindingOf_[s.key.shape])].shadingRate;
+        const Vec2 seen = shading::footprintAt(p, {r.width, r.spread}, r.direction, length(p.P - r.origin), rate);
+        const Vec2 steps = lattices_.stepsOf(s, seen);
+        point.du = steps.x, point.dv = steps.y;
+    }
+    return r;
+}
+
+void GridShading::keep(uint32_t slot, const SampleResult& r) {
+    float* v = values(slot);
+    put(v + kColour, r.color);
+    put(v + kOpacity, r.opacity);
+    put(v + kClear, r.behind);
+    std::copy(r.aovs.begin(), r.aovs.end(), v + kOutputs);
+}
+
+/// Shades the new ones. False: stopped, and nothing of the cache is valid.
+bool GridShading::shade(const StopFlag* stop) {
+    values_.resize(keys_.size() * stride_);
+    constexpr size_t kAtOnce = 4096;
+    for (size_t first = 0; first < fresh_.size(); first += kAtOnce) {
+        const size_t n = std::min(kAtOnce, fresh_.size() - first);
+        aimAt(std::span(fresh_).subspan(first, n));
+        std::vector<SampleResult>& results = work_.results;
+        results.resize(n);
+        Counters& c = engine_.counters;
+        const uint64_t paths = c.paths, camera = c.camera;
+        const bool whole = engine_.trace(work_.rays, results, stop);
+        c.paths = paths, c.camera = camera; // these are counted by sample
+        unfinished_ |= engine_.unfinished();
+        if (!whole) return false;
+        for (size_t i = 0; i < n; ++i) keep(uint32_t(firstFresh_ + first + i), results[i]);
+    }
+    return true;
+}
+
+/// A sample goes on behind what it met, `clear` of which lets light through. False: it ends.
+bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit, const Color& clear) const {
+    if (!(maxComponent(clear) > 0)) return false;
+    if (++s.layers > limits::kPathDepth / 32) {
+        ++engine_.counters.depthCap;
+        return false;
+    }
+    geometry::SurfacePoint p;
+    world_.accel_->point(hit, p, 0);
+    s.origin = p.displaced ? geometry::offsetOrigin(p.displacedP, p.displacedN, p.facetError, ray.direction)
+                           : geometry::offsetOrigin(p, ray.direction);
+    s.weight *= clear;
+    return true;
+}
+
+/// Whether a sample is to be shaded where it lies after all: it comes to a volume, along which it has a way of its own, or to a
+/// sky.
+bool GridShading::ownWay(const Sample& s, const accel::Hit& hit) const {
+    if (s.n == 0) return seesSky_ && !hit.valid();
+    const SurfaceBinding& b = world_.bindings_[size_t(world_.bindingOf_[hit.shape])];
+    return b.inside >= 0 || b.outside >= 0;
+}
+
+/// Adds what samples have met to their results. Those that go on stay in samples_.
+void GridShading::show(std::span<const CameraRay> rays, std::span<SampleResult> out) {
+    size_t left = 0;
+    for (size_t i = 0; i < samples_.size(); ++i) {
+        Sample s = samples_[i];
+        if (ownWay(s, hits_[i])) {
+            own_.push_back(s.number);
+            continue;
+        }
+        if (s.n == 0) continue;
+        SampleResult& r = out[s.number];
+        const CameraRay& ray = rays[s.number];
+        const float z = s.origin.z + ray.direction.z * float(hits_[i].distance);
+        if (r.z >= 1e38f) r.z = z;
+        else if (r.zSecond >= 1e38f) r.zSecond = z;
+        Color clear(0);
+        const Color w = s.weight;
+        const float grey = luminance(w);
+        for (uint32_t k = s.first; k < s.first + s.n; ++k) {
+            const float* v = values(shares_[k].slot);
+            const float part = shares_[k].weight;
+            r.color += w * part * colourAt(v + kColour);
+            r.opacity += w * part * colourAt(v + kOpacity);
+            clear += part * colourAt(v + kClear);
+            for (size_t o = 0; o < colour_.size(); ++o)
+                r.aovs[o] += part * (colour_[o] < 3 ? w[colour_[o]] : grey) * v[kOutputs + o];
+        }
+        if (goesOn(s, ray, hits_[i], clear)) samples_[left++] = s;
+    }
+    samples_.resize(left);
+}
+
+bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    unfinished_ = false;
+    const bool whole = follow(rays, out, stop) && followSampleBySample(rays, out, stop);
+    if (!whole || unfinished_) forget(); // what was shaded is void
+    engine_.setUnfinished(unfinished_);
+    return whole;
+}
+
+bool GridShading::depths(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    engine_.setUnfinished(false);
+    begin(rays, out);
+    engine_.counters.paths += rays.size();
+    engine_.counters.camera += rays.size();
+    meet(rays);
+    for (size_t i = 0; i < rays.size(); ++i)
+        if (hits_[i].valid()) out[i].z = rays[i].origin.z + rays[i].direction.z * float(hits_[i].distance);
+    return !(stop && *stop);
+}
+
+bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    begin(rays, out);
+    engine_.counters.paths += rays.size();
+    engine_.counters.camera += rays.size();
+    while (!samples_.empty()) {
+        if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget(); // between layers: none keeps slots of another
+        engine_.setUnfinished(false);
+        meet(rays);
+        if (stop && *stop) return false;
+        findShares();
+        if (!shade(stop)) return false;
+        show(rays, out);
+    }
+    const float clampAt = world_.settings_.sampleClamp;
+    for (SampleResult& r : out) {
+        const float m = maxComponent(r.color);
+        if (clampAt > 0 && m > clampAt) r.color *= clampAt / m; // pathtracer.md 6
+        r.opacity = {std::min(r.opacity.x, 1.f), std::min(r.opacity.y, 1.f), std::min(r.opacity.z, 1.f)};
+    }
+    return true;
+}
+
+bool GridShading::followSampleBySample(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    if (own_.empty()) return true;
+    std::vector<CameraRay> some;
+    for (const uint32_t i : own_) some.push_back(rays[i]);
+    std::vector<SampleResult> results(some.size());
+    engine_.counters.paths -= some.size();
+    engine_.counters.camera -= some.size();
+    if (!engine_.trace(some, results, stop)) return false;
+    unfinished_ |= engine_.unfinished();
+    for (size_t k = 0; k < own_.size(); ++k) out[own_[k]] = std::move(results[k]);
+    return true;
+}
+
+} // namespace alpenglow::transport

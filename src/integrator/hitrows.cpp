@@ -1,0 +1,87 @@
+// Rays of small scenes, from queues to the search in rows (accel/directblock.h), 16 at a time.
+#include "accel/directblock.h"
+#include "integrator/engine.h"
+#include "integrator/gridrays.h"
+#include "integrator/raywords.h"
+#include "lanes/stages.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+static_assert(accel::DirectRays::kSize == kBlock);
+
+/// hits_, as cast() finds them. False: some ray needs more than rows hold.
+bool Engine::castRows(std::span<const Sched::Task> slice) {
+    if (!rowsToRays_) return false;
+    if (grids_ && std::any_of(slice.begin(), slice.end(), [](const Sched::Task& t) { return beginsAtGrid(t.payload); }))
+        return false;
+    constexpr int kWords = 16; // from PathRay::origin to media
+    hits_.resize(slice.size());
+    uint64_t of[4] = {}; // by RayType
+    alignas(64) RayBlock rays;
+    accel::DirectRays block;
+    std::fill_n(block.tnear, kBlock, 0.f);
+    for (size_t first = 0; first < slice.size(); first += kBlock) {
+        const int n = int(std::min(slice.size() - first, size_t(kBlock)));
+        transport::stages().load(&slice[first].payload, int(sizeof(Sched::Task)), n, kWords, rays.origin);
+        float time[kBlock];
+        for (int i = 0; i < n; ++i) {
+            const RayKind& kind = *slice[first + size_t(i)].payload.kind;
+            if (kind.set.only || !world_->accel_->takesRows(kind.set.sides)) return false;
+            block.mask[i] = visibilityBit(kind.type);
+            time[i] = slice[first + size_t(i)].payload.sample->shutter;
+            ++of[size_t(kind.type)];
+        }
+        std::fill(block.mask + n, block.mask + kBlock, 0u);
+        for (int q = 0; q < 3; ++q) {
+            std::copy_n(rays.origin[q], kBlock, block.org[q]);
+            std::copy_n(rays.direction[q], kBlock, block.dir[q]);
+        }
+        std::copy_n(rays.maxDistance, kBlock, block.tfar);
+        world_->accel_->intersect(block, (1u << n) - 1, time, &hits_[first]);
+    }
+    for (const RayType t : {RayType::Camera, RayType::Diffuse, RayType::Specular, RayType::Transmission})
+        raysOf(t) += of[size_t(t)];
+    counters.tests += slice.size();
+    for (const accel::Hit& h : hits_) counters.hits += h.valid();
+    return true;
+}
+
+/// What blockedByAll() finds. False: some ray needs more than rows hold.
+bool Engine::blockedInRows(std::span<const ShadowRay> asked, std::span<Color> out) {
+    if (!rowsToRays_) return false;
+    const auto plain = [&](const ShadowRay& s) { return !s.kind->set.only && world_->accel_->takesRows(s.kind->set.sides); };
+    if (!std::all_of(asked.begin(), asked.end(), plain)) return false;
+    constexpr int kWords = 16; // from ShadowRay::origin on; dir and distance are behind it
+    static_assert(offsetof(ShadowRay, dir) == 12 && offsetof(ShadowRay, distance) == 24);
+    alignas(64) Row rows[kWords];
+    accel::DirectRays block;
+    std::fill_n(block.tnear, kBlock, 0.f);
+    uint8_t met[kBlock];
+    for (size_t first = 0; first < asked.size(); first += kBlock) {
+        const int n = int(std::min(asked.size() - first, size_t(kBlock)));
+        transport::stages().load(&asked[first], int(sizeof(ShadowRay)), n, kWords, rows);
+        for (int q = 0; q < 3; ++q) {
+            std::copy_n(rows[q], kBlock, block.org[q]);
+            std::copy_n(rows[3 + q], kBlock, block.dir[q]);
+        }
+        std::copy_n(rows[6], kBlock, block.tfar);
+        float time[kBlock];
+        std::fill_n(block.mask, kBlock, 0u);
+        for (int i = 0; i < n; ++i) {
+            const ShadowRay& ray = asked[first + size_t(i)];
+            block.mask[i] = visibilityBit(ray.kind->type);
+            time[i] = ray.time;
+        }
+        world_->accel_->occluded(block, (1u << n) - 1, time, met);
+        for (int i = 0; i < n; ++i) {
+            out[first + size_t(i)] = met[i] ? Color(0) : Color(1);
+            counters.hits += met[i];
+        }
+        if (stop && *stop) break; // the result is void
+    }
+    counters.tests += asked.size();
+    return true;
+}
+
+} // namespace alpenglow::transport

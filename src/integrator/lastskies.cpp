@@ -1,0 +1,73 @@
+// Stage skies: where a path ends by its depth lamps are sampled still, and a sky that is not sampled as a light must count as
+// well. The ray that would have found it is sent as a shadow ray, which brings nothing but the sky.
+#include "integrator/gather.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+void Gather::lastSkies() {
+    sent_.clear();
+    if (world_.skies_.empty()) return;
+    for (size_t point = 0; point < c_->points.size(); ++point)
+        for (int i : lobesOf(point)) {
+            const LobeVertex& l = e_.lobes[size_t(i)];
+            // As lamps are: those lobes that sample lights.
+            if (l.last && l.lights && !l.elsewhere && !l.delta) sent_.push_back({int(point), i, 1, 1, true, Vec3(), {}});
+        }
+    if (sent_.empty()) return;
+    draw(0);
+    for (const int number : world_.skies_) {
+        const BoundLight& light = world_.lights_[size_t(number)];
+        if (!light.sky && light.kind != LightKind::Ambient) lastSky(number); // ambient() asks for ambient light
+    }
+}
+
+void Gather::lastSky(int number) {
+    const BoundLight& light = world_.lights_[size_t(number)];
+    std::vector<ShadePoint> q;
+    std::vector<const Sent*> of;
+    std::vector<int> told;
+    for (const Sent& s : sent_) {
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        const ShadePoint& at = c_->points[size_t(s.point)];
+        if (!s.goes || !(s.value.pdf > 0)) continue;
+        if (!light.seenBy(*l.rays)) continue;
+        if (!world_.bindings_[size_t(c_->bindings[size_t(s.point)])].lights.contains(number)) continue;
+        ShadePoint& p = q.emplace_back();
+        p.Ps = origin(l, s.w);
+        p.P = p.Ps + s.w;
+        p.N = -s.w;
+        p.shutter = at.shutter;
+        p.time = at.time;
+        p.ray = &rayOf(l);
+        of.push_back(&s);
+        told.push_back(l.lit);
+    }
+    std::vector<LightValue> value(q.size());
+    LitSurface lit;
+    if (light.asksSurface) lit = e_.litBy(told);
+    e_.evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr});
+    for (size_t k = 0; k < of.size(); ++k) {
+        const Sent& s = *of[k];
+        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        const PathRay& ray = rayOf(l);
+        if (!value[k].lit) continue;
+        if (!isFinite(value[k].Cl)) {
+            e_.notFinite(&ray, "Cl", light.instance.get());
+            continue;
+        }
+        float scale = 1; // light of lights counts in full, whatever is scaled of surfaces
+        if (light.kind == LightKind::Environment && !l.rays->fromTrace) scale *= value[k].kept(l.rays->type);
+        const Color weight = l.weight * (s.value.colour / s.value.pdf) * scale;
+        ShadowRay shadow{q[k].Ps,  s.w,          l.maxDistance, (l.ownsTarget ? weight : weight * ray.weight) * value[k].Cl,
+                         l.target, q[k].shutter, &ray};
+        shadow.kind = l.rays; // what such a ray would have met
+        shadow.media = e_.mediaTowards(*c_, s.point, s.w);
+        shadow.share = shareOf(l);
+        shadow.path = e_.atLobe(l, c_->points[size_t(s.point)], ray, s.w);
+        if (shadow.path) shadow.light = e_.lightSymbols_[size_t(number)];
+        e_.shadows.push_back(shadow);
+    }
+}
+
+} // namespace alpenglow::transport

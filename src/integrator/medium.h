@@ -1,0 +1,52 @@
+// Ways through media that scatter (world/bound.h, Homogeneous), in closed form.
+#pragma once
+#include "integrator/engine.h"
+
+namespace alpenglow::transport {
+
+/// Where a light with a place is seen from a way: points on it are chosen evenly by the angle under which that place sees them
+/// (Kulla and Fajardo, Importance Sampling Techniques for Path Tracing in Participating Media, 2012), which is about how much of
+/// its light comes to them.
+class Equiangular {
+public:
+    /// Nothing where the light has no place that is known, or so far away that all of the way has about the same of its light.
+    static std::optional<Equiangular> of(const FreeFlight&, const BoundLight&, MediumSampling);
+    float at(float u) const;       ///< a point for a number of [0, 1), as a length of the way
+    double density(float t) const; ///< a unit of length
+
+private:
+    double length_ = 0, nearest_ = 0, away_ = 0, from_ = 0, to_ = 0; ///< angles at the light
+};
+
+/// The event of media that absorb and scatter, under path. On each way a distance is drawn in proportion to what is left of the
+/// light (of the three channels one, by what the path has left of it; all three make its density). What comes as far as its
+/// surface goes on, the others meet lights there, by Gather, and are scattered. Of a ray from the camera both is followed.
+/// Where lights with a place are near, more points are chosen by Equiangular; the power heuristic weighs both. What is scattered
+/// there goes also toward such a light, as rays that pass it bring the more the nearer they come (Georgiev et al., Joint
+/// Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
+class MediumFlights final : public FlightEvent {
+public:
+    void happen(Engine&, std::span<Flight>, Sched&) override;
+    /// Nothing: Engine::dim() of media has taken it.
+    void dim(Engine&, std::span<const ShadowRay>, std::span<Color>) override {}
+    /// The part that a point chosen by distance has in the light of one with a place; the rest comes from other points.
+    static float shareOfDistance(const Engine&, const FreeFlight&, const BoundLight&);
+
+    /// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one,
+    /// all with the same chance: a density for any of them is right. `away`: how far it is.
+    static Vec3 besideLight(const Engine&, const Medium&, const PathRay&, const Vec3& from, float* away = nullptr);
+
+private:
+    struct Crossing {
+        size_t flight;
+        FreeFlight way;
+        Color weight;
+        bool stops = false;
+    }; ///< weight: of the ray where it begins
+    static std::optional<Crossing> cross(Engine&, Flight&, size_t number, Sched&);
+    static void pass(Engine&, Flight&, Sched&);
+    static void scatter(Engine&, std::span<Flight>, std::span<const Crossing>, Sched&);
+    static void nearLights(Engine&, std::span<Flight>, std::span<const Crossing>, Sched&);
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,149 @@
+// Surfaces that scatter photons by a model that an attribute names, and what rays gather of maps at surfaces.
+#include "integrator/gather.h"
+#include "integrator/photonjob.h"
+#include "shadeops/specular.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+namespace {
+
+constexpr uint32_t kModelSite = 0xfff00; ///< no shader has so many call sites
+
+/// Fresnel's reflectance of unpolarised light; `index`: of where it comes from over that of where it goes.
+float reflectance(float cosine, float index, Vec3 in, Vec3 n, Vec3& refracted) {
+    const float k = 1 - index * index * (1 - cosine * cosine);
+    if (!(k > 0)) return 1;
+    const float ct = std::sqrt(k);
+    const float s = (index * cosine - ct) / (index * cosine + ct), p = (cosine - index * ct) / (cosine + index * ct);
+    refracted = normalize(in * index + n * (index * cosine - ct));
+    return (s * s + p * p) / 2;
+}
+
+/// Of the caustics of path, where Attribute "photon" "shadingmodel" does not count.
+void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
+    d.reportOnce(
+        "causticwaits:" + b.surface->name,
+        {Severity::Warning,
+         Rie::Incapable,
+         b.surface->place,
+         "surface \"" + b.surface->name + "\" makes no caustics: its shader decides on what its rays bring",
+         "a shader whose Ci is a sum of products with trace() makes them, as slmaterial does; `alpenglow info` names the "
+         "call that is used otherwise",
+         {}});
+}
+
+} // namespace
+
+void Engine::takeModels(BatchContext& c, bool all) {
+    const bool models = photonTrace_->job->models;
+    const auto modelAt = [&](size_t point) {
+        const PhotonModel m = models ? world_->bindings_[size_t(c.bindings[point])].photons.model : PhotonModel::Shader;
+        return m == PhotonModel::Shader && all ? PhotonModel::Matte : m;
+    };
+    std::erase_if(lobes, [&](const LobeVertex& l) { return modelAt(size_t(l.point)) != PhotonModel::Shader; });
+    static const LobeKind *const diffuse = findLobe("diffuse"), *const mirror = findLobe("uniform"),
+                                 *const specular = findLobe("specular");
+    for (size_t i = 0; i < c.points.size(); ++i) {
+        const PhotonModel model = modelAt(i);
+        if (model == PhotonModel::Shader || model == PhotonModel::Transparent) continue;
+        const ShadePoint& p = c.points[i];
+        const Vec3 in = normalize(p.I), side = normalize(p.N), N = dot(side, in) > 0 ? -side : side;
+        const Color Cs = world_->bindings_[size_t(c.bindings[i])].attributes->color;
+        uint32_t site = kModelSite;
+        const auto add = [&](const LobeKind& kind, const Vec3& axis, const Color& weight, const RayKind& rays, float a = 0) {
+            LobeVertex& l = lobes.emplace_back();
+            LobeParams params;
+            params.axis = axis;
+            params.wo = -in;
+            params.a = a;
+            l.point = int(i);
+            l.kind = &kind;
+            l.weight = weight;
+            l.target = c.targets[i];
+            l.rays = &rays;
+            l.lights = l.deltaLights = false;
+            l.site = site++;
+            l.place = lobeRows_.add(kind, params);
+        };
+        const Vec3 mirrored = normalize(in - N * (2 * dot(in, N)));
+        if (model == PhotonModel::Matte) add(*diffuse, N, Cs, kDiffuseKind);
+        if (model == PhotonModel::Chrome) add(*mirror, mirrored, Cs, kSpecularKind);
+        if (model == PhotonModel::Plastic) { // the shader of that name
+            add(*diffuse, N, Cs * .5f, kDiffuseKind);
+            add(*specular, N, Color(.5f), kSpecularKind, kSpecularExponent / .1f);
+        }
+        if (model == PhotonModel::Glass || model == PhotonModel::Water) {
+            const float eta = model == PhotonModel::Glass ? 1.5f : 1.33f;
+            Vec3 refracted = in;
+            const float kr = reflectance(-dot(in, N), dot(side, in) < 0 ? 1 / eta : eta, in, N, refracted);
+            add(*mirror, mirrored, Cs * kr, kSpecularKind);
+            if (kr < 1) add(*mirror, refracted, Cs * (1 - kr), kSpecularKind);
+        }
+    }
+}
+
+void Engine::photonsByModel(BatchContext& c, Sched& sched) {
+    const size_t n = c.points.size();
+    for (size_t i = 0; i < n; ++i) {
+        const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
+        if (photonTrace_->job->caustics) sayNoCaustics(b, diagnostics_);
+        else if (b.photons.model == PhotonModel::Shader)
+            diagnostics_.reportOnce(
+                "photonwaits:" + b.surface->name,
+                {Severity::Info,
+                 Rie::NoError,
+                 b.surface->place,
+                 "surface \"" + b.surface->name + "\" decides on what its rays bring: photons come off it as off a matte surface",
+                 "Attribute \"photon\" \"string shadingmodel\" says what it is",
+                 {}});
+    }
+    takeModels(c, true);
+    c.clear.assign(n, Color(0));
+    c.passes.assign(n, 1.f);
+    for (size_t i = 0; i < n; ++i) {
+        const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
+        const Color o = b.attributes->opacity;
+        c.clear[i] = b.photons.model == PhotonModel::Transparent
+                         ? Color(1)
+                         : Color(std::clamp(1 - o.x, 0.f, 1.f), std::clamp(1 - o.y, 0.f, 1.f), std::clamp(1 - o.z, 0.f, 1.f));
+        c.clear[i] = c.clear[i] * leftBehind(c, int(i));
+    }
+    gather(c, sched);
+    for (size_t i = 0; i < n; ++i)
+        if (const Color clear = goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
+            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear, c.passes[i], 0,
+                        sched);
+}
+
+const photons::PhotonMap* Engine::globalMapOf(int binding) {
+    const auto [at, fresh] = globalMaps_.try_emplace(binding, nullptr);
+    const PhotonBinding& b = world_->bindings_[size_t(binding)].photons;
+    if (fresh && !b.globalMap.empty()) at->second = world_->photons_->find(b.globalMap, {});
+    return at->second;
+}
+
+void Engine::takeGlobalMaps(BatchContext& c, Sched& sched) {
+    size_t kept = 0;
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const photons::PhotonMap* map = c.rays[i].kind->gathersPhotons ? globalMapOf(c.bindings[i]) : nullptr;
+        if (map) {
+            const PathRay& r = c.rays[i];
+            const ShadePoint& p = c.points[i];
+            const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
+            const Color light =
+                map->radiance({p.surface.displaced ? p.surface.displacedP : p.surface.P, dot(n, r.dir) > 0 ? -n : n,
+                               world_->bindings_[size_t(c.bindings[i])].photons.estimator, 0});
+            tellAsker(c, int(i), Color(1), sched);
+            deposit(sched,
+                    {c.targets[i], r.weight * light, LightEvent::Photons, &r, extraOf(r).share, nullptr, atPhotons(r.path)});
+            freeExtra(r);
+            sched.release(c.targets[i]);
+            continue;
+        }
+        c.move(i, kept++);
+    }
+    c.keepFirst(kept);
+}
+
+} // namespace alpenglow::transport

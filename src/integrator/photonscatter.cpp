@@ -1,0 +1,329 @@
+// What becomes of photons at a vertex: they come to rest where light is spread, and go on along a lobe. And what rays of a camera
+// gather of them there.
+//
+// A photon that goes on along a lobe has the power that the other way round light would have: from a light to the eye and back
+// again must be the same. A lobe gives the radiance K that leaves along one way for radiance 1 from another; a photon's power is
+// K times the cosine of the way on over that of the way here, both with the normal of the geometry, over the density of the draw
+// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders takes energy for
+// radiance, without the factor for the change of solid angle: the way round has its inverse.
+#include "integrator/gather.h"
+#include "integrator/photonjob.h"
+#include "lobes/sampling.h"
+
+namespace alpenglow::transport {
+
+namespace {
+/// Kinds whose value has the cosine of the light's direction with their axis as a factor.
+bool hasCosine(const LobeKind& k) { return k.name == "diffuse" || (k.distribution && k.name != "hair"); }
+
+float sine(const Vec3& w, const Vec3& n) { return length(cross(w, n)); }
+float least(float x) { return std::max(std::fabs(x), 1e-4f); }
+} // namespace
+
+float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const LobeKind& kind, bool delta, const Vec3& from,
+                   const Vec3& to, const Vec3& n, const Vec3& N) {
+    const float here = least(dot(from, n)), there = least(dot(to, n)), ways = there / here;
+    const bool through = (dot(from, n) > 0) != (dot(to, n) > 0);
+    if (delta) {
+        if (!through) return ways;
+        // Refraction about the shading normal, where the two ways and that lie in a plane.
+        const Vec3 across = cross(from, to);
+        const float si = sine(from, N), so = sine(to, N);
+        if (!(si > 1e-5f) || std::fabs(dot(across, N)) > 1e-3f * length(across) + 1e-6f) return ways;
+        const float index = so / si;
+        return index * index * (least(dot(from, N)) / least(dot(to, N))) * ways;
+    }
+    if (hasCosine(kind) || (kind.name == "slphong" && rows.row(place, kRowHasHorizon) != 0)) {
+        const Vec3 axis = rows.triple(place, kind.name == "slphong" ? kRowHorizon : kRowAxis);
+        float index = 1;
+        if (through && kind.name == "glass-ggx") {
+            const float eta = std::max(rows.row(place, kRowEta), 1e-3f);
+            index = dot(axis, from) < 0 ? eta : 1 / eta; // of where it came from over where it goes
+        }
+        return index * index * least(dot(from, axis)) / least(dot(to, axis)) * ways;
+    }
+    return ways;
+}
+
+float narrowBelow(const Engine& e, const PathRay& ray) {
+    if (const PhotonTrace* t = e.photonTrace()) return t->job->width;
+    return e.passOf(ray) ? e.world().photons_->widthOfPasses : 0;
+}
+
+/// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
+// On surfaces alone.
+bool Gather::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow && !c_->between && seesAll(l); }
+bool Gather::mirrors(const LobeVertex& l) const { return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l); }
+/// By what both a photon and a path know of it: the roughness, and that the lobe is the same seen along any of its ways. So are
+/// those of facets, and highlights about the mirrored direction; what is thrown about another direction, as by refraction, is
+/// not: there are ways that only one of both finds. Shaders that move P are not asked twice (lookBack()).
+bool Gather::isNarrow(const LobeVertex& l, float below, const Vec3& in) const {
+    const LobeColumns& rows = e_.lobeRows_;
+    if (l.delta || l.below >= 0 || c_->between || !(rows.spread(l.place) < below)) return false;
+    if (c_->binding->moveS || c_->bound->kernel->facts().suspends) return false;
+    constexpr float kSame = 1e-3f; // of directions
+    if (l.kind->name == "slphong") {
+        const bool has = rows.row(l.place, kRowHasHorizon) != 0;
+        const Vec3 n = has ? rows.triple(l.place, kRowHorizon) : normalize(c_->points[size_t(l.point)].N);
+        return length(rows.triple(l.place, kRowAxis) - (in - n * (2 * dot(in, n)))) < kSame;
+    }
+    const bool facets = l.kind->distribution && l.kind->name != "hair";
+    if (!facets && l.kind->name != "specular" && l.kind->name != "phong") return false;
+    return length(rows.triple(l.place, kRowWo) + in) < kSame;
+}
+/// What photons bring is not to be sampled: the light comes by way of this lobe to a point where they are gathered.
+bool Gather::leftToPhotons(const LobeVertex& l, const BoundLight& light) const {
+    return l.narrow && (rayOf(l).trail & shading::kTrailSpread) && !e_.photonTrace() && mirrors(l) &&
+           world_.photons_->lightsOfPasses[size_t(&light - world_.lights_.data())];
+}
+bool Gather::seesAll(const LobeVertex& l) const {
+    const shading::RaySet& set = l.rays->set;
+    return !l.elsewhere && !set.only && !(l.maxDistance < 1e37f) && set.mode == shading::HitMode::Default &&
+           set.sides == accel::Sides::Front && world_.bindings_[size_t(c_->bindings[size_t(l.point)])].photons.meetsBoth;
+}
+
+uint8_t Gather::trailBehind(const LobeVertex& l) const {
+    const uint8_t trail = rayOf(l).trail;
+    if (e_.photonTrace()) return mirrors(l) ? trail : uint8_t(shading::kTrailSpread);
+    if (spreads(l)) return shading::kTrailSpread;
+    return mirrors(l) && (trail & shading::kTrailSpread) ? shading::kTrailSpread | shading::kTrailMirrored : 0;
+}
+
+void Gather::restPhotons() {
+    PhotonTrace& t = *e_.photonTrace();
+    for (size_t point = 0; world_.moves_ && point < c_->points.size(); ++point)
+        if (const ShadePoint& p = c_->points[point]; p.shape)
+            t.fastest = std::max(t.fastest, length(p.shape->velocity(p.surface)));
+    for (size_t point = 0; point < c_->points.size(); ++point) {
+        if (begin_[point] == begin_[point + 1]) continue;
+        const ShadePoint& p = c_->points[point];
+        const PathRay& from = c_->rays[point];
+        Color given(0);
+        bool spread = false;
+        for (int i : lobesOf(point)) {
+            LobeVertex& l = e_.lobes[size_t(i)];
+            if (!l.delta && !l.narrow) {
+                spread = true;
+                given += l.weight * l.albedo;
+            }
+            // Paths that walk below a surface gather where they come out; in maps photons rest where they come out.
+            spread |= l.below >= 0 && t.job->caustics;
+            if (t.job->caustics && !mirrors(l)) l.followed = false; // its chance is not another's
+        }
+        const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
+        const Color power = t.power[size_t(from.sample->path)] * from.weight * leftOfPhoton(*c_, point) * float(t.job->scale);
+        if (!spread || c_->between || (t.job->caustics && !caustic) || !isFinite(power) || !(maxComponent(power) > 0)) continue;
+        StoredPhoton s;
+        const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
+        s.photon.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+        s.photon.power = {std::max(power.x, 0.f), std::max(power.y, 0.f), std::max(power.z, 0.f)};
+        s.photon.from = photons::packUnit(-from.dir);
+        s.photon.normal = photons::packUnit(dot(n, from.dir) > 0 ? -n : n);
+        for (int k = 0; k < 3; ++k) s.photon.reflected[k] = uint8_t(std::clamp(given[k], 0.f, 1.f) * 255 + .5f);
+        s.photon.bounces = uint8_t(std::min<int>(from.bounces, 255));
+        s.number = t.first + uint32_t(from.sample->path);
+        s.binding = c_->bindings[point];
+        s.caustic = caustic;
+        s.time = from.sample->shutter;
+        t.out->push_back(s);
+    }
+}
+
+/// The way on of a photon, and by how much its power changes beside the lobe's own weight. A photon that comes along the normal
+/// says nothing of the index of refraction: its shader sees it come from slightly aside (Engine::tiltPhotons), and its way on is
+/// put right here.
+float Gather::photonWay(const LobeVertex& l, Vec3& w) const {
+    const ShadePoint& p = c_->points[size_t(l.point)];
+    const PathRay& from = rayOf(l);
+    const Vec3 n = p.surface.displaced ? p.surface.displacedN : p.surface.n, N = normalize(p.N);
+    if (l.narrow) return least(dot(w, n)) / least(dot(from.dir, n));
+    const Vec3 in = normalize(p.I), tilt = in - from.dir;
+    const float factor = photonFactor(e_.lobeRows_, l.place, *l.kind, l.delta, -in, w, n, N);
+    if (l.delta && length(tilt) > kLeastTilt / 4) {
+        const Vec3 aside = tilt - N * dot(tilt, N);
+        const float si = sine(in, N), index = si > 0 ? sine(w, N) / si : 1;
+        w = normalize(w - aside * index);
+    }
+    return factor;
+}
+
+/// Whether the light from which a photon has just come is on for a lobe that samples lights.
+bool Gather::lit(const LobeVertex& l) const {
+    const PathRay& ray = rayOf(l);
+    if (ray.bounces > 0 || !l.lights || l.elsewhere || l.delta) return true;
+    return world_.bindings_[size_t(c_->bindings[size_t(l.point)])].lights.contains(
+        e_.photonTrace()->from[size_t(ray.sample->path)].light);
+}
+
+/// A path samples the light from which a photon has come here, however deep it is.
+bool Gather::sampledByPaths(const LobeVertex& l) const {
+    return e_.photonTrace() && rayOf(l).bounces == 0 && l.narrow && l.lights && !l.elsewhere;
+}
+
+/// A path comes the other way, and the depths of the surfaces that it meets count from its end: each leaves so many lobes to
+/// those that a photon meets behind it.
+std::optional<PhotonDepths> Gather::depthsBehind(const LobeVertex& l, const SurfaceBinding& b) const {
+    const PhotonDepths before = PhotonDepths::of(rayOf(l));
+    if (sampledByPaths(l)) return before;
+    const bool diffuse = l.rays->type == RayType::Diffuse;
+    const auto left = [](int until, int most, bool takes) {
+        const int now = std::min(until, most < 0 ? PhotonDepths::kAll : std::min(most, PhotonDepths::kAll - 1));
+        return now == PhotonDepths::kAll ? now : now - takes;
+    };
+    const PhotonDepths d{left(before.diffuse, b.maxDiffuse, diffuse), left(before.specular, b.maxSpecular, !diffuse)};
+    if (d.diffuse < 0 || d.specular < 0) return {};
+    return d;
+}
+
+/// The batch as paths see it that come from where photons go: what its shader asks for there is added to Engine::lobes.
+std::shared_ptr<BatchContext> Gather::shadeBack(std::span<Sent* const> turned, Sched& sched) {
+    auto c = e_.takeContext();
+    c->engine = &e_;
+    c->ownsExtras = false; // those of the rays are the batch's
+    c->binding = c_->binding;
+    c->bound = c_->bound;
+    c->displaced = c_->displaced;
+    c->points = c_->points;
+    c->rays = c_->rays;
+    c->targets = c_->targets;
+    c->bindings = c_->bindings;
+    for (size_t i = 0; i < c->points.size(); ++i) c->points[i].ray = &c->rays[i];
+    for (const Sent* s : turned) { // seen from what the photon meets next: shaders may ask how far away that is
+        const PathRay& from = c_->rays[size_t(s->point)];
+        accel::Ray way;
+        way.org = origin(e_.lobes[size_t(s->lobe)], s->w);
+        way.dir = s->w;
+        way.time = world_.shutterOf(from);
+        way.only = e_.photonTrace()->job->met;
+        way.sides = accel::Sides::Both;
+        way.level = from.sample->level;
+        accel::Hit hit;
+        ShadePoint& p = c->points[size_t(s->point)];
+        p.I = s->w * -(e_.meet(way, hit) ? hit.t : length(p.I));
+        p.E = p.P - p.I;
+        c->rays[size_t(s->point)].dir = -s->w;
+    }
+    e_.fillBatch(*c);
+    if (c->displaced) c->batch->tell(*c->displaced->batch);
+    c->bound->kernel->run(&c->batch->call());
+    c->ran();
+    const size_t settled = e_.settled_.size();
+    const std::vector<Color> whole(c->points.size(), Color(1));
+    e_.requestPairs(*c, whole, nullptr, sched);
+    e_.settled_.erase(e_.settled_.begin() + long(std::min(settled, e_.settled_.size())), e_.settled_.end());
+    e_.lobeRows_.prepare();
+    return c;
+}
+
+/// Paths meet the lobes of narrow highlights and rough glass from the other side, and what their shaders say may depend on that:
+/// the reflectance of Fresnel, the direction of what is refracted, which call it is. So a photon that such a lobe sends on
+/// carries what all narrow lobes of its point give back when the shader is asked from where the photon goes; those as the photon
+/// has met them only draw the way, and the density is that of all.
+void Gather::lookBack(Sched& sched) {
+    std::vector<Sent*> turned;
+    for (Sent& s : sent_)
+        if (s.goes && e_.lobes[size_t(s.lobe)].narrow) turned.push_back(&s);
+    if (turned.empty()) return;
+    LobeColumns& rows = e_.lobeRows_;
+    const size_t had = e_.lobes.size();
+    const auto c = shadeBack(turned, sched);
+    std::vector<Color> sum(c->points.size(), Color(0));
+    std::vector<std::vector<int>> seen(c->points.size());
+    for (size_t k = had; k < e_.lobes.size(); ++k) {
+        LobeVertex& l = e_.lobes[k];
+        l.albedo = rows.albedo(l.place);
+        l.delta = rows.delta(l.place);
+        l.narrow = isNarrow(l, e_.photonTrace()->job->width, normalize(c->points[size_t(l.point)].I));
+        if (l.lobeOfShader)
+            for (int i = 0; i < 3; ++i) sum[size_t(l.point)][i] += std::fabs(l.weight[i]) * l.albedo;
+        if (l.narrow && mirrors(l) && lit(l)) seen[size_t(l.point)].push_back(int(k));
+    }
+    const auto draws = [&](int i) { // a ray of its own may have gone this way
+        const LobeVertex& l = e_.lobes[size_t(i)];
+        return l.narrow && l.followed && l.chosen > 0;
+    };
+    for (Sent* s : turned) { // one of a point
+        s->goes = !seen[size_t(s->point)].empty();
+        for (int k : seen[size_t(s->point)]) rows.ask(e_.lobes[size_t(k)].place, -c_->rays[size_t(s->point)].dir);
+        for (int i : lobesOf(size_t(s->point)))
+            if (i != s->lobe && draws(i)) rows.ask(e_.lobes[size_t(i)].place, s->w);
+    }
+    rows.evaluate();
+    for (Sent* s : turned) {
+        if (!s->goes) continue;
+        const PathRay& ray = c_->rays[size_t(s->point)];
+        const float kept = ray.bounces == 0 ? e_.photonTrace()->from[size_t(ray.sample->path)].kept : 1;
+        const float energy = energyScale(size_t(s->point), sum[size_t(s->point)], e_.clearAt(*c, s->point));
+        Color back(0);
+        for (int k : seen[size_t(s->point)]) {
+            const LobeVertex& l = e_.lobes[size_t(k)];
+            back += l.weight * rows.value(l.place).colour * ((l.lobeOfShader ? energy : 1) * (l.rays->fromTrace ? 1 : kept));
+        }
+        float density = 0;
+        for (int i : lobesOf(size_t(s->point)))
+            if (draws(i)) {
+                const LobeVertex& l = e_.lobes[size_t(i)];
+                density += l.chosen * (i == s->lobe ? s->value.pdf : rows.value(l.place).pdf);
+            }
+        s->back = density > 0 ? back / density : Color(0);
+    }
+    e_.lobes.erase(e_.lobes.begin() + long(had), e_.lobes.end());
+    e_.giveBack(c);
+}
+
+void Engine::tiltPhotons(BatchContext& c) {
+    for (size_t i = 0; i < c.points.size(); ++i) {
+        ShadePoint& p = c.points[i];
+        const Vec3 N = normalize(p.N);
+        if (!(sine(c.rays[i].dir, N) < kLeastTilt / 10)) continue;
+        const Basis b(N);
+        p.I = normalize(c.rays[i].dir + b.t * kLeastTilt) * length(p.I);
+    }
+}
+
+void Gather::takePhotons(Sched& sched) {
+    for (size_t point = 0; point < c_->points.size(); ++point) {
+        if (begin_[point] == begin_[point + 1]) continue;
+        const PathRay& ray = c_->rays[point];
+        const photons::PhotonGrid* grid = e_.passOf(ray);
+        if (!grid || grid->size() == 0) continue;
+        const ShadePoint& p = c_->points[point];
+        const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
+        const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P;
+        const float time = ray.shutter(), perArea = 1 / (float(kPi) * grid->radius() * grid->radius() * grid->lasts(time));
+        near_.clear();
+        grid->within(at, time, [&](const photons::Photon& photon) {
+            if (!(std::fabs(dot(photons::unpackUnit(photon.normal), n)) > 0.7f)) return;
+            const Vec3 w = photon.direction();
+            near_.push_back({w, photon.power * (perArea / least(dot(w, n)))});
+        });
+        if (near_.empty()) continue;
+        for (int i : lobesOf(point)) {
+            const LobeVertex& l = e_.lobes[size_t(i)];
+            if (!l.followed || !spreads(l)) continue;
+            const Color weight = l.lobeOfShader ? l.weight * indirectScale_[point] : l.weight;
+            const Color light = (l.ownsTarget ? weight : weight * ray.weight) * givenBack(l);
+            e_.deposit(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l), nullptr,
+                               e_.atPhotons(e_.atLobe(l, p, ray, near_[0].from))});
+        }
+    }
+}
+
+/// What a lobe gives back of near_.
+Color Gather::givenBack(const LobeVertex& l) {
+    LobeColumns& rows = e_.lobeRows_;
+    Color sum(0);
+    if (l.kind->name == "diffuse") { // what most are
+        const Vec3 axis = rows.triple(l.place, kRowAxis);
+        for (const Near& photon : near_) sum += photon.light * std::max(dot(axis, photon.from), 0.f);
+        return sum * float(1 / kPi);
+    }
+    for (const Near& photon : near_) {
+        rows.ask(l.place, photon.from);
+        rows.evaluate();
+        sum += photon.light * rows.value(l.place).colour;
+    }
+    return sum;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,140 @@
+#include "integrator/rowshading.h"
+#include "integrator/gridrays.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+RowShading::RowShading(Engine& e, BlockVertices& blocks) : e_(e), blocks_(blocks), world_(e.world()) {
+    takes_.assign(!world_.moves_ ? size_t(world_.groups_) : 0, 1);
+    for (const SurfaceBinding& b : world_.bindings_)
+        if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
+}
+
+/// Whether a kernel calls back for nothing but requests, which are looked at when it has run, and lookups in pictures, which need
+/// no point.
+static bool needsNoPoints(const BoundKernel& k) {
+    const auto& facts = k.kernel->facts();
+    return !facts.suspends && !facts.lightLoops && k.plan->readsSurfaceRows() &&
+           std::all_of(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) {
+               return isRequest(s.kind, k.path) || s.kind == SiteKind::Texture || s.kind == SiteKind::Environment;
+           });
+}
+
+bool RowShading::takes(const SurfaceBinding& b) const {
+    for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
+        if (*k && !(blocks_.takes(b, *k) && needsNoPoints(*k))) return false;
+    return b.surfaceS && b.areaLight < 0 && !b.moveS && !b.displacementS && !b.atmosphere.shader && b.lightOutputs.empty() &&
+           b.aside.empty() && !b.matte && b.surface && !b.surface->moving;
+}
+
+bool RowShading::shade(BatchContext& c, Sched& sched) {
+    if (!e_.events_.empty() || e_.photonTrace() || !e_.gathered_.empty() || !e_.traceSums_.empty()) return false;
+    // A ray that fades with distance, or whose call asks for distance and normal of the hit, needs the point that it met.
+    for (const PathRay& r : c.rays)
+        if ((r.extra >= 0 && e_.extraOf(r).fade.fades()) || (r.first && !(r.counts && sched.plain()))) return false;
+    c.points.clear();
+    run(c);
+    c.opaque = isOpaque(*c.batch);
+    if (!c.opaque) {
+        e_.pointsOfRows(c);
+        e_.tellClear(c);
+    }
+    e_.keepIndirect(c);
+    if (!blocks_.run(c, sched)) {
+        c.emits.clear();
+        c.arena.clear();
+        c.emitted = 0;
+        return false;
+    }
+    count(c);
+    requestOthers(c, sched);
+    e_.flushShadows(sched);
+    const bool outputs = !world_.wanted_.empty() && std::any_of(c.rays.begin(), c.rays.end(), [](auto& r) { return r.counts; });
+    if (c.opaque && !outputs) {
+        finish(c, sched);
+    } else {
+        e_.pointsOfRows(c);
+        e_.finishStrip(c, 0, int(c.rays.size()), sched);
+    }
+    return true;
+}
+
+/// The kernel over the hits.
+void RowShading::run(BatchContext& c) {
+    e_.placeSurfaces(c);
+    const size_t n = c.hits.size();
+    c.shapes.resize(n);
+    c.ways.resize(8 * n);
+    for (size_t i = 0; i < n; ++i) {
+        const PathRay& r = c.rays[i];
+        c.shapes[i] = world_.shapes_[c.hits[i].shape].get();
+        const Vec3 begin = r.begin(), I = c.surfaces[i].P - begin;
+        for (int q = 0; q < 3; ++q) {
+            c.ways[size_t(q) * n + i] = I[q];
+            c.ways[size_t(3 + q) * n + i] = r.camera() ? 0 : begin[q];
+        }
+        if (!world_.footprints_) continue;
+        const float rate = r.camera() ? world_.bindings_[size_t(c.bindings[i])].shadingRate : 1;
+        const Vec2 size = stepsAt(r, c.surfaces[i], rate);
+        c.ways[6 * n + i] = size.x;
+        c.ways[7 * n + i] = size.y;
+    }
+    c.binding = &world_.bindings_[size_t(c.bindings[0])];
+    const bool same = std::all_of(c.bindings.begin(), c.bindings.end(), [&](int b) { return b == c.bindings[0]; });
+    c.bound = same && !c.binding->usesObjectSpace ? &c.binding->surfaceS : &c.binding->surfaceV;
+    e_.viewsOf(c);
+    if (!c.batch) c.batch = std::make_shared<shading::Batch>();
+    const std::span<const float> ways(c.ways);
+    const shading::SurfaceRows rows{
+        std::span(c.surfaces).first(n), c.shapes,           ways.first(3 * n), ways.subspan(3 * n, 3 * n),
+        ways.subspan(6 * n, n),         ways.subspan(7 * n)};
+    c.batch->assign(c.bound->kernel, *c.bound->plan, rows, e_.views_, e_.viewOf_, world_);
+    e_.bindCall(c.batch->call(), c);
+    c.bound->kernel->run(&c.batch->call());
+    c.ran();
+}
+
+/// What the kernel asks for besides lobes: shadows, and light that is everywhere.
+void RowShading::requestOthers(BatchContext& c, Sched& sched) {
+    const auto other = [&](const EmitRecord& e) {
+        const SiteKind k = c.bound->sites[size_t(e.site)].kind;
+        return k == SiteKind::Ambient ? e_.ambientLights_ : asksShadows(k) || k == SiteKind::LightVisibility;
+    };
+    if (std::none_of(c.emits.begin(), c.emits.end(), other)) return;
+    e_.pointsOfRows(c);
+    e_.requestPairs(c, std::vector<Color>(c.rays.size(), Color(1)), nullptr, sched, false);
+    if (!e_.ambients_.empty()) e_.gatherAmbient(c);
+}
+
+void RowShading::count(const BatchContext& c) {
+    const uint64_t n = c.rays.size(), lanes = uint64_t(c.bound->kernel->lanes());
+    Counters& of = e_.counters;
+    of.points += n;
+    of.inBlocks += n;
+    ++of.batches;
+    of.lanesUsed += n;
+    of.lanesRun += (n + lanes - 1) / lanes * lanes;
+}
+
+/// What opaque surfaces give by themselves, and what camera rays show of them: finishStrip() of the engine.
+void RowShading::finish(BatchContext& c, Sched& sched) {
+    const shading::Batch& b = *c.batch;
+    const int ci = b.plan().Ci;
+    const Color opacity(1);
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const PathRay& ray = c.rays[i];
+        const Color shown = ci >= 0 ? b.color(ci, int(i)) : Color(0);
+        const ShaderInstance* of = world_.bindings_[size_t(c.bindings[i])].surface.get();
+        if (!isFinite(shown)) e_.notFinite(&ray, "Ci", of);
+        else if (!(shown == Color(0)))
+            e_.deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, e_.extraOf(ray).share, of});
+        if (!ray.counts) continue;
+        SampleResult& r = *e_.results[size_t(ray.sample->path)];
+        r.opacity += ray.weight * opacity;
+        const float z = c.surfaces[i].P.z;
+        if (r.z >= 1e38f) r.z = z;
+        else if (r.zSecond >= 1e38f) r.zSecond = z;
+    }
+}
+
+} // namespace alpenglow::transport

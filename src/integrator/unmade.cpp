@@ -1,0 +1,28 @@
+#include "integrator/unmade.h"
+#include "integrator/bakes.h"
+#include "integrator/photons.h"
+#include "world/impl.h"
+
+namespace alpenglow::transport {
+namespace {
+/// Null: a world of somebody else's making, which has no procedurals.
+const WorldImpl* inside(const World& w) { return dynamic_cast<const WorldImpl*>(&w); }
+} // namespace
+
+void askForProcedurals(const World& w, int most) {
+    if (hasUnmade(w)) inside(w)->unmade_->askFor(most);
+}
+
+std::vector<int> procedurals(const World& w) { return hasUnmade(w) ? inside(w)->unmade_->met() : std::vector<int>(); }
+
+bool hasUnmade(const World& w) { return inside(w) && inside(w)->unmade_; }
+
+bool needsAllShapes(const World& w) { return inside(w) && (bakes(w) || w.interpolates() || !photonMapsOf(w, true).empty()); }
+
+void takeOver(const World& w, const World& before) {
+    if (inside(w) && inside(before)) inside(w)->prints_.goOn(inside(before)->prints_);
+}
+
+bool hasPrints(const World& w) { return inside(w) && inside(w)->prints_.pending(); }
+
+} // namespace alpenglow::transport

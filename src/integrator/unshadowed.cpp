@@ -1,0 +1,54 @@
+// What a trace() would find along a ray if nothing but area lights were there: "unshadowedarealight" of rays for which no light
+// is sampled, and "unshadowedenvironment", which area lights still block.
+#include "integrator/gather.h"
+
+namespace alpenglow::transport {
+
+void Gather::unshadowed(const LobeVertex& l, const Vec3& w, const Color& through, const Color& environment, TraceSums& sums) {
+    const shading::RaySet& set = l.rays->set;
+    const PathRay& from = rayOf(l);
+    const ShadePoint& p = c_->points[size_t(l.point)];
+    accel::Ray ray;
+    ray.org = origin(l, w);
+    ray.dir = w;
+    ray.tfar = l.maxDistance;
+    ray.time = world_.shutterOf(from);
+    ray.mask = visibilityBit(l.rays->type);
+    ray.sides = set.sides;
+    ray.only = world_.shining_.data();
+    ray.level = from.sample->level;
+    accel::Hit hit;
+    while (e_.meet(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
+    if (!hit.valid()) return sums.add(TraceSums::UnshadowedEnvironment, through * environment);
+    // Lobes that sample lights know by their samples what area lights would give.
+    const auto isOn = [&](int light) {
+        const BoundLight& b = world_.lights_[size_t(light)];
+        return b.kind == LightKind::Area && !b.mean && b.strategy != LightStrategy::Illuminance;
+    };
+    const int light = world_.shapes_[hit.shape]->attributes().areaLight;
+    const SurfaceBinding& lit = world_.bindings_[size_t(c_->bindings[size_t(l.point)])];
+    if (!l.lights || (!l.elsewhere && !l.delta) || !lit.lights.contains(light)) return;
+    std::vector<int> all{light};
+    for (int part : world_.lights_[size_t(light)].parts) all.push_back(part);
+    for (int number : all) {
+        if (!isOn(number)) continue;
+        const BoundLight& b = world_.lights_[size_t(number)];
+        std::vector<ShadePoint> q(1);
+        q[0].shape = world_.shapes_[hit.shape].get();
+        world_.accel_->point(hit, q[0].surface, b.pointNeeds);
+        q[0].P = meetsAt(q[0].surface);
+        q[0].N = q[0].surface.n;
+        q[0].Ps = l.elsewhere ? l.from : p.P;
+        q[0].shutter = p.shutter;
+        q[0].time = p.time;
+        q[0].ray = &from;
+        const std::vector<int> told{l.lit};
+        LitSurface surface;
+        if (b.asksSurface) surface = e_.litBy(told);
+        LightValue v;
+        e_.evaluateLight(b, q, {&v, 1}, {.lit = b.asksSurface ? &surface : nullptr});
+        if (v.lit && isFinite(v.Cl)) sums.add(TraceSums::UnshadowedAreaLight, through * v.Cl);
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,173 @@
+// Vertices that are followed 16 at a time (integrator/blockvertices.h) have the bits of those that go one by one.
+#include "display/imageio.h"
+#include "integrator/harness.h"
+
+namespace blocks_test {
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+struct Traced {
+    std::vector<SampleResult> samples;
+    uint64_t inBlocks, points, cut;
+};
+Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1) {
+    Settings s;
+    s.maxDepth = maxDepth;
+    s.hider = Hider::Path;
+    s.blocks = blocks;
+    s.lanes = lanes;
+    Scene scene(rib, s);
+    std::vector<CameraRay> rays;
+    for (int i = 0; i < 900; ++i) {
+        CameraRay r = rayTo({0, 0, 0}, {float(i % 30) / 30 - .48f, float(i / 30) / 30 - .48f, 1});
+        r.px = i % 30, r.py = i / 30, r.sample = uint32_t(i % 5), r.spread = .001f;
+        rays.push_back(r);
+    }
+    Traced t;
+    t.samples.resize(rays.size());
+    Integrator integrator(scene.world, scene.diagnostics);
+    integrator.trace(rays, t.samples, nullptr);
+    t.inBlocks = integrator.counters().inBlocks;
+    t.points = integrator.counters().points;
+    t.cut = integrator.counters().depthCap;
+    return t;
+}
+
+const char* const kLights =
+    "LightSource \"pointlight\" 1 \"intensity\" 9 \"from\" [1 2 3] \"float radius\" .3\n"
+    "LightSource \"distantlight\" 2 \"intensity\" .4 \"from\" [1 1 -1] \"to\" [0 0 0]\n"
+    "LightSource \"ambientlight\" 3 \"intensity\" .2\n"
+    "AttributeBegin\nAreaLightSource \"slrect\" 4 \"float intensity\" 5\nSurface \"constant\"\nColor 0 0 0\n"
+    "Polygon \"P\" [-1 2.5 4  1 2.5 4  1 2.5 6  -1 2.5 6]\nAttributeEnd\n"
+    "AttributeBegin\nAreaLightSource \"arealight\" 5 \"float intensity\" 2\nSurface \"constant\"\nTranslate -2 1 4\n"
+    "Sphere .3 -.3 .3 360\nAttributeEnd\n"
+    "AttributeBegin\nAreaLightSource \"slrect\" 6 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\n"
+    "Polygon \"P\" [1.5 -1 4  1.5 0 4  1.5 0 4.5  1.5 -1 4.5]\nAttribute \"visibility\" \"int diffuse\" 0\n"
+    "Polygon \"P\" [-1.5 0 3  -1.5 .7 3.2  -1.5 0 3.6]\nAttributeEnd\n"
+    "LightSource \"spotlight\" 7 \"intensity\" 9 \"from\" [0 2 3] \"to\" [0 0 5] \"coneangle\" .7\n"
+    "Illuminate 4 1\nIlluminate 5 1\nIlluminate 6 1\n";
+
+/// A room of balls of one shader.
+std::string roomOf(const std::string& shader, const std::string& more = "") {
+    std::string s = "WorldBegin\nSides 2\n" + std::string(kLights) + more + "Surface " + shader + "\n";
+    for (int i = 0; i < 9; ++i)
+        s += "AttributeBegin\nColor [" + std::to_string(.2 + .08 * i) + " .6 .7]\nTranslate " + std::to_string(i % 3 - 1) + " " +
+             std::to_string(i / 3 - 1) + " " + std::to_string(4 + .2 * i) + "\nSphere .4 -.4 .4 360\nAttributeEnd\n";
+    return s + "Polygon \"P\" [-9 -2 0  -9 -2 20  9 -2 20  9 -2 0]\nPolygon \"P\" [-9 -9 9  -9 9 9  9 9 9  9 -9 9]\nWorldEnd\n";
+}
+
+size_t differences(const Traced& a, const Traced& b) {
+    size_t n = 0;
+    for (size_t i = 0; i < a.samples.size(); ++i)
+        n += !(a.samples[i].color == b.samples[i].color) || a.samples[i].z != b.samples[i].z;
+    return n;
+}
+double sumOf(const Traced& t) {
+    double sum = 0;
+    for (const SampleResult& s : t.samples) sum += s.color.x + s.color.y + s.color.z;
+    return sum;
+}
+} // namespace
+
+TEST(Blocks, HaveTheBitsOfSinglePoints) {
+    writeShader("glossy", R"(surface glossy() {
+    normal n = faceforward(normalize(N), I);
+    Ci = Cs * (.9 * diffuse(n) + .8 * specular(n, -normalize(I), .2) + .2 * phong(n, -normalize(I), 9));
+    if (xcomp(P) > 0) Ci += .3 * trace(P, reflect(normalize(I), n), "samplecone", .1, "samples", 3);
+})");
+    writeShader("facets", R"(surface facets() {
+    normal n = faceforward(normalize(N), I);
+    Ci = .4 * diffuse(n)
+         + .5 * trace(P, vector n, "distribution", "ggx", "wo", -I, "roughness", .3, "eta", color(.2, .9, 1.1), "k", 3)
+         + .2 * trace(P, vector n, "distribution", "oren-nayar", "roughness", .5, "samplearealights", 1);
+    Oi = Os;
+})");
+    writeShader("cut", R"(surface cut() {
+    Oi = mod(xcomp(8 * P), 1) < .5 ? Os : color(0);
+    Ci = Oi * Cs * diffuse(faceforward(normalize(N), I));
+})");
+    for (const char* shader :
+         {"\"matte\"", "\"plastic\"", "\"glossy\"", "\"facets\"", "\"cut\"", "\"slmaterial\"",
+          "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1] \"float shininess\" 9",
+          "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5"}) {
+        const std::string rib = roomOf(shader);
+        const Traced one = trace(rib, false), all = trace(rib, true), narrow = trace(rib, true, 4);
+        EXPECT_GT(sumOf(one), 1) << shader;
+        EXPECT_EQ(one.inBlocks, 0u);
+        EXPECT_GT(all.inBlocks, all.points / 3) << shader; // shadow rays run "cut" for its opacity
+        EXPECT_EQ(differences(one, all), 0u) << shader;
+        EXPECT_EQ(differences(one, narrow), 0u) << shader << ", kernels of 4 lanes";
+    }
+}
+
+TEST(Blocks, LetLightThroughAndLeaveWhatNeedsALook) {
+    writeShader("turns", R"(surface turns() {
+    normal n = faceforward(normalize(N), I);
+    float i;
+    for (i = 0; i < 3; i += 1) Ci += .2 * Cs * diffuse(n);
+})");
+    writeShader("tiny", R"(surface tiny() { Ci = diffuse(normal(1e-25 * normalize(N))); })");
+    writeShader("away", R"(surface away() { Ci = .8 * trace(P + .1 * normalize(N), vector(0, 1, 0)); })");
+    for (const char* shader : {"turns", "tiny", "away"}) {
+        const std::string rib = roomOf("\"" + std::string(shader) + "\"");
+        const Traced one = trace(rib, false), all = trace(rib, true);
+        EXPECT_GT(sumOf(one), 1) << shader;
+        EXPECT_EQ(differences(one, all), 0u) << shader;
+        EXPECT_LT(all.inBlocks, all.points) << shader;
+    }
+    for (const char* shader : {"\"matte\"", "\"facets\"", "\"glossy\""}) {
+        const std::string rib = roomOf(shader, "Opacity .5 .6 .7\nAttribute \"trace\" \"bias\" .01\n");
+        const Traced all = trace(rib, true);
+        EXPECT_EQ(differences(trace(rib, false), all), 0u) << shader;
+        EXPECT_GT(all.inBlocks, all.points / 2) << shader;
+    }
+}
+
+TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {
+    for (const char* shader :
+         {"\"matte\"", "\"plastic\"", "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1]"})
+        for (const std::string more : {"", "Opacity .5 .6 .7\n", "LightSource \"envlight\" 9 \"intensity\" .3\n"})
+            for (int depth = 0; depth < 4; ++depth) {
+                const std::string rib = roomOf(shader, more);
+                const Traced one = trace(rib, false, 16, depth), all = trace(rib, true, 16, depth);
+                EXPECT_GT(sumOf(one), 1) << shader << more << depth;
+                EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
+                EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
+                EXPECT_GT(all.cut, 0u) << shader << more << depth;
+                if (more.empty()) EXPECT_GT(all.inBlocks, all.points / 2) << shader << depth; // skies are asked point by point
+            }
+}
+
+TEST(Blocks, LookPicturesUpAndKnowHowLargePointsAre) {
+    display::Image m = display::makeImage(32, 16, display::defaultChannels(3));
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 32; ++x)
+            for (int c = 0; c < 3; ++c) m.pixel(x, y)[c] = float((x / 2 + y / 2 + c) % 3) / 2;
+    Diagnostics d;
+    display::WriteOptions o;
+    o.format = display::Format::Exr;
+    o.policy = {shaderFolder(), false, -1};
+    ASSERT_TRUE(display::writeImage("squares.exr", m, o, d));
+    const std::string map = '"' + shaderFolder() + "/squares.exr\"";
+    writeShader("painted", "surface painted() { normal n = faceforward(normalize(N), I); Ci = Ci + diffuse(n) * color texture(" +
+                               map + ", s, t) + .2 * ambient() + specular(n, -normalize(I), .2) * float texture(" + map +
+                               "[1], 3 * s, t, \"blur\", .02); }");
+    writeShader("sized",
+                "surface sized() { Ci = diffuse(faceforward(normalize(N), I)) * (1 - exp(-9999 * area(P))) + du * .1; }");
+    writeShader("shiny",
+                "surface shiny() { normal n = faceforward(normalize(N), I); Ci = .2 * diffuse(n) + .1 * color environment(" +
+                    map + ", reflect(I, n)) + .1 * color(E) * s; }");
+    for (const char* shader : {"painted", "sized", "shiny"}) {
+        const std::string rib = roomOf("\"" + std::string(shader) + "\"");
+        const Traced one = trace(rib, false), all = trace(rib, true);
+        EXPECT_GT(sumOf(one), 1) << shader;
+        EXPECT_EQ(differences(one, all), 0u) << shader;
+        EXPECT_GT(all.inBlocks, all.points / 2) << shader;
+    }
+}
+
+} // namespace blocks_test

@@ -37,7 +37,7 @@ struct LightParameter {
     std::vector<Part> written; ///< by its kernel: where they lie in BoundLight::values, and in the answer
 };
 
-/// Answers that do not depend on the point, so that no name is compared twice. Names are interned. One an engine: no lock.
+/// Answers that do not depend on the point, so that no name is compared twice. Names are interned. One a thread: no lock.
 struct AnswerMemo {
     std::map<std::pair<int32_t, int>, LightParameter> ofLights;                         ///< by name and light
     std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<Told>> ofShaders; ///< toldBy()

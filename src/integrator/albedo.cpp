@@ -1,6 +1,9 @@
 // The output "albedo": what lobes give back of even light. Of those whose albedo is no more than an estimate (facets with Fresnel
 // reflection, highlights) it is measured, by directions drawn as their rays are: right on average.
-#include "integrator/gather.h"
+#include "integrator/accumulator.h"
+#include "integrator/lobeselection.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
 
 namespace alpenglow::transport {
 
@@ -8,25 +11,25 @@ namespace {
 constexpr uint32_t kDraws = 8;
 } // namespace
 
-bool Gather::albedoIsMeasured(const LobeVertex& l) const {
+bool LobeSelection::albedoIsMeasured(const LobeVertex& l) const {
     return world_.settings_.firstSeen && !l.ownsTarget && !l.delta && l.below < 0 &&
            (l.kind->distribution || l.rays->type != RayType::Diffuse);
 }
 
-void Gather::measureAlbedos() {
+void LobeSelection::measureAlbedos() {
     if (!world_.settings_.firstSeen || c_->aside) return;
     std::vector<const LobeVertex*> lobes;
-    for (const LobeVertex& l : e_.lobes)
+    for (const LobeVertex& l : requests_.lobes)
         if (rayOf(l).counts && albedoIsMeasured(l)) lobes.push_back(&l);
     if (lobes.empty()) return;
-    LobeColumns& rows = e_.lobeRows_;
+    LobeColumns& rows = requests_.rows;
     std::vector<Color> sum(lobes.size(), Color(0));
     std::vector<Vec3> ways(lobes.size());
     std::vector<uint8_t> drawn(lobes.size());
     for (uint32_t k = 0; k < kDraws; ++k) {
         numbers_.clear();
         for (const LobeVertex* l : lobes)
-            numbers_.askPair(e_.random(rayOf(*l)).draw(k, kDraws).numbers(), rayOf(*l).vertex, kAlbedo,
+            numbers_.askPair(store_.random(rayOf(*l)).draw(k, kDraws).numbers(), rayOf(*l).vertex, kAlbedo,
                              l->site * 4096 + l->occurrence);
         numbers_.draw();
         for (size_t i = 0; i < lobes.size(); ++i) rows.ask(lobes[i]->place, numbers_.pair(i));
@@ -40,7 +43,7 @@ void Gather::measureAlbedos() {
     for (size_t i = 0; i < lobes.size(); ++i) {
         const PathRay& from = rayOf(*lobes[i]);
         const Color seen = from.weight * lobes[i]->weight * (sum[i] / float(kDraws));
-        if (isFinite(seen)) e_.results[size_t(from.sample->path)]->albedo += seen;
+        if (isFinite(seen)) accumulator_.results[size_t(from.sample->path)]->albedo += seen;
     }
 }
 

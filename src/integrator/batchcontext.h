@@ -1,4 +1,4 @@
-// A batch of points that the wave shades.
+// A batch of points that are shaded together.
 #pragma once
 #include "answers/kernelrun.h"
 #include "integrator/rays.h"
@@ -7,7 +7,8 @@
 
 namespace alpenglow::transport {
 
-class Engine;
+class KernelInputs;
+class RayStore;
 
 /// One affine pair group of a strip, as the kernel emitted it: rows of `lanes` floats, the first three the weight. light:
 /// whose light a loop weighs; -1: of none, or not known.
@@ -27,8 +28,8 @@ struct Haze {
 /// State of one batch while its kernel runs; KernelCall::user.
 struct BatchContext : KernelRun {
     ~BatchContext();
-    Engine* engine = nullptr;
-    bool ownsExtras = false;       ///< what its rays carry besides is freed with it
+    KernelInputs* host = nullptr;  ///< answers what the kernel calls
+    RayStore* extrasOf = nullptr;  ///< not null: what its rays carry besides is freed with it
     std::vector<TargetId> targets; ///< by point; of an `aside` its own
     std::vector<accel::Hit> hits;  ///< by point, of rays that met surfaces
     /// By point, of a batch in rows (rowshading.h), whose `points` are empty until somebody asks for them; else void.
@@ -42,7 +43,7 @@ struct BatchContext : KernelRun {
     std::vector<Haze> haze;                 ///< by point; only where a volume lies before some point
     std::vector<Color> clear;  ///< by point: what goes on behind it; only while gather() runs for a kernel that does not wait
     std::vector<float> passes; ///< by point: the chance with which its ray goes on, 0: another was taken; empty: it always does
-    bool indirectKept = false; ///< Engine::keepIndirect() has been here
+    bool indirectKept = false; ///< RayStore::keepIndirect() has been here
     bool opaque = false;       ///< nothing goes on behind any point; false: perhaps
     std::vector<uint8_t> ownShadows; ///< of a light, by lit point: LightValue::ownShadow; empty: of none
     std::exception_ptr failure;      ///< of a callback while the kernel ran: exceptions cannot pass generated code

@@ -1,8 +1,13 @@
 // Samples of lights for vertices in blocks whose points, kernel and values are rows, no structure a point: of emitters of a few
 // flat triangles, and of lights without geometry. What the others do in blocklights.cpp, with the same bits.
 #include "base/direction.h"
+#include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
 #include "integrator/blockvertices.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/lightkernels.h"
 #include "integrator/lightsample.h"
+#include "integrator/vertexlight.h"
 #include <algorithm>
 #include <bit>
 
@@ -20,8 +25,7 @@ bool BlockVertices::inRows(const BoundLight& l) const {
 void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
     placeInRows(light);
     const size_t n = litBlocks_.size() * kBlock;
-    auto call = e_.takeContext();
-    call->engine = &e_;
+    auto call = batches_.take();
     call->bound = &light.kernel;
     call->lit = nullptr;
     call->light = &light;
@@ -34,11 +38,11 @@ void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
     call->batch->assign(light.kernel.kernel, *light.kernel.plan,
                         {rows.first(3 * n), rows.subspan(3 * n, 3 * n), rows.subspan(6 * n, 3 * n)},
                         {&light.instance->parameters, &light.instance->toCurrent, nullptr, parameters.get()});
-    e_.bindCall(call->batch->call(), *call);
+    inputs_.bind(call->batch->call(), *call);
     light.kernel.kernel->run(&call->batch->call());
     call->ran();
     takeRows(light, *call->batch, c);
-    e_.giveBack(std::move(call));
+    batches_.giveBack(std::move(call));
     connect(light, c);
 }
 
@@ -137,7 +141,7 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
         if (light.outLit >= 0 && row(light.outLit, 0)[i] == 0) continue;
         const Color Cl{l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};
         const size_t point = b * kBlock + size_t(i);
-        if (!isFinite(Cl)) e_.notFinite(&c.rays[point], "Cl", light.instance.get());
+        if (!isFinite(Cl)) accumulator_.notFinite(&c.rays[point], "Cl", light.instance.get());
         else if (!(Cl == Color(0))) l.asked |= 1u << i;
         if (light.kind != LightKind::Area && l.asked >> i & 1) takePlace(light, point, way(i), from, first + size_t(i));
     }
@@ -155,8 +159,8 @@ void BlockVertices::takePlace(const BoundLight& light, size_t point, const Vec3&
     if (light.shadowRadius < 0) return;
     LightValue v;
     v.L = L;
-    e_.takeShadowSays(v, light, from.value(light.shadowRadius, 0, int(at)),
-                      light.shadowSamples < 0 ? 1 : from.value(light.shadowSamples, 0, int(at)));
+    lightKernels_.takeShadowSays(v, light, from.value(light.shadowRadius, 0, int(at)),
+                                 light.shadowSamples < 0 ? 1 : from.value(light.shadowSamples, 0, int(at)));
     if (!(v.shadowRadius > 0)) return;
     queryAt_[point] = int32_t(values_.size());
     values_.push_back(v);

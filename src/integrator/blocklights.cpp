@@ -1,7 +1,13 @@
 // Samples of lights for vertices in blocks, and what their lobes give back of them.
 #include "base/direction.h"
+#include "integrator/accumulator.h"
 #include "integrator/blockvertices.h"
+#include "integrator/lightkernels.h"
 #include "integrator/lightsample.h"
+#include "integrator/raystore.h"
+#include "integrator/shadowrays.h"
+#include "integrator/surfacepoints.h"
+#include "integrator/vertexlight.h"
 #include <algorithm>
 #include <bit>
 
@@ -26,7 +32,7 @@ void BlockVertices::light(BatchContext& c) {
         sampleLight(light, c);
         if (asked_.empty()) continue;
         values_.assign(asked_.size(), {});
-        e_.evaluateLight(light, queries_, values_);
+        lightKernels_.evaluateLight(light, queries_, values_);
         takeValues(light, c);
         connect(light, c);
     }
@@ -60,7 +66,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     if (takesPair(light, true)) drawNumbers(use << 1, pairs_);
     if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
     asked_.clear();
-    e_.pointsOfRows(c);
+    surfaces_.pointsOfRows(c);
     for (size_t b = 0; b < blocks_; ++b)
         for (Lanes left = lit_[b]; left; left &= left - 1) {
             const int lane = std::countr_zero(left), point = int(b) * kBlock + lane;
@@ -98,7 +104,7 @@ void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
     for (size_t k = 0; k < asked_.size(); ++k) {
         const LightValue& value = values_[k];
         const Query& a = asked_[k];
-        if (value.lit && !isFinite(value.Cl)) e_.notFinite(&c.rays[size_t(a.point)], "Cl", light.instance.get());
+        if (value.lit && !isFinite(value.Cl)) accumulator_.notFinite(&c.rays[size_t(a.point)], "Cl", light.instance.get());
         else if (value.lit && value.Cl != Color(0)) {
             LightBlock& l = lights_[size_t(a.point / kBlock)];
             const int lane = a.point % kBlock;
@@ -141,18 +147,18 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
         Lanes some = stages_.contribute(vertices_[b], lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting,
                                         value_[0], shadow_, &failed);
         for (; failed; failed &= failed - 1)
-            e_.notFinite(c, c.rays[b * kBlock + size_t(std::countr_zero(failed))], uint32_t(s.number));
+            accumulator_.notFinite(c, c.rays[b * kBlock + size_t(std::countr_zero(failed))], uint32_t(s.number));
         for (; some; some &= some - 1) {
             const int lane = std::countr_zero(some);
             const size_t point = b * kBlock + size_t(lane);
             const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};
             if (sent[lane] >= 0) {
-                ShadowRay& first = e_.shadows[size_t(sent[lane])];
-                e_.moreLight_.push_back({light, c.targets[point], -1, false, 0, first.more});
-                first.more = int32_t(e_.moreLight_.size()) - 1;
+                ShadowRay& first = shadows_.queue[size_t(sent[lane])];
+                shadows_.more.push_back({light, c.targets[point], -1, false, 0, first.more});
+                first.more = int32_t(shadows_.more.size()) - 1;
                 continue;
             }
-            sent[lane] = int32_t(e_.shadows.size());
+            sent[lane] = int32_t(shadows_.queue.size());
             sendShadow(point, of, light, c);
         }
     }
@@ -161,7 +167,7 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
 void BlockVertices::sendShadow(size_t point, const BoundLight& of, const Color& light, BatchContext& c) {
     const size_t lane = point % kBlock;
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
-    ShadowRay& s = e_.shadows.emplace_back();
+    ShadowRay& s = shadows_.queue.emplace_back();
     s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], light,
          c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
     const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
@@ -169,7 +175,7 @@ void BlockVertices::sendShadow(size_t point, const BoundLight& of, const Color& 
     const LightValue& value = values_[size_t(query)];
     if (value.shadowRadius > 0) { // to a point of the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
-        const Vec2 u = e_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
+        const Vec2 u = store_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
         const Vec3 to = onShadowDisk(row3(vertices_[point / kBlock].P) - value.L, s.dir, value.shadowRadius, u) - s.origin;
         s.dir = normalizeOr(to, s.dir);
         s.distance = length(to) * (1 - 1e-5f);

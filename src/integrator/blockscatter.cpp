@@ -1,5 +1,8 @@
 // The rays on which paths go on from vertices in blocks.
+#include "integrator/accumulator.h"
 #include "integrator/blockvertices.h"
+#include "integrator/raystore.h"
+#include "integrator/vertexlight.h"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -61,7 +64,7 @@ void BlockVertices::throwDice(size_t b) {
     uint32_t keys[kMostSites];
     for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
     stages_.name(v, keys, next_);
-    if (!e_.rules().roulette || std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; })) {
+    if (!rules_.roulette || std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; })) {
         std::fill_n(next_.dice, kBlock, 0.f);
         return;
     }
@@ -74,9 +77,9 @@ void BlockVertices::throwDice(size_t b) {
 
 void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
     throwDice(b);
-    for (Lanes bad = stages_.extend(vertices_[b], e_.rules().roulette, next_); bad; bad &= bad - 1) {
+    for (Lanes bad = stages_.extend(vertices_[b], rules_.roulette, next_); bad; bad &= bad - 1) {
         const int lane = std::countr_zero(bad);
-        e_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
+        accumulator_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
     }
     if (!next_.goes) return;
     turnRays(b, c);
@@ -105,7 +108,7 @@ void BlockVertices::turnRays(size_t b, BatchContext&) {
     }
     std::fill_n(r.maxDistance, kBlock, 1e38f);
     std::copy_n(next_.vertex, kBlock, r.vertex);
-    Counters& n = e_.counters;
+    Counters& n = counters_;
     for (Lanes left = next_.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         const Site& s = sites_[size_t(next_.site[i])];
@@ -116,7 +119,7 @@ void BlockVertices::turnRays(size_t b, BatchContext&) {
         n.depthMax = std::max(n.depthMax, bounces);
         n.depthSum += 1; // over camera rays: the mean number of bounces
         if (s.diffuse) continue;
-        if (s.rays->label == e_.totalReflection_) ++n.totalReflected;
+        if (s.rays->label == context_.totalReflection) ++n.totalReflected;
         else ++(towards[i] * from[i] > 0 ? n.refracted : n.reflected);
     }
 }
@@ -138,7 +141,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         if (next_.indirect[i] == 0 || v.energyScale[i] == 1) continue;
         RayExtra extra;
         extra.indirect = v.energyScale[i];
-        r.extra[i] = e_.newExtra(extra);
+        r.extra[i] = store_.newExtra(extra);
     }
 }
 

@@ -1,5 +1,18 @@
 // From requests of a kernel to lobes in blocks, and the chances that their rays are followed.
 #include "integrator/blockvertices.h"
+#include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/context.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/lightkernels.h"
+#include "integrator/lightoutputs.h"
+#include "integrator/mediastacks.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/shadowrays.h"
+#include "integrator/stageset.h"
+#include "integrator/surfacepoints.h"
+#include "integrator/vertexlight.h"
 #include "world/emitterfootprint.h"
 #include <algorithm>
 #include <bit>
@@ -10,14 +23,17 @@ namespace {
 Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
 } // namespace
 
-BlockVertices::BlockVertices(Engine& e) : e_(e), world_(e.world()), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+BlockVertices::BlockVertices(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lightKernels_(s.lightKernels),
+      photons_(s.photons), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces), vertexLight_(s.vertexLight),
+      stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
-    const Settings& s = world_.settings_;
+    const Settings& set = world_.settings_;
     lastSkies_ = std::any_of(world_.skies_.begin(), world_.skies_.end(),
                              [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
-    const bool rules = e.rules().pickOne && e.rules().lightsAtRequests && !s.localRoulette && !s.lightOnly && s.indirect;
+    const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.localRoulette && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = s.blocks && rules && lights && world_.media_.empty() && !s.firstSeen && !s.lightPaths &&
+    usable_ = set.blocks && rules && lights && world_.media_.empty() && !set.firstSeen && !set.lightPaths &&
               world_.lightOutputs_.empty() && !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
 }
 
@@ -27,7 +43,7 @@ static bool isPlainLight(const BoundLight& l) {
 }
 
 bool BlockVertices::takes(const BatchContext& c) const {
-    return takes(*c.binding, *c.bound) && !c.aside && !c.between && !c.below && !e_.photonTrace();
+    return takes(*c.binding, *c.bound) && !c.aside && !c.between && !c.below && !photons_.photonTrace();
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
@@ -78,7 +94,7 @@ bool BlockVertices::takeRays(const RayBlock& rays) {
         v.low[k] = sample->numbers.low();
         v.high[k] = sample->numbers.high();
         v.index[k] = sample->numbers.index();
-        if (rays.extra[k] >= 0) usual &= e_.extras_[size_t(rays.extra[k])].share < 0;
+        if (rays.extra[k] >= 0) usual &= store_.extraAt(rays.extra[k]).share < 0;
         if (world_.photons_) usual &= !world_.photons_->pass(sample->sample);
     }
     usual &= v.last == 0 || !lastSkies_;
@@ -142,7 +158,7 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.lighting = s.info->kind != SiteKind::Trace;
     s.lights = s.lighting || s.info->rowLights >= 0;
     if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;
-    else s.rays = e_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, false});
+    else s.rays = store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, false});
     s.diffuse = s.rays->type == RayType::Diffuse;
     s.lobes.resize(std::max(s.lobes.size(), blocks_));
     for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = 0;
@@ -215,11 +231,11 @@ bool BlockVertices::select(const BatchContext& c) {
         found[b] = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);
         if (found[b].failed & vertices_[b].points) return false;
     }
-    for (size_t b = 0; b < blocks_; ++b) e_.counters.depthCap += uint64_t(std::popcount(found[b].cut & vertices_[b].points));
+    for (size_t b = 0; b < blocks_; ++b) counters_.depthCap += uint64_t(std::popcount(found[b].cut & vertices_[b].points));
     for (size_t b = 0; b < blocks_; ++b)
         for (const bool more : {true, false})
             for (Lanes left = more ? found[b].bright : found[b].brightWithClear; left; left &= left - 1)
-                e_.tellScaled(world_.bindings_[size_t(c.bindings[b * kBlock + size_t(std::countr_zero(left))])], more);
+                vertexLight_.tellScaled(world_.bindings_[size_t(c.bindings[b * kBlock + size_t(std::countr_zero(left))])], more);
     return true;
 }
 

@@ -1,21 +1,36 @@
 // Vertices whose kernel asks for lobes and nothing else, under path: from the kernel's requests to the next rays, 16 points at a
 // time (lanes/stages.h). What it does not take goes point by point (gather.h), with the same bits.
 #pragma once
-#include "integrator/engine.h"
+#include "base/numberlanes.h"
+#include "integrator/batchcontext.h"
+#include "integrator/context.h"
 #include "integrator/raywords.h"
 #include "lanes/stages.h"
 
 namespace alpenglow::transport {
 
-class BlockVertices {
+class Accumulator;
+class BatchPool;
+class KernelInputs;
+class LightKernels;
+class LightOutputs;
+class MediaStacks;
+class PhotonStage;
+class RayStore;
+class ShadowRays;
+struct StageSet;
+class SurfacePoints;
+class VertexLight;
+
+class BlockVertices final : Stage {
 public:
     static constexpr size_t kMostSites = 32; ///< that ask, of a kernel
-    explicit BlockVertices(Engine&);
+    explicit BlockVertices(const StageSet&);
     /// Whether all that this kernel of a binding asks for is of this kind, with the lights of the binding.
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all that a batch whose kernel has run asks for is of this kind.
     bool takes(const BatchContext&) const;
-    /// Lights its points and sends their rays; shadow rays are left in Engine::shadows. False: nothing was done, for some point
+    /// Lights its points and sends their rays; shadow rays are left in ShadowRays::queue. False: nothing was done, for some point
     /// needs a look by itself.
     bool run(BatchContext&, Sched&);
 
@@ -84,8 +99,15 @@ private:
     void keepLobes(size_t block, BatchContext&);
     void spawn(const RayBlock&, Sched&);
 
-    Engine& e_;
-    const WorldImpl& world_;
+    Accumulator& accumulator_;
+    BatchPool& batches_;
+    KernelInputs& inputs_;
+    LightKernels& lightKernels_;
+    PhotonStage& photons_;
+    RayStore& store_;
+    ShadowRays& shadows_;
+    SurfacePoints& surfaces_;
+    VertexLight& vertexLight_;
     const Stages& stages_;
     LobeLanesList lanes_;
     bool usable_ = false;    ///< by what the world is

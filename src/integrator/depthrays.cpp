@@ -1,9 +1,17 @@
 // What deep shadow maps see: along each camera ray the light that is left behind every surface, and within media (Lokovic, Veach
 // 2000).
+#include "integrator/depthrays.h"
 #include "base/exact.h"
-#include "integrator/engine.h"
+#include "integrator/context.h"
+#include "integrator/intersector.h"
+#include "integrator/mediastacks.h"
+#include "integrator/opacities.h"
+#include "integrator/stageset.h"
 
 namespace alpenglow::transport {
+
+DepthRays::DepthRays(const StageSet& s)
+    : Stage(s.context), intersector_(s.intersector), media_(s.media), opacities_(s.opacities) {}
 
 namespace {
 
@@ -33,25 +41,25 @@ struct HazyWay {
 };
 
 /// A way through a medium up to a hit.
-void enterMedia(const Engine& e, const shading::Media* m, const Vec3& begin, const accel::Hit& h, size_t sample, size_t going,
-                std::vector<HazyWay>& ways) {
+void enterMedia(const WorldImpl& world, const shading::Media* m, const Vec3& begin, const accel::Hit& h, size_t sample,
+                size_t going, std::vector<HazyWay>& ways) {
     if (!m || m->top() < 0) return;
-    const geometry::SurfacePoint at = e.world().accel_->point(h);
+    const geometry::SurfacePoint at = world.accel_->point(h);
     ways.push_back({m->top(), sample, going, begin, at.displaced ? at.displacedP : at.P});
 }
 
 /// Adds what is left within them; `left`, by way: what comes to it, and then what leaves it.
-void seeHaze(Engine& e, std::span<const HazyWay> ways, std::span<const ShadowRay> asked, std::span<SampleResult> out,
+void seeHaze(MediaStacks& media, std::span<const HazyWay> ways, std::span<const ShadowRay> asked, std::span<SampleResult> out,
              std::span<Color> left) {
     // All of each way first: it says how finely to cut.
     std::vector<ShadowRay> rays;
-    std::vector<Engine::MediumPart> parts;
+    std::vector<MediumPart> parts;
     for (const HazyWay& w : ways) {
         parts.push_back({w.medium, rays.size(), w.from, w.to});
         rays.push_back(asked[w.sample]);
     }
     std::vector<Color> whole(rays.size(), Color(1)), some;
-    e.dim(parts, rays, whole);
+    media.dim(parts, rays, whole);
     rays.clear(), parts.clear();
     std::vector<float> z;
     std::vector<size_t> of;
@@ -68,7 +76,7 @@ void seeHaze(Engine& e, std::span<const HazyWay> ways, std::span<const ShadowRay
         }
     }
     some.assign(rays.size(), Color(1));
-    e.dim(parts, rays, some);
+    media.dim(parts, rays, some);
     for (size_t k = 0; k < some.size(); ++k) {
         Color& l = left[of[k]];
         if (some[k] == Color(1)) continue;
@@ -81,7 +89,13 @@ void seeHaze(Engine& e, std::span<const HazyWay> ways, std::span<const ShadowRay
 
 /// Surfaces are those that camera rays meet; what each takes is the opacity that it has for shadow rays. Shaders that give it
 /// run for all rays that have come to one, wave by wave.
-bool Engine::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult> out) {
+class DepthRays::Looking {
+public:
+    Looking(DepthRays& stage, std::span<SampleResult> out) : stage_(stage), world_(stage.world_), out_(out) {}
+    void add(const PathRay&); ///< the next camera ray; it must stay where it is
+    bool run();
+
+private:
     struct Going {
         accel::Ray ray;
         size_t index;
@@ -89,83 +103,107 @@ bool Engine::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult>
         Vec3 begin;
         Color left{1};
     };
-    samples_.resize(rays.size());
-    std::vector<PathRay> paths(rays.size());
-    std::vector<ShadowRay> asked(rays.size());
-    std::vector<Going> now, next;
-    std::vector<OpacityQuery> met;
-    counters.camera += rays.size();
-    if (!world_->accel_) return true;
-    for (size_t i = 0; i < rays.size(); ++i) {
-        out[i].left.clear();
-        beginRay(rays[i], i, paths[i]);
-        now.push_back({rayOf(paths[i]), i, paths[i].media, paths[i].origin});
-        ShadowRay& s = asked[i];
-        s.origin = paths[i].origin;
-        s.dir = paths[i].dir;
-        s.time = now.back().ray.time;
-        s.ray = &paths[i];
-        s.kind = paths[i].kind;
-    }
-    const auto takes = [&](Going& g, const Color& opacity, float z) {
-        g.left *= Color(1) - opacity;
-        if (opacity != Color(0)) out[g.index].left.push_back({z, g.left});
-        return maxComponent(g.left) > 0;
-    };
     struct Waiting {
         size_t going;
         float z;
     };
-    std::vector<Waiting> waiting;
-    const bool media = !world_->media_.empty();
-    std::vector<HazyWay> ways;
-    std::vector<Color> hazy;
-    for (int layers = 0; !now.empty() && layers < limits::kShadowLayers; ++layers) {
-        next.clear(), met.clear(), waiting.clear(), ways.clear();
-        std::vector<accel::Hit> hits(now.size());
-        for (size_t i = 0; i < now.size(); ++i)
-            if (meet(now[i].ray, hits[i]) && media) enterMedia(*this, now[i].media, now[i].begin, hits[i], now[i].index, i, ways);
-        if (!ways.empty()) {
-            hazy.clear();
-            for (const HazyWay& w : ways) hazy.push_back(now[w.going].left);
-            seeHaze(*this, ways, asked, out, hazy);
-            for (size_t k = 0; k < ways.size(); ++k) now[ways[k].going].left = hazy[k];
-        }
-        for (size_t i = 0; i < now.size(); ++i) {
-            Going& g = now[i];
-            const accel::Hit& h = hits[i];
-            if (!h.valid() || !(maxComponent(g.left) > 0)) continue;
-            const int binding = world_->bindingOf_[h.shape];
-            world_->goOn(g.ray, h);
-            const geometry::SurfacePoint at = world_->accel_->point(h);
-            const float z = at.displaced ? at.displacedP.z : at.P.z;
-            if (media) {
-                const SurfaceBinding& b = world_->bindings_[size_t(binding)];
-                const bool overruled = b.overruled(g.media);
-                g.media = mediaBeyond(b, g.media, at.n, g.ray.dir, g.ray.dir);
-                g.begin = at.displaced ? at.displacedP : at.P;
-                if (overruled) {
-                    next.push_back(g);
-                    continue;
-                }
-            }
-            const Opacity& opacity = world_->bindings_[size_t(binding)].opacityFor(shading::HitMode::Default);
-            if (opacity.kernel) {
-                met.push_back({binding, h, &asked[g.index], &opacity.kernel});
-                waiting.push_back({next.size(), z});
-            } else if (!takes(g, opacity.constant, z)) {
-                continue;
-            }
-            next.push_back(g);
-        }
-        if (!met.empty())
-            takeOpacities(met, [&](size_t k, const Color& opacity) { takes(next[waiting[k].going], opacity, waiting[k].z); });
-        std::erase_if(next, [](const Going& g) { return !(maxComponent(g.left) > 0); });
-        now.swap(next);
+    bool takes(Going&, const Color& opacity, float z);
+    void meet();
+    void pass(Going&, const accel::Hit&);
+    DepthRays& stage_;
+    const WorldImpl& world_;
+    std::span<SampleResult> out_;
+    std::vector<ShadowRay> asked_; ///< by ray: for the shaders that say Oi
+    std::vector<Going> now_, next_;
+    std::vector<accel::Hit> hits_; ///< of now_
+    std::vector<OpacityQuery> met_;
+    std::vector<Waiting> waiting_; ///< of met_: their place in next_, and how deep
+    std::vector<HazyWay> ways_;
+    std::vector<Color> hazy_;
+};
+
+void DepthRays::Looking::add(const PathRay& path) {
+    out_[asked_.size()].left.clear();
+    now_.push_back({stage_.intersector_.rayOf(path), asked_.size(), path.media, path.origin});
+    ShadowRay& s = asked_.emplace_back();
+    s.origin = path.origin;
+    s.dir = path.dir;
+    s.time = now_.back().ray.time;
+    s.ray = &path;
+    s.kind = path.kind;
+}
+
+bool DepthRays::Looking::takes(Going& g, const Color& opacity, float z) {
+    g.left *= Color(1) - opacity;
+    if (opacity != Color(0)) out_[g.index].left.push_back({z, g.left});
+    return maxComponent(g.left) > 0;
+}
+
+/// The next surface of each ray, and what the media before it take.
+void DepthRays::Looking::meet() {
+    hits_.assign(now_.size(), {});
+    ways_.clear();
+    for (size_t i = 0; i < now_.size(); ++i)
+        if (stage_.intersector_.meet(now_[i].ray, hits_[i]) && !world_.media_.empty())
+            enterMedia(world_, now_[i].media, now_[i].begin, hits_[i], now_[i].index, i, ways_);
+    if (ways_.empty()) return;
+    hazy_.clear();
+    for (const HazyWay& w : ways_) hazy_.push_back(now_[w.going].left);
+    seeHaze(stage_.media_, ways_, asked_, out_, hazy_);
+    for (size_t k = 0; k < ways_.size(); ++k) now_[ways_[k].going].left = hazy_[k];
+}
+
+void DepthRays::Looking::pass(Going& g, const accel::Hit& h) {
+    const int binding = world_.bindingOf_[h.shape];
+    const SurfaceBinding& b = world_.bindings_[size_t(binding)];
+    world_.goOn(g.ray, h);
+    const geometry::SurfacePoint at = world_.accel_->point(h);
+    const Vec3& P = at.displaced ? at.displacedP : at.P;
+    if (!world_.media_.empty()) {
+        const bool overruled = b.overruled(g.media);
+        g.media = stage_.media_.beyond(b, g.media, at.n, g.ray.dir, g.ray.dir);
+        g.begin = P;
+        if (overruled) return next_.push_back(g);
+    }
+    const Opacity& opacity = b.opacityFor(shading::HitMode::Default);
+    if (opacity.kernel) {
+        met_.push_back({binding, h, &asked_[g.index], &opacity.kernel});
+        waiting_.push_back({next_.size(), P.z});
+    } else if (!takes(g, opacity.constant, P.z)) {
+        return;
+    }
+    next_.push_back(g);
+}
+
+bool DepthRays::Looking::run() {
+    const StopFlag* const stop = stage_.context_.stop;
+    for (int layers = 0; !now_.empty() && layers < limits::kShadowLayers; ++layers) {
+        next_.clear(), met_.clear(), waiting_.clear();
+        meet();
+        for (size_t i = 0; i < now_.size(); ++i)
+            if (hits_[i].valid() && maxComponent(now_[i].left) > 0) pass(now_[i], hits_[i]);
+        if (!met_.empty())
+            stage_.opacities_.takeOpacities(
+                met_, [&](size_t k, const Color& opacity) { takes(next_[waiting_[k].going], opacity, waiting_[k].z); });
+        std::erase_if(next_, [](const Going& g) { return !(maxComponent(g.left) > 0); });
+        now_.swap(next_);
         if (stop && *stop) return false;
     }
-    counters.depthCap += now.size();
+    stage_.counters_.depthCap += now_.size();
     return true;
+}
+
+bool DepthRays::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult> out,
+                           const std::function<void(const CameraRay&, size_t, PathRay&)>& begin) {
+    counters_.camera += rays.size();
+    if (!world_.accel_) return true;
+    std::vector<PathRay> paths(rays.size());
+    Looking looking(*this, out);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        begin(rays[i], i, paths[i]);
+        looking.add(paths[i]);
+    }
+    return looking.run();
 }
 
 } // namespace alpenglow::transport

@@ -1,6 +1,9 @@
 // Diffusion in place of walks: points of the surface about the shaded one.
 #include "lobes/dipole.h"
+#include "integrator/intersector.h"
+#include "integrator/raystore.h"
 #include "integrator/subsurface.h"
+#include "integrator/subsurfacewalks.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
@@ -8,7 +11,7 @@ namespace alpenglow::transport {
 /// Points of the surface about the shaded one, met by lines along one of three axes, chosen by chance; all that a line meets
 /// count (King and others, BSSRDF Importance Sampling, 2013).
 void Walks::probe(int asked) {
-    const WorldImpl& world = e_.world();
+    const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(asked)];
     const Below& b = below_[size_t(a.below)];
     const ShadePoint& p = c_.points[size_t(a.point)];
@@ -26,11 +29,11 @@ void Walks::probe(int asked) {
     std::vector<Dipole> dipoles;
     double share[3];
     for (int k = 0; k < 3; ++k) {
-        dipoles.emplace_back(e_.halfSpaces_.of(b.index), b.model == SubsurfaceSite::Model::BetterDipole, double(b.absorption[k]),
-                             std::max(double(b.scattering[k]), 1e-12));
+        dipoles.emplace_back(subsurface_.halfSpaces.of(b.index), b.model == SubsurfaceSite::Model::BetterDipole,
+                             double(b.absorption[k]), std::max(double(b.scattering[k]), 1e-12));
         share[k] = part[k] / sum;
     }
-    const Random random = e_.random(ray);
+    const Random random = store_.random(ray);
     const Vec2 where = random.pair(a.vertex, kFlight, 0), how = random.pair(a.vertex, kFlight, 1);
     const float which = random.one(a.vertex, kFlight, 0);
     int channel = 2;
@@ -51,7 +54,7 @@ void Walks::probe(int asked) {
     Walker line{asked, from + x * float(r * turn.x) + y * float(r * turn.y) + axis * far, -axis, a.weight, a.weight, a.vertex};
     accel::Ray probe = rayOf(line, 2 * double(far));
     accel::Hit hit;
-    for (int layer = 0; layer < limits::kShadowLayers && e_.meet(probe, hit); ++layer) {
+    for (int layer = 0; layer < limits::kShadowLayers && intersector_.meet(probe, hit); ++layer) {
         world.goOn(probe, hit);
         if (!belongs(hit.shape, b.group)) continue;
         const geometry::SurfacePoint s = world.accel_->point(hit);

@@ -1,5 +1,6 @@
 // Which lights emit photons, and how their numbers are drawn.
 #include "integrator/emission.h"
+#include "integrator/lightkernels.h"
 #include "world/photonattributes.h"
 #include <algorithm>
 
@@ -18,7 +19,7 @@ bool mayEmit(const BoundLight& l, bool sky) {
 }
 } // namespace
 
-EmissionPlan::EmissionPlan(Engine& e, bool all, bool sky) : world_(e.world()) {
+EmissionPlan::EmissionPlan(LightKernels& lights, bool all, bool sky) : world_(lights.world()) {
     if (!world_.accel_) return;
     const geometry::Bounds box = world_.bounds();
     centre = (box.lo + box.hi) * 0.5f;
@@ -32,8 +33,8 @@ EmissionPlan::EmissionPlan(Engine& e, bool all, bool sky) : world_(e.world()) {
         Light light;
         light.light = &l;
         light.number = int(i);
-        if (l.kind == LightKind::Point && !l.photons && !findPlace(e, light)) continue;
-        measure(e, light);
+        if (l.kind == LightKind::Point && !l.photons && !findPlace(lights, light)) continue;
+        measure(lights, light);
         lights_.push_back(std::move(light));
     }
     share();
@@ -70,7 +71,7 @@ std::vector<uint8_t> EmissionPlan::met(bool both) const {
 }
 
 /// Where a light stands that has one place for all that it lights.
-bool EmissionPlan::findPlace(Engine& e, Light& l) {
+bool EmissionPlan::findPlace(LightKernels& lights, Light& l) {
     std::vector<ShadePoint> q;
     for (const Vec3& to : {Vec3(1, 0, 0), Vec3(-.3f, .9f, .2f), Vec3(.1f, -.4f, -.8f)}) {
         ShadePoint p;
@@ -82,7 +83,7 @@ bool EmissionPlan::findPlace(Engine& e, Light& l) {
         q.push_back(p);
     }
     std::vector<LightValue> v(q.size());
-    e.evaluateLight(*l.light, q, v);
+    lights.evaluateLight(*l.light, q, v);
     l.place = q[0].Ps - v[0].L;
     for (size_t i = 1; i < q.size(); ++i)
         if (!(length(q[i].Ps - v[i].L - l.place) <= 1e-3f * (radius + length(l.place)))) return false;
@@ -90,7 +91,7 @@ bool EmissionPlan::findPlace(Engine& e, Light& l) {
 }
 
 /// About how much light a light sends out, and on which side of an emitter. Numbers of a sequence, which no photon has.
-void EmissionPlan::measure(Engine& e, Light& l) {
+void EmissionPlan::measure(LightKernels& lights, Light& l) {
     std::vector<EmissionStart> starts;
     const render::Sampler numbers(0x6d656173757265ull, l.number & 0xffffff, l.number >> 24);
     const bool area = l.light->kind == LightKind::Area && !l.light->mean && !l.light->photons;
@@ -101,11 +102,11 @@ void EmissionPlan::measure(Engine& e, Light& l) {
         starts.push_back({d});
     }
     l.front = .5f;
-    startPhotons(e, *this, l, starts);
+    startPhotons(lights, *this, l, starts);
     for (const EmissionStart& s : starts) l.pdf += double(s.pdf) / kProbes;
-    if (l.light->photons) startPhotons(e, *this, l, starts);
+    if (l.light->photons) startPhotons(lights, *this, l, starts);
     for (EmissionStart& s : starts) s.length = radius;
-    const std::vector<Color> power = emittedPower(e, l, starts);
+    const std::vector<Color> power = emittedPower(lights, l, starts);
     double sum = 0, front = 0;
     for (size_t k = 0; k < power.size(); ++k) {
         const double y = std::max(0.f, luminance(power[k]));

@@ -1,6 +1,6 @@
 // The beginning of photons: where they leave their lights, and with what power.
 #pragma once
-#include "integrator/engine.h"
+#include "integrator/photonjob.h"
 
 namespace alpenglow::transport {
 
@@ -19,10 +19,10 @@ struct EmissionStart {
 };
 
 /// Fills what follows from `drawn`, for photons of one light.
-void startPhotons(Engine&, const EmissionPlan&, const EmissionPlan::Light&, std::span<EmissionStart>);
+void startPhotons(LightKernels&, const EmissionPlan&, const EmissionPlan::Light&, std::span<EmissionStart>);
 
 /// The power of one photon that is emitted alone, by what the light's shader says where it arrives first. 0 where `length` is.
 /// Fills `kept`.
-std::vector<Color> emittedPower(Engine&, const EmissionPlan::Light&, std::span<EmissionStart>);
+std::vector<Color> emittedPower(LightKernels&, const EmissionPlan::Light&, std::span<EmissionStart>);
 
 } // namespace alpenglow::transport

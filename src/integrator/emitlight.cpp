@@ -2,6 +2,7 @@
 // falls on what it meets first is that of the same shader at the same point, also where it does not fall off with the square of
 // the distance, or falls through a slide.
 #include "integrator/emission.h"
+#include "integrator/lightkernels.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
@@ -78,11 +79,11 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
 }
 
 /// From a light that is far away: its shader says where from.
-void startDistant(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+void startDistant(LightKernels& lights, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
     std::vector<ShadePoint> q;
-    for (const EmissionStart& s : starts) q.push_back(queryOf(e.world(), l, s, plan.centre));
+    for (const EmissionStart& s : starts) q.push_back(queryOf(lights.world(), l, s, plan.centre));
     std::vector<LightValue> v(q.size());
-    e.evaluateLight(*l.light, q, v);
+    lights.evaluateLight(*l.light, q, v);
     for (size_t i = 0; i < starts.size(); ++i) {
         EmissionStart& s = starts[i];
         const float far = length(v[i].L);
@@ -94,20 +95,21 @@ void startDistant(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light
 }
 
 /// From a light that has a place, and moves: its shader says where it stands.
-void startMoving(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+void startMoving(LightKernels& lights, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
     std::vector<ShadePoint> q;
     for (EmissionStart& s : starts) {
         s.dir = Vec3(0, 0, 1);
-        q.push_back(queryOf(e.world(), l, s, plan.centre + s.dir * plan.radius));
+        q.push_back(queryOf(lights.world(), l, s, plan.centre + s.dir * plan.radius));
     }
     std::vector<LightValue> v(q.size());
-    e.evaluateLight(*l.light, q, v);
+    lights.evaluateLight(*l.light, q, v);
     for (size_t i = 0; i < starts.size(); ++i) starts[i].origin = q[i].Ps - v[i].L;
 }
 
 /// From a class light with generatePhoton(): as it says. Its power is a radiance times an area, so pi of it in all directions,
 /// and photons of a light differ by power over pdf.
-void startGenerated(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+void startGenerated(LightKernels& lights, const EmissionPlan& plan, const EmissionPlan::Light& l,
+                    std::span<EmissionStart> starts) {
     std::vector<shading::PathSample> samples(starts.size());
     std::vector<PathRay> rays(starts.size());
     std::vector<ShadePoint> q(starts.size());
@@ -116,8 +118,8 @@ void startGenerated(Engine& e, const EmissionPlan& plan, const EmissionPlan::Lig
         rays[i].sample = &samples[i];
         q[i].ray = &rays[i];
         q[i].Ps = plan.centre;
-        q[i].shutter = e.world().shadesAtOpen_ ? 0 : starts[i].drawn.time;
-        e.world().tellTime(q[i]);
+        q[i].shutter = lights.world().shadesAtOpen_ ? 0 : starts[i].drawn.time;
+        lights.world().tellTime(q[i]);
         q[i].P = Vec3(transformPoint(l.light->instance->toCurrentAt(q[i].shutter), {0, 0, 0}));
         q[i].N = Vec3();
     }
@@ -127,7 +129,7 @@ void startGenerated(Engine& e, const EmissionPlan& plan, const EmissionPlan::Lig
     call.kernel = &l.light->photons;
     call.more = l.light->photonOutputs;
     call.moreValues = &given;
-    e.evaluateLight(*l.light, q, v, call);
+    lights.evaluateLight(*l.light, q, v, call);
     for (size_t i = 0; i < starts.size(); ++i) {
         EmissionStart& s = starts[i];
         const float* n = given.data() + 10 * i;
@@ -144,15 +146,15 @@ void startGenerated(Engine& e, const EmissionPlan& plan, const EmissionPlan::Lig
 
 } // namespace
 
-void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
-    if (l.light->photons) return startGenerated(e, plan, l, starts);
+void startPhotons(LightKernels& lights, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+    if (l.light->photons) return startGenerated(lights, plan, l, starts);
     const bool moves = l.light->kind == LightKind::Point && l.light->instance->moving;
-    if (l.light->kind == LightKind::Distant) startDistant(e, plan, l, starts);
-    if (moves) startMoving(e, plan, l, starts);
+    if (l.light->kind == LightKind::Distant) startDistant(lights, plan, l, starts);
+    if (moves) startMoving(lights, plan, l, starts);
     for (EmissionStart& s : starts) {
         switch (l.light->kind) {
         case LightKind::Area:
-            startArea(e.world(), l, s);
+            startArea(lights.world(), l, s);
             break;
         case LightKind::Point:
             s.dir = evenDirection(s.drawn.way);
@@ -171,7 +173,7 @@ void startPhotons(Engine& e, const EmissionPlan& plan, const EmissionPlan::Light
     }
 }
 
-std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
+std::vector<Color> emittedPower(LightKernels& lights, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
     if (l.light->photons) {
         std::vector<Color> given;
         for (const EmissionStart& s : starts) given.push_back(s.length > 0 ? s.power * s.factor : Color(0));
@@ -182,14 +184,14 @@ std::vector<Color> emittedPower(Engine& e, const EmissionPlan::Light& l, std::sp
     for (size_t i = 0; i < starts.size(); ++i) {
         const EmissionStart& s = starts[i];
         if (!(s.length > 0) || !(s.factor > 0) || s.dir == Vec3(0.f)) continue;
-        q.push_back(queryOf(e.world(), l, s, s.origin + s.dir * s.length));
+        q.push_back(queryOf(lights.world(), l, s, s.origin + s.dir * s.length));
         of.push_back(i);
     }
     std::vector<LightValue> v(q.size());
     const std::vector<char> apart(q.size(), 1); // an emitter's atmosphere counts where photons arrive
     LightCall call;
     call.inMedium = &apart;
-    e.evaluateLight(*l.light, q, v, call);
+    lights.evaluateLight(*l.light, q, v, call);
     std::vector<Color> power(starts.size(), Color(0));
     const bool falls = l.light->kind == LightKind::Point || l.light->mean; // what the shader says is irradiance
     for (size_t k = 0; k < of.size(); ++k) {

@@ -1,6 +1,12 @@
 // Emitting a block of photons: they start at their lights, and are followed as rays of a path are, through the same stages.
 #include "base/memory.h"
+#include "integrator/accumulator.h"
 #include "integrator/emission.h"
+#include "integrator/intersector.h"
+#include "integrator/lightkernels.h"
+#include "integrator/photonstage.h"
+#include "integrator/pipeline.h"
+#include "integrator/raystore.h"
 #include "world/mediaabout.h"
 #include <algorithm>
 #include <tuple>
@@ -13,10 +19,10 @@ namespace {
 float levelOf(const render::SampleNumbers& n) { return Random(n).one(0, kLevel, 0); }
 
 /// Photons of a block by light, and what they carry: light by light, since a kernel call is of one light.
-std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t first, uint32_t count,
+std::vector<EmissionStart> startBlock(const StageSet& set, const PhotonJob& job, uint32_t first, uint32_t count,
                                       std::vector<Color>& power) {
     const EmissionPlan& plan = *job.plan;
-    const WorldImpl& world = e.world();
+    const WorldImpl& world = set.context.world;
     std::vector<EmissionStart> all(count);
     std::vector<std::vector<uint32_t>> of(plan.lights().size());
     for (uint32_t i = 0; i < count; ++i) {
@@ -29,7 +35,7 @@ std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t 
         if (of[l].empty()) continue;
         some.clear();
         for (uint32_t i : of[l]) some.push_back(all[i]);
-        startPhotons(e, plan, plan.lights()[l], some);
+        startPhotons(set.lightKernels, plan, plan.lights()[l], some);
         for (size_t k = 0; k < some.size(); ++k) { // what it meets first
             EmissionStart& s = some[k];
             if (s.dir == Vec3(0.f)) continue;
@@ -41,9 +47,9 @@ std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t 
             ray.sides = accel::Sides::Both;
             if (world.fades_) ray.level = levelOf(job.numbers(first + of[l][k]));
             accel::Hit hit;
-            s.length = e.meet(ray, hit) ? hit.t : 0;
+            s.length = set.intersector.meet(ray, hit) ? hit.t : 0;
         }
-        const std::vector<Color> brings = emittedPower(e, plan.lights()[l], some);
+        const std::vector<Color> brings = emittedPower(set.lightKernels, plan.lights()[l], some);
         for (size_t k = 0; k < of[l].size(); ++k) {
             all[of[l][k]] = some[k];
             power[of[l][k]] = brings[k];
@@ -54,15 +60,15 @@ std::vector<EmissionStart> startBlock(Engine& e, const PhotonJob& job, uint32_t 
 
 } // namespace
 
-bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out,
-                  const StopFlag* stopFlag) {
-    if (!photonTrace_) {
-        photonTrace_ = std::make_unique<PhotonTrace>();
-        rules_.pickOne = rules_.roulette = true;
-        rules_.lightsAtRequests = rules_.emissionCounts = false;
+bool Pipeline::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stop) {
+    const StageSet& set = stages();
+    if (!set.photons.photonTrace()) {
+        Rules& rules = set.context.rules;
+        rules.pickOne = rules.roulette = true;
+        rules.lightsAtRequests = rules.emissionCounts = false;
     }
-    PhotonTrace& t = *photonTrace_;
-    stop = stopFlag;
+    PhotonTrace& t = set.photons.begin();
+    set.context.stop = stop;
     const size_t before = out.size();
     t.job = &job;
     t.first = first;
@@ -70,22 +76,7 @@ bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vec
     t.diffuse = {RayType::Diffuse, false, {job.met, accel::Sides::Both, shading::HitMode::Default}, 0};
     t.specular = t.diffuse;
     t.specular.type = RayType::Specular;
-    bool done = true;
-    while (true) {
-        beginsAnew_ = raysAtOnce_ > 1;
-        try {
-            done = emitAll(job, first, count);
-            break;
-        } catch (const LimitReached&) { // as in trace(): what is stored does not depend on how many points are shaded at a time
-            if (!std::exchange(beginsAnew_, false)) throw;
-        }
-        out.resize(before);
-        raysAtOnce_ = std::max(1, raysAtOnce_ / 8);
-        inner_.reset();
-        sched_.reset();
-        forget();
-    }
-    beginsAnew_ = false;
+    const bool done = withinRoom([&] { return emitAll(job, first, count); }, [&] { out.resize(before); });
     const auto key = [](const StoredPhoton& p) {
         return std::tuple(p.number, p.photon.bounces, p.photon.P.x, p.photon.P.y, p.photon.P.z);
     };
@@ -93,44 +84,28 @@ bool Engine::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vec
     return done;
 }
 
-/// A surface with Sides 1 is not there for who comes from behind. Photons go the other way: what comes from the front is there
-/// and goes straight on as well, for those who look from behind; what comes from behind is there alone.
-Color Engine::goesOn(const BatchContext& c, int i) const {
-    const ShadePoint& p = c.points[size_t(i)];
-    if (photonTrace_ && p.shape->oneSided() && dot(c.rays[size_t(i)].dir, meetsNormal(p.surface)) < 0) return leftBehind(c, i);
-    return c.clear.empty() ? clearAt(c, i) : c.clear[size_t(i)];
-}
-
-/// The volumes in which a photon begins; null: none.
-const shading::Media* Engine::aboutLight(const EmissionPlan::Light& l, const EmissionStart& s) {
-    const bool placed = l.light->photons || l.light->kind == LightKind::Point || l.light->kind == LightKind::Area;
-    if (world_->media_.empty() || !placed) return nullptr;
-    return kept(mediaAbout(*world_, s.origin, world_->shadesAtOpen_ ? 0 : s.drawn.time));
-}
-
-bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
-    PhotonTrace& t = *photonTrace_;
-    if (!sched_) sched_ = std::make_unique<Sched>(*this, stop, limits::kFrameBytesPerThread, raysAtOnce_);
-    Sched& sched = *sched_;
-    sched.restart(stop);
+bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
+    const StageSet& set = stages();
+    const WorldImpl& w = world();
+    PhotonTrace& t = *set.photons.photonTrace();
+    Sched& sched = scheduler();
+    sched.restart(set.context.stop);
     const EmissionPlan& plan = *job.plan;
-    const std::vector<EmissionStart> starts = startBlock(*this, job, first, count, t.power);
+    const std::vector<EmissionStart> starts = startBlock(set, job, first, count, t.power);
     t.from.assign(count, {});
-    samples_.resize(count);
-    results.clear();
-    lightTargets_.clear();
-    shares_.clear();
-    const TargetId root = nowhere_ = sched.newRoot(); // nobody asks what photons see
+    set.store.samples.resize(count);
+    set.accumulator.begin(0);
+    const TargetId root = set.accumulator.nowhere = sched.newRoot(); // nobody asks what photons see
     for (uint32_t i = 0; i < count; ++i) {
         const EmissionStart& s = starts[i];
         const float most = maxComponent(t.power[i]);
         if (!(most > 0) || !std::isfinite(most)) continue;
-        PathSample& sample = samples_[i];
+        PathSample& sample = set.store.samples[i];
         sample = {int(job.pass >> 24),
                   int(job.pass & 0xffffffu),
                   first + i,
                   int(i),
-                  world_->timeAt(s.drawn.time),
+                  w.timeAt(s.drawn.time),
                   s.drawn.time,
                   0.5f,
                   false,
@@ -141,20 +116,20 @@ bool Engine::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         r.weight = t.power[i] / most; // so that roulette looks at what is left of it
         t.power[i] = Color(most);
         r.sample = &sample;
-        r.kind = kindOf(t.specular);
+        r.kind = set.store.kindOf(t.specular);
         PhotonDepths().to(r);
         t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
-        r.media = aboutLight(plan.lights()[size_t(s.drawn.light)], s);
+        r.media = set.photons.aboutLight(plan.lights()[size_t(s.drawn.light)], s);
         if (s.shape) // what its light loses in the atmosphere there is told where it arrives
-            if (const auto hazy = world_->hazyEmitters_.find(s.shape); hazy != world_->hazyEmitters_.end()) {
+            if (const auto hazy = w.hazyEmitters_.find(s.shape); hazy != w.hazyEmitters_.end()) {
                 r.lobeBinding = hazy->second;
                 r.lobeOrigin = meetsAt(s.surface);
             }
-        if (world_->fades_) sample.level = levelOf(sample.numbers);
+        if (w.fades_) sample.level = levelOf(sample.numbers);
     }
     beginTrace();
     const bool done = sched.run();
-    endTrace(sched);
+    endTrace();
     return done;
 }
 

@@ -1,12 +1,21 @@
 // Where a walk below a surface comes out, the shader there may say what light enters: by "irradiance" of its own subsurface().
+#include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/displacement.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
 #include "integrator/subsurface.h"
+#include "integrator/vertexlight.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
 
 void Walks::askSurfaces(Sched& sched) {
-    if (e_.photonTrace()) return;
-    const WorldImpl& world = e_.world();
+    if (photons_.photonTrace()) return;
+    const WorldImpl& world = world_;
     const auto number = [&](const Exit& x) { return world.bindingOf_[x.shape]; };
     const auto silent = [&](const Exit& x) { return !world.bindings_[size_t(number(x))].entering; };
     const auto middle = std::stable_partition(exits_.begin(), exits_.end(), silent);
@@ -24,10 +33,9 @@ void Walks::askSurfaces(Sched& sched) {
 }
 
 size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
-    const WorldImpl& world = e_.world();
+    const WorldImpl& world = world_;
     const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
-    auto c = e_.takeContext();
-    c->engine = &e_;
+    auto c = batches_.take();
     c->bound = &b.entering;
     c->binding = &b;
     c->again = true;
@@ -36,9 +44,9 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
         p.P = p.surface.P; // as surface and displacement shaders begin
         shading::setFootprint(p, p.ray->footprint, p.ray->dir, 0, 1);
     }
-    if (b.displacement) e_.takeDisplacement(*c);
+    if (b.displacement) displacement_.take(*c);
     for (ShadePoint& p : c->points) p.I = p.ray->dir;
-    e_.fillBatch(*c);
+    inputs_.fill(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
     c->bound->kernel->run(&c->batch->call());
     c->ran();
@@ -50,28 +58,28 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
         const PathRay& ray = c->rays[i];
         const Color light = batch.color(irradiance, int(i));
         if (said(i) && isFinite(light))
-            e_.deposit(sched,
-                       {c->targets[i], ray.weight * light, LightEvent::Surface, &ray, e_.extraOf(ray).share, b.surface.get()});
+            accumulator_.deposit(sched, {c->targets[i], ray.weight * light, LightEvent::Surface, &ray, store_.extraOf(ray).share,
+                                         b.surface.get()});
     }
     askLights(*c, exits, sched);
     size_t kept = 0;
     for (size_t i = 0; i < exits.size(); ++i)
         if (!said(i)) exits[kept++] = exits[i];
-    e_.giveBack(std::move(c));
+    batches_.giveBack(std::move(c));
     return kept;
 }
 
 /// What that light is made of besides, where the shader gathers it.
 void Walks::askLights(BatchContext& c, std::span<const Exit> exits, Sched& sched) {
-    const size_t had = e_.lobes.size();
+    const size_t had = requests_.lobes.size();
     const std::vector<Color> whole(c.points.size(), Color(1));
-    e_.requestPairs(c, whole, nullptr, sched);
-    for (size_t i = had; i < e_.lobes.size(); ++i) {
-        LobeVertex& l = e_.lobes[i];
+    requests_.requestPairs(c, whole, nullptr, sched);
+    for (size_t i = had; i < requests_.lobes.size(); ++i) {
+        LobeVertex& l = requests_.lobes[i];
         l.indirect *= asked_[size_t(exits[size_t(l.point)].asked)].indirect;
     }
-    e_.gather(c, sched);
-    e_.flushShadows(sched);
+    vertexLight_.gather(c, sched);
+    shadows_.flush(sched);
 }
 
 } // namespace alpenglow::transport

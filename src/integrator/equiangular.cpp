@@ -1,7 +1,13 @@
 // Lights with a place inside of media or near them: their light falls off with the square of the distance, which points that are
 // chosen by how far rays come do not know.
 #include "base/exact.h"
+#include "integrator/accumulator.h"
+#include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/mediastacks.h"
 #include "integrator/medium.h"
+#include "integrator/raystore.h"
+#include "integrator/shadowrays.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
@@ -36,13 +42,13 @@ double Equiangular::density(float t) const {
 /// Where lights are chosen for a way as a whole.
 static Vec3 middle(const FreeFlight& f) { return f.origin + f.dir * (0.5f * f.length); }
 
-float MediumFlights::shareOfDistance(const Engine& e, const FreeFlight& f, const BoundLight& l) {
-    const WorldImpl& w = e.world();
+float MediumFlights::shareOfDistance(const FreeFlight& f, const BoundLight& l) const {
+    const WorldImpl& w = world_;
     const MediumSampling how = w.settings_.mediumSampling;
     const auto q = Equiangular::of(f, l, how);
-    if (!q || !e.rules().lightsAtRequests) return 1;
+    if (!q || !rules_.lightsAtRequests) return 1;
     if (how == MediumSampling::Equiangular) return 0;
-    const float chance = e.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f), 0);
+    const float chance = lightKernels_.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f), 0);
     return misWeight(float(f.density(f.t)), float(q->density(f.t) * chance));
 }
 
@@ -56,24 +62,26 @@ struct Near {
     float t, scale;
 };
 
+} // namespace
+
 /// What one light brings to points that were chosen for it.
-class NearLight {
+class MediumFlights::NearLight {
 public:
-    NearLight(Engine& e, const Medium& m, const BoundLight& l, std::span<const Near> points)
-        : e_(e), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area), at_(points.size()),
+    NearLight(MediumFlights& stage, const Medium& m, const BoundLight& l, std::span<const Near> points)
+        : stage_(stage), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area), at_(points.size()),
           drawn_(area_ ? points.size() : 0), query_(points.size()), value_(points.size()) {}
     void run() {
         for (size_t i = 0; i < points_.size(); ++i) ask(i);
         const std::vector<char> inMedium(points_.size(), 1);
         LightCall call;
         call.inMedium = &inMedium;
-        e_.evaluateLight(light_, query_, value_, call);
+        stage_.lightKernels_.evaluateLight(light_, query_, value_, call);
         for (size_t i = 0; i < points_.size(); ++i) send(i);
     }
 
 private:
     void ask(size_t i) {
-        const WorldImpl& w = e_.world();
+        const WorldImpl& w = stage_.world_;
         const PathRay& r = *points_[i].flight->ray;
         ShadePoint& p = query_[i];
         p.Ps = at_[i].P = r.origin + r.dir * points_[i].t;
@@ -87,7 +95,7 @@ private:
         p.ray = &r;
         if (!area_) return;
         Emitter::Sample& s = drawn_[i];
-        const Random numbers = e_.random(r);
+        const Random numbers = stage_.store_.random(r);
         const uint32_t vertex = childVertex(r.vertex, kFlight, 5), use = kLightPoint + uint32_t(&light_ - w.lights_.data());
         const float choose = light_.emitter->chooses() ? numbers.one(vertex, use, 0) : 0;
         const Vec2 u = numbers.pair(vertex, use, 0);
@@ -106,7 +114,7 @@ private:
         const LightValue& v = value_[i];
         const ShadePoint& p = query_[i];
         if (!v.lit || (area_ && !(drawn_[i].pdf > 0))) return;
-        if (!isFinite(v.Cl)) return e_.notFinite(&r, "Cl", light_.instance.get());
+        if (!isFinite(v.Cl)) return stage_.accumulator_.notFinite(&r, "Cl", light_.instance.get());
         const Vec3 way = area_ ? leavesFrom(p.surface, -drawn_[i].direction) - p.Ps : -v.L;
         const float far = length(way);
         if (!(far > 0)) return;
@@ -117,21 +125,21 @@ private:
         if (c == Color(0)) return;
         ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter, &r};
         if (v.shadowRadius > 0) {
-            const uint32_t use = kLightPoint + uint32_t(&light_ - e_.world().lights_.data());
-            const Vec2 u = e_.random(r).pair(childVertex(r.vertex, kFlight, 5), use, 0);
+            const uint32_t use = kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data());
+            const Vec2 u = stage_.store_.random(r).pair(childVertex(r.vertex, kFlight, 5), use, 0);
             const Vec3 onDisk = onShadowDisk(p.Ps - v.L, to, v.shadowRadius, u) - p.Ps;
             shadow.dir = normalizeOr(onDisk, to);
             shadow.distance = length(onDisk) * (1 - 1e-5f);
         }
         if (v.ownShadow) shadow.distance = 0;
         shadow.media = r.media;
-        shadow.share = e_.extraOf(r).share;
-        shadow.path = e_.pathEvent(r.path, e_.volume_);
-        if (shadow.path) shadow.light = e_.lightSymbols_[size_t(&light_ - e_.world().lights_.data())];
-        e_.shadows.push_back(shadow);
+        shadow.share = stage_.store_.extraOf(r).share;
+        shadow.path = stage_.paths_.next(r.path, stage_.paths_.volume);
+        if (shadow.path) shadow.light = stage_.paths_.lights[size_t(&light_ - stage_.world_.lights_.data())];
+        stage_.shadows_.queue.push_back(shadow);
     }
 
-    Engine& e_;
+    MediumFlights& stage_;
     const Medium& medium_;
     const BoundLight& light_;
     std::span<const Near> points_;
@@ -142,10 +150,8 @@ private:
     std::vector<LightValue> value_;
 };
 
-} // namespace
-
-void MediumFlights::nearLights(Engine& e, std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
-    const WorldImpl& w = e.world();
+void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
+    const WorldImpl& w = world_;
     const Medium& m = w.media_[size_t(crossings[0].way.medium)];
     const MediumSampling how = w.settings_.mediumSampling;
     const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
@@ -157,21 +163,21 @@ void MediumFlights::nearLights(Engine& e, std::span<Flight> flights, std::span<c
     for (const Crossing& x : crossings) {
         const Flight& f = flights[x.flight];
         const uint32_t vertex = childVertex(f.ray->vertex, kFlight, 2);
-        if (!chooser.empty()) chooser.choose(middle(x.way), e.random(*f.ray).one(vertex, kChooseLight, 0), chosen);
+        if (!chooser.empty()) chooser.choose(middle(x.way), store_.random(*f.ray).one(vertex, kChooseLight, 0), chosen);
         for (const auto& [k, chance] : chosen) {
             const int light = on[size_t(k)];
             if (list.ofAll && !list.lights.contains(light)) continue;
             const auto q = Equiangular::of(x.way, w.lights_[size_t(light)], how);
             if (!q) continue;
-            const float t = q->at(e.random(*f.ray).one(vertex, kLightPoint + uint32_t(light), 0));
+            const float t = q->at(store_.random(*f.ray).one(vertex, kLightPoint + uint32_t(light), 0));
             const double density = q->density(t) * chance;
             const float share = how == MediumSampling::Equiangular ? 1 : misWeight(float(density), float(x.way.density(t)));
             if (density > 0 && share > 0) near[light].push_back({&x.way, &f, &x.weight, t, float(share / density)});
         }
     }
     for (const auto& [light, points] : near) {
-        NearLight(e, m, w.lights_[size_t(light)], points).run();
-        if (e.shadows.size() > kShadowsAtOnce) e.flushShadows(sched);
+        NearLight(*this, m, w.lights_[size_t(light)], points).run();
+        if (shadows_.queue.size() > kShadowsAtOnce) shadows_.flush(sched);
     }
 }
 

@@ -4,8 +4,6 @@
 
 namespace alpenglow::transport {
 
-class Engine;
-
 /// The way of a ray to what it met, or out of the scene.
 struct Flight {
     const PathRay* ray = nullptr;
@@ -19,16 +17,16 @@ struct Flight {
 
 /// What can happen on the way: scattering in a medium, by a distance that is drawn; a walk inside of the surface that was met,
 /// which comes out elsewhere. An event that ends a flight pays for what it takes: a ray that goes on instead is sent by
-/// Engine::divert(), light goes to the flight's target by Engine::deposit(). A flight tells what it needs of others: events see
-/// one flight at a time, draw by Engine::random() of its ray, its vertex and kFlight, and so change no bit of whoever shares the
-/// batch.
+/// Flights::divert(), light goes to the flight's target by Accumulator::deposit(). A flight tells what it needs of others: events
+/// see one flight at a time, draw by RayStore::random() of its ray, its vertex and kFlight, and so change no bit of whoever
+/// shares the batch.
 class FlightEvent {
 public:
     virtual ~FlightEvent() = default;
     /// Flights of rays that met shapes of one group, or nothing. Those that are over by another event stay as they are.
-    virtual void happen(Engine&, std::span<Flight>, Sched&) = 0;
+    virtual void happen(std::span<Flight>, Sched&) = 0;
     /// Takes from shadow rays what the same event would keep from arriving. `out`: by ray, what surfaces and media have left.
-    virtual void dim(Engine&, std::span<const ShadowRay>, std::span<Color> out) = 0;
+    virtual void dim(std::span<const ShadowRay>, std::span<Color> out) = 0;
 };
 
 } // namespace alpenglow::transport

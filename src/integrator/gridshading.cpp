@@ -1,7 +1,9 @@
 #include "integrator/gridshading.h"
 #include "base/hash.h"
-#include "integrator/engine.h"
+#include "integrator/intersector.h"
 #include "integrator/limits.h"
+#include "integrator/pipeline.h"
+#include "integrator/raystore.h"
 #include "scene/scene.h"
 #include <algorithm>
 #include <bit>
@@ -23,8 +25,8 @@ bool GridShading::takes(const WorldImpl& w) {
     return w.settings_.micropolygons && w.settings_.hider != Hider::Path && !ownTime && w.eye_.count == 0;
 }
 
-GridShading::GridShading(Engine& e)
-    : engine_(e), world_(e.world()), lattices_(world_), camera_(world_.frame_->options), stride_(kOutputs) {
+GridShading::GridShading(Pipeline& p)
+    : pipeline_(p), world_(p.world()), lattices_(world_), camera_(world_.frame_->options), stride_(kOutputs) {
     seesSky_ = std::any_of(world_.skies_.begin(), world_.skies_.end(), [&](int l) {
         const BoundLight& sky = world_.lights_[size_t(l)];
         return sky.kind == LightKind::Environment && sky.strategy == LightStrategy::Trace;
@@ -84,11 +86,11 @@ void GridShading::meet(std::span<const CameraRay> rays) {
         r.time = c.shutter;
         r.mask = visibilityBit(RayType::Camera);
         r.sides = shading::kCameraKind.set.sides;
-        if (world_.fades_) r.level = engine_.levelOfSample(c);
-        engine_.clip(r);
+        if (world_.fades_) r.level = pipeline_.stages().store.levelOf(c);
+        pipeline_.stages().intersector.clip(r);
     }
-    engine_.meet(rays_, hits_, true);
-    unfinished_ |= engine_.unfinished();
+    pipeline_.stages().intersector.meet(rays_, hits_, true);
+    unfinished_ |= pipeline_.unfinished();
     for (size_t i = 0; i < samples_.size(); ++i) points_[i] = rays_[i].org + rays_[i].dir * float(hits_[i].distance);
 }
 
@@ -193,11 +195,11 @@ bool GridShading::shade(const StopFlag* stop) {
         aimAt(std::span(fresh_).subspan(first, n));
         std::vector<SampleResult>& results = work_.results;
         results.resize(n);
-        Counters& c = engine_.counters;
+        Counters& c = pipeline_.counters();
         const uint64_t paths = c.paths, camera = c.camera;
-        const bool whole = engine_.trace(work_.rays, results, stop);
+        const bool whole = pipeline_.trace(work_.rays, results, stop);
         c.paths = paths, c.camera = camera; // these are counted by sample
-        unfinished_ |= engine_.unfinished();
+        unfinished_ |= pipeline_.unfinished();
         if (!whole) return false;
         for (size_t i = 0; i < n; ++i) keep(uint32_t(firstFresh_ + first + i), results[i]);
     }
@@ -208,7 +210,7 @@ bool GridShading::shade(const StopFlag* stop) {
 bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit, const Color& clear) const {
     if (!(maxComponent(clear) > 0)) return false;
     if (++s.layers > limits::kPathDepth / 32) {
-        ++engine_.counters.depthCap;
+        ++pipeline_.counters().depthCap;
         return false;
     }
     geometry::SurfacePoint p;
@@ -263,15 +265,15 @@ bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult>
     unfinished_ = false;
     const bool whole = follow(rays, out, stop) && followSampleBySample(rays, out, stop);
     if (!whole || unfinished_) forget(); // what was shaded is void
-    engine_.setUnfinished(unfinished_);
+    pipeline_.unfinished() = unfinished_;
     return whole;
 }
 
 bool GridShading::depths(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
-    engine_.setUnfinished(false);
+    pipeline_.unfinished() = false;
     begin(rays, out);
-    engine_.counters.paths += rays.size();
-    engine_.counters.camera += rays.size();
+    pipeline_.counters().paths += rays.size();
+    pipeline_.counters().camera += rays.size();
     meet(rays);
     for (size_t i = 0; i < rays.size(); ++i)
         if (hits_[i].valid()) out[i].z = rays[i].origin.z + rays[i].direction.z * float(hits_[i].distance);
@@ -280,11 +282,11 @@ bool GridShading::depths(std::span<const CameraRay> rays, std::span<SampleResult
 
 bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
     begin(rays, out);
-    engine_.counters.paths += rays.size();
-    engine_.counters.camera += rays.size();
+    pipeline_.counters().paths += rays.size();
+    pipeline_.counters().camera += rays.size();
     while (!samples_.empty()) {
         if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget(); // between layers: none keeps slots of another
-        engine_.setUnfinished(false);
+        pipeline_.unfinished() = false;
         meet(rays);
         if (stop && *stop) return false;
         findShares();
@@ -305,10 +307,10 @@ bool GridShading::followSampleBySample(std::span<const CameraRay> rays, std::spa
     std::vector<CameraRay> some;
     for (const uint32_t i : own_) some.push_back(rays[i]);
     std::vector<SampleResult> results(some.size());
-    engine_.counters.paths -= some.size();
-    engine_.counters.camera -= some.size();
-    if (!engine_.trace(some, results, stop)) return false;
-    unfinished_ |= engine_.unfinished();
+    pipeline_.counters().paths -= some.size();
+    pipeline_.counters().camera -= some.size();
+    if (!pipeline_.trace(some, results, stop)) return false;
+    unfinished_ |= pipeline_.unfinished();
     for (size_t k = 0; k < own_.size(); ++k) out[own_[k]] = std::move(results[k]);
     return true;
 }

@@ -6,12 +6,12 @@
 
 namespace alpenglow::transport {
 
-class Engine;
+class Pipeline;
 
 class GridShading {
 public:
-    /// The engine shades, and counts. It must outlive this.
-    explicit GridShading(Engine&);
+    /// The pipeline shades, and counts. It must outlive this.
+    explicit GridShading(Pipeline&);
     /// Whether samples of this world take micropolygons: with Settings::micropolygons, under hidden and raytrace, unless
     /// something asks for what samples have of their own: their time (under raytrace an open shutter), or a volume about the eye.
     static bool takes(const WorldImpl&);
@@ -51,12 +51,12 @@ private:
     void grow();
     void forget();
 
-    Engine& engine_;
+    Pipeline& pipeline_;
     const WorldImpl& world_;
     Micropolygons lattices_;
     MicropolygonCamera camera_;
     bool seesSky_;                ///< some sky is seen behind everything
-    bool unfinished_ = false;     ///< Engine::unfinished(), of the call
+    bool unfinished_ = false;     ///< Pipeline::unfinished(), of the call
     size_t stride_;               ///< floats of a slot: colour, opacity, what comes through, outputs
     std::vector<uint8_t> colour_; ///< by number of an output: the channel that weighs it; 3: the luminance
     // What has been shaded, by slot; the table finds slots by key (open addressing, a power of two).

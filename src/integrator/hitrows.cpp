@@ -1,7 +1,7 @@
 // Rays of small scenes, from queues to the search in rows (accel/directblock.h), 16 at a time.
 #include "accel/directblock.h"
-#include "integrator/engine.h"
 #include "integrator/gridrays.h"
+#include "integrator/intersector.h"
 #include "integrator/raywords.h"
 #include "lanes/stages.h"
 #include <algorithm>
@@ -10,13 +10,13 @@ namespace alpenglow::transport {
 
 static_assert(accel::DirectRays::kSize == kBlock);
 
-/// hits_, as cast() finds them. False: some ray needs more than rows hold.
-bool Engine::castRows(std::span<const Sched::Task> slice) {
-    if (!rowsToRays_) return false;
+/// What cast() writes. False: some ray needs more than rows hold.
+bool Intersector::castRows(std::span<const Sched::Task> slice) {
+    if (!inRows_) return false;
     if (grids_ && std::any_of(slice.begin(), slice.end(), [](const Sched::Task& t) { return beginsAtGrid(t.payload); }))
         return false;
     constexpr int kWords = 16; // from PathRay::origin to media
-    hits_.resize(slice.size());
+    hits.resize(slice.size());
     uint64_t of[4] = {}; // by RayType
     alignas(64) RayBlock rays;
     accel::DirectRays block;
@@ -27,7 +27,7 @@ bool Engine::castRows(std::span<const Sched::Task> slice) {
         float time[kBlock];
         for (int i = 0; i < n; ++i) {
             const RayKind& kind = *slice[first + size_t(i)].payload.kind;
-            if (kind.set.only || !world_->accel_->takesRows(kind.set.sides)) return false;
+            if (kind.set.only || !world_.accel_->takesRows(kind.set.sides)) return false;
             block.mask[i] = visibilityBit(kind.type);
             time[i] = slice[first + size_t(i)].payload.sample->shutter;
             ++of[size_t(kind.type)];
@@ -38,19 +38,18 @@ bool Engine::castRows(std::span<const Sched::Task> slice) {
             std::copy_n(rays.direction[q], kBlock, block.dir[q]);
         }
         std::copy_n(rays.maxDistance, kBlock, block.tfar);
-        world_->accel_->intersect(block, (1u << n) - 1, time, &hits_[first]);
+        world_.accel_->intersect(block, (1u << n) - 1, time, &hits[first]);
     }
     for (const RayType t : {RayType::Camera, RayType::Diffuse, RayType::Specular, RayType::Transmission})
-        raysOf(t) += of[size_t(t)];
-    counters.tests += slice.size();
-    for (const accel::Hit& h : hits_) counters.hits += h.valid();
+        context_.raysOf(t) += of[size_t(t)];
+    counters_.tests += slice.size();
+    for (const accel::Hit& h : hits) counters_.hits += h.valid();
     return true;
 }
 
-/// What blockedByAll() finds. False: some ray needs more than rows hold.
-bool Engine::blockedInRows(std::span<const ShadowRay> asked, std::span<Color> out) {
-    if (!rowsToRays_) return false;
-    const auto plain = [&](const ShadowRay& s) { return !s.kind->set.only && world_->accel_->takesRows(s.kind->set.sides); };
+bool Intersector::blockInRows(std::span<const ShadowRay> asked, std::span<Color> out) {
+    if (!inRows_) return false;
+    const auto plain = [&](const ShadowRay& s) { return !s.kind->set.only && world_.accel_->takesRows(s.kind->set.sides); };
     if (!std::all_of(asked.begin(), asked.end(), plain)) return false;
     constexpr int kWords = 16; // from ShadowRay::origin on; dir and distance are behind it
     static_assert(offsetof(ShadowRay, dir) == 12 && offsetof(ShadowRay, distance) == 24);
@@ -73,14 +72,14 @@ bool Engine::blockedInRows(std::span<const ShadowRay> asked, std::span<Color> ou
             block.mask[i] = visibilityBit(ray.kind->type);
             time[i] = ray.time;
         }
-        world_->accel_->occluded(block, (1u << n) - 1, time, met);
+        world_.accel_->occluded(block, (1u << n) - 1, time, met);
         for (int i = 0; i < n; ++i) {
             out[first + size_t(i)] = met[i] ? Color(0) : Color(1);
-            counters.hits += met[i];
+            counters_.hits += met[i];
         }
-        if (stop && *stop) break; // the result is void
+        if (context_.stop && *context_.stop) break; // the result is void
     }
-    counters.tests += asked.size();
+    counters_.tests += asked.size();
     return true;
 }
 

@@ -1,8 +1,8 @@
-// The top of the engine: a world that the engine's own kernels help to build, and the engine that follows its rays.
+// A world that kernels help to build, and the pipeline that follows its rays.
 #include "integrator/integrator.h"
-#include "integrator/engine.h"
 #include "integrator/gridshading.h"
 #include "integrator/kernelevaluator.h"
+#include "integrator/pipeline.h"
 #include <optional>
 
 namespace alpenglow::transport {
@@ -12,16 +12,16 @@ std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame> fram
 }
 
 struct Integrator::Impl {
-    Engine engine;
+    Pipeline pipeline;
     std::optional<GridShading> grids;
-    Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : engine(std::move(w), d) {
-        if (GridShading::takes(engine.world())) grids.emplace(engine);
+    Impl(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : pipeline(std::move(w), d) {
+        if (GridShading::takes(pipeline.world())) grids.emplace(pipeline);
     }
     bool depths(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
         if (grids) return grids->depths(rays, out, stop);
         std::vector<CameraRay> all(rays.begin(), rays.end());
         for (CameraRay& r : all) r.depths = true;
-        if (!engine.trace(all, out, stop)) return false;
+        if (!pipeline.trace(all, out, stop)) return false;
         for (SampleResult& r : out) {
             r.z = r.left.empty() ? 1e38f : r.left.front().z;
             r.zSecond = 1e38f;
@@ -36,12 +36,12 @@ Integrator::~Integrator() = default;
 bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out, const StopFlag* stop) {
     if (!r.empty() && r[0].depthOnly) return impl_->depths(r, out, stop);
     if (impl_->grids && !r.empty() && !r[0].grid && !r[0].depths && !r[0].records) return impl_->grids->trace(r, out, stop);
-    return impl_->engine.trace(r, out, stop);
+    return impl_->pipeline.trace(r, out, stop);
 }
 bool Integrator::seesNothing(std::span<const geometry::Plane> sides) const {
-    return impl_->grids && impl_->grids->emptyIsBlack() && !sides.empty() && !impl_->engine.world().accel_->reachesInto(sides);
+    return impl_->grids && impl_->grids->emptyIsBlack() && !sides.empty() && !impl_->pipeline.world().accel_->reachesInto(sides);
 }
-bool Integrator::unfinished() const { return impl_->engine.unfinished(); }
-const Counters& Integrator::counters() const { return impl_->engine.counters; }
+bool Integrator::unfinished() const { return impl_->pipeline.unfinished(); }
+const Counters& Integrator::counters() const { return impl_->pipeline.counters(); }
 
 } // namespace alpenglow::transport

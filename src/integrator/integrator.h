@@ -12,7 +12,7 @@
 
 namespace alpenglow::transport {
 
-/// World::build() with the engine's own kernels.
+/// World::build() with kernels that run as the integrator runs them.
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame>, const Settings&, Diagnostics&);
 
 class Integrator {

@@ -1,13 +1,14 @@
-// What generated code calls back while a kernel runs: services and requests find their engine through KernelCall::user.
+// What generated code calls back while a kernel runs: services and requests find their stage through KernelCall::user.
 #include "base/memory.h"
-#include "integrator/engine.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/vertex.h"
 #include <bit>
 
 namespace alpenglow::transport {
 
 namespace {
 
-// The callbacks of generated code: C functions that find their engine through KernelCall::user.
+// The callbacks of generated code: C functions that find their stage through KernelCall::user.
 BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
 
 /// Exceptions cannot pass generated code: what fails in a callback is kept, the kernel is made to end its loops, and who ran it
@@ -19,17 +20,17 @@ void failed(rsl::KernelCall* call) noexcept {
     call->stop = &kEnd;
 }
 
-/// Room for another request of a kernel that does not wait. Throws LimitReached where there is none: Engine::trace() then begins
-/// anew with fewer points at a time.
+/// Room for another request of a kernel that does not wait. Throws LimitReached where there is none: Pipeline::trace() then
+/// begins anew with fewer points at a time.
 void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64_t mask) {
     const size_t held = c.arena.size() * sizeof(float) + c.emits.size() * sizeof(EmitRecord) + c.emitted * sizeof(LobeVertex);
     c.emitted += size_t(std::popcount(mask));
     if (held + rows * size_t(lanes) * sizeof(float) <= limits::kRequestBytes) return;
-    if (c.engine && !c.engine->beginsAnew()) {
+    if (c.host && !c.host->beginsAnew()) {
         const auto& files = c.bound->kernel->files();
         const auto& at = s.site->place;
         const SourcePlace place{at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column};
-        c.engine->diagnostics().reportOnce(
+        c.host->diagnostics().reportOnce(
             "requests:" + place.file + std::to_string(place.line),
             {Severity::Error,
              Rie::Limit,
@@ -46,7 +47,7 @@ void takeReach(const BatchContext& c, const SiteInfo& s, int first, float* argum
     const size_t have = std::min(size_t(lanes), c.lightReach.size()), width = size_t(lanes);
     float* more = arguments + size_t(rowsOfArguments(s)) * width;
     std::fill_n(more, 2 * width, 0.f);
-    const uint32_t use = kLightPoint + uint32_t(c.lightNow < 0 ? c.engine->world().lights_.size() : size_t(c.lightNow));
+    const uint32_t use = kLightPoint + uint32_t(c.lightNow < 0 ? c.host->world().lights_.size() : size_t(c.lightNow));
     for (size_t lane = 0; lane < have; ++lane) {
         arguments[size_t(s.rows[0]) * width + lane] = c.lightReach[lane].distance;
         if (!(c.lightReach[lane].radius > 0) || size_t(first) + lane >= c.rays.size()) continue;
@@ -104,7 +105,7 @@ void serve(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, in
         c.emits.push_back(e);
         return;
     }
-    c.engine->answers().service(c, site, first, mask, lanes, in, out);
+    c.host->answers.service(c, site, first, mask, lanes, in, out);
 }
 void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
     try {
@@ -114,21 +115,21 @@ void onService(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask
 int32_t onLightBegin(rsl::KernelCall* call, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rows) {
     BatchContext& c = contextOf(call);
     try {
-        if (!c.failure) return c.engine->answers().lightBegin(c, site, first, mask, lanes, rows);
+        if (!c.failure) return c.host->answers.lightBegin(c, site, first, mask, lanes, rows);
     } catch (...) { failed(call); }
     return 0;
 }
 uint64_t onLightFetch(rsl::KernelCall* call, int32_t, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* out) {
     BatchContext& c = contextOf(call);
     try {
-        if (!c.failure) return c.engine->answers().lightFetch(c, light, first, mask, lanes, out);
+        if (!c.failure) return c.host->answers.lightFetch(c, light, first, mask, lanes, out);
     } catch (...) { failed(call); }
     return 0;
 }
 void onLightEnd(rsl::KernelCall* call, int32_t, int32_t first, int32_t lanes) {
     BatchContext& c = contextOf(call);
     try {
-        if (!c.failure) c.engine->answers().lightEnd(c, first, lanes);
+        if (!c.failure) c.host->answers.lightEnd(c, first, lanes);
     } catch (...) { failed(call); }
 }
 void* onAlloc(rsl::KernelCall* call, uint64_t bytes) {
@@ -141,7 +142,8 @@ constexpr StopFlag kGo;
 
 } // namespace
 
-void Engine::bindCall(rsl::KernelCall& call, BatchContext& c) {
+void KernelInputs::bind(rsl::KernelCall& call, BatchContext& c) {
+    c.host = this;
     call.user = &c;
     call.service = onService;
     call.lightBegin = onLightBegin;
@@ -149,7 +151,7 @@ void Engine::bindCall(rsl::KernelCall& call, BatchContext& c) {
     call.lightEnd = onLightEnd;
     call.alloc = onAlloc;
     call.release = onRelease;
-    call.stop = stop ? stop : &kGo;
+    call.stop = context_.stop ? context_.stop : &kGo;
 }
 
 } // namespace alpenglow::transport

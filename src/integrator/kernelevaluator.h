@@ -1,4 +1,4 @@
-// The kernels that a world needs while nobody follows rays, run by an engine.
+// The kernels that a world needs while nobody follows rays, run by a pipeline.
 #pragma once
 #include "world/evaluator.h"
 #include "world/world.h"

@@ -1,34 +1,46 @@
 // Stage skies: where a path ends by its depth lamps are sampled still, and a sky that is not sampled as a light must count as
 // well. The ray that would have found it is sent as a shadow ray, which brings nothing but the sky.
-#include "integrator/gather.h"
+#include "integrator/lastskies.h"
+#include "integrator/accumulator.h"
+#include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/litsurfaces.h"
+#include "integrator/mediastacks.h"
+#include "integrator/requests.h"
+#include "integrator/scatterrays.h"
+#include "integrator/shadowrays.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
 
-void Gather::lastSkies() {
-    sent_.clear();
+LastSkies::LastSkies(const StageSet& s, const VertexLobes& v, ScatterRays& scatter)
+    : VertexStage(s, v), scatter_(scatter), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths),
+      litSurfaces_(s.litSurfaces), media_(s.media), shadows_(s.shadows) {}
+
+void LastSkies::run() {
+    scatter_.sent.clear();
     if (world_.skies_.empty()) return;
     for (size_t point = 0; point < c_->points.size(); ++point)
         for (int i : lobesOf(point)) {
-            const LobeVertex& l = e_.lobes[size_t(i)];
+            const LobeVertex& l = requests_.lobes[size_t(i)];
             // As lamps are: those lobes that sample lights.
-            if (l.last && l.lights && !l.elsewhere && !l.delta) sent_.push_back({int(point), i, 1, 1, true, Vec3(), {}});
+            if (l.last && l.lights && !l.elsewhere && !l.delta) scatter_.sent.push_back({int(point), i, 1, 1, true, Vec3(), {}});
         }
-    if (sent_.empty()) return;
-    draw(0);
+    if (scatter_.sent.empty()) return;
+    scatter_.draw(0);
     for (const int number : world_.skies_) {
         const BoundLight& light = world_.lights_[size_t(number)];
         if (!light.sky && light.kind != LightKind::Ambient) lastSky(number); // ambient() asks for ambient light
     }
 }
 
-void Gather::lastSky(int number) {
+void LastSkies::lastSky(int number) {
     const BoundLight& light = world_.lights_[size_t(number)];
     std::vector<ShadePoint> q;
-    std::vector<const Sent*> of;
+    std::vector<const LobeRay*> of;
     std::vector<int> told;
-    for (const Sent& s : sent_) {
-        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+    for (const LobeRay& s : scatter_.sent) {
+        const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
         const ShadePoint& at = c_->points[size_t(s.point)];
         if (!s.goes || !(s.value.pdf > 0)) continue;
         if (!light.seenBy(*l.rays)) continue;
@@ -45,15 +57,15 @@ void Gather::lastSky(int number) {
     }
     std::vector<LightValue> value(q.size());
     LitSurface lit;
-    if (light.asksSurface) lit = e_.litBy(told);
-    e_.evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr});
+    if (light.asksSurface) lit = litSurfaces_.litBy(told);
+    lightKernels_.evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr});
     for (size_t k = 0; k < of.size(); ++k) {
-        const Sent& s = *of[k];
-        const LobeVertex& l = e_.lobes[size_t(s.lobe)];
+        const LobeRay& s = *of[k];
+        const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
         const PathRay& ray = rayOf(l);
         if (!value[k].lit) continue;
         if (!isFinite(value[k].Cl)) {
-            e_.notFinite(&ray, "Cl", light.instance.get());
+            accumulator_.notFinite(&ray, "Cl", light.instance.get());
             continue;
         }
         float scale = 1; // light of lights counts in full, whatever is scaled of surfaces
@@ -62,11 +74,11 @@ void Gather::lastSky(int number) {
         ShadowRay shadow{q[k].Ps,  s.w,          l.maxDistance, (l.ownsTarget ? weight : weight * ray.weight) * value[k].Cl,
                          l.target, q[k].shutter, &ray};
         shadow.kind = l.rays; // what such a ray would have met
-        shadow.media = e_.mediaTowards(*c_, s.point, s.w);
+        shadow.media = media_.towards(*c_, s.point, s.w);
         shadow.share = shareOf(l);
-        shadow.path = e_.atLobe(l, c_->points[size_t(s.point)], ray, s.w);
-        if (shadow.path) shadow.light = e_.lightSymbols_[size_t(number)];
-        e_.shadows.push_back(shadow);
+        shadow.path = paths_.atLobe(l, c_->points[size_t(s.point)], ray, s.w);
+        if (shadow.path) shadow.light = paths_.lights[size_t(number)];
+        shadows_.queue.push_back(shadow);
     }
 }
 

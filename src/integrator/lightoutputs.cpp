@@ -2,13 +2,27 @@
 // own, run at the camera's points alone. Where that asks for the very light that Ci asks for, it has a part of what the lobe of
 // Ci finds: the ratio of the two weights. The parts of Ci that a shader gives away so add up to Ci in every sample. The rest is
 // followed by itself.
-#include "integrator/engine.h"
+#include "integrator/lightoutputs.h"
+#include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/context.h"
+#include "integrator/displacement.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
+#include "integrator/stageset.h"
+#include "integrator/vertexlight.h"
+#include "integrator/waitingkernels.h"
 #include <algorithm>
 #include <cstring>
 #include <map>
 #include <tuple>
 
 namespace alpenglow::transport {
+
+LightOutputs::LightOutputs(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), displacement_(s.displacement), inputs_(s.inputs),
+      requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight), waitingKernels_(s.waitingKernels) {}
 
 namespace {
 
@@ -35,7 +49,7 @@ Color weightOf(const BatchContext& c, const EmitRecord& e, int lane) {
 
 } // namespace
 
-std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c, Sched& sched) {
+std::vector<std::shared_ptr<BatchContext>> LightOutputs::asides(const BatchContext& c, Sched& sched) {
     std::vector<std::shared_ptr<BatchContext>> all;
     const SurfaceBinding& b = *c.binding;
     if (b.lightOutputs.empty() || (c.bound != &b.surfaceS && c.bound != &b.surfaceV)) return all;
@@ -50,8 +64,7 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
     for (const LightOutput& o : b.lightOutputs) {
         const BoundKernel& bound = (c.bound == &b.surfaceV ? o.V : o.S).bound;
         if (!bound) continue;
-        auto run = takeContext();
-        run->engine = this;
+        auto run = batches_.take();
         run->bound = &bound;
         run->binding = c.binding;
         run->aside = &o;
@@ -63,14 +76,15 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
             ray.path = 0;   // Ci's light is told apart, not that of outputs
             ray.extra = -1; // that of the batch, which may be gone before what waits here
             run->bindings.push_back(c.bindings[of[k]]);
-            const size_t outputs = world_->lightOutputs_.size();
-            run->targets.push_back(ray.counts ? lightTargets_[size_t(ray.sample->path) * outputs + size_t(o.number)] : nowhere_);
+            const size_t outputs = world_.lightOutputs_.size();
+            run->targets.push_back(ray.counts ? accumulator_.lightTargets[size_t(ray.sample->path) * outputs + size_t(o.number)]
+                                              : accumulator_.nowhere);
             run->points[k] = c.points[of[k]];
             run->points[k].ray = &run->rays.back();
         }
-        fillBatch(*run);
+        inputs_.fill(*run);
         if (run->displaced) run->batch->tell(*run->displaced->batch);
-        if (b.moveS) moveToFacets(*run);
+        if (b.moveS) displacement_.moveToFacets(*run);
         if (!bound.kernel->facts().suspends) {
             bound.kernel->run(&run->batch->call());
             run->ran();
@@ -81,24 +95,24 @@ std::vector<std::shared_ptr<BatchContext>> Engine::asides(const BatchContext& c,
     return all;
 }
 
-void Engine::finishAside(BatchContext& c, int first, int lanes, Sched& sched) {
+void LightOutputs::finishAside(BatchContext& c, int first, int lanes, Sched& sched) {
     const int output = c.batch->output(c.aside->slot);
-    const bool triple = world_->lightOutputs_[size_t(c.aside->number)].size == 3;
+    const bool triple = world_.lightOutputs_[size_t(c.aside->number)].size == 3;
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[size_t(i)];
         if (!ray.counts) continue;
         const Color light =
             triple ? ray.weight * c.batch->color(output, i) : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0);
-        deposit(sched, {c.targets[size_t(i)], light, LightEvent::Output, &ray});
+        accumulator_.deposit(sched, {c.targets[size_t(i)], light, LightEvent::Output, &ray});
     }
 }
 
-std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::span<const AskedLobe> asked,
-                                                   std::span<const std::shared_ptr<BatchContext>> runs, Sched&) {
+std::vector<AskedAside> LightOutputs::shareLight(const BatchContext& c, std::span<const AskedLobe> asked,
+                                                 std::span<const std::shared_ptr<BatchContext>> runs, Sched&) {
     std::vector<AskedAside> rest;
     if (runs.empty()) return rest;
     std::vector<std::vector<const AskedLobe*>> lobesOf(c.points.size());
-    for (const AskedLobe& a : asked) lobesOf[size_t(lobes[size_t(a.lobe)].point)].push_back(&a);
+    for (const AskedLobe& a : asked) lobesOf[size_t(requests_.lobes[size_t(a.lobe)].point)].push_back(&a);
     std::vector<int> pointOf; // of the batch: that of a point of a run
     for (size_t i = 0; i < c.points.size(); ++i)
         if (runs[0]->points.size() == c.points.size() || c.rays[i].counts) pointOf.push_back(int(i));
@@ -112,10 +126,10 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
                 if (!(e.mask >> lane & 1) || point >= int(run->points.size()) || !run->rays[size_t(point)].counts) continue;
                 Color weight = weightOf(*run, e, lane);
                 if (!(std::isfinite(weight.x) && std::isfinite(weight.y) && std::isfinite(weight.z))) {
-                    ++counters.nonFinite;
+                    ++counters_.nonFinite;
                     continue;
                 }
-                if (world_->lightOutputs_[size_t(run->aside->number)].size == 1) { // throughput of a number is the luminance
+                if (world_.lightOutputs_[size_t(run->aside->number)].size == 1) { // throughput of a number is the luminance
                     const Color& through = run->rays[size_t(point)].weight;
                     for (int k = 0; k < 3; ++k) weight[k] *= through[k] > 0 ? luminance(through) / through[k] : 0;
                 }
@@ -123,7 +137,7 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
                     const EmitRecord& main = c.emits[size_t(a->record)];
                     if (same < 0 || calls.main[size_t(main.site)] != same || !sameArguments(*run, e, lane, c, main, a->lane))
                         continue;
-                    LobeVertex& l = lobes[size_t(a->lobe)];
+                    LobeVertex& l = requests_.lobes[size_t(a->lobe)];
                     Color ratio(0);
                     for (int k = 0; k < 3; ++k)
                         if (std::fabs(weight[k]) <= kMostShare * std::fabs(l.weight[k]) && l.weight[k] != 0) {
@@ -131,8 +145,8 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
                             weight[k] = 0;
                         }
                     if (ratio == Color(0)) continue;
-                    shares_.push_back({run->targets[size_t(point)], ratio, l.share});
-                    l.share = int32_t(shares_.size()) - 1;
+                    accumulator_.shares.push_back({run->targets[size_t(point)], ratio, l.share});
+                    l.share = int32_t(accumulator_.shares.size()) - 1;
                     break;
                 }
                 if (!(weight == Color(0))) rest.push_back({run.get(), int(r), lane, weight});
@@ -142,12 +156,12 @@ std::vector<Engine::AskedAside> Engine::shareLight(const BatchContext& c, std::s
     return rest;
 }
 
-void Engine::followAsides(std::span<const AskedAside> rest, std::span<std::shared_ptr<BatchContext>> runs, Sched& sched) {
+void LightOutputs::followAsides(std::span<const AskedAside> rest, std::span<std::shared_ptr<BatchContext>> runs, Sched& sched) {
     size_t next = 0;
     for (const auto& run : runs) {
         BatchContext& c = *run;
         if (c.bound->kernel->facts().suspends) {
-            startStrips(run, sched);
+            waitingKernels_.start(run, sched);
             continue;
         }
         std::map<std::pair<int, int>, uint32_t> occurrence; // by site and point
@@ -160,15 +174,15 @@ void Engine::followAsides(std::span<const AskedAside> rest, std::span<std::share
             const TargetId target = c.targets[size_t(point)];
             const Color through = c.rays[size_t(point)].weight;
             if (s.kind == SiteKind::LightVisibility)
-                lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target);
+                requests_.lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target);
             else
-                request(c, s, point, args, e.lanes, a.lane, asksShadows(s.kind) ? a.weight * through : a.weight, target, false,
-                        occurrence[{e.site, point}]++);
+                requests_.request(c, s, point, args, e.lanes, a.lane, asksShadows(s.kind) ? a.weight * through : a.weight, target,
+                                  false, occurrence[{e.site, point}]++);
         }
-        gather(c, sched);
-        flushShadows(sched);
+        vertexLight_.gather(c, sched);
+        shadows_.flush(sched);
     }
-    for (auto& run : runs) giveBack(std::move(run));
+    for (auto& run : runs) batches_.giveBack(std::move(run));
 }
 
 } // namespace alpenglow::transport

@@ -1,9 +1,28 @@
 // Media that scatter: what becomes of rays on their way through them.
 #include "integrator/medium.h"
 #include "base/exact.h"
+#include "integrator/accumulator.h"
+#include "integrator/atmosphere.h"
+#include "integrator/batchpool.h"
+#include "integrator/context.h"
+#include "integrator/flights.h"
+#include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/litsurfaces.h"
+#include "integrator/mediastacks.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
+#include "integrator/stageset.h"
+#include "integrator/vertexlight.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
+
+MediumFlights::MediumFlights(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches), flights_(s.flights),
+      lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media), store_(s.store),
+      requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
 
 namespace {
 
@@ -30,52 +49,54 @@ double chanceDeepInside(const Homogeneous& h, const Color& weight, float toSurfa
     return scattered <= certain ? 1 : 1 - 1. / scattered;
 }
 
-void addOpacity(Engine& e, const PathRay& r, const Color& c) { e.results[size_t(r.sample->path)]->opacity += r.weight * c; }
+} // namespace
+
+void MediumFlights::addOpacity(const PathRay& r, const Color& c) {
+    accumulator_.results[size_t(r.sample->path)]->opacity += r.weight * c;
+}
 
 /// Light that the medium itself sends along the way.
-void glow(Engine& e, const Flight& f, const Homogeneous& h, Sched& sched) {
+void MediumFlights::glow(const Flight& f, const Homogeneous& h, Sched& sched) {
     if (!(maxComponent(h.emission) > 0)) return;
     Color c;
     for (int k = 0; k < 3; ++k) c[k] = float(h.emission[k] * f.length * meanLeft(double(h.extinction()[k]) * f.length));
-    e.deposit(sched, {f.target, f.ray->weight * c, LightEvent::Surface, f.ray, e.extraOf(*f.ray).share});
+    accumulator_.deposit(sched, {f.target, f.ray->weight * c, LightEvent::Surface, f.ray, store_.extraOf(*f.ray).share});
 }
 
-} // namespace
-
 /// What happens on a way through a medium up to a surface; a point on it where light is scattered, if it is.
-std::optional<MediumFlights::Crossing> MediumFlights::cross(Engine& e, Flight& f, size_t number, Sched& sched) {
+std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t number, Sched& sched) {
     const PathRay& ray = *f.ray;
-    const Medium& m = e.world().media_[size_t(ray.medium())];
+    const Medium& m = world_.media_[size_t(ray.medium())];
     const Homogeneous& h = *m.homogeneous;
     if (!f.point) {
-        if (++e.leaks_ == kLeaksSaid)
-            e.diagnostics().reportOnce("leak:" + m.shader->name,
-                                       {Severity::Warning,
-                                        Rie::Consistency,
-                                        m.shape ? m.shape->place() : m.shader->place,
-                                        "rays leave the scene inside of the medium \"" + m.shader->name +
-                                            "\": the primitive whose Interior it is does not enclose it; such ways are empty",
-                                        "a medium fills what lies behind a surface until the next one: close it",
-                                        {}});
+        if (++leaks_ == kLeaksSaid)
+            diagnostics_.reportOnce("leak:" + m.shader->name,
+                                    {Severity::Warning,
+                                     Rie::Consistency,
+                                     m.shape ? m.shape->place() : m.shader->place,
+                                     "rays leave the scene inside of the medium \"" + m.shader->name +
+                                         "\": the primitive whose Interior it is does not enclose it; such ways are empty",
+                                     "a medium fills what lies behind a surface until the next one: close it",
+                                     {}});
         return {};
     }
     const Color before = ray.weight, left = h.left(f.length);
-    glow(e, f, h, sched);
+    glow(f, h, sched);
     const bool both = ray.counts; // what the camera sees, opacity and depth stay exact
-    if (both) addOpacity(e, ray, Color(1) - left);
+    if (both) addOpacity(ray, Color(1) - left);
     Color part(std::fabs(before.x), std::fabs(before.y), std::fabs(before.z));
     const float sum = part.x + part.y + part.z;
     f.left = left;
     if (!(maxComponent(h.scattering) > 0) || !(sum > 0) || !std::isfinite(sum) || !(f.length > 0)) return {};
     part = part / sum;
-    Crossing c{number, {}, before * e.extraOf(ray).indirect};
+    Crossing c{number, {}, before * store_.extraOf(ray).indirect};
     c.way.origin = ray.origin;
     c.way.dir = ray.dir;
     c.way.length = f.length;
     c.way.medium = ray.medium();
     c.way.extinction = h.extinction();
     double survives = 0, drawn = 0;
-    const Vec2 u = e.random(ray).pair(childVertex(ray.vertex, kFlight, 6), kFlight, 0); // others than its lobe's
+    const Vec2 u = store_.random(ray).pair(childVertex(ray.vertex, kFlight, 6), kFlight, 0); // others than its lobe's
     double at = u.x;
     int channel = 2;
     for (int k = 0; k < 2 && channel == 2; ++k)
@@ -104,71 +125,72 @@ std::optional<MediumFlights::Crossing> MediumFlights::cross(Engine& e, Flight& f
 }
 
 /// Goes on behind a surface that bounds nothing here.
-void MediumFlights::pass(Engine& e, Flight& f, Sched& sched) {
+void MediumFlights::pass(Flight& f, Sched& sched) {
     const PathRay& ray = *f.ray;
     const ShadePoint& p = *f.point;
     PathRay r = ray;
-    const RayExtra& extra = e.extraOf(ray);
+    const RayExtra& extra = store_.extraOf(ray);
     r.weight = (extra.fade.fades() ? extra.whole : ray.weight) * f.left;
-    if (const int medium = ray.medium(); medium >= 0 && !e.world().media_[size_t(medium)].homogeneous) {
+    if (const int medium = ray.medium(); medium >= 0 && !world_.media_[size_t(medium)].homogeneous) {
         std::vector<ShadePoint> at(1, p); // its shader runs up to here
         at[0].ray = &ray;
         if (ray.parted) at[0].I = p.P - ray.volumeBegin();
         at[0].Ci = at[0].Oi = Color(0);
         Haze h;
-        e.haze(e.world().media_[size_t(medium)], e.world().bindings_[size_t(f.binding)], at, {&h, 1}, true);
-        if (isFinite(h.shown)) e.deposit(sched, {f.target, r.weight * h.shown, LightEvent::Surface, &ray, e.extraOf(ray).share});
-        if (ray.counts && isFinite(h.opacity)) addOpacity(e, ray, h.opacity);
+        atmosphere_.haze(world_.media_[size_t(medium)], world_.bindings_[size_t(f.binding)], at, {&h, 1}, true);
+        if (isFinite(h.shown))
+            accumulator_.deposit(sched, {f.target, r.weight * h.shown, LightEvent::Surface, &ray, store_.extraOf(ray).share});
+        if (ray.counts && isFinite(h.opacity)) addOpacity(ray, h.opacity);
         for (int k = 0; k < 3; ++k) r.weight[k] *= std::isfinite(h.slope[k]) ? std::max(h.slope[k], 0.f) : 0;
     }
     const float travelled = length(p.P - ray.origin);
     r.goOnAt(geometry::offsetOrigin(p.surface, ray.dir));
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
-    r.media = e.mediaBeyond(e.world().bindings_[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
-    e.tellLost(r.media, p);
+    r.media = media_.beyond(world_.bindings_[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
+    media_.tellLost(r.media, p);
     r.parted = true;
     r.vertex = childVertex(ray.vertex, kFlight, 1);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) {
-        ++e.counters.depthCap;
+        ++counters_.depthCap;
         f.over = true;
         return;
     }
-    e.divert(f, r, sched, travelled);
+    flights_.divert(f, r, sched, travelled);
 }
 
-void MediumFlights::happen(Engine& e, std::span<Flight> flights, Sched& sched) {
-    const WorldImpl& w = e.world();
+void MediumFlights::happen(std::span<Flight> flights, Sched& sched) {
+    const WorldImpl& w = world_;
     std::vector<Crossing> crossings;
     for (size_t i = 0; i < flights.size(); ++i) {
         Flight& f = flights[i];
         if (f.over) continue;
         const int medium = f.ray->medium();
         if (medium >= 0 && w.media_[size_t(medium)].homogeneous)
-            if (auto c = cross(e, f, i, sched)) crossings.push_back(*c);
-        if (!f.over && f.point && w.bindings_[size_t(f.binding)].overruled(f.ray->media)) pass(e, f, sched);
+            if (auto c = cross(f, i, sched)) crossings.push_back(*c);
+        if (!f.over && f.point && w.bindings_[size_t(f.binding)].overruled(f.ray->media)) pass(f, sched);
     }
     std::stable_sort(crossings.begin(), crossings.end(),
                      [](const Crossing& a, const Crossing& b) { return a.way.medium < b.way.medium; });
     for (size_t first = 0, end; first < crossings.size(); first = end) { // of one medium, whose lights are one list
         for (end = first; end < crossings.size() && crossings[end].way.medium == crossings[first].way.medium;) ++end;
         const auto of = std::span<const Crossing>(crossings).subspan(first, end - first);
-        if (e.rules().lightsAtRequests) nearLights(e, flights, of, sched);
-        scatter(e, flights, of, sched);
+        if (rules_.lightsAtRequests) nearLights(flights, of, sched);
+        scatter(flights, of, sched);
     }
 }
 
-Vec3 MediumFlights::besideLight(const Engine& e, const Medium& m, const PathRay& r, const Vec3& from, float* away) {
-    const WorldImpl& w = e.world();
-    if (!e.rules().lightsAtRequests || w.settings_.mediumSampling == MediumSampling::Distance) return {};
+Vec3 MediumFlights::besideLight(const Medium& m, const PathRay& r, const Vec3& from, float* away) const {
+    const WorldImpl& w = world_;
+    if (!rules_.lightsAtRequests || w.settings_.mediumSampling == MediumSampling::Distance) return {};
     const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
     const LightChooser& chooser = w.chooserOf(list);
     const std::vector<int>& on = w.sampledOf(list);
     const uint32_t vertex = childVertex(r.vertex, kFlight, 3);
     LightChooser::Chosen chosen;
     for (size_t k = 0; k < on.size() && chooser.empty(); ++k) chosen.emplace_back(int(k), 1.f);
-    if (!chooser.empty()) chooser.choose(from, e.random(r).one(vertex, kChooseLight, 0), chosen);
+    if (!chooser.empty()) chooser.choose(from, store_.random(r).one(vertex, kChooseLight, 0), chosen);
     const Color sigma = m.homogeneous->extinction();
     const double reach = 12 / (double(sigma.x) + sigma.y + sigma.z); // four mean free paths: beyond them little is left
     std::vector<std::pair<Vec3, float>> near;
@@ -181,20 +203,19 @@ Vec3 MediumFlights::besideLight(const Engine& e, const Medium& m, const PathRay&
         if (far < reach && far > double(l.extent)) near.emplace_back(to / float(far), float(far));
     }
     if (near.empty()) return {};
-    const size_t k = near.size() == 1 ? 0 : size_t(e.random(r).one(vertex, kLightPoint, 0) * float(near.size()));
+    const size_t k = near.size() == 1 ? 0 : size_t(store_.random(r).one(vertex, kLightPoint, 0) * float(near.size()));
     const auto& [direction, distance] = near[std::min(k, near.size() - 1)];
     if (away) *away = distance;
     return direction;
 }
 
 /// Points where light is scattered gather it as surfaces do, by the lobe of the medium.
-void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
+void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
     static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
-    auto c = e.takeContext();
-    const Medium& m = e.world().media_[size_t(crossings[0].way.medium)];
-    c->engine = &e;
+    auto c = batches_.take();
+    const Medium& m = world_.media_[size_t(crossings[0].way.medium)];
     c->bound = &m.kernel;
-    c->binding = &e.world().bindings_[size_t(m.binding)];
+    c->binding = &world_.bindings_[size_t(m.binding)];
     c->between = true;
     for (const Crossing& x : crossings) {
         if (!x.stops) continue;
@@ -207,9 +228,9 @@ void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<cons
                                       : 0;
         r.vertex = childVertex(f.ray->vertex, kFlight, 0);
         r.counts = r.first = false;
-        if (e.rules().roulette) {
+        if (rules_.roulette) {
             const double q = chanceDeepInside(*m.homogeneous, r.weight, f.length, r.scattered + 1);
-            if (q < 1 && e.random(r).one(childVertex(r.vertex, kFlight, 7), kRoulette, 0) >= q) {
+            if (q < 1 && store_.random(r).one(childVertex(r.vertex, kFlight, 7), kRoulette, 0) >= q) {
                 c->rays.pop_back();
                 continue;
             }
@@ -229,25 +250,25 @@ void MediumFlights::scatter(Engine& e, std::span<Flight> flights, std::span<cons
         p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: there are no sides
         p.I = p.P - r.begin();
         p.E = r.origin;
-        p.shutter = p.surface.time = e.world().shadesAtOpen_ ? 0 : r.shutter();
-        e.world().tellTime(p);
+        p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();
+        world_.tellTime(p);
         p.ray = &r;
-        LobeVertex& l = e.lobes.emplace_back();
-        const Vec3 light = besideLight(e, m, r, p.P);
+        LobeVertex& l = requests_.lobes.emplace_back();
+        const Vec3 light = besideLight(m, r, p.P);
         l.kind = light == Vec3(0) ? plain : beside;
         l.point = int(i);
         l.weight = Color(1);
         l.target = c->targets[i];
         l.site = kFlight;
-        if (e.world().lightsAsk()) {
-            l.lit = int(e.litValues_.size());
-            e.litValues_.emplace_back();
+        if (world_.lightsAsk()) {
+            l.lit = int(litSurfaces_.values.size());
+            litSurfaces_.values.emplace_back();
         }
-        l.place = e.lobeRows_.add(*l.kind, {r.dir, light == Vec3(0) ? -r.dir : light, {}, m.homogeneous->anisotropy});
+        l.place = requests_.rows.add(*l.kind, {r.dir, light == Vec3(0) ? -r.dir : light, {}, m.homogeneous->anisotropy});
     }
-    if (n > 0) e.gather(*c, sched);
-    e.flushShadows(sched); // they know its rays
-    e.giveBack(std::move(c));
+    if (n > 0) vertexLight_.gather(*c, sched);
+    shadows_.flush(sched); // they know its rays
+    batches_.giveBack(std::move(c));
 }
 
 } // namespace alpenglow::transport

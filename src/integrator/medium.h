@@ -1,6 +1,7 @@
 // Ways through media that scatter (world/bound.h, Homogeneous), in closed form.
 #pragma once
-#include "integrator/engine.h"
+#include "integrator/context.h"
+#include "integrator/flight.h"
 
 namespace alpenglow::transport {
 
@@ -18,23 +19,38 @@ private:
     double length_ = 0, nearest_ = 0, away_ = 0, from_ = 0, to_ = 0; ///< angles at the light
 };
 
+class Accumulator;
+class Atmosphere;
+class BatchPool;
+class Flights;
+class LightKernels;
+class LightPathStates;
+class LitSurfaces;
+class MediaStacks;
+class RayStore;
+class Requests;
+class ShadowRays;
+struct StageSet;
+class VertexLight;
+
 /// The event of media that absorb and scatter, under path. On each way a distance is drawn in proportion to what is left of the
 /// light (of the three channels one, by what the path has left of it; all three make its density). What comes as far as its
 /// surface goes on, the others meet lights there, by Gather, and are scattered. Of a ray from the camera both is followed.
 /// Where lights with a place are near, more points are chosen by Equiangular; the power heuristic weighs both. What is scattered
 /// there goes also toward such a light, as rays that pass it bring the more the nearer they come (Georgiev et al., Joint
 /// Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
-class MediumFlights final : public FlightEvent {
+class MediumFlights final : Stage, public FlightEvent {
 public:
-    void happen(Engine&, std::span<Flight>, Sched&) override;
-    /// Nothing: Engine::dim() of media has taken it.
-    void dim(Engine&, std::span<const ShadowRay>, std::span<Color>) override {}
+    explicit MediumFlights(const StageSet&);
+    void happen(std::span<Flight>, Sched&) override;
+    /// Nothing: MediaStacks::dim() has taken it.
+    void dim(std::span<const ShadowRay>, std::span<Color>) override {}
     /// The part that a point chosen by distance has in the light of one with a place; the rest comes from other points.
-    static float shareOfDistance(const Engine&, const FreeFlight&, const BoundLight&);
+    float shareOfDistance(const FreeFlight&, const BoundLight&) const;
 
     /// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one,
     /// all with the same chance: a density for any of them is right. `away`: how far it is.
-    static Vec3 besideLight(const Engine&, const Medium&, const PathRay&, const Vec3& from, float* away = nullptr);
+    Vec3 besideLight(const Medium&, const PathRay&, const Vec3& from, float* away = nullptr) const;
 
 private:
     struct Crossing {
@@ -43,10 +59,26 @@ private:
         Color weight;
         bool stops = false;
     }; ///< weight: of the ray where it begins
-    static std::optional<Crossing> cross(Engine&, Flight&, size_t number, Sched&);
-    static void pass(Engine&, Flight&, Sched&);
-    static void scatter(Engine&, std::span<Flight>, std::span<const Crossing>, Sched&);
-    static void nearLights(Engine&, std::span<Flight>, std::span<const Crossing>, Sched&);
+    std::optional<Crossing> cross(Flight&, size_t number, Sched&);
+    void pass(Flight&, Sched&);
+    void scatter(std::span<Flight>, std::span<const Crossing>, Sched&);
+    void nearLights(std::span<Flight>, std::span<const Crossing>, Sched&);
+    void addOpacity(const PathRay&, const Color&); ///< to the sample of a camera ray
+    void glow(const Flight&, const Homogeneous&, Sched&);
+    class NearLight;
+    int leaks_ = 0; ///< rays that left the scene inside of such a medium
+    Accumulator& accumulator_;
+    Atmosphere& atmosphere_;
+    BatchPool& batches_;
+    Flights& flights_;
+    LightKernels& lightKernels_;
+    LitSurfaces& litSurfaces_;
+    const LightPathStates& paths_;
+    MediaStacks& media_;
+    RayStore& store_;
+    Requests& requests_;
+    ShadowRays& shadows_;
+    VertexLight& vertexLight_;
 };
 
 } // namespace alpenglow::transport

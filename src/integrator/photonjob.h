@@ -5,7 +5,7 @@
 
 namespace alpenglow::transport {
 
-class Engine;
+class LightKernels;
 struct PhotonJob;
 
 /// The numbers of one photon before it meets anything.
@@ -37,7 +37,7 @@ public:
 
     /// The lights that emit, as their attributes say: those with "emitphotons" 1, or where no light of the frame says anything,
     /// all but those that `all` leaves out. all: false: only lights that say so. sky: environments count, too.
-    EmissionPlan(Engine&, bool all, bool sky);
+    EmissionPlan(LightKernels&, bool all, bool sky);
     bool empty() const { return lights_.empty(); }
     const std::vector<Light>& lights() const { return lights_; }
     /// Whether anything moves that photons may meet or come from; and how far lights do while the shutter is open.
@@ -58,8 +58,8 @@ public:
     float radius = 0;
 
 private:
-    void measure(Engine&, Light&);
-    bool findPlace(Engine&, Light&);
+    void measure(LightKernels&, Light&);
+    bool findPlace(LightKernels&, Light&);
     void share();
     const WorldImpl& world_;
     std::vector<Light> lights_;
@@ -104,8 +104,8 @@ struct PhotonDepths {
     void to(shading::PathRay& r) const { r.asked = uint16_t(diffuse << 8 | specular); }
 };
 
-/// Lobes of a ray whose spread is below count as mirrors: radians. 0: none do.
-float narrowBelow(const Engine&, const shading::PathRay&);
+/// Of the angle between two unit vectors.
+inline float sine(const Vec3& w, const Vec3& n) { return length(cross(w, n)); }
 
 /// Radians between a photon's way and the normal below which the way is tilted (photonscatter.cpp).
 inline constexpr float kLeastTilt = 1e-3f;
@@ -115,9 +115,6 @@ inline constexpr float kLeastTilt = 1e-3f;
 float photonFactor(const LobeColumns&, LobeColumns::Place, const LobeKind&, bool delta, const Vec3& from, const Vec3& to,
                    const Vec3& n, const Vec3& N);
 
-/// Fills BatchContext::haze: what the way of each photon loses, which an eye would see the other way round from here. That is in
-/// the volume between, or in the atmosphere of the surface that the photon comes from. haze.cpp
-void hazeOfPhotons(Engine&, BatchContext&);
 /// The part that is left of it.
 inline Color leftOfPhoton(const BatchContext& c, size_t point) {
     return c.haze.empty() || !c.haze[point].on ? Color(1) : c.haze[point].slope;

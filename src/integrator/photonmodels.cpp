@@ -1,10 +1,33 @@
 // Surfaces that scatter photons by a model that an attribute names, and what rays gather of maps at surfaces.
+#include "integrator/accumulator.h"
+#include "integrator/context.h"
+#include "integrator/emission.h"
 #include "integrator/gather.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/mediastacks.h"
 #include "integrator/photonjob.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
+#include "integrator/stageset.h"
+#include "integrator/surfaceshading.h"
+#include "integrator/transparency.h"
+#include "integrator/vertexlight.h"
+#include "lobes/sampling.h"
 #include "shadeops/specular.h"
+#include "world/mediaabout.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
+
+PhotonTrace& PhotonStage::begin() {
+    if (!photonTrace_) photonTrace_ = std::make_unique<PhotonTrace>();
+    return *photonTrace_;
+}
+
+PhotonStage::PhotonStage(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), paths_(s.paths), media_(s.media), store_(s.store), requests_(s.requests),
+      shading_(s.shading), transparency_(s.transparency), vertexLight_(s.vertexLight) {}
 
 namespace {
 
@@ -35,13 +58,13 @@ void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
 
 } // namespace
 
-void Engine::takeModels(BatchContext& c, bool all) {
+void PhotonStage::takeModels(BatchContext& c, bool all) {
     const bool models = photonTrace_->job->models;
     const auto modelAt = [&](size_t point) {
-        const PhotonModel m = models ? world_->bindings_[size_t(c.bindings[point])].photons.model : PhotonModel::Shader;
+        const PhotonModel m = models ? world_.bindings_[size_t(c.bindings[point])].photons.model : PhotonModel::Shader;
         return m == PhotonModel::Shader && all ? PhotonModel::Matte : m;
     };
-    std::erase_if(lobes, [&](const LobeVertex& l) { return modelAt(size_t(l.point)) != PhotonModel::Shader; });
+    std::erase_if(requests_.lobes, [&](const LobeVertex& l) { return modelAt(size_t(l.point)) != PhotonModel::Shader; });
     static const LobeKind *const diffuse = findLobe("diffuse"), *const mirror = findLobe("uniform"),
                                  *const specular = findLobe("specular");
     for (size_t i = 0; i < c.points.size(); ++i) {
@@ -49,10 +72,10 @@ void Engine::takeModels(BatchContext& c, bool all) {
         if (model == PhotonModel::Shader || model == PhotonModel::Transparent) continue;
         const ShadePoint& p = c.points[i];
         const Vec3 in = normalize(p.I), side = normalize(p.N), N = dot(side, in) > 0 ? -side : side;
-        const Color Cs = world_->bindings_[size_t(c.bindings[i])].attributes->color;
+        const Color Cs = world_.bindings_[size_t(c.bindings[i])].attributes->color;
         uint32_t site = kModelSite;
         const auto add = [&](const LobeKind& kind, const Vec3& axis, const Color& weight, const RayKind& rays, float a = 0) {
-            LobeVertex& l = lobes.emplace_back();
+            LobeVertex& l = requests_.lobes.emplace_back();
             LobeParams params;
             params.axis = axis;
             params.wo = -in;
@@ -64,7 +87,7 @@ void Engine::takeModels(BatchContext& c, bool all) {
             l.rays = &rays;
             l.lights = l.deltaLights = false;
             l.site = site++;
-            l.place = lobeRows_.add(kind, params);
+            l.place = requests_.rows.add(kind, params);
         };
         const Vec3 mirrored = normalize(in - N * (2 * dot(in, N)));
         if (model == PhotonModel::Matte) add(*diffuse, N, Cs, kDiffuseKind);
@@ -83,10 +106,10 @@ void Engine::takeModels(BatchContext& c, bool all) {
     }
 }
 
-void Engine::photonsByModel(BatchContext& c, Sched& sched) {
+void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
     const size_t n = c.points.size();
     for (size_t i = 0; i < n; ++i) {
-        const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
+        const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
         if (photonTrace_->job->caustics) sayNoCaustics(b, diagnostics_);
         else if (b.photons.model == PhotonModel::Shader)
             diagnostics_.reportOnce(
@@ -102,28 +125,28 @@ void Engine::photonsByModel(BatchContext& c, Sched& sched) {
     c.clear.assign(n, Color(0));
     c.passes.assign(n, 1.f);
     for (size_t i = 0; i < n; ++i) {
-        const SurfaceBinding& b = world_->bindings_[size_t(c.bindings[i])];
+        const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
         const Color o = b.attributes->opacity;
         c.clear[i] = b.photons.model == PhotonModel::Transparent
                          ? Color(1)
                          : Color(std::clamp(1 - o.x, 0.f, 1.f), std::clamp(1 - o.y, 0.f, 1.f), std::clamp(1 - o.z, 0.f, 1.f));
-        c.clear[i] = c.clear[i] * leftBehind(c, int(i));
+        c.clear[i] = c.clear[i] * transparency_.leftBehind(c, int(i));
     }
-    gather(c, sched);
+    vertexLight_.gather(c, sched);
     for (size_t i = 0; i < n; ++i)
-        if (const Color clear = goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
-            passThrough(world_->bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear, c.passes[i], 0,
-                        sched);
+        if (const Color clear = transparency_.goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
+            transparency_.passThrough(world_.bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,
+                                      c.passes[i], 0, sched);
 }
 
-const photons::PhotonMap* Engine::globalMapOf(int binding) {
+const photons::PhotonMap* PhotonStage::globalMapOf(int binding) {
     const auto [at, fresh] = globalMaps_.try_emplace(binding, nullptr);
-    const PhotonBinding& b = world_->bindings_[size_t(binding)].photons;
-    if (fresh && !b.globalMap.empty()) at->second = world_->photons_->find(b.globalMap, {});
+    const PhotonBinding& b = world_.bindings_[size_t(binding)].photons;
+    if (fresh && !b.globalMap.empty()) at->second = world_.photons_->find(b.globalMap, {});
     return at->second;
 }
 
-void Engine::takeGlobalMaps(BatchContext& c, Sched& sched) {
+void PhotonStage::takeGlobalMaps(BatchContext& c, Sched& sched) {
     size_t kept = 0;
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const photons::PhotonMap* map = c.rays[i].kind->gathersPhotons ? globalMapOf(c.bindings[i]) : nullptr;
@@ -133,17 +156,39 @@ void Engine::takeGlobalMaps(BatchContext& c, Sched& sched) {
             const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
             const Color light =
                 map->radiance({p.surface.displaced ? p.surface.displacedP : p.surface.P, dot(n, r.dir) > 0 ? -n : n,
-                               world_->bindings_[size_t(c.bindings[i])].photons.estimator, 0});
-            tellAsker(c, int(i), Color(1), sched);
-            deposit(sched,
-                    {c.targets[i], r.weight * light, LightEvent::Photons, &r, extraOf(r).share, nullptr, atPhotons(r.path)});
-            freeExtra(r);
+                               world_.bindings_[size_t(c.bindings[i])].photons.estimator, 0});
+            shading_.tellAsker(c, int(i), Color(1), sched);
+            accumulator_.deposit(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, store_.extraOf(r).share,
+                                         nullptr, paths_.atPhotons(r.path)});
+            store_.freeExtra(r);
             sched.release(c.targets[i]);
             continue;
         }
         c.move(i, kept++);
     }
     c.keepFirst(kept);
+}
+
+/// The volumes in which a photon begins; null: none.
+const shading::Media* PhotonStage::aboutLight(const EmissionPlan::Light& l, const EmissionStart& s) {
+    const bool placed = l.light->photons || l.light->kind == LightKind::Point || l.light->kind == LightKind::Area;
+    if (world_.media_.empty() || !placed) return nullptr;
+    return media_.kept(mediaAbout(world_, s.origin, world_.shadesAtOpen_ ? 0 : s.drawn.time));
+}
+
+float PhotonStage::narrowBelow(const PathRay& ray) const {
+    if (const PhotonTrace* t = photonTrace()) return t->job->width;
+    return passOf(ray) ? world_.photons_->widthOfPasses : 0;
+}
+
+void PhotonStage::tilt(BatchContext& c) {
+    for (size_t i = 0; i < c.points.size(); ++i) {
+        ShadePoint& p = c.points[i];
+        const Vec3 N = normalize(p.N);
+        if (!(sine(c.rays[i].dir, N) < kLeastTilt / 10)) continue;
+        const Basis b(N);
+        p.I = normalize(c.rays[i].dir + b.t * kLeastTilt) * length(p.I);
+    }
 }
 
 } // namespace alpenglow::transport

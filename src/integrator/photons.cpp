@@ -1,5 +1,6 @@
 #include "integrator/photons.h"
-#include "integrator/engine.h"
+#include "integrator/photonstage.h"
+#include "integrator/pipeline.h"
 #include "photons/photonfile.h"
 #include <set>
 
@@ -28,8 +29,8 @@ PhotonEmission::PhotonEmission(std::shared_ptr<const World> w, const PhotonUse& 
     : impl_(std::make_unique<Impl>()) {
     impl_->world = std::static_pointer_cast<const WorldImpl>(std::move(w));
     impl_->use = use;
-    Engine e(impl_->world, d);
-    impl_->plan = std::make_unique<EmissionPlan>(e, use.all, use.sky);
+    const Pipeline pipeline(impl_->world, d);
+    impl_->plan = std::make_unique<EmissionPlan>(pipeline.stages().lightKernels, use.all, use.sky);
     impl_->met = impl_->plan->met(use.caustics);
 }
 PhotonEmission::~PhotonEmission() = default;
@@ -50,20 +51,20 @@ void PhotonEmission::tellLights() const {
 
 struct PhotonEmission::Thread::Impl {
     const PhotonEmission::Impl& of;
-    Engine engine;
-    Impl(const PhotonEmission::Impl& i, Diagnostics& d) : of(i), engine(i.world, d) {}
+    Pipeline pipeline;
+    Impl(const PhotonEmission::Impl& i, Diagnostics& d) : of(i), pipeline(i.world, d) {}
 };
 PhotonEmission::Thread::Thread(const PhotonEmission& e, Diagnostics& d) : impl_(std::make_unique<Impl>(*e.impl_, d)) {}
 PhotonEmission::Thread::~Thread() = default;
 bool PhotonEmission::Thread::emit(uint32_t pass, uint32_t first, uint32_t count, double emitted, std::vector<StoredPhoton>& out,
                                   const StopFlag* stop) {
-    return impl_->engine.emit(impl_->of.job(pass, emitted), first, count, out, stop);
+    return impl_->pipeline.emit(impl_->of.job(pass, emitted), first, count, out, stop);
 }
 float PhotonEmission::Thread::travel() const {
-    const PhotonTrace* t = impl_->engine.photonTrace();
+    const PhotonTrace* t = impl_->pipeline.stages().photons.photonTrace();
     return std::max(t ? t->fastest : 0, impl_->of.plan->travel());
 }
-const Counters& PhotonEmission::Thread::counters() const { return impl_->engine.counters; }
+const Counters& PhotonEmission::Thread::counters() const { return impl_->pipeline.counters(); }
 
 namespace {
 

@@ -6,17 +6,33 @@
 // K times the cosine of the way on over that of the way here, both with the normal of the geometry, over the density of the draw
 // (Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders takes energy for
 // radiance, without the factor for the change of solid angle: the way round has its inverse.
-#include "integrator/gather.h"
+#include "integrator/photonscatter.h"
+#include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/intersector.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/lobeselection.h"
 #include "integrator/photonjob.h"
+#include "integrator/photonstage.h"
+#include "integrator/requests.h"
+#include "integrator/scatterrays.h"
+#include "integrator/shadowrays.h"
+#include "integrator/transparency.h"
 #include "lobes/sampling.h"
 
 namespace alpenglow::transport {
+
+PhotonScatter::PhotonScatter(const StageSet& s, const VertexLobes& v, LobeSelection& selection, ScatterRays& scatter)
+    : VertexStage(s, v), selection_(selection), scatter_(scatter), accumulator_(s.accumulator), batches_(s.batches),
+      intersector_(s.intersector), inputs_(s.inputs), paths_(s.paths), photons_(s.photons), shadows_(s.shadows),
+      transparency_(s.transparency) {}
 
 namespace {
 /// Kinds whose value has the cosine of the light's direction with their axis as a factor.
 bool hasCosine(const LobeKind& k) { return k.name == "diffuse" || (k.distribution && k.name != "hair"); }
 
-float sine(const Vec3& w, const Vec3& n) { return length(cross(w, n)); }
 float least(float x) { return std::max(std::fabs(x), 1e-4f); }
 } // namespace
 
@@ -45,20 +61,17 @@ float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const Lobe
     return ways;
 }
 
-float narrowBelow(const Engine& e, const PathRay& ray) {
-    if (const PhotonTrace* t = e.photonTrace()) return t->job->width;
-    return e.passOf(ray) ? e.world().photons_->widthOfPasses : 0;
-}
-
 /// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
 // On surfaces alone.
-bool Gather::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow && !c_->between && seesAll(l); }
-bool Gather::mirrors(const LobeVertex& l) const { return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l); }
+bool PhotonScatter::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow && !c_->between && seesAll(l); }
+bool PhotonScatter::mirrors(const LobeVertex& l) const {
+    return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l);
+}
 /// By what both a photon and a path know of it: the roughness, and that the lobe is the same seen along any of its ways. So are
 /// those of facets, and highlights about the mirrored direction; what is thrown about another direction, as by refraction, is
 /// not: there are ways that only one of both finds. Shaders that move P are not asked twice (lookBack()).
-bool Gather::isNarrow(const LobeVertex& l, float below, const Vec3& in) const {
-    const LobeColumns& rows = e_.lobeRows_;
+bool PhotonScatter::isNarrow(const LobeVertex& l, float below, const Vec3& in) const {
+    const LobeColumns& rows = requests_.rows;
     if (l.delta || l.below >= 0 || c_->between || !(rows.spread(l.place) < below)) return false;
     if (c_->binding->moveS || c_->bound->kernel->facts().suspends) return false;
     constexpr float kSame = 1e-3f; // of directions
@@ -72,25 +85,25 @@ bool Gather::isNarrow(const LobeVertex& l, float below, const Vec3& in) const {
     return length(rows.triple(l.place, kRowWo) + in) < kSame;
 }
 /// What photons bring is not to be sampled: the light comes by way of this lobe to a point where they are gathered.
-bool Gather::leftToPhotons(const LobeVertex& l, const BoundLight& light) const {
-    return l.narrow && (rayOf(l).trail & shading::kTrailSpread) && !e_.photonTrace() && mirrors(l) &&
+bool PhotonScatter::leftToPhotons(const LobeVertex& l, const BoundLight& light) const {
+    return l.narrow && (rayOf(l).trail & shading::kTrailSpread) && !photons_.photonTrace() && mirrors(l) &&
            world_.photons_->lightsOfPasses[size_t(&light - world_.lights_.data())];
 }
-bool Gather::seesAll(const LobeVertex& l) const {
+bool PhotonScatter::seesAll(const LobeVertex& l) const {
     const shading::RaySet& set = l.rays->set;
     return !l.elsewhere && !set.only && !(l.maxDistance < 1e37f) && set.mode == shading::HitMode::Default &&
            set.sides == accel::Sides::Front && world_.bindings_[size_t(c_->bindings[size_t(l.point)])].photons.meetsBoth;
 }
 
-uint8_t Gather::trailBehind(const LobeVertex& l) const {
+uint8_t PhotonScatter::trailBehind(const LobeVertex& l) const {
     const uint8_t trail = rayOf(l).trail;
-    if (e_.photonTrace()) return mirrors(l) ? trail : uint8_t(shading::kTrailSpread);
+    if (photons_.photonTrace()) return mirrors(l) ? trail : uint8_t(shading::kTrailSpread);
     if (spreads(l)) return shading::kTrailSpread;
     return mirrors(l) && (trail & shading::kTrailSpread) ? shading::kTrailSpread | shading::kTrailMirrored : 0;
 }
 
-void Gather::restPhotons() {
-    PhotonTrace& t = *e_.photonTrace();
+void PhotonScatter::restPhotons() {
+    PhotonTrace& t = *photons_.photonTrace();
     for (size_t point = 0; world_.moves_ && point < c_->points.size(); ++point)
         if (const ShadePoint& p = c_->points[point]; p.shape)
             t.fastest = std::max(t.fastest, length(p.shape->velocity(p.surface)));
@@ -101,7 +114,7 @@ void Gather::restPhotons() {
         Color given(0);
         bool spread = false;
         for (int i : lobesOf(point)) {
-            LobeVertex& l = e_.lobes[size_t(i)];
+            LobeVertex& l = requests_.lobes[size_t(i)];
             if (!l.delta && !l.narrow) {
                 spread = true;
                 given += l.weight * l.albedo;
@@ -130,15 +143,15 @@ void Gather::restPhotons() {
 }
 
 /// The way on of a photon, and by how much its power changes beside the lobe's own weight. A photon that comes along the normal
-/// says nothing of the index of refraction: its shader sees it come from slightly aside (Engine::tiltPhotons), and its way on is
+/// says nothing of the index of refraction: its shader sees it come from slightly aside (PhotonStage::tilt), and its way on is
 /// put right here.
-float Gather::photonWay(const LobeVertex& l, Vec3& w) const {
+float PhotonScatter::photonWay(const LobeVertex& l, Vec3& w) const {
     const ShadePoint& p = c_->points[size_t(l.point)];
     const PathRay& from = rayOf(l);
     const Vec3 n = p.surface.displaced ? p.surface.displacedN : p.surface.n, N = normalize(p.N);
     if (l.narrow) return least(dot(w, n)) / least(dot(from.dir, n));
     const Vec3 in = normalize(p.I), tilt = in - from.dir;
-    const float factor = photonFactor(e_.lobeRows_, l.place, *l.kind, l.delta, -in, w, n, N);
+    const float factor = photonFactor(requests_.rows, l.place, *l.kind, l.delta, -in, w, n, N);
     if (l.delta && length(tilt) > kLeastTilt / 4) {
         const Vec3 aside = tilt - N * dot(tilt, N);
         const float si = sine(in, N), index = si > 0 ? sine(w, N) / si : 1;
@@ -148,21 +161,21 @@ float Gather::photonWay(const LobeVertex& l, Vec3& w) const {
 }
 
 /// Whether the light from which a photon has just come is on for a lobe that samples lights.
-bool Gather::lit(const LobeVertex& l) const {
+bool PhotonScatter::lit(const LobeVertex& l) const {
     const PathRay& ray = rayOf(l);
     if (ray.bounces > 0 || !l.lights || l.elsewhere || l.delta) return true;
     return world_.bindings_[size_t(c_->bindings[size_t(l.point)])].lights.contains(
-        e_.photonTrace()->from[size_t(ray.sample->path)].light);
+        photons_.photonTrace()->from[size_t(ray.sample->path)].light);
 }
 
 /// A path samples the light from which a photon has come here, however deep it is.
-bool Gather::sampledByPaths(const LobeVertex& l) const {
-    return e_.photonTrace() && rayOf(l).bounces == 0 && l.narrow && l.lights && !l.elsewhere;
+bool PhotonScatter::sampledByPaths(const LobeVertex& l) const {
+    return photons_.photonTrace() && rayOf(l).bounces == 0 && l.narrow && l.lights && !l.elsewhere;
 }
 
 /// A path comes the other way, and the depths of the surfaces that it meets count from its end: each leaves so many lobes to
 /// those that a photon meets behind it.
-std::optional<PhotonDepths> Gather::depthsBehind(const LobeVertex& l, const SurfaceBinding& b) const {
+std::optional<PhotonDepths> PhotonScatter::depthsBehind(const LobeVertex& l, const SurfaceBinding& b) const {
     const PhotonDepths before = PhotonDepths::of(rayOf(l));
     if (sampledByPaths(l)) return before;
     const bool diffuse = l.rays->type == RayType::Diffuse;
@@ -175,11 +188,10 @@ std::optional<PhotonDepths> Gather::depthsBehind(const LobeVertex& l, const Surf
     return d;
 }
 
-/// The batch as paths see it that come from where photons go: what its shader asks for there is added to Engine::lobes.
-std::shared_ptr<BatchContext> Gather::shadeBack(std::span<Sent* const> turned, Sched& sched) {
-    auto c = e_.takeContext();
-    c->engine = &e_;
-    c->ownsExtras = false; // those of the rays are the batch's
+/// The batch as paths see it that come from where photons go: what its shader asks for there is added to Requests::lobes.
+std::shared_ptr<BatchContext> PhotonScatter::shadeBack(std::span<LobeRay* const> turned, Sched& sched) {
+    auto c = batches_.take();
+    c->extrasOf = nullptr; // those of the rays are the batch's
     c->binding = c_->binding;
     c->bound = c_->bound;
     c->displaced = c_->displaced;
@@ -188,30 +200,30 @@ std::shared_ptr<BatchContext> Gather::shadeBack(std::span<Sent* const> turned, S
     c->targets = c_->targets;
     c->bindings = c_->bindings;
     for (size_t i = 0; i < c->points.size(); ++i) c->points[i].ray = &c->rays[i];
-    for (const Sent* s : turned) { // seen from what the photon meets next: shaders may ask how far away that is
+    for (const LobeRay* s : turned) { // seen from what the photon meets next: shaders may ask how far away that is
         const PathRay& from = c_->rays[size_t(s->point)];
         accel::Ray way;
-        way.org = origin(e_.lobes[size_t(s->lobe)], s->w);
+        way.org = origin(requests_.lobes[size_t(s->lobe)], s->w);
         way.dir = s->w;
         way.time = world_.shutterOf(from);
-        way.only = e_.photonTrace()->job->met;
+        way.only = photons_.photonTrace()->job->met;
         way.sides = accel::Sides::Both;
         way.level = from.sample->level;
         accel::Hit hit;
         ShadePoint& p = c->points[size_t(s->point)];
-        p.I = s->w * -(e_.meet(way, hit) ? hit.t : length(p.I));
+        p.I = s->w * -(intersector_.meet(way, hit) ? hit.t : length(p.I));
         p.E = p.P - p.I;
         c->rays[size_t(s->point)].dir = -s->w;
     }
-    e_.fillBatch(*c);
+    inputs_.fill(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
     c->bound->kernel->run(&c->batch->call());
     c->ran();
-    const size_t settled = e_.settled_.size();
+    const size_t settled = shadows_.settled.size();
     const std::vector<Color> whole(c->points.size(), Color(1));
-    e_.requestPairs(*c, whole, nullptr, sched);
-    e_.settled_.erase(e_.settled_.begin() + long(std::min(settled, e_.settled_.size())), e_.settled_.end());
-    e_.lobeRows_.prepare();
+    requests_.requestPairs(*c, whole, nullptr, sched);
+    shadows_.settled.erase(shadows_.settled.begin() + long(std::min(settled, shadows_.settled.size())), shadows_.settled.end());
+    requests_.rows.prepare();
     return c;
 }
 
@@ -219,73 +231,63 @@ std::shared_ptr<BatchContext> Gather::shadeBack(std::span<Sent* const> turned, S
 /// the reflectance of Fresnel, the direction of what is refracted, which call it is. So a photon that such a lobe sends on
 /// carries what all narrow lobes of its point give back when the shader is asked from where the photon goes; those as the photon
 /// has met them only draw the way, and the density is that of all.
-void Gather::lookBack(Sched& sched) {
-    std::vector<Sent*> turned;
-    for (Sent& s : sent_)
-        if (s.goes && e_.lobes[size_t(s.lobe)].narrow) turned.push_back(&s);
+void PhotonScatter::lookBack(Sched& sched) {
+    std::vector<LobeRay*> turned;
+    for (LobeRay& s : scatter_.sent)
+        if (s.goes && requests_.lobes[size_t(s.lobe)].narrow) turned.push_back(&s);
     if (turned.empty()) return;
-    LobeColumns& rows = e_.lobeRows_;
-    const size_t had = e_.lobes.size();
+    LobeColumns& rows = requests_.rows;
+    const size_t had = requests_.lobes.size();
     const auto c = shadeBack(turned, sched);
     std::vector<Color> sum(c->points.size(), Color(0));
     std::vector<std::vector<int>> seen(c->points.size());
-    for (size_t k = had; k < e_.lobes.size(); ++k) {
-        LobeVertex& l = e_.lobes[k];
+    for (size_t k = had; k < requests_.lobes.size(); ++k) {
+        LobeVertex& l = requests_.lobes[k];
         l.albedo = rows.albedo(l.place);
         l.delta = rows.delta(l.place);
-        l.narrow = isNarrow(l, e_.photonTrace()->job->width, normalize(c->points[size_t(l.point)].I));
+        l.narrow = isNarrow(l, photons_.photonTrace()->job->width, normalize(c->points[size_t(l.point)].I));
         if (l.lobeOfShader)
             for (int i = 0; i < 3; ++i) sum[size_t(l.point)][i] += std::fabs(l.weight[i]) * l.albedo;
         if (l.narrow && mirrors(l) && lit(l)) seen[size_t(l.point)].push_back(int(k));
     }
     const auto draws = [&](int i) { // a ray of its own may have gone this way
-        const LobeVertex& l = e_.lobes[size_t(i)];
+        const LobeVertex& l = requests_.lobes[size_t(i)];
         return l.narrow && l.followed && l.chosen > 0;
     };
-    for (Sent* s : turned) { // one of a point
+    for (LobeRay* s : turned) { // one of a point
         s->goes = !seen[size_t(s->point)].empty();
-        for (int k : seen[size_t(s->point)]) rows.ask(e_.lobes[size_t(k)].place, -c_->rays[size_t(s->point)].dir);
+        for (int k : seen[size_t(s->point)]) rows.ask(requests_.lobes[size_t(k)].place, -c_->rays[size_t(s->point)].dir);
         for (int i : lobesOf(size_t(s->point)))
-            if (i != s->lobe && draws(i)) rows.ask(e_.lobes[size_t(i)].place, s->w);
+            if (i != s->lobe && draws(i)) rows.ask(requests_.lobes[size_t(i)].place, s->w);
     }
     rows.evaluate();
-    for (Sent* s : turned) {
+    for (LobeRay* s : turned) {
         if (!s->goes) continue;
         const PathRay& ray = c_->rays[size_t(s->point)];
-        const float kept = ray.bounces == 0 ? e_.photonTrace()->from[size_t(ray.sample->path)].kept : 1;
-        const float energy = energyScale(size_t(s->point), sum[size_t(s->point)], e_.clearAt(*c, s->point));
+        const float kept = ray.bounces == 0 ? photons_.photonTrace()->from[size_t(ray.sample->path)].kept : 1;
+        const float energy = selection_.energyScale(size_t(s->point), sum[size_t(s->point)], transparency_.clearAt(*c, s->point));
         Color back(0);
         for (int k : seen[size_t(s->point)]) {
-            const LobeVertex& l = e_.lobes[size_t(k)];
+            const LobeVertex& l = requests_.lobes[size_t(k)];
             back += l.weight * rows.value(l.place).colour * ((l.lobeOfShader ? energy : 1) * (l.rays->fromTrace ? 1 : kept));
         }
         float density = 0;
         for (int i : lobesOf(size_t(s->point)))
             if (draws(i)) {
-                const LobeVertex& l = e_.lobes[size_t(i)];
+                const LobeVertex& l = requests_.lobes[size_t(i)];
                 density += l.chosen * (i == s->lobe ? s->value.pdf : rows.value(l.place).pdf);
             }
         s->back = density > 0 ? back / density : Color(0);
     }
-    e_.lobes.erase(e_.lobes.begin() + long(had), e_.lobes.end());
-    e_.giveBack(c);
+    requests_.lobes.erase(requests_.lobes.begin() + long(had), requests_.lobes.end());
+    batches_.giveBack(c);
 }
 
-void Engine::tiltPhotons(BatchContext& c) {
-    for (size_t i = 0; i < c.points.size(); ++i) {
-        ShadePoint& p = c.points[i];
-        const Vec3 N = normalize(p.N);
-        if (!(sine(c.rays[i].dir, N) < kLeastTilt / 10)) continue;
-        const Basis b(N);
-        p.I = normalize(c.rays[i].dir + b.t * kLeastTilt) * length(p.I);
-    }
-}
-
-void Gather::takePhotons(Sched& sched) {
+void PhotonScatter::takePhotons(Sched& sched) {
     for (size_t point = 0; point < c_->points.size(); ++point) {
         if (begin_[point] == begin_[point + 1]) continue;
         const PathRay& ray = c_->rays[point];
-        const photons::PhotonGrid* grid = e_.passOf(ray);
+        const photons::PhotonGrid* grid = photons_.passOf(ray);
         if (!grid || grid->size() == 0) continue;
         const ShadePoint& p = c_->points[point];
         const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
@@ -299,19 +301,19 @@ void Gather::takePhotons(Sched& sched) {
         });
         if (near_.empty()) continue;
         for (int i : lobesOf(point)) {
-            const LobeVertex& l = e_.lobes[size_t(i)];
+            const LobeVertex& l = requests_.lobes[size_t(i)];
             if (!l.followed || !spreads(l)) continue;
-            const Color weight = l.lobeOfShader ? l.weight * indirectScale_[point] : l.weight;
+            const Color weight = l.lobeOfShader ? l.weight * selection_.indirectScale[point] : l.weight;
             const Color light = (l.ownsTarget ? weight : weight * ray.weight) * givenBack(l);
-            e_.deposit(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l), nullptr,
-                               e_.atPhotons(e_.atLobe(l, p, ray, near_[0].from))});
+            accumulator_.deposit(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l), nullptr,
+                                         paths_.atPhotons(paths_.atLobe(l, p, ray, near_[0].from))});
         }
     }
 }
 
 /// What a lobe gives back of near_.
-Color Gather::givenBack(const LobeVertex& l) {
-    LobeColumns& rows = e_.lobeRows_;
+Color PhotonScatter::givenBack(const LobeVertex& l) {
+    LobeColumns& rows = requests_.rows;
     Color sum(0);
     if (l.kind->name == "diffuse") { // what most are
         const Vec3 axis = rows.triple(l.place, kRowAxis);

@@ -31,10 +31,11 @@ struct ShadowRay {
     const RayKind* kind = &kShadowKind;    ///< whose visibility counts
     const shading::Media* media = nullptr; ///< where it begins
     int32_t share = -1;                    ///< RayExtra::share
-    int32_t more = -1;                     ///< Engine::moreLight_: what else goes the same way; -1: nothing
+    int32_t more = -1;                     ///< ShadowRays::more: what else goes the same way; -1: nothing
     uint16_t path = 0;                     ///< PathRay::path behind its vertex
-    int32_t light = 0;                     ///< and the event at its other end (Engine::LightEvents)
-    int32_t hemisphere = -1; ///< Engine::hemispheres_: of an occlusion(), which takes the mean of the channels; -1: another
+    int32_t light = 0;                     ///< and the event at its other end (LightPathStates)
+    int32_t hemisphere =
+        -1; ///< OcclusionCalls::hemispheres: of an occlusion(), which takes the mean of the channels; -1: another
 };
 
 /// Directions that a call has no use for (beyond the plane of "axis") are drawn again so often; then the ray is left out.
@@ -55,7 +56,7 @@ struct Deposit {
     Color light;
     LightEvent event = LightEvent::Surface;
     const PathRay* path = nullptr;      ///< that brings it, up to its last vertex; may be null
-    int32_t share = -1;                 ///< Engine::shares_
+    int32_t share = -1;                 ///< Accumulator::shares
     const ShaderInstance* of = nullptr; ///< that made it; null: not known
     uint16_t end = 0;                   ///< PathRay::path behind the light: which outputs by light path have it; 0: none
 };

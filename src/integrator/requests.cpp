@@ -1,6 +1,20 @@
 // Requests of kernels: what a call asks for at a point (design decisions 2 and 3). What becomes of lobes is in gather.h.
+#include "integrator/requests.h"
 #include "base/direction.h"
+#include "integrator/accumulator.h"
+#include "integrator/ambientlight.h"
+#include "integrator/context.h"
 #include "integrator/gather.h"
+#include "integrator/irradiancerecords.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/litsurfaces.h"
+#include "integrator/mediastacks.h"
+#include "integrator/occlusioncalls.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/shadowrays.h"
+#include "integrator/stageset.h"
+#include "integrator/subsurfacewalks.h"
 #include "lobes/sampling.h"
 #include "shadeops/distributions.h"
 #include "texture/lookup.h"
@@ -9,6 +23,11 @@
 #include <bit>
 
 namespace alpenglow::transport {
+
+Requests::Requests(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), records_(s.records), paths_(s.paths),
+      litSurfaces_(s.litSurfaces), media_(s.media), occlusion_(s.occlusion), photons_(s.photons), store_(s.store),
+      shadows_(s.shadows), subsurface_(s.subsurface) {}
 
 namespace {
 /// Parameters of the distributions of bsdf(), as given or as they are when not (rsl.md 12.4).
@@ -50,65 +69,66 @@ template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& 
 } // namespace
 
 /// Questions that shadow rays answer.
-void Engine::requestShadows(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& f,
-                            const Color& weight, TargetId target, bool owns, uint32_t occurrence) {
+void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& f,
+                              const Color& weight, TargetId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[size_t(point)];
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
-    const size_t had = shadows.size(), settled = settled_.size();
+    const size_t had = shadows_.queue.size(), settled = shadows_.settled.size();
     if (s.kind == SiteKind::Ambient) {
-        ambients_.push_back({point, Vec3(f(s.rows[0]), f(s.rows[0] + 1), f(s.rows[0] + 2)), weight, target, owns});
-        if (!world_->lightsAsk()) return;
-        ambients_.back().lit = int(litValues_.size());
-        litValues_.push_back(litValues(c, s, point, f));
+        ambient_.asked.push_back({point, Vec3(f(s.rows[0]), f(s.rows[0] + 1), f(s.rows[0] + 2)), weight, target, owns});
+        if (!world_.lightsAsk()) return;
+        ambient_.asked.back().lit = int(litSurfaces_.values.size());
+        litSurfaces_.values.push_back(litValues(c, s, point, f));
         return;
     }
     if (s.kind == SiteKind::Transmission) {
         if (s.rays->samples >= 0 && s.rays->cone >= 0 && f(s.rays->cone) > 0)
-            samplesOf(std::max(1.f, f(s.rays->samples)), p.shape, s, c); // says when there are too many
-        transmissionRays(s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows);
+            occlusion_.samplesOf(std::max(1.f, f(s.rays->samples)), p.shape, s, c); // says when there are too many
+        shadows_.transmissionRays(s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows_.queue);
         const auto v = [&](int arg) {
             return Vec3(f(s.rows[size_t(arg)]), f(s.rows[size_t(arg)] + 1), f(s.rows[size_t(arg)] + 2));
         };
-        shadowsInMedia(std::span(shadows).subspan(had), v(0), v(1), p.P, &p.surface,
-                       c.bindings.empty() ? nullptr : &world_->bindings_[size_t(c.bindings[size_t(point)])]);
+        media_.shadowsInMedia(std::span(shadows_.queue).subspan(had), v(0), v(1), p.P, &p.surface,
+                              c.bindings.empty() ? nullptr : &world_.bindings_[size_t(c.bindings[size_t(point)])]);
     } else {
         if (s.occlusion->records.call) {
             RayKind kind = kShadowKind;
-            kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
-            if (const auto open = recorded(c, s, point, f, kindOf(kind), occurrence)) {
-                settled_.push_back(
-                    {target, weight * *open, LightEvent::Sampled, p.ray, owns || !p.ray ? -1 : extraOf(*p.ray).share});
+            kind.set = store_.raySetOf(s, f, p.shape, kind.type, kind.label);
+            if (const auto open = records_.recorded(c, s, point, f, store_.kindOf(kind), occurrence)) {
+                shadows_.settled.push_back(
+                    {target, weight * *open, LightEvent::Sampled, p.ray, owns || !p.ray ? -1 : store_.extraOf(*p.ray).share});
                 return;
             }
         }
-        hemisphereRays(c, s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows);
-        for (size_t k = had; k < shadows.size(); ++k) shadows[k].media = mediaTowards(c, point, shadows[k].dir);
+        occlusion_.hemisphereRays(c, s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows_.queue);
+        for (size_t k = had; k < shadows_.queue.size(); ++k)
+            shadows_.queue[k].media = media_.towards(c, point, shadows_.queue[k].dir);
     }
     if (owns || !p.ray) return;
-    for (size_t k = had; k < shadows.size(); ++k) { // what it weighs is the shader's own
-        shadows[k].share = extraOf(*p.ray).share;
-        shadows[k].path = p.ray->path;
-        shadows[k].light = object_;
+    for (size_t k = had; k < shadows_.queue.size(); ++k) { // what it weighs is the shader's own
+        shadows_.queue[k].share = store_.extraOf(*p.ray).share;
+        shadows_.queue[k].path = p.ray->path;
+        shadows_.queue[k].light = paths_.object;
     }
-    for (size_t k = settled; k < settled_.size(); ++k) {
-        settled_[k].share = extraOf(*p.ray).share;
-        settled_[k].end = pathEvent(p.ray->path, object_);
+    for (size_t k = settled; k < shadows_.settled.size(); ++k) {
+        shadows_.settled[k].share = store_.extraOf(*p.ray).share;
+        shadows_.settled[k].end = paths_.next(p.ray->path, paths_.object);
     }
 }
 
 /// Which surfaces rays of a trace() meet.
-template <class Row> const RayKind* Engine::raysOfTrace(const SiteInfo& s, const Row& f, const ShadePoint& p) {
+template <class Row> const RayKind* Requests::raysOfTrace(const SiteInfo& s, const Row& f, const ShadePoint& p) {
     const bool lights = s.rowLights >= 0 && f(s.rowLights) != 0, indirectOnly = s.trace->apart;
-    if (s.rays->fixed && !(world_->traceSubsets_ && s.rays->subsetText.empty())) // what most calls are, many times a sample
-        return kindOf(
-            {s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_->globalMaps_, lights, indirectOnly});
-    RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_->globalMaps_, lights, indirectOnly};
-    kind.set = raySetOf(s, f, p.shape, kind.type, kind.label);
-    return kindOf(kind);
+    if (s.rays->fixed && !(world_.traceSubsets_ && s.rays->subsetText.empty())) // what most calls are, many times a sample
+        return store_.kindOf(
+            {s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_.globalMaps_, lights, indirectOnly});
+    RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_.globalMaps_, lights, indirectOnly};
+    kind.set = store_.raySetOf(s, f, p.shape, kind.type, kind.label);
+    return store_.kindOf(kind);
 }
 
 /// The lobe that a call asks for; null: none, or a distribution that there is not.
-template <class Row> const LobeKind* Engine::lobeOf(const BatchContext& c, const SiteInfo& s, const Row& f) {
+template <class Row> const LobeKind* Requests::lobeOf(const BatchContext& c, const SiteInfo& s, const Row& f) {
     if (!s.trace || s.trace->distribution < 0) return s.lobe;
     const auto id = std::bit_cast<int32_t>(f(s.trace->distribution));
     const auto [known, fresh] = lobesNamed_.try_emplace({s.site, id}, s.lobe);
@@ -131,8 +151,8 @@ template <class Row> const LobeKind* Engine::lobeOf(const BatchContext& c, const
 
 /// What a trace() says of its lobe and its rays; false: its weight is 0, and nothing is sent.
 template <class Row>
-bool Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Row& f, LobeVertex& l,
-                        LobeParams& params) {
+bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Row& f, LobeVertex& l,
+                          LobeParams& params) {
     const auto number = [&](int row, float fallback) { return row < 0 ? fallback : f(row); };
     const auto vector = [&](int row, const Vec3& fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
     params.axis = directionOr(vector(s.rows[1], Vec3()), p.surface.n);
@@ -157,24 +177,24 @@ bool Engine::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoi
     if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)
         l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
     const float samples = s.trace->hemisphere ? number(s.rays->samples, 0) : std::max(1.f, number(s.rays->samples, 1));
-    l.samples = samplesOf(samples, p.shape, s, c);
-    return l.importance > 0 || photonTrace_;
+    l.samples = occlusion_.samplesOf(samples, p.shape, s, c);
+    return l.importance > 0 || photons_.photonTrace();
 }
 
-void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
-                     TargetId target, bool owns, uint32_t occurrence) {
+void Requests::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
+                       TargetId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[point];
     const auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
     if (asksShadows(s.kind)) return requestShadows(c, s, point, f, weight, target, owns, occurrence);
     const LobeKind* const kind = lobeOf(c, s, f);
     if (!kind || pointsNowhere(s, f)) return;
-    if (s.kind == SiteKind::Trace && s.trace->apart && !owns) apartAt_.push_back(point);
+    if (s.kind == SiteKind::Trace && s.trace->apart && !owns) apartAt.push_back(point);
     if (s.kind == SiteKind::Trace && s.trace->records.call) {
-        if (const auto light = recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
-            settled_.push_back({target, weight * *light * (owns ? Color(1) : p.ray->weight), LightEvent::Sampled, p.ray,
-                                owns ? -1 : extraOf(*p.ray).share});
-            if (!owns) settled_.back().end = pathEvent(p.ray->path, object_);
+        if (const auto light = records_.recorded(c, s, point, f, raysOfTrace(s, f, p), occurrence)) {
+            shadows_.settled.push_back({target, weight * *light * (owns ? Color(1) : p.ray->weight), LightEvent::Sampled, p.ray,
+                                        owns ? -1 : store_.extraOf(*p.ray).share});
+            if (!owns) shadows_.settled.back().end = paths_.next(p.ray->path, paths_.object);
             return;
         }
     }
@@ -187,13 +207,13 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
     l.ownsTarget = owns;
     l.site = uint32_t(s.site - c.bound->kernel->sites().data());
     l.occurrence = occurrence;
-    if (world_->lightsAsk()) {
-        l.lit = int(litValues_.size());
-        litValues_.push_back(litValues(c, s, point, f));
+    if (world_.lightsAsk()) {
+        l.lit = int(litSurfaces_.values.size());
+        litSurfaces_.values.push_back(litValues(c, s, point, f));
     }
     if (s.kind == SiteKind::Subsurface) {
-        requestSubsurface(c, s, p, f, l);
-        l.place = lobeRows_.add(*l.kind, {p.surface.n, params.wo, {}, 0});
+        subsurface_.request(c, s, p, f, l);
+        l.place = rows.add(*l.kind, {p.surface.n, params.wo, {}, 0});
         return;
     }
     if (s.kind != SiteKind::Diffuse) params.wo = normalizeOr(-p.I, p.surface.n);
@@ -213,37 +233,79 @@ void Engine::request(BatchContext& c, const SiteInfo& s, int point, const float*
         break;
     case SiteKind::Trace:
         if (!askOfTrace(c, s, p, f, l, params)) {
-            counters.ignored += uint64_t(l.samples);
+            counters_.ignored += uint64_t(l.samples);
             lobes.pop_back();
             return;
         }
-        if (s.trace->hemisphere) noteTurnedAway(c, s, point, params.axis);
+        if (s.trace->hemisphere) occlusion_.noteTurnedAway(c, s, point, params.axis);
         break;
     default:
         break;
     }
     const DistributionParams more = l.kind->distribution ? distributionOf(s, *kind, f) : DistributionParams();
-    l.place = lobeRows_.add(*l.kind, params, l.kind->distribution ? &more : nullptr);
+    l.place = rows.add(*l.kind, params, l.kind->distribution ? &more : nullptr);
 }
 
-Color Engine::mapTowards(const TraceSite& t, const Vec3& w, float spread) const {
+Color Requests::mapTowards(const TraceSite& t, const Vec3& w, float spread) const {
     const Vec3 at(transformVector(t.toMap, Vec3d(w)));
     const Basis b(directionOr(at, Vec3(0, 0, 1)));
     float v[3] = {};
     texture::LookupOptions colours;
     colours.asLight = true;
-    texture::environment(t.map, world_->textures_->latLong(), 0, 3, at, b.t * spread, b.u * spread, colours, v);
+    texture::environment(t.map, world_.textures_->latLong(), 0, 3, at, b.t * spread, b.u * spread, colours, v);
     return {v[0], v[1], v[2]};
 }
 
-void Engine::gather(BatchContext& c, Sched& sched) {
-    if (!ambients_.empty()) gatherAmbient(c);
-    std::unique_ptr<Gather> g = std::move(gather_); // taken, so that one inside of this has its own
-    if (!g) g = std::make_unique<Gather>(*this);
-    g->run(c, sched);
-    apartAt_.clear();
-    gather_ = std::move(g);
-    if (!below_.empty()) walk(c, sched);
+void Requests::requestPairs(BatchContext& c, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched& sched,
+                            bool lobesToo) {
+    const int n = int(c.points.size());
+    std::vector<uint32_t>& occurrence = occurrence_;
+    occurrence.assign(c.emits.empty() ? 0 : c.bound->sites.size() * size_t(n), 0);
+    for (const EmitRecord& e : c.emits) {
+        const SiteInfo& s = c.bound->sites[e.site];
+        if (s.kind == SiteKind::Ambient ? !ambient_.lights
+                                        : !lobesToo && !asksShadows(s.kind) && s.kind != SiteKind::LightVisibility)
+            continue;
+        const float* pair = c.arena.data() + e.offset;
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            int point = e.first + lane;
+            if (!(e.mask >> lane & 1) || point >= n) continue;
+            Color weight = Color(pair[lane], pair[e.lanes + lane], pair[2 * e.lanes + lane]) * slope[point];
+            if (!isFinite(weight)) {
+                accumulator_.notFinite(c, c.rays[size_t(point)], uint32_t(e.site));
+                continue;
+            }
+            if (weight == Color(0) || c.rays[size_t(point)].quiet) continue;
+            if (world_.bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
+            const float* args = pair + size_t(3) * e.lanes;
+            if (photons_.photonTrace() && (s.kind == SiteKind::LightVisibility || asksShadows(s.kind)))
+                continue; // nobody asks what photons see
+            if (s.kind == SiteKind::LightVisibility) {
+                const size_t had = shadows_.queue.size();
+                lightVisibility(c, s, point, args, e.lanes, lane, weight * c.rays[point].weight, c.targets[point]);
+                if (shadows_.queue.size() > had) {
+                    const PathRay& ray = c.rays[size_t(point)];
+                    shadows_.queue.back().share = store_.extraOf(ray).share;
+                    shadows_.queue.back().path =
+                        paths_.atLoop(c.points[size_t(point)], ray, shadows_.queue.back().dir, paths_.loopLabel);
+                    shadows_.queue.back().light =
+                        e.light >= 0 && !paths_.lights.empty() ? paths_.lights[size_t(e.light)] : paths_.loopLight;
+                }
+                continue;
+            }
+            if (asksShadows(s.kind)) weight *= c.rays[point].weight;
+            const size_t had = lobes.size();
+            if (shadows_.queue.size() > kShadowsAtOnce) shadows_.flush(sched);
+            request(c, s, point, args, e.lanes, lane, weight, c.targets[point], false,
+                    occurrence[size_t(e.site) * size_t(n) + size_t(point)]++);
+            if (asked && lobes.size() > had) asked->push_back({int(had), int(&e - c.emits.data()), lane});
+        }
+    }
+}
+
+void Requests::clear() {
+    lobes.clear();
+    rows.clear();
 }
 
 } // namespace alpenglow::transport

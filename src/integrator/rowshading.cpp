@@ -1,10 +1,29 @@
 #include "integrator/rowshading.h"
+#include "integrator/accumulator.h"
+#include "integrator/ambientlight.h"
+#include "integrator/blockvertices.h"
+#include "integrator/cameraoutputs.h"
+#include "integrator/context.h"
+#include "integrator/flights.h"
+#include "integrator/gathercalls.h"
 #include "integrator/gridrays.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
+#include "integrator/stageset.h"
+#include "integrator/surfacepoints.h"
+#include "integrator/surfaceshading.h"
+#include "integrator/transparency.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
 
-RowShading::RowShading(Engine& e, BlockVertices& blocks) : e_(e), blocks_(blocks), world_(e.world()) {
+RowShading::RowShading(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), blocks_(s.blocks), cameraOutputs_(s.cameraOutputs),
+      flights_(s.flights), gathers_(s.gathers), inputs_(s.inputs), photons_(s.photons), store_(s.store), requests_(s.requests),
+      shadows_(s.shadows), surfaces_(s.surfaces), shading_(s.shading), transparency_(s.transparency) {
     takes_.assign(!world_.moves_ ? size_t(world_.groups_) : 0, 1);
     for (const SurfaceBinding& b : world_.bindings_)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
@@ -28,18 +47,19 @@ bool RowShading::takes(const SurfaceBinding& b) const {
 }
 
 bool RowShading::shade(BatchContext& c, Sched& sched) {
-    if (!e_.events_.empty() || e_.photonTrace() || !e_.gathered_.empty() || !e_.traceSums_.empty()) return false;
+    if (!flights_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() || !accumulator_.traceSums.empty())
+        return false;
     // A ray that fades with distance, or whose call asks for distance and normal of the hit, needs the point that it met.
     for (const PathRay& r : c.rays)
-        if ((r.extra >= 0 && e_.extraOf(r).fade.fades()) || (r.first && !(r.counts && sched.plain()))) return false;
+        if ((r.extra >= 0 && store_.extraOf(r).fade.fades()) || (r.first && !(r.counts && sched.plain()))) return false;
     c.points.clear();
     run(c);
     c.opaque = isOpaque(*c.batch);
     if (!c.opaque) {
-        e_.pointsOfRows(c);
-        e_.tellClear(c);
+        surfaces_.pointsOfRows(c);
+        transparency_.tellClear(c);
     }
-    e_.keepIndirect(c);
+    store_.keepIndirect(c);
     if (!blocks_.run(c, sched)) {
         c.emits.clear();
         c.arena.clear();
@@ -48,20 +68,20 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     }
     count(c);
     requestOthers(c, sched);
-    e_.flushShadows(sched);
+    shadows_.flush(sched);
     const bool outputs = !world_.wanted_.empty() && std::any_of(c.rays.begin(), c.rays.end(), [](auto& r) { return r.counts; });
     if (c.opaque && !outputs) {
         finish(c, sched);
     } else {
-        e_.pointsOfRows(c);
-        e_.finishStrip(c, 0, int(c.rays.size()), sched);
+        surfaces_.pointsOfRows(c);
+        shading_.finish(c, 0, int(c.rays.size()), sched);
     }
     return true;
 }
 
 /// The kernel over the hits.
 void RowShading::run(BatchContext& c) {
-    e_.placeSurfaces(c);
+    surfaces_.placeSurfaces(c);
     const size_t n = c.hits.size();
     c.shapes.resize(n);
     c.ways.resize(8 * n);
@@ -82,14 +102,14 @@ void RowShading::run(BatchContext& c) {
     c.binding = &world_.bindings_[size_t(c.bindings[0])];
     const bool same = std::all_of(c.bindings.begin(), c.bindings.end(), [&](int b) { return b == c.bindings[0]; });
     c.bound = same && !c.binding->usesObjectSpace ? &c.binding->surfaceS : &c.binding->surfaceV;
-    e_.viewsOf(c);
+    inputs_.viewsOf(c);
     if (!c.batch) c.batch = std::make_shared<shading::Batch>();
     const std::span<const float> ways(c.ways);
     const shading::SurfaceRows rows{
         std::span(c.surfaces).first(n), c.shapes,           ways.first(3 * n), ways.subspan(3 * n, 3 * n),
         ways.subspan(6 * n, n),         ways.subspan(7 * n)};
-    c.batch->assign(c.bound->kernel, *c.bound->plan, rows, e_.views_, e_.viewOf_, world_);
-    e_.bindCall(c.batch->call(), c);
+    c.batch->assign(c.bound->kernel, *c.bound->plan, rows, inputs_.views, inputs_.viewOf, world_);
+    inputs_.bind(c.batch->call(), c);
     c.bound->kernel->run(&c.batch->call());
     c.ran();
 }
@@ -98,17 +118,17 @@ void RowShading::run(BatchContext& c) {
 void RowShading::requestOthers(BatchContext& c, Sched& sched) {
     const auto other = [&](const EmitRecord& e) {
         const SiteKind k = c.bound->sites[size_t(e.site)].kind;
-        return k == SiteKind::Ambient ? e_.ambientLights_ : asksShadows(k) || k == SiteKind::LightVisibility;
+        return k == SiteKind::Ambient ? ambient_.lights : asksShadows(k) || k == SiteKind::LightVisibility;
     };
     if (std::none_of(c.emits.begin(), c.emits.end(), other)) return;
-    e_.pointsOfRows(c);
-    e_.requestPairs(c, std::vector<Color>(c.rays.size(), Color(1)), nullptr, sched, false);
-    if (!e_.ambients_.empty()) e_.gatherAmbient(c);
+    surfaces_.pointsOfRows(c);
+    requests_.requestPairs(c, std::vector<Color>(c.rays.size(), Color(1)), nullptr, sched, false);
+    if (!ambient_.asked.empty()) ambient_.gather(c);
 }
 
 void RowShading::count(const BatchContext& c) {
     const uint64_t n = c.rays.size(), lanes = uint64_t(c.bound->kernel->lanes());
-    Counters& of = e_.counters;
+    Counters& of = counters_;
     of.points += n;
     of.inBlocks += n;
     ++of.batches;
@@ -116,7 +136,7 @@ void RowShading::count(const BatchContext& c) {
     of.lanesRun += (n + lanes - 1) / lanes * lanes;
 }
 
-/// What opaque surfaces give by themselves, and what camera rays show of them: finishStrip() of the engine.
+/// What opaque surfaces give by themselves, and what camera rays show of them: SurfaceShading::finish().
 void RowShading::finish(BatchContext& c, Sched& sched) {
     const shading::Batch& b = *c.batch;
     const int ci = b.plan().Ci;
@@ -125,15 +145,12 @@ void RowShading::finish(BatchContext& c, Sched& sched) {
         const PathRay& ray = c.rays[i];
         const Color shown = ci >= 0 ? b.color(ci, int(i)) : Color(0);
         const ShaderInstance* of = world_.bindings_[size_t(c.bindings[i])].surface.get();
-        if (!isFinite(shown)) e_.notFinite(&ray, "Ci", of);
+        if (!isFinite(shown)) accumulator_.notFinite(&ray, "Ci", of);
         else if (!(shown == Color(0)))
-            e_.deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, e_.extraOf(ray).share, of});
+            accumulator_.deposit(sched,
+                                 {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share, of});
         if (!ray.counts) continue;
-        SampleResult& r = *e_.results[size_t(ray.sample->path)];
-        r.opacity += ray.weight * opacity;
-        const float z = c.surfaces[i].P.z;
-        if (r.z >= 1e38f) r.z = z;
-        else if (r.zSecond >= 1e38f) r.zSecond = z;
+        cameraOutputs_.see(ray, opacity, c.surfaces[i].P.z, false);
     }
 }
 

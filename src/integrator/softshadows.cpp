@@ -1,7 +1,11 @@
 // Traced shadows of loops over lights. A light that stands at a point may say a radius (__shadowradius): then the disk about its
 // point that faces what it lights casts its shadows, while attenuation, cone and cosine stay those of the point.
 #include "base/direction.h"
-#include "integrator/engine.h"
+#include "integrator/lightkernels.h"
+#include "integrator/mediastacks.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
 #include "lobes/sampling.h"
 #include <bit>
 
@@ -20,8 +24,8 @@ int rowsOfArguments(const SiteInfo& s) {
     return rows;
 }
 
-void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
-                             TargetId target) {
+void Requests::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
+                               TargetId target) {
     const auto f = [&](int row) { return in[size_t(row) * size_t(lanes) + size_t(lane)]; };
     const Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
     const Vec3 w = directionOr(l, {});
@@ -32,29 +36,29 @@ void Engine::lightVisibility(BatchContext& c, const SiteInfo& s, int point, cons
     ShadowRay ray{o, w, distance < 1e30f ? distance * (1 - 1e-4f) : 1e38f, weight, target, p.shutter, p.ray};
     if (radius > 0 && distance > 0 && distance < 1e30f) {
         const uint32_t vertex = std::bit_cast<uint32_t>(f(rowsOfArguments(s) + 1));
-        const Vec2 u = random(c.rays[size_t(point)]).pair(vertex, kLightPoint, 0);
+        const Vec2 u = store_.random(c.rays[size_t(point)]).pair(vertex, kLightPoint, 0);
         const Vec3 to = onShadowDisk(p.P + w * distance, w, radius, u) - o;
         ray.dir = normalizeOr(to, w);
         ray.distance = length(to) * (1 - 1e-4f);
     }
-    ray.media = mediaTowards(c, point, w);
-    shadows.push_back(ray);
+    ray.media = media_.towards(c, point, w);
+    shadows_.queue.push_back(ray);
 }
 
-void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first, uint32_t draw, std::span<const ShadePoint> q,
-                         std::span<const int> laneOf, std::span<LightValue> v) {
+void LightKernels::shadowLight(const KernelRun& c, const BoundLight& light, int first, uint32_t draw,
+                               std::span<const ShadePoint> q, std::span<const int> laneOf, std::span<LightValue> v) {
     std::vector<ShadowRay> rays;
     std::vector<size_t> of;
     std::vector<Color> sum(q.size(), Color(0)), left;
     std::vector<int> count(q.size(), 0);
     const auto follow = [&] {
         left.resize(rays.size());
-        transmittances(rays, left);
+        shadows_.transmittances(rays, left);
         for (size_t k = 0; k < of.size(); ++k) sum[of[k]] += left[k];
         rays.clear();
         of.clear();
     };
-    const uint32_t use = kLightPoint + uint32_t(&light - world_->lights_.data());
+    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
     for (size_t i = 0; i < q.size(); ++i) {
         if (!v[i].lit || v[i].Cl == Color(0)) continue;
         const ShadePoint& lit = c.points[size_t(first + laneOf[i])];
@@ -70,13 +74,13 @@ void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first,
         for (int k = 0; k < count[i]; ++k) {
             ShadowRay ray{o, w, distance, Color(1), shading::kNoTarget, lit.shutter, lit.ray};
             if (soft) {
-                const Random numbers = random(*lit.ray).draw(uint32_t(k), uint32_t(count[i]));
+                const Random numbers = store_.random(*lit.ray).draw(uint32_t(k), uint32_t(count[i]));
                 const Vec2 u = numbers.pair(lit.ray->vertex, use, draw);
                 const Vec3 way = onShadowDisk(q[i].Ps + to, w, v[i].shadowRadius, u) - o;
                 ray.dir = normalizeOr(way, w);
                 ray.distance = length(way) * (1 - 1e-5f);
             }
-            ray.media = mediaTowards(c, first + laneOf[i], w);
+            ray.media = media_.towards(c, first + laneOf[i], w);
             rays.push_back(ray);
             of.push_back(i);
             if (rays.size() >= kShadowsAtOnce) follow();
@@ -87,14 +91,14 @@ void Engine::shadowLight(const KernelRun& c, const BoundLight& light, int first,
         if (count[i] > 0) v[i].Cl *= sum[i] / float(count[i]);
 }
 
-void Engine::takeShadowSays(LightValue& v, const BoundLight& light, float radius, float samples) {
+void LightKernels::takeShadowSays(LightValue& v, const BoundLight& light, float radius, float samples) {
     constexpr float kMost = 4096;
     const auto say = [&](const char* what) {
         diagnostics_.reportOnce(
             what + light.instance->name,
             {Severity::Warning, Rie::Range, light.instance->place, "light \"" + light.instance->name + "\": " + what, {}, {}});
     };
-    if (!std::isfinite(radius) || radius < 0) say("__shadowradius is no number >= 0; its shadows are those of a point");
+    if (!std::isfinite(radius) || radius < 0) say("__shadowradius is no number >= 0; its shadows_.queue are those of a point");
     else v.shadowRadius = radius;
     if (!(samples >= 1)) say("__shadowsamples is no number >= 1; one is taken");
     else if (samples > kMost) say("__shadowsamples is above 4096, the most that are taken");

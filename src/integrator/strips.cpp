@@ -1,6 +1,9 @@
-// Kernels that wait: strips are started, ask together, and go on when their rays are back.
+// What a strip does while it waits.
 #include "integrator/strips.h"
-#include <algorithm>
+#include "integrator/accumulator.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
+#include "integrator/surfaceshading.h"
 
 namespace alpenglow::transport {
 
@@ -27,7 +30,7 @@ bool KernelStrip::resume(Sched& s, std::span<const shading::TargetValue> results
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     if (gather_) {
         for (size_t k = 0; k < results.size(); ++k) {
-            c_->engine->gathered_.erase(ids_[k]);
+            stages_.gathers.gathered.erase(ids_[k]);
             if (!sent_[k].quiet) endGatherRay(*sent_[k].site, results[k], sent_[k].row);
         }
         for (int lane : laneOf_) out_[lane] = float(gather_->counts[size_t(lane)]);
@@ -38,8 +41,8 @@ bool KernelStrip::resume(Sched& s, std::span<const shading::TargetValue> results
     }
     const bool sums = site.trace && site.trace->sums;
     for (size_t k = 0; k < results.size(); ++k) {
-        putResult(site, results[k], sums ? c_->engine->sumsOf(ids_[k]) : nullptr, out_, lanes_, laneOf_[k]);
-        if (sums) c_->engine->traceSums_.erase(ids_[k]);
+        putResult(site, results[k], sums ? stages_.accumulator.sumsOf(ids_[k]) : nullptr, out_, lanes_, laneOf_[k]);
+        if (sums) stages_.accumulator.traceSums.erase(ids_[k]);
     }
     c_->bound->kernel->resume(handle_);
     c_->ran();
@@ -47,11 +50,10 @@ bool KernelStrip::resume(Sched& s, std::span<const shading::TargetValue> results
 }
 
 bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
-    Engine& e = *c_->engine;
     const auto& kernel = *c_->bound->kernel;
     if (kernel.finished(handle_)) {
         std::erase_if(c_->gathers, [&](const auto& g) { return g.first.second == first_; });
-        e.finishStrip(*c_, first_, kernel.lanes(), s, asked_);
+        stages_.shading.finish(*c_, first_, kernel.lanes(), s, asked_);
         for (int i = first_; i < points(); ++i) s.release(c_->targets[size_t(i)]);
         return true;
     }
@@ -72,8 +74,8 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
     if (ids_.empty()) return false; // ready at once
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     if (site.trace && site.trace->sums)
-        for (TargetId id : ids_) e.traceSums_[id] = {};
-    e.waiting_.push_back(this);
+        for (TargetId id : ids_) stages_.accumulator.traceSums[id] = {};
+    stages_.waiting.push_back(this);
     return false;
 }
 
@@ -87,7 +89,7 @@ void KernelStrip::askGather() {
         // The statement begins anew with its first handful of rays.
         if (in_[size_t(site.rows[4]) * size_t(lanes_) + size_t(lane)] < 0.5f) ++occurrences[size_t(lane)];
     }
-    gather_ = &castGather(*c_->engine, *c_, site, first_, mask, lanes_, in_.data(), occurrences, asked_, sent_);
+    gather_ = &stages_.gathers.cast(*c_, site, first_, mask, lanes_, in_.data(), occurrences, asked_, sent_);
     gatherBytes_ = sent_.size() * sizeof(GatherSent);
     for (const auto& [key, g] : c_->gathers)
         if (key.second == first_) gatherBytes_ += g.rows.size() * sizeof(float);
@@ -95,70 +97,35 @@ void KernelStrip::askGather() {
 
 void KernelStrip::ask(Sched& s) {
     if (gather_) {
-        Engine& e = *c_->engine;
         for (size_t k = 0; k < ids_.size(); ++k) {
             const PathRay& r = sent_[k].ray;
-            e.gathered_[ids_[k]] = &sent_[k];
+            stages_.gathers.gathered[ids_[k]] = &sent_[k];
             s.spawn(r.bounces + r.layers, ids_[k], r);
-            e.counters.depthMax = std::max(e.counters.depthMax, int(r.bounces));
+            stages_.sawDepth(r.bounces);
         }
         return;
     }
-    Engine& e = *c_->engine;
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     for (size_t k = 0; k < ids_.size(); ++k) {
         const int lane = laneOf_[k], point = first_ + lane;
         const uint32_t occurrence = occurrences_[size_t(site_) * 64 + size_t(lane)]++;
         if (site.kind == SiteKind::LightVisibility) {
-            e.lightVisibility(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k]);
+            stages_.requests.lightVisibility(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k]);
             continue;
         }
         if (c_->rays[size_t(point)].quiet && (site.lobe || site.kind == SiteKind::Ambient)) continue; // nobody hears of light
-        const size_t had = e.lobes.size();
-        if (e.shadows.size() > kShadowsAtOnce) e.flushShadows(s);
-        e.request(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k], true, occurrence);
-        if (e.lobes.size() == had) continue;
+        const size_t had = stages_.requests.lobes.size();
+        if (stages_.shadows.queue.size() > kShadowsAtOnce) stages_.shadows.flush(s);
+        stages_.requests.request(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k], true, occurrence);
+        if (stages_.requests.lobes.size() == had) continue;
         uint32_t& asked = asked_[size_t(lane)];
-        e.lobes.back().before = asked;
-        asked += uint32_t(e.lobes.back().samples);
+        stages_.requests.lobes.back().before = asked;
+        asked += uint32_t(stages_.requests.lobes.back().samples);
     }
 }
 
 void KernelStrip::asked(Sched& s) {
     for (TargetId id : ids_) s.release(id);
-}
-
-void Engine::startStrips(const std::shared_ptr<BatchContext>& c, Sched& sched) {
-    const auto& kernel = *c->bound->kernel;
-    const int n = int(c->points.size());
-    for (int first = 0; first < n; first += kernel.lanes()) {
-        for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.hold(c->targets[i]);
-        void* h = kernel.start(&c->batch->call(), first);
-        if (!h) {
-            ++counters.overLimit;
-            for (int i = first; i < std::min(first + kernel.lanes(), n); ++i) sched.release(c->targets[i]);
-            continue;
-        }
-        frameOf_[&kernel] = std::max<size_t>(c->frame, 1);
-        auto strip = std::make_unique<KernelStrip>(c, h, first, c->rays[first].bounces + c->rays[first].layers);
-        c->ran();
-        KernelStrip* s = strip.get();
-        s->advance(sched, std::move(strip));
-    }
-    followStrips(sched);
-}
-
-void Engine::followStrips(Sched& sched) {
-    // Strips of a batch stand together: it started them, and they go on in that order.
-    std::vector<KernelStrip*> strips;
-    strips.swap(waiting_);
-    for (size_t first = 0, end; first < strips.size(); first = end) {
-        const std::shared_ptr<BatchContext> c = strips[first]->context();
-        for (end = first; end < strips.size() && strips[end]->context() == c; ++end) strips[end]->ask(sched);
-        gather(*c, sched);
-        flushShadows(sched);
-        for (size_t k = first; k < end; ++k) strips[k]->asked(sched);
-    }
 }
 
 } // namespace alpenglow::transport

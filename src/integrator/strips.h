@@ -1,6 +1,7 @@
 // Strips of kernels that wait for rays.
 #pragma once
-#include "integrator/gatherloop.h"
+#include "integrator/gathercalls.h"
+#include "integrator/waitingkernels.h"
 #include <array>
 
 namespace alpenglow::transport {
@@ -9,11 +10,11 @@ namespace alpenglow::transport {
 void putResult(const SiteInfo&, const shading::TargetValue&, const TraceSums* sums, float* out, int lanes, int lane);
 
 /// A strip of a suspending kernel while it waits. What it asks for is followed together with what other strips of its batch ask
-/// for (Engine::followStrips).
+/// for (WaitingKernels::follow).
 class KernelStrip final : public Sched::Strip {
 public:
-    KernelStrip(std::shared_ptr<BatchContext> c, void* handle, int first, int depth)
-        : c_(std::move(c)), handle_(handle), first_(first), depth_(depth), bytes_(c_->frame) {}
+    KernelStrip(WaitingKernels& stages, std::shared_ptr<BatchContext> c, void* handle, int first, int depth)
+        : stages_(stages), c_(std::move(c)), handle_(handle), first_(first), depth_(depth), bytes_(c_->frame) {}
     ~KernelStrip() override {
         if (handle_) c_->bound->kernel->destroy(handle_);
     }
@@ -21,10 +22,10 @@ public:
     /// Its frame, and about what its points take.
     size_t frameBytes() const override { return bytes_ + gatherBytes_ + 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
     bool resume(Sched&, std::span<const shading::TargetValue> results) override;
-    /// After start or resume: ends (true), or notes its request with the engine and waits.
+    /// After start or resume: ends (true), or notes its request with the stage and waits.
     bool advance(Sched&, std::unique_ptr<Sched::Strip> self);
     const std::shared_ptr<BatchContext>& context() const { return c_; }
-    /// Asks the engine for what it waits for: lobes and shadow rays. Its targets stay held.
+    /// Asks for what it waits for: lobes and shadow rays. Its targets stay held.
     void ask(Sched&);
     /// What it asked for is on its way: it is ready once all of that is complete.
     void asked(Sched&);
@@ -32,6 +33,7 @@ public:
 private:
     void askGather();
     int points() const { return std::min(first_ + c_->bound->kernel->lanes(), int(c_->points.size())); }
+    WaitingKernels& stages_;
     std::shared_ptr<BatchContext> c_;
     void* handle_;
     int first_, depth_;

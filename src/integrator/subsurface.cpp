@@ -3,15 +3,34 @@
 // diffuse() finds there; in between nothing is left out.
 #include "integrator/subsurface.h"
 #include "base/exact.h"
+#include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/context.h"
+#include "integrator/displacement.h"
+#include "integrator/intersector.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/lightkernels.h"
+#include "integrator/litsurfaces.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
+#include "integrator/stageset.h"
+#include "integrator/subsurfacewalks.h"
+#include "integrator/vertexlight.h"
 #include "lobes/sampling.h"
 #include "world/raysets.h"
 #include <algorithm>
 
 namespace alpenglow::transport {
 
-namespace {
+Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> asked, std::span<const Below> below)
+    : Stage(s.context), c_(c), asked_(asked), below_(below), accumulator_(s.accumulator), batches_(s.batches),
+      displacement_(s.displacement), intersector_(s.intersector), inputs_(s.inputs), lightKernels_(s.lightKernels),
+      litSurfaces_(s.litSurfaces), photons_(s.photons), store_(s.store), requests_(s.requests), shadows_(s.shadows),
+      subsurface_(s.subsurface), vertexLight_(s.vertexLight) {}
 
-constexpr int kSamplesElsewhere = 16; ///< of a call under hidden and raytrace
+namespace {
 
 /// By Henyey and Greenstein, about a direction.
 Vec3 scattered(const Vec3& dir, float g, const Vec2& u) {
@@ -25,57 +44,17 @@ Vec3 scattered(const Vec3& dir, float g, const Vec2& u) {
 
 } // namespace
 
-int Engine::groupNamed(const std::string& name) { return groups_.try_emplace(name, int(groups_.size()) + 1).first->second; }
-
-const Engine::SubsurfaceOfShape& Engine::subsurfaceOf(const scene::Attributes& a) {
-    std::shared_ptr<const SubsurfaceOfShape>& known = subsurfaces_[&a];
-    if (known) return *known;
-    auto s = std::make_shared<SubsurfaceOfShape>(a);
-    const std::string name = attributeText(a, "subsurface:groupname");
-    s->group = groupNamed(!name.empty() ? name : '\1' + std::to_string(subsurfaces_.size()));
-    known = s;
-    return *known;
-}
-
-void Engine::requestSubsurface(BatchContext& c, const SiteInfo& s, const ShadePoint& p, const std::function<float(int)>& f,
-                               LobeVertex& l) {
-    const SubsurfaceSite& site = *s.subsurface;
-    const SubsurfaceOfShape& of = subsurfaceOf(p.shape->attributes());
-    Below b = belowOf(site, of, f, halfSpaces_);
-    b.group = site.group.empty() ? of.group : groupNamed(site.group);
-    const float many = of.samples > 0 ? float(of.samples) : rules_.pickOne ? 1 : float(kSamplesElsewhere);
-    const float samples = site.samples < 0 ? many : f(site.samples);
-    l.samples = samplesOf(std::max(1.f, samples), p.shape, s, c); // not a number: 1
-    l.rays = &kSpecularKind; // of one, that walks: --no-indirect leaves what lights bring by it
-    l.lights = l.deltaLights = false;
-    l.below = int32_t(below_.size());
-    const auto triple = [&](int row) { return row < 0 ? Vec3() : Vec3(f(row), f(row + 1), f(row + 2)); };
-    b.normal = normalizeOr(triple(site.normal), Vec3());
-    b.from = triple(site.point);
-    // The facet of a displaced surface, and the point that its shader makes, may lie a micropolygon apart.
-    const float apart = p.surface.displaced ? length(p.surface.dPdu) * p.du + length(p.surface.dPdv) * p.dv : 0;
-    const float away = length(b.from - p.P);
-    b.elsewhere = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;
-    below_.push_back(b);
-}
-
-void Engine::walk(BatchContext& c, Sched& sched) {
-    const std::vector<Below> below = std::exchange(below_, {});
-    const std::vector<WalkAsked> asked = std::exchange(walks_, {});
-    if (!asked.empty()) Walks(*this, c, asked, below).run(sched);
-}
-
 bool Walks::belongs(uint32_t shape, int group) const {
-    return e_.subsurfaceOf(e_.world().shapes_[shape]->attributes()).group == group;
+    return subsurface_.ofShape(world_.shapes_[shape]->attributes()).group == group;
 }
 
 void Walks::run(Sched& sched) {
     for (size_t i = 0; i < asked_.size(); ++i)
         if (below_[size_t(asked_[i].below)].model == SubsurfaceSite::Model::Walk) start(int(i));
         else probe(int(i));
-    while (!walkers_.empty() && !(e_.stop && *e_.stop)) step();
+    while (!walkers_.empty() && !(context_.stop && *context_.stop)) step();
     askSurfaces(sched);
-    const auto list = [&](const Exit& x) { return e_.world().bindings_[size_t(e_.world().bindingOf_[x.shape])].lightList; };
+    const auto list = [&](const Exit& x) { return world_.bindings_[size_t(world_.bindingOf_[x.shape])].lightList; };
     std::stable_sort(exits_.begin(), exits_.end(), [&](const Exit& a, const Exit& b) { return list(a) < list(b); });
     for (size_t first = 0, end; first < exits_.size(); first = end) {
         for (end = first; end < exits_.size() && list(exits_[end]) == list(exits_[first]);) ++end;
@@ -102,13 +81,13 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
     const float beside = 8 * geometry::roundingError(b.from);
     accel::Ray ray = rayOf({asked, b.from + at.out * beside, -at.out, {}, {}, 0}, 1e38);
     accel::Hit hit;
-    bool met = e_.meet(ray, hit);
+    bool met = intersector_.meet(ray, hit);
     for (int k = 0; met && !belongs(hit.shape, b.group); ++k) {
-        e_.world().goOn(ray, hit);
-        met = k < limits::kShadowLayers && e_.meet(ray, hit);
+        world_.goOn(ray, hit);
+        met = k < limits::kShadowLayers && intersector_.meet(ray, hit);
     }
     if (!met) return {};
-    const geometry::SurfacePoint s = e_.world().accel_->point(hit);
+    const geometry::SurfacePoint s = world_.accel_->point(hit);
     const Vec3 n = s.displaced ? s.displacedN : s.n;
     const bool leaves = dot(ray.dir, turned ? -n : n) > 0;
     if (leaves && !(hit.distance < 4 * double(beside))) {
@@ -131,12 +110,12 @@ void Walks::start(int asked) {
     const std::optional<Entry> entered = entry(asked);
     if (!entered) return; // there is nothing below
     Walker w{asked, {}, {}, a.weight, a.weight, a.vertex};
-    const Vec3 outside = sampleCosine(e_.random(ray).pair(a.vertex, kFlight, 0)); // a way out, about the normal
+    const Vec3 outside = sampleCosine(store_.random(ray).pair(a.vertex, kFlight, 0)); // a way out, about the normal
     const double n = b.index, sine2 = (1 - double(outside.z) * outside.z) / (n * n);
     if (!(sine2 < 1)) return; // all of it is reflected
     const double cosine = std::sqrt(1 - sine2);
     const double through = 1 - fresnelInside(cosine, n); // over its mean, by the flux
-    const double mean = (1 - e_.halfSpaces_.of(b.index).first()) * n * n;
+    const double mean = (1 - subsurface_.halfSpaces.of(b.index).first()) * n * n;
     w.weight = w.begin = a.weight * float(b.index == 1 ? 1 : through / mean);
     w.dir = Basis(-entered->out).toWorld({float(outside.x / n), float(outside.y / n), float(cosine)});
     w.dir = w.dir / length(w.dir);
@@ -153,7 +132,7 @@ void Walks::start(int asked) {
 /// How far a walker goes before it scatters: by one channel of what it has left.
 double Walks::distance(const Walker& w) const {
     const Below& b = below_[size_t(asked_[size_t(w.asked)].below)];
-    const Vec2 u = e_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]).pair(w.vertex, kFlight, 1);
+    const Vec2 u = store_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]).pair(w.vertex, kFlight, 1);
     const Color part = absolute(w.weight);
     double at = double(u.x) * (double(part.x) + part.y + part.z);
     int channel = 2;
@@ -185,7 +164,7 @@ accel::Ray Walks::rayOf(const Walker& w, double length) const {
     r.dir = w.dir;
     r.tfar = float(std::min(length, 1e38));
     const PathRay& ray = c_.rays[size_t(asked_[size_t(w.asked)].point)];
-    r.time = e_.world().shutterOf(ray);
+    r.time = world_.shutterOf(ray);
     r.sides = accel::Sides::Both;
     if (ray.sample) r.level = ray.sample->level;
     return r;
@@ -193,7 +172,7 @@ accel::Ray Walks::rayOf(const Walker& w, double length) const {
 
 /// One event of each walker.
 void Walks::step() {
-    const WorldImpl& world = e_.world();
+    const WorldImpl& world = world_;
     std::vector<accel::Ray> rays;
     std::vector<double> reach;
     for (const Walker& w : walkers_) {
@@ -201,19 +180,19 @@ void Walks::step() {
         rays.push_back(rayOf(w, reach.back()));
     }
     std::vector<accel::Hit> hits(rays.size());
-    e_.meet(rays, hits);
+    intersector_.meet(rays, hits);
     going_.clear();
     for (size_t i = 0; i < walkers_.size(); ++i) {
         Walker& w = walkers_[i];
         const int group = below_[size_t(asked_[size_t(w.asked)].below)].group;
         for (int k = 0; hits[i].valid() && !belongs(hits[i].shape, group); ++k) { // what else stands there
             world.goOn(rays[i], hits[i]);
-            if (k >= limits::kShadowLayers || !e_.meet(rays[i], hits[i])) hits[i] = {};
+            if (k >= limits::kShadowLayers || !intersector_.meet(rays[i], hits[i])) hits[i] = {};
         }
         const bool goes = hits[i].valid() ? meet(w, hits[i], reach[i]) : scatter(w, reach[i]);
         w.vertex = childVertex(w.vertex, kFlight, 3);
         if (goes && ++w.steps < limits::kPathDepth) going_.push_back(w);
-        else if (goes) ++e_.counters.depthCap;
+        else if (goes) ++counters_.depthCap;
     }
     walkers_.swap(going_);
 }
@@ -224,8 +203,8 @@ bool Walks::scatter(Walker& w, double way) {
     weigh(w, way, true);
     const Color left = absolute(w.weight), begin = absolute(w.begin);
     if (!(maxComponent(left) > 0) || !isFinite(left)) return false;
-    const Random random = e_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]);
-    if (e_.rules().roulette || w.steps > 64) {
+    const Random random = store_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]);
+    if (rules_.roulette || w.steps > 64) {
         const auto dice = [&] { return random.one(w.vertex, kRoulette, 0); };
         const float q = rouletteOfPath(left / std::max(maxComponent(begin), 1e-30f), dice);
         if (!(q > 0)) return false;
@@ -238,7 +217,7 @@ bool Walks::scatter(Walker& w, double way) {
 
 /// At the boundary: true where it is reflected, or has come into another part of the same inside.
 bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
-    const WorldImpl& world = e_.world();
+    const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(w.asked)];
     const Below& b = below_[size_t(a.below)];
     geometry::SurfacePoint at = world.accel_->point(hit);
@@ -260,7 +239,7 @@ bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
         return true;
     }
     const double reflected = b.index == 1 ? 0 : fresnelInside(std::min(cosine, 1.0), b.index);
-    if (reflected > 0 && e_.random(c_.rays[size_t(a.point)]).one(w.vertex, kFlight, 0) < reflected) {
+    if (reflected > 0 && store_.random(c_.rays[size_t(a.point)]).one(w.vertex, kFlight, 0) < reflected) {
         w.dir = w.dir - out * float(2 * cosine);
         w.dir = w.dir / length(w.dir);
         w.at = geometry::offsetOrigin(at, w.dir);
@@ -271,7 +250,7 @@ bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
 }
 
 void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
-    const WorldImpl& world = e_.world();
+    const WorldImpl& world = world_;
     for (const Exit& x : exits) {
         const WalkAsked& a = asked_[size_t(x.asked)];
         const PathRay& from = c_.rays[size_t(a.point)];
@@ -280,7 +259,7 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
         r.vertex = childVertex(x.vertex, kFlight, 4);
         r.counts = r.first = false;
         r.dir = -x.out; // as if it had come from outside
-        if (e_.photonTrace()) r.trail = shading::kTrailSpread;
+        if (photons_.photonTrace()) r.trail = shading::kTrailSpread;
         r.footprint = from.footprint.after(length(c_.points[size_t(a.point)].P - from.origin));
         if (r.camera()) r.setStart(0);
         r.passed = false;
@@ -288,11 +267,11 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
         r.origin = at;
         RayExtra extra;
         extra.share = a.share;
-        r.extra = e_.newExtra(extra);
+        r.extra = store_.newExtra(extra);
         c.targets.push_back(a.target);
         c.bindings.push_back(world.bindingOf_[x.shape]);
     }
-    c.ownsExtras = true;
+    c.extrasOf = &store_;
     c.points.resize(exits.size());
     for (size_t i = 0; i < exits.size(); ++i) {
         const Exit& x = exits[i];
@@ -313,9 +292,8 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
 /// What light brings where walks came out, as diffuse() has it.
 void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     static const LobeKind* const kind = findLobe("diffuse");
-    const WorldImpl& world = e_.world();
-    auto c = e_.takeContext();
-    c->engine = &e_;
+    const WorldImpl& world = world_;
+    auto c = batches_.take();
     c->bound = c_.bound;
     c->binding = &world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
     c->below = true;
@@ -323,31 +301,31 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     for (size_t i = 0; i < exits.size(); ++i) {
         const Exit& x = exits[i];
         const ShadePoint& p = c->points[i];
-        LobeVertex& l = e_.lobes.emplace_back();
+        LobeVertex& l = requests_.lobes.emplace_back();
         l.kind = kind;
         l.point = int(i);
         l.weight = Color(1);
         l.target = c->targets[i];
         l.site = kFlight;
-        l.directOnly = !e_.rules().pickOne;
+        l.directOnly = !rules_.pickOne;
         l.share = asked_[size_t(x.asked)].share;
         l.indirect = asked_[size_t(x.asked)].indirect;
         if (world.lightsAsk()) {
-            l.lit = int(e_.litValues_.size());
-            e_.litValues_.emplace_back().binding = c->bindings[i];
+            l.lit = int(litSurfaces_.values.size());
+            litSurfaces_.values.emplace_back().binding = c->bindings[i];
         }
-        l.place = e_.lobeRows_.add(*kind, {p.N, x.out, {}, 0});
+        l.place = requests_.rows.add(*kind, {p.N, x.out, {}, 0});
     }
-    e_.gather(*c, sched);
+    vertexLight_.gather(*c, sched);
     skies(*c, sched);
-    e_.flushShadows(sched);
-    e_.giveBack(std::move(c));
+    shadows_.flush(sched);
+    batches_.giveBack(std::move(c));
 }
 
 /// Where no rays are sent a sky is one light that faces the surface, as in light loops.
 void Walks::skies(const BatchContext& c, Sched& sched) {
-    if (e_.rules().pickOne || !e_.rules().lightsAtRequests) return;
-    const WorldImpl& world = e_.world();
+    if (rules_.pickOne || !rules_.lightsAtRequests) return;
+    const WorldImpl& world = world_;
     for (int number : world.skies_) {
         const BoundLight& light = world.lights_[size_t(number)];
         if (light.kind != LightKind::Environment || !light.kernel || !c.binding->lights.contains(number)) continue;
@@ -364,11 +342,11 @@ void Walks::skies(const BatchContext& c, Sched& sched) {
             q[i].ray = p.ray;
         }
         std::vector<LightValue> value(q.size());
-        e_.evaluateLight(light, q, value);
+        lightKernels_.evaluateLight(light, q, value);
         for (size_t i = 0; i < q.size(); ++i)
             if (value[i].lit)
-                e_.deposit(sched, {c.targets[i], c.rays[i].weight * value[i].Cl * value[i].kept(RayType::Diffuse),
-                                   LightEvent::Sky, &c.rays[i], e_.extraOf(c.rays[i]).share, light.instance.get()});
+                accumulator_.deposit(sched, {c.targets[i], c.rays[i].weight * value[i].Cl * value[i].kept(RayType::Diffuse),
+                                             LightEvent::Sky, &c.rays[i], store_.extraOf(c.rays[i]).share, light.instance.get()});
     }
 }
 

@@ -1,19 +1,26 @@
 // Light that walks below surfaces: subsurface().
 #pragma once
-#include "integrator/engine.h"
+#include "integrator/subsurfacewalks.h"
 
 namespace alpenglow::transport {
 
-struct Engine::SubsurfaceOfShape : SubsurfaceValues {
-    using SubsurfaceValues::SubsurfaceValues;
-    int group = 0;
-};
+class Accumulator;
+class BatchPool;
+class Displacement;
+class Intersector;
+class KernelInputs;
+class LightKernels;
+class LitSurfaces;
+class PhotonStage;
+class RayStore;
+class Requests;
+class ShadowRays;
+class VertexLight;
 
 /// The walks that a batch has asked for, and where they come out: points that gather light as diffuse() does.
-class Walks {
+class Walks final : Stage {
 public:
-    Walks(Engine& e, BatchContext& c, std::span<const WalkAsked> asked, std::span<const Below> below)
-        : e_(e), c_(c), asked_(asked), below_(below) {}
+    Walks(const StageSet&, BatchContext&, std::span<const WalkAsked>, std::span<const Below>);
     void run(Sched&);
 
 private:
@@ -58,12 +65,25 @@ private:
     bool belongs(uint32_t shape, int group) const;
     accel::Ray rayOf(const Walker&, double length) const;
 
-    Engine& e_;
     BatchContext& c_;
     std::span<const WalkAsked> asked_;
     std::span<const Below> below_;
     std::vector<Walker> walkers_, going_;
     std::vector<Exit> exits_;
+
+    Accumulator& accumulator_;
+    BatchPool& batches_;
+    Displacement& displacement_;
+    Intersector& intersector_;
+    KernelInputs& inputs_;
+    LightKernels& lightKernels_;
+    LitSurfaces& litSurfaces_;
+    PhotonStage& photons_;
+    RayStore& store_;
+    Requests& requests_;
+    ShadowRays& shadows_;
+    SubsurfaceWalks& subsurface_;
+    VertexLight& vertexLight_;
 };
 
 } // namespace alpenglow::transport

@@ -1,10 +1,13 @@
 // What a trace() would find along a ray if nothing but area lights were there: "unshadowedarealight" of rays for which no light
 // is sampled, and "unshadowedenvironment", which area lights still block.
-#include "integrator/gather.h"
+#include "integrator/connection.h"
+#include "integrator/intersector.h"
+#include "integrator/lightkernels.h"
+#include "integrator/litsurfaces.h"
 
 namespace alpenglow::transport {
 
-void Gather::unshadowed(const LobeVertex& l, const Vec3& w, const Color& through, const Color& environment, TraceSums& sums) {
+void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& through, const Color& environment, TraceSums& sums) {
     const shading::RaySet& set = l.rays->set;
     const PathRay& from = rayOf(l);
     const ShadePoint& p = c_->points[size_t(l.point)];
@@ -18,7 +21,7 @@ void Gather::unshadowed(const LobeVertex& l, const Vec3& w, const Color& through
     ray.only = world_.shining_.data();
     ray.level = from.sample->level;
     accel::Hit hit;
-    while (e_.meet(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
+    while (intersector_.meet(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
     if (!hit.valid()) return sums.add(TraceSums::UnshadowedEnvironment, through * environment);
     // Lobes that sample lights know by their samples what area lights would give.
     const auto isOn = [&](int light) {
@@ -44,9 +47,9 @@ void Gather::unshadowed(const LobeVertex& l, const Vec3& w, const Color& through
         q[0].ray = &from;
         const std::vector<int> told{l.lit};
         LitSurface surface;
-        if (b.asksSurface) surface = e_.litBy(told);
+        if (b.asksSurface) surface = litSurfaces_.litBy(told);
         LightValue v;
-        e_.evaluateLight(b, q, {&v, 1}, {.lit = b.asksSurface ? &surface : nullptr});
+        lightKernels_.evaluateLight(b, q, {&v, 1}, {.lit = b.asksSurface ? &surface : nullptr});
         if (v.lit && isFinite(v.Cl)) sums.add(TraceSums::UnshadowedAreaLight, through * v.Cl);
     }
 }

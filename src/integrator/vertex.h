@@ -24,7 +24,7 @@ struct WalkAsked {
     Color weight;
     TargetId target = shading::kNoTarget;
     uint32_t vertex = 0; ///< of its random numbers
-    int32_t share = -1;  ///< Engine::shares_
+    int32_t share = -1;  ///< Accumulator::shares
     float indirect = 1;  ///< LobeVertex::indirect where it comes out
 };
 
@@ -35,14 +35,14 @@ struct AmbientAsked {
     Color weight; ///< as of ShadowRay::contribution
     TargetId target = shading::kNoTarget;
     bool owns = false; ///< LobeVertex::ownsTarget
-    int lit = -1;      ///< of Engine::litValues_
+    int lit = -1;      ///< of LitSurfaces::values
 };
 
 /// A lobe at a point that light shall be gathered over.
 struct LobeVertex {
     int point = 0;
     const LobeKind* kind = nullptr;
-    LobeColumns::Place place; ///< in Engine::lobeRows_
+    LobeColumns::Place place; ///< in Requests::rows
     Color weight;             ///< of the request alone, before the ray's throughput
     TargetId target = shading::kNoTarget;
     const RayKind* rays = &kDiffuseKind;
@@ -61,13 +61,13 @@ struct LobeVertex {
     Vec3 from;
     float bias = -1;      ///< < 0: the hit's own error bound
     float base = 0;       ///< "samplebase": rays start on this part of the footprint
-    int lit = -1;         ///< of Engine::litValues_
-    int32_t share = -1;   ///< Engine::shares_: outputs that hold this request too; -1: none
+    int lit = -1;         ///< of LitSurfaces::values
+    int32_t share = -1;   ///< Accumulator::shares: outputs that hold this request too; -1: none
     float importance = 1; ///< its "weight", for rayinfo()
     Color tint{1};        ///< of the environment map
     const TraceSite* trace = nullptr;
     shading::Fade fade;      ///< of what its rays meet
-    int32_t below = -1;      ///< Engine::below_: of a subsurface(), whose rays walk there; -1: another
+    int32_t below = -1;      ///< SubsurfaceWalks::below: of a subsurface(), whose rays walk there; -1: another
     bool directOnly = false; ///< light is sampled, no ray is sent
     float indirect = 1;      ///< factor of its rays
     float albedo = 0;        ///< kind->albedo(params)
@@ -76,5 +76,10 @@ struct LobeVertex {
     Vec3 beside;             ///< unit, toward a light that its rays may pass in a medium
     float besideShare = 0;   ///< of its rays that are drawn evenly in the angle to it
 };
+
+/// n or -n: the one on the side of the surface at p that a ray in direction dir comes from.
+inline Vec3 onSeenSide(const Vec3& n, const ShadePoint& p, const Vec3& dir) {
+    return (dot(n, p.surface.n) > 0) == (dot(dir, p.surface.n) < 0) ? n : -n;
+}
 
 } // namespace alpenglow::transport

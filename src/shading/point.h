@@ -40,7 +40,7 @@ struct Media {
     bool operator==(const Media& o) const { return count == o.count && lost == o.lost && std::equal(in, in + count, o.in); }
 };
 
-/// What a ray is, beside where it goes: few are different, so each is kept once (Engine::kindOf) and rays point at it.
+/// What a ray is, beside where it goes: few are different, so each is kept once (RayStore::kindOf) and rays point at it.
 struct RayKind {
     RayType type = RayType::Camera;
     bool fromTrace = false; ///< drawn by trace(), not by a lighting shadeop
@@ -102,7 +102,7 @@ struct RayExtra {
     Color whole{0};       ///< its weight without `kept` and `indirect`
     Color environment{0}; ///< of trace() with a map: the light where nothing is
     Color part{0};        ///< of a target with sums: the share of all rays that were asked for, of those and what goes on behind
-    int32_t share = -1;   ///< Engine::shares_: which outputs have a part of what it adds to its target; -1: none
+    int32_t share = -1;   ///< Accumulator::shares: which outputs have a part of what it adds to its target; -1: none
     int32_t lit = -1;     ///< what lights are told about the surface that sent it, where lights ask; -1: nothing
     float indirect = 1; ///< factor of what surfaces send it, not of lights: of a lobe that would give back more than it receives
     FreeFlight flown;   ///< on which it was scattered, where it begins
@@ -150,7 +150,7 @@ struct PathRay {
     Vec3 lobeOrigin;      ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
     int lobeBinding = -1; ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
     Footprint footprint;  ///< at the origin
-    int32_t extra = -1;   ///< Engine::extras_; -1: none
+    int32_t extra = -1;   ///< RayStore::extraOf(); -1: none
     float importance = 1; ///< product of the weights that shaders gave to the calls on its way; for rayinfo("weight")
     RayType type() const { return kind->type; }
     bool camera() const { return kind->type == RayType::Camera; }

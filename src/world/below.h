@@ -10,7 +10,7 @@ struct Below {
     Color absorption{0}, scattering{0}, extinction{0};
     float anisotropy = 0, index = 1; ///< index: of refraction, relative to outside
     SubsurfaceSite::Model model = SubsurfaceSite::Model::Walk;
-    int group = 0; ///< Engine::groupOf(): of the shapes that bound it
+    int group = 0; ///< SubsurfaceWalks::ofShape(): of the shapes that bound it
     Vec3 normal;   ///< about which light enters, unit, out of the surface; 0: that of the geometry
     Vec3 from;     ///< where it enters, if not at the shaded point
     bool elsewhere = false;

@@ -1,4 +1,4 @@
-// What the call sites of a kernel mean to the engine, worked out once per kernel.
+// What the call sites of a kernel mean to the integrator, worked out once per kernel.
 #include "scene/scene.h"
 #include "shadeops/distributions.h"
 #include "shadeops/specular.h"

@@ -10,7 +10,7 @@ bool asksLobes(SiteKind k) {
            k == SiteKind::Subsurface || k == SiteKind::Gather;
 }
 
-/// Whether a trace() has parameters that only request() of the engine knows.
+/// Whether a trace() has parameters that only Requests::request() knows.
 bool isPlainTrace(const SiteInfo& s) {
     const TraceSite& t = *s.trace;
     const RaySite& r = *s.rays;

@@ -1,4 +1,4 @@
-// Kernels that run while nobody follows rays: while a world is made, and over finished pixels. The wave has what runs them.
+// Kernels that run while nobody follows rays: while a world is made, and over finished pixels. The integrator has what runs them.
 #pragma once
 #include "world/bound.h"
 #include <functional>

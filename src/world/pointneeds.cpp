@@ -1,4 +1,4 @@
-// What is to be known of the points of hits and emitters: what kernels read, and what the engine does.
+// What is to be known of the points of hits and emitters: what kernels read, and what the integrator does.
 #include "world/emitterfootprint.h"
 
 namespace alpenglow::transport {

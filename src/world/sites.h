@@ -121,7 +121,7 @@ private:
     mutable std::atomic<bool> opened_{false};
 };
 
-/// What a call site of a kernel means to the engine, worked out once per kernel.
+/// What a call site of a kernel means to the integrator, worked out once per kernel.
 enum class SiteKind : uint8_t {
     Unknown,
     Ambient,

@@ -1,7 +1,9 @@
 // The stage between hit and shader: events on the way of rays, as media with distance sampling and walks inside of surfaces have
 // them.
-#include "integrator/engine.h"
+#include "integrator/flights.h"
 #include "integrator/floorscene.h"
+#include "integrator/pipeline.h"
+#include "integrator/raystore.h"
 
 namespace flight_test {
 
@@ -11,29 +13,35 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
+struct Event : FlightEvent {
+    Flights* flights = nullptr; ///< that it happens in
+};
+
 /// The mean of n samples of a ray, traced where `event` may happen.
-Moments estimate(Scene& s, FlightEvent& event, CameraRay ray, int n) {
-    Engine engine(std::static_pointer_cast<const WorldImpl>(s.world), s.diagnostics);
-    engine.happens(event);
+Moments estimate(Scene& s, Event& event, CameraRay ray, int n) {
+    Pipeline pipeline(std::static_pointer_cast<const WorldImpl>(s.world), s.diagnostics);
+    event.flights = &pipeline.stages().flights;
+    event.flights->happens(event);
     std::vector<CameraRay> rays;
     for (int i = 0; i < n; ++i) {
         ray.px = i;
         rays.push_back(ray);
     }
     std::vector<SampleResult> out(rays.size());
-    EXPECT_TRUE(engine.trace(rays, out, nullptr));
+    EXPECT_TRUE(pipeline.trace(rays, out, nullptr));
     Moments m;
     for (const SampleResult& r : out) m.add(r.color);
     return m;
 }
 
 /// Fills all of space and absorbs: whether a ray comes as far as its hit is drawn, for shadow rays the chance is taken.
-class Absorbs final : public FlightEvent {
+class Absorbs final : public Event {
 public:
-    void happen(Engine& e, std::span<Flight> flights, Sched&) override {
-        for (Flight& f : flights) f.over |= e.random(*f.ray).one(f.ray->vertex, kFlight, 0) >= std::exp(-kSigma * f.length);
+    void happen(std::span<Flight> some, Sched&) override {
+        for (Flight& f : some)
+            f.over |= Random(f.ray->sample->numbers).one(f.ray->vertex, kFlight, 0) >= std::exp(-kSigma * f.length);
     }
-    void dim(Engine&, std::span<const ShadowRay> rays, std::span<Color> out) override {
+    void dim(std::span<const ShadowRay> rays, std::span<Color> out) override {
         for (size_t i = 0; i < rays.size(); ++i) out[i] *= std::exp(-kSigma * rays[i].distance);
     }
     static constexpr float kSigma = .7f;
@@ -68,12 +76,12 @@ TEST(Flight, ShadowRaysAreDimmedLikewise) {
 }
 
 /// Rays that leave the scene for good are over.
-class NoSky final : public FlightEvent {
+class NoSky final : public Event {
 public:
-    void happen(Engine&, std::span<Flight> flights, Sched&) override {
-        for (Flight& f : flights) f.over |= f.point == nullptr;
+    void happen(std::span<Flight> some, Sched&) override {
+        for (Flight& f : some) f.over |= f.point == nullptr;
     }
-    void dim(Engine&, std::span<const ShadowRay>, std::span<Color>) override {}
+    void dim(std::span<const ShadowRay>, std::span<Color>) override {}
 };
 
 TEST(Flight, RaysThatMeetNothingPassThroughItToo) {
@@ -86,10 +94,10 @@ TEST(Flight, RaysThatMeetNothingPassThroughItToo) {
 }
 
 /// What meets the floor comes out elsewhere, in another direction: as a walk inside of a surface does.
-class ComesOutElsewhere final : public FlightEvent {
+class ComesOutElsewhere final : public Event {
 public:
-    void happen(Engine& e, std::span<Flight> flights, Sched& sched) override {
-        for (Flight& f : flights) {
+    void happen(std::span<Flight> some, Sched& sched) override {
+        for (Flight& f : some) {
             if (f.over || !f.point || f.ray->layers > 0) continue;
             PathRay next = *f.ray;
             next.origin = {0, 5, 0};
@@ -97,10 +105,10 @@ public:
             next.weight = f.ray->weight * Color(.5f, 1, 1);
             next.vertex = childVertex(f.ray->vertex, kFlight, 0);
             ++next.layers;
-            e.divert(f, next, sched);
+            flights->divert(f, next, sched);
         }
     }
-    void dim(Engine&, std::span<const ShadowRay>, std::span<Color>) override {}
+    void dim(std::span<const ShadowRay>, std::span<Color>) override {}
 };
 
 TEST(Flight, ARayCanGoOnElsewhere) {

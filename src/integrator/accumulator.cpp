@@ -1,0 +1,60 @@
+// Light that reaches a target. All of it comes through here.
+#include "integrator/accumulator.h"
+#include "integrator/context.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/stageset.h"
+
+namespace alpenglow::transport {
+
+Accumulator::Accumulator(const StageSet& s) : Stage(s.context), paths_(s.paths) {}
+
+void Accumulator::begin(size_t samples) {
+    results.resize(samples);
+    lightTargets.clear();
+    partTargets.clear();
+    shares.clear();
+}
+
+void Accumulator::deposit(Sched& sched, const Deposit& d) {
+    if (!isFinite(d.light) && d.event != LightEvent::Output) // of those the target keeps count
+        return notFinite(d.path, d.event == LightEvent::Sampled ? "light that is sampled" : "light", d.of);
+    sched.add(d.target, d.light);
+    depositPart(sched, d.path, d.end, d.light);
+    for (int32_t share = d.share; share >= 0; share = shares[size_t(share)].next)
+        sched.add(shares[size_t(share)].target, d.light * shares[size_t(share)].ratio);
+}
+
+void Accumulator::depositPart(Sched& sched, const PathRay* path, uint16_t end, const Color& light) {
+    if (end == 0 || !path || !path->sample || !isFinite(light)) return;
+    const size_t parts = size_t(paths_.automaton->parts());
+    sched.add(partTargets[size_t(path->sample->path) * parts + size_t(paths_.automaton->part(end))], light);
+}
+
+void Accumulator::notFinite(const PathRay* ray, const std::string& what, const SourcePlace& place) {
+    ++counters_.nonFinite;
+    if (ray && ray->sample && ray->sample->path >= 0) spoiled.push_back(ray->sample->path);
+    diagnostics_.reportOnce(
+        "nonfinite:" + what + place.file + std::to_string(place.line),
+        {Severity::Warning, Rie::Math, place, what + " is not a finite number; samples that meet it are left out", {}, {}});
+}
+
+void Accumulator::notFinite(const PathRay* ray, const char* what, const ShaderInstance* of) {
+    if (!of) return notFinite(ray, what, SourcePlace{});
+    notFinite(ray, std::string(what) + " of shader \"" + of->name + "\"", of->place);
+}
+
+void Accumulator::notFinite(const BatchContext& c, const PathRay& ray, uint32_t site) {
+    if (site >= c.bound->sites.size()) return notFinite(&ray, "light that is scattered in a medium", nullptr); // no call's
+    const rsl::ir::Site& s = *c.bound->sites[site].site;
+    const auto& files = c.bound->kernel->files();
+    notFinite(&ray, "light of " + s.op + "(), or its weight,",
+              {s.place.file < int(files.size()) ? files[size_t(s.place.file)] : "", s.place.line, s.place.column});
+}
+
+/// The parts of what a volume shader shows: what the surface gives by itself, `met` of it, and what the volume adds.
+void Accumulator::depositThroughVolume(Sched& sched, const PathRay& ray, const Color& met, const Color& shown) {
+    depositPart(sched, &ray, paths_.next(ray.path, paths_.object), ray.weight * met);
+    depositPart(sched, &ray, paths_.next(paths_.next(ray.path, paths_.volume), paths_.object), ray.weight * (shown - met));
+}
+
+} // namespace alpenglow::transport

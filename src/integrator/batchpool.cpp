@@ -1,0 +1,43 @@
+#include "integrator/batchpool.h"
+#include "integrator/context.h"
+#include "integrator/raystore.h"
+#include "integrator/stageset.h"
+
+namespace alpenglow::transport {
+
+BatchPool::BatchPool(const StageSet& s) : Stage(s.context), store_(s.store) {}
+
+void BatchPool::finish(std::shared_ptr<BatchContext> c, Sched& sched) {
+    for (size_t i = 0; i < c->targets.size() && !sched.plain(); ++i) sched.release(c->targets[i]);
+    giveBack(std::move(c));
+}
+
+std::shared_ptr<BatchContext> BatchPool::take() {
+    if (pool_.empty()) return std::make_shared<BatchContext>();
+    auto c = std::move(pool_.back());
+    pool_.pop_back();
+    return c;
+}
+
+void BatchPool::giveBack(std::shared_ptr<BatchContext> c) {
+    if (c.use_count() != 1) return; // a strip waits in it
+    if (c->batch.use_count() != 1) c->batch.reset();
+    store_.freeExtras(*c);
+    c->forget(); // points stay: SurfacePoints writes them again
+    c->targets.clear();
+    c->hits.clear();
+    c->emits.clear();
+    c->emitted = 0;
+    c->failure = nullptr;
+    c->arena.clear();
+    c->haze.clear();
+    c->depths.clear();
+    c->flown.clear();
+    c->clear.clear();
+    c->passes.clear();
+    c->opaque = c->indirectKept = false;
+    c->requestSite = -1;
+    pool_.push_back(std::move(c));
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,52 @@
+// Connect: what lobes give back of the light that samples send them, weighed against sampling the lobe (MIS). One shadow ray for
+// all lobes of a vertex that can share it. Reads LightSampling::queries; writes ShadowRays::queue.
+#pragma once
+#include "integrator/vertexlobes.h"
+#include "lobes/lobe.h"
+
+namespace alpenglow::transport {
+
+class Accumulator;
+class Intersector;
+class LightKernels;
+class LightPathStates;
+class LightSampling;
+class LitSurfaces;
+class MediaStacks;
+class MediumFlights;
+class ShadowRays;
+
+class Connection final : VertexStage {
+public:
+    Connection(const StageSet&, const VertexLobes&, LightSampling&);
+    void connect();
+    /// What a trace() that tells sums would see in direction w were nothing in the way (unshadowed.cpp).
+    void unshadowed(const LobeVertex&, const Vec3& w, const Color& through, const Color& environment, TraceSums&);
+
+private:
+    /// A lobe that light of a query reaches from direction w. `turn`: how many queries have reached it before.
+    struct Reached {
+        int query, lobe, turn;
+        Vec3 w;
+        LobeValue value;
+    };
+    void reach(int query);
+    void evaluate();
+    bool meets(const LobeVertex&, int query, const Vec3& w, const Vec3& from, const Vec3& end) const;
+    void send(const Reached&);
+    Color contribution(const Reached&);
+    std::vector<Reached> reached_;
+    std::vector<int> turns_; ///< by lobe: queries that have reached it
+    int lastQuery_ = -1;     ///< that of the shadow ray sent last, which other lobes of its point may share
+    LightSampling& lightSampling_;
+    Accumulator& accumulator_;
+    Intersector& intersector_;
+    LightKernels& lightKernels_;
+    const LightPathStates& paths_;
+    LitSurfaces& litSurfaces_;
+    MediaStacks& media_;
+    MediumFlights& mediumFlights_;
+    ShadowRays& shadows_;
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,51 @@
+// The context of a thread, and its counts.
+#include "integrator/context.h"
+
+namespace alpenglow::transport {
+
+Context::Context(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
+    : frame(std::move(w)), world(*frame), diagnostics(d), seed(world.settings_.seed),
+      totalReflection(rsl::internString("totalreflection")), rules(world.settings_) {}
+
+void Counters::operator+=(const Counters& o) {
+    reflected += o.reflected;
+    refracted += o.refracted;
+    totalReflected += o.totalReflected;
+    ignored += o.ignored;
+    tests += o.tests;
+    hits += o.hits;
+    camera += o.camera;
+    diffuse += o.diffuse;
+    specular += o.specular;
+    transmission += o.transmission;
+    shadow += o.shadow;
+    points += o.points;
+    inBlocks += o.inBlocks;
+    batches += o.batches;
+    lanesUsed += o.lanesUsed;
+    lanesRun += o.lanesRun;
+    nonFinite += o.nonFinite;
+    overLimit += o.overLimit;
+    depthCap += o.depthCap;
+    depthSum += o.depthSum;
+    paths += o.paths;
+    records += o.records;
+    interpolated += o.interpolated;
+    depthMax = std::max(depthMax, o.depthMax);
+    peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
+}
+
+uint64_t& Context::raysOf(RayType t) {
+    switch (t) {
+    case RayType::Camera:
+        return counters.camera;
+    case RayType::Diffuse:
+        return counters.diffuse;
+    case RayType::Specular:
+        return counters.specular;
+    default:
+        return counters.transmission;
+    }
+}
+
+} // namespace alpenglow::transport

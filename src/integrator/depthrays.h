@@ -1,0 +1,27 @@
+// What deep shadow maps see: along each camera ray the light that is left behind every surface, and within media (Lokovic and
+// Veach, Deep Shadow Maps, 2000).
+#pragma once
+#include "integrator/context.h"
+
+namespace alpenglow::transport {
+
+class Intersector;
+class MediaStacks;
+class Opacities;
+struct StageSet;
+
+class DepthRays final : Stage {
+public:
+    explicit DepthRays(const StageSet&);
+    /// SampleResult::left of camera rays; begin: makes the i-th path ray of the call. False: stopped.
+    bool seeThrough(std::span<const CameraRay>, std::span<SampleResult>,
+                    const std::function<void(const CameraRay&, size_t, PathRay&)>& begin);
+
+private:
+    class Looking;
+    Intersector& intersector_;
+    MediaStacks& media_;
+    Opacities& opacities_;
+};
+
+} // namespace alpenglow::transport

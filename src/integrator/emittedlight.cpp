@@ -1,0 +1,162 @@
+// Where a ray ends without a shader of its own: light of emitters and sky, and what goes on through surfaces.
+#include "integrator/emittedlight.h"
+#include "integrator/accumulator.h"
+#include "integrator/context.h"
+#include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/litsurfaces.h"
+#include "integrator/mediastacks.h"
+#include "integrator/medium.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/stageset.h"
+#include "lobes/sampling.h"
+#include "world/skytable.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+EmittedLight::EmittedLight(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces),
+      media_(s.media), mediumFlights_(s.mediumFlights), photons_(s.photons), store_(s.store) {}
+
+void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
+    for (const Sched::Task* t : tasks) // the map of a trace()
+        if (const PathRay& r = t->payload; maxComponent(store_.extraOf(r).environment) > 0) {
+            accumulator_.deposit(sched, {t->target, r.weight * store_.extraOf(r).environment, LightEvent::Map, &r,
+                                         store_.extraOf(r).share, nullptr, paths_.next(r.path, paths_.map)});
+            if (TraceSums* sums = accumulator_.sumsOf(t->target))
+                sums->add(TraceSums::Environment, r.weight * store_.extraOf(r).environment);
+        }
+    if (photons_.photonTrace() || tasks.empty()) return;
+    std::vector<ShadePoint> q;
+    std::vector<const Sched::Task*> of;
+    std::vector<LightValue> value;
+    for (const int number : world_.skies_) {
+        const BoundLight& l = world_.lights_[size_t(number)];
+        if (l.kind == LightKind::Ambient) continue; // ambient() asks for it
+        // Outside of path a sky is a light of loops, or a background of rays.
+        if (!rules_.emissionCounts && (l.kind != LightKind::Environment || l.strategy != LightStrategy::Trace)) continue;
+        q.clear();
+        of.clear();
+        litBy_.clear();
+        for (const Sched::Task* t : tasks) {
+            const PathRay& r = t->payload;
+            if (!l.seenBy(*r.kind)) continue;
+            // A lobe that samples lights: those that are off for its surface do not light it by chance either.
+            if (r.lobeBinding >= 0 && !world_.bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
+            if (photons_.bringsPhotons(r, number)) continue;
+            ShadePoint& p = q.emplace_back();
+            p.Ps = r.origin;
+            p.P = r.origin + r.dir;
+            p.N = -r.dir;
+            p.shutter = world_.shadesAtOpen_ ? 0 : r.shutter();
+            world_.tellTime(p);
+            p.ray = &r;
+            of.push_back(t);
+            litBy_.push_back(store_.extraOf(r).lit);
+        }
+        value.assign(q.size(), {});
+        LitSurface lit;
+        if (l.asksSurface) lit = litSurfaces_.litBy(litBy_);
+        lightKernels_.evaluateLight(l, q, value, {.lit = l.asksSurface ? &lit : nullptr});
+        for (size_t i = 0; i < of.size(); ++i)
+            if (value[i].lit) {
+                const PathRay& r = of[i]->payload;
+                const bool weighed = r.bounces > 0 && !r.kind->fromTrace; // met by a lobe of a lighting shadeop
+                float weight = weighed ? value[i].kept(r.type()) : 1.f;
+                if (l.sky && r.lobePdf >= 0) { // its lobe has sampled this sky
+                    float pdf = l.sky->pdf(r.dir);
+                    if (rules_.pickOne && r.lobeBinding >= 0)
+                        pdf *= lightKernels_.chanceOf(number, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
+                    weight *= world_.settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+                }
+                const Color light = r.weight * value[i].Cl * weight;
+                accumulator_.deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, store_.extraOf(r).share, l.instance.get(),
+                                             paths_.atLight(r.path, l)});
+            }
+    }
+}
+
+void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
+    const Settings& set = world_.settings_;
+    std::vector<ShadePoint> q;
+    std::vector<LightValue> value;
+    for (size_t first = 0, end; first < met.size(); first = end) {
+        q.clear();
+        litBy_.clear();
+        for (end = first; end < met.size() && met[end].light == met[first].light; ++end) {
+            const PathRay& r = *met[end].point->ray;
+            q.push_back(*met[end].point);
+            ShadePoint& p = q.back();
+            p.P = meetsAt(p.surface);
+            p.N = p.surface.n;
+            p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.volumeBegin();
+            litBy_.push_back(store_.extraOf(r).lit);
+        }
+        const BoundLight& light = world_.lights_[size_t(met[first].light)];
+        value.assign(q.size(), {});
+        LitSurface lit;
+        if (light.asksSurface) lit = litSurfaces_.litBy(litBy_);
+        std::vector<char> inMedium;
+        if (!world_.media_.empty())
+            for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->medium() >= 0);
+        lightKernels_.evaluateLight(
+            light, q, value, {.lit = light.asksSurface ? &lit : nullptr, .inMedium = inMedium.empty() ? nullptr : &inMedium});
+        for (size_t i = 0; i < inMedium.size(); ++i) {
+            if (!inMedium[i] || !value[i].lit) continue;
+            const PathRay& r = *met[first + i].point->ray;
+            if (world_.media_[size_t(r.medium())].homogeneous) continue; // its flight has gone through it
+            const MediumPart part{r.medium(), 0, r.volumeBegin(), met[first + i].point->P};
+            ShadowRay way{};
+            way.ray = &r;
+            way.time = world_.shutterOf(r);
+            media_.dim({&part, 1}, {&way, 1}, {&value[i].Cl, 1});
+        }
+        for (size_t i = first; i < end; ++i) {
+            const LightValue& v = value[i - first];
+            const ShadePoint& p = *met[i].point;
+            const PathRay& r = *p.ray;
+            if (v.lit && !isFinite(v.Cl)) accumulator_.notFinite(&r, "Cl", light.instance.get());
+            if (!v.lit || v.Cl == Color(0) || !isFinite(v.Cl) || photons_.bringsPhotons(r, met[i].light)) continue;
+            float weight = 1;
+            if (r.lobePdf >= 0 && light.emitter && light.importance) {
+                float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
+                if (rules_.pickOne && r.lobeBinding >= 0)
+                    pdf *= lightKernels_.chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
+                weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+            }
+            if (const FreeFlight& flown = store_.extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)
+                weight *= mediumFlights_.shareOfDistance(flown, light);
+            if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
+            accumulator_.deposit(sched, {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, store_.extraOf(r).share,
+                                         light.instance.get(), paths_.atLight(r.path, light)});
+            if (TraceSums* sums = accumulator_.sumsOf(met[i].target); sums && maxComponent(store_.extraOf(r).part) > 0)
+                sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
+        }
+    }
+}
+
+/// Light of the emitters among the points.
+void EmittedLight::shine(const BatchContext& c, Sched& sched) {
+    std::vector<Met> met;
+    for (size_t i = 0; i < c.points.size(); ++i) {
+        const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
+        const PathRay& r = c.rays[i];
+        if (b.areaLight < 0 || (b.matte && r.camera())) continue;
+        if (!rules_.emissionCounts && r.lobePdf < 0 && !r.kind->asksLights) continue;
+        if (r.lobeBinding >=
+            0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
+            if (!world_.bindings_[size_t(r.lobeBinding)].lights.contains(b.areaLight)) continue;
+        }
+        const BoundLight& light = world_.lights_[size_t(b.areaLight)];
+        if (light.mean || !light.seenBy(*r.kind)) continue;
+        met.push_back({b.areaLight, c.targets[i], &c.points[i]});
+        for (int part : light.parts)
+            if (world_.lights_[size_t(part)].kind == LightKind::Area) met.push_back({part, c.targets[i], &c.points[i]});
+    }
+    std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.light < b.light; });
+    emission(met, sched);
+}
+
+} // namespace alpenglow::transport

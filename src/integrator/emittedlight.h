@@ -1,0 +1,44 @@
+// Emission: light of emitters that rays met, and of skies that they left for, weighed against sampling those lights (MIS).
+#pragma once
+#include "integrator/batchcontext.h"
+#include "integrator/context.h"
+
+namespace alpenglow::transport {
+
+class Accumulator;
+class LightKernels;
+class LightPathStates;
+class LitSurfaces;
+class MediaStacks;
+class MediumFlights;
+class PhotonStage;
+class RayStore;
+struct StageSet;
+
+class EmittedLight final : Stage {
+public:
+    explicit EmittedLight(const StageSet&);
+    /// Light of the emitters among the points of a batch.
+    void shine(const BatchContext&, Sched&);
+    /// Light of skies, for rays that left the scene.
+    void misses(std::span<const Sched::Task* const>, Sched&);
+
+private:
+    struct Met {
+        int light;
+        TargetId target;
+        const ShadePoint* point;
+    };
+    void emission(std::span<const Met>, Sched&); ///< sorted by light
+    std::vector<int> litBy_;                     ///< RayExtra::lit of the queries of a light
+    Accumulator& accumulator_;
+    LightKernels& lightKernels_;
+    const LightPathStates& paths_;
+    LitSurfaces& litSurfaces_;
+    MediaStacks& media_;
+    MediumFlights& mediumFlights_;
+    PhotonStage& photons_;
+    RayStore& store_;
+};
+
+} // namespace alpenglow::transport

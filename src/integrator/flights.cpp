@@ -1,0 +1,59 @@
+// Stage fly. Where nothing can happen it costs nothing.
+#include "integrator/flights.h"
+#include "integrator/context.h"
+#include "integrator/flight.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/stageset.h"
+
+namespace alpenglow::transport {
+
+Flights::Flights(const StageSet& s) : Stage(s.context), photons_(s.photons), store_(s.store) {}
+
+void Flights::fly(BatchContext& c, Sched& sched) {
+    if (events.empty()) return;
+    list_.clear();
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const ShadePoint& p = c.points[i];
+        const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P; // rays meet facets
+        list_.push_back({&c.rays[i], c.targets[i], length(at - c.rays[i].origin), &p, c.bindings[i]});
+    }
+    for (FlightEvent* e : events) e->happen(list_, sched);
+    size_t kept = 0;
+    for (size_t i = 0; i < list_.size(); ++i) {
+        if (list_[i].over) {
+            store_.freeExtra(c.rays[i]);
+            sched.release(c.targets[i]);
+            continue;
+        }
+        PathRay& r = c.rays[i];
+        r.weight *= list_[i].left;
+        if (r.extra >= 0) store_.ownExtra(r).whole *= list_[i].left;
+        c.move(i, kept++);
+    }
+    c.keepFirst(kept);
+}
+
+void Flights::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {
+    if (events.empty() || missed.empty()) return;
+    list_.clear();
+    for (const Sched::Task* t : missed) list_.push_back({&t->payload, t->target, t->payload.maxDistance});
+    for (FlightEvent* e : events) e->happen(list_, sched);
+    size_t kept = 0;
+    for (size_t i = 0; i < missed.size(); ++i) {
+        if (list_[i].over) store_.freeExtra(missed[i]->payload);
+        else missed[kept++] = missed[i];
+    }
+    missed.resize(kept);
+}
+
+void Flights::divert(Flight& f, PathRay next, Sched& sched, float way) {
+    next.trail = photons_.photonTrace() ? shading::kTrailSpread : 0; // photons do not come this way
+    RayExtra extra = store_.extraOf(*f.ray);                         // each ray has its own
+    if (extra.fade.fades()) extra.way += way;
+    next.extra = store_.newExtra(extra);
+    sched.spawn(next.bounces + next.layers, f.target, next);
+    f.over = true;
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,413 @@
+#include "integrator/gathercalls.h"
+#include "base/direction.h"
+#include "base/exact.h"
+#include "integrator/context.h"
+#include "integrator/gathercalls.h"
+#include "integrator/intersector.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/mediastacks.h"
+#include "integrator/occlusioncalls.h"
+#include "integrator/opacities.h"
+#include "integrator/raystore.h"
+#include "integrator/stageset.h"
+#include "lobes/sampling.h"
+#include "world/raysets.h"
+#include <bit>
+#include <set>
+
+namespace alpenglow::transport {
+
+GatherCalls::GatherCalls(const StageSet& s) : Stage(s.context), set_(s), inputs_(s.inputs) {}
+
+namespace {
+
+/// A gather over more than this half angle looks for light from all sides; a smaller one may well look into what refracts.
+constexpr float kHemisphere = 1.4f;
+
+using Of = GatherSite::Of;
+using Output = GatherSite::Output;
+
+void put(float* row, const Output& o, std::initializer_list<float> numbers) {
+    if (int(numbers.size()) != o.rows || o.elements || o.open || o.kind == rsl::ir::Kind::String) return; // another type
+    row[o.at] = 1;
+    std::copy(numbers.begin(), numbers.end(), row + o.at + 1);
+}
+void put(float* row, const Output& o, const Vec3& v) { put(row, o, {v.x, v.y, v.z}); }
+
+/// A value of any type, where that fits the variable.
+void put(float* row, const Output& o, const Told& t) {
+    using rsl::ir::Kind;
+    const bool array = o.elements > 0 || o.open, text = o.kind == Kind::String;
+    if (t.kind && (*t.kind != o.kind || (t.elements > 0) != array)) return;
+    const size_t size = text ? t.texts.size() : t.numbers.size(), each = text ? 1 : size_t(rsl::ir::components(o.kind));
+    const size_t most = size_t(std::max(1, o.elements)) * each;
+    if (size == 0 || (!t.kind && !array && size != most) || (!array && size < most)) return;
+    float* to = row + o.at;
+    *to++ = 1;
+    const size_t elements = std::min(size, most) / each;
+    if (o.open) *to++ = float(elements);
+    for (size_t k = 0; k < std::min(size, most); ++k)
+        to[k] = text ? std::bit_cast<float>(rsl::internString(t.texts[k])) : t.numbers[k];
+}
+
+/// One lane of a request: what it asks for, and the point that asks.
+struct Asking {
+    const StageSet& set;
+    BatchContext& c;
+    const SiteInfo& s;
+    int first, lanes, lane;
+    const float* in;
+    uint32_t occurrence;
+
+    float f(int row) const { return in[size_t(row) * size_t(lanes) + size_t(lane)]; }
+    float number(int row, float fallback) const { return row < 0 ? fallback : f(row); }
+    Vec3 triple(int row) const { return {f(row), f(row + 1), f(row + 2)}; }
+    const ShadePoint& point() const { return c.points[size_t(first + lane)]; }
+    const geometry::SurfacePoint* surface() const { return c.light ? point().lit : &point().surface; }
+    Vec3 at() const { return c.light ? point().Ps : point().P; }
+    uint32_t site() const { return uint32_t(s.site - c.bound->kernel->sites().data()); }
+    const SurfaceBinding* binding() const {
+        if (c.light) return c.lit ? c.lit->binding(first + lane) : nullptr;
+        return c.bindings.empty() ? nullptr : &set.context.world.bindings_[size_t(c.bindings[size_t(first + lane)])];
+    }
+
+    Vec3 origin(const Vec3& w) const {
+        const Vec3 from = triple(s.rows[0]);
+        float bias = number(s.rays->bias, -1);
+        if (bias < 0) bias = set.occlusion.ofShape(point().shape).bias;
+        const geometry::SurfacePoint* here = surface();
+        if (here && length(from - at()) > geometry::roundingError(from) + 4 * here->pError) here = nullptr;
+        return bias >= 0 ? from + w * bias
+               : here    ? geometry::offsetOrigin(*here, w, length(at() - here->P) + length(from - at()))
+                         : from + w * geometry::roundingError(from);
+    }
+
+    Random numbers(int k, int count) const { return set.store.random(*point().ray).draw(uint32_t(k), uint32_t(count)); }
+    /// Of ray k of count.
+    Vec2 pair(int k, int count) const { return numbers(k, count).pair(point().ray->vertex, site(), occurrence * 4096); }
+
+    Vec3 direction(int k, int count) const {
+        const Vec3 axis = directionOr(triple(s.rows[1]), surface() ? surface()->n : Vec3(0, 0, 1));
+        const float angle = f(s.rows[2]);
+        if (!(angle > 0)) return axis;
+        const bool cosine = s.gather->cosine;
+        const double a = std::min(double(angle), cosine ? kPi / 2 : kPi);
+        const Vec2 xi = pair(k, count);
+        if (!cosine) {
+            const float half = float(exact::sin(.5 * a));
+            return Basis(axis).toWorld(sampleCone(2 * half * half, xi));
+        }
+        const float sine = float(exact::sin(a)), r2 = xi.x * sine * sine, r = std::sqrt(r2);
+        const Vec2 d = unitCircle(xi.y);
+        return Basis(axis).toWorld({r * d.x, r * d.y, std::sqrt(std::max(0.f, 1 - r2))});
+    }
+
+    /// Whether a ray may go on from here at all.
+    bool tooDeep(RayType type) const {
+        const PathRay& from = *point().ray;
+        const bool diffuse = type == RayType::Diffuse;
+        const SurfaceBinding* b = binding();
+        if (from.bounces + 1 > set.context.world.maxDepth_) return true;
+        return b && ((b->maxDiffuse >= 0 && from.diffuseBounces + diffuse > b->maxDiffuse) ||
+                     (b->maxSpecular >= 0 && from.specularBounces + !diffuse > b->maxSpecular));
+    }
+
+    PathRay ray(const Vec3& w, const Vec3& begin, float reach, const RayKind* kind, int k, int count) const {
+        const ShadePoint& p = point();
+        PathRay r = *p.ray;
+        r.trail = 0;
+        r.path = 0; // what it brings is the loop's
+        r.weight = Color(s.gather->light ? 1.f : 0.f);
+        r.vertex = childVertex(p.ray->vertex, site(), occurrence * 4096 + uint32_t(k));
+        ++r.bounces;
+        ++(kind->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
+        r.origin = begin;
+        r.dir = w;
+        r.maxDistance = reach;
+        r.kind = kind;
+        r.media = c.light ? nullptr : set.media.towards(c, first + lane, w);
+        r.parted = r.passed = false;
+        r.extra = -1;
+        r.lobePdf = -1; // no light is sampled for it: all that shines counts
+        r.lobeBinding = -1;
+        r.footprint = p.ray->footprint.after(length(at() - p.ray->origin));
+        r.footprint.spread = std::max(r.footprint.spread, std::min(std::max(f(s.rows[2]), 0.f), .7f) / std::sqrt(float(count)));
+        r.counts = false;
+        r.first = true;
+        return r;
+    }
+};
+
+/// What is known of a ray without a shader.
+void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& dir, float distance) {
+    for (const Output& o : g.outputs) {
+        if (o.of == Of::Origin) put(row, o, origin);
+        else if (o.of == Of::Direction) put(row, o, dir);
+        else if (o.of == Of::Length) put(row, o, {distance});
+    }
+}
+
+void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit, const Vec3& dir) {
+    static const std::set<std::string> fixed = {"u", "v", "s", "t", "Ng", "dPdu", "dPdv", "I"};
+    const geometry::Shape& shape = *world.shapes_[hit.shape];
+    std::optional<geometry::SurfacePoint> at;
+    for (const Output& o : g.outputs) {
+        if (o.of != Of::Primitive && o.of != Of::Attribute && o.of != Of::Surface) continue;
+        const std::string& name = rsl::internedString(o.id);
+        if (o.of == Of::Surface && !fixed.count(name)) continue; // the shader tells
+        if (name == "I") {
+            put(row, o, dir * float(hit.distance));
+            continue;
+        }
+        if (o.of == Of::Attribute) {
+            const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[hit.shape])];
+            if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) put(row, o, Told(*i));
+            continue;
+        }
+        if (!at) at = world.accel_->point(hit);
+        if (const auto t = primitiveVariable(shape, *at, name)) put(row, o, *t);
+        else if (name == "u" || name == "v") put(row, o, {name == "u" ? at->u : at->v});
+        else if (name == "Ng" || name == "dPdu" || name == "dPdv")
+            put(row, o, name == "Ng" ? at->Ng : name == "dPdu" ? at->dPdu : at->dPdv);
+    }
+}
+
+/// The first surface that takes so much of the light behind it, with all before it, that its share is over the threshold.
+bool meet(const StageSet& set, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
+    Color through(1);
+    for (int layers = 0; layers < limits::kShadowLayers; ++layers) {
+        if (!set.intersector.meet(ray, hit)) return false;
+        if (!(maxComponent(threshold) > 0)) return true;
+        const SurfaceBinding& b = set.context.world.bindings_[size_t(set.context.world.bindingOf_[hit.shape])];
+        const Opacity& o = b.opacityFor(as.kind->set.mode);
+        Color taken = o.constant;
+        if (o.kernel) {
+            const OpacityQuery q{set.context.world.bindingOf_[hit.shape], hit, &as, &o.kernel};
+            set.opacities.opacities({&q, 1}, {&taken, 1});
+        }
+        through *= Color(1) - taken;
+        if (1 - through.x >= threshold.x && 1 - through.y >= threshold.y && 1 - through.z >= threshold.z) return true;
+        set.context.world.goOn(ray, hit);
+    }
+    return false;
+}
+
+void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count) {
+    const GatherSite& g = *a.s.gather;
+    for (int k = begin; k < end; ++k) {
+        float* row = rows.of(a.lane, k - begin);
+        const texture::SkyDirections::Direction d = g.sky->at(a.pair(k, count));
+        row[0] = 1;
+        tellRay(g, row, a.triple(a.s.rows[0]), d.w, 1e38f);
+        for (const Output& o : g.outputs) {
+            if (o.of == Of::SkyColor) put(row, o, d.light);
+            else if (o.of == Of::SkyDirection) put(row, o, d.w);
+            else if (o.of == Of::SkySolidAngle) put(row, o, {1 / (d.density * float(count))});
+        }
+    }
+}
+
+/// Oi of what a ray met whose shaders are not run for light.
+Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const Vec3& w, const RayKind* kind) {
+    const WorldImpl& world = a.set.context.world;
+    const int binding = world.bindingOf_[hit.shape];
+    const Opacity& o = world.bindings_[size_t(binding)].opacityFor(kind->set.mode);
+    Color c = o.constant;
+    if (!o.kernel) return c;
+    ShadowRay as{};
+    as.origin = from;
+    as.dir = w;
+    as.distance = float(hit.distance);
+    as.time = a.point().shutter;
+    as.ray = a.point().ray;
+    as.kind = kind;
+    const OpacityQuery q{binding, hit, &as, &o.kernel};
+    a.set.opacities.opacities({&q, 1}, {&c, 1});
+    return c;
+}
+
+/// Behind the camera's hit light is not followed of all rays that met something; the others bring what those would have. What
+/// else a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs. `before`: rays
+/// that the kernel has asked for; `many`: those of this call, as far as is known.
+bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t before, uint32_t many) {
+    if (!a.set.context.rules.roulette) return true;
+    const PathRay& from = *a.point().ray;
+    const uint32_t all = a.c.light ? uint32_t(count) : before + many;
+    sent.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(from.asked, all), 0xffff));
+    const float q =
+        a.c.light ? rouletteOfLight(from.bounces, sent.asked) : rouletteWaiting(from.bounces, from.asked, before, many);
+    if (q < 1 && !(a.set.store.random(from).one(sent.vertex, kRoulette, 0) < q)) return false;
+    sent.weight = sent.weight / q;
+    return true;
+}
+
+/// A ray of a gather that has met something whose shaders may have to run.
+struct GatherMet {
+    PathRay ray;
+    float* row;
+    accel::Hit hit;
+};
+
+/// Of the rays of turns begin to end of `turns` those whose hits are shaded. All are cast before the first of them is chosen: how
+/// many have met something is known for all. `asked`: rays of the kernel before, and behind the call with these.
+void sendMet(const Asking& a, std::span<GatherMet> met, int begin, int end, int turns, int count, const RayKind* kind,
+             uint32_t& asked, std::vector<GatherSent>& out) {
+    const GatherSite& g = *a.s.gather;
+    if (met.empty()) return;
+    const uint64_t all = (uint64_t(met.size()) * uint64_t(turns - begin) + uint64_t(end - begin) - 1) / uint64_t(end - begin);
+    const uint32_t before = asked, many = g.asks ? std::max(uint32_t(all), uint32_t(count)) : uint32_t(all);
+    asked += uint32_t(met.size());
+    for (GatherMet& m : met) {
+        PathRay& sent = m.ray;
+        const bool quiet = a.point().ray->quiet;
+        if (quiet || !goesOn(a, sent, count, before, many)) {
+            const Color open = g.opacity ? Color(1) - opacityAt(a, m.hit, sent.origin, sent.dir, kind) : Color(1);
+            endGatherRay(g, {Color(0), open}, m.row);
+            if (quiet || !g.asks) continue;
+            sent.weight = Color(0);
+            sent.quiet = true;
+            sent.asked = uint16_t(std::clamp(turns, int(sent.asked), 0xffff));
+        }
+        out.push_back({sent, m.row, a.set.context.world.shapes_[m.hit.shape].get(), &g, sent.quiet, false, {}});
+        for (const GatherSite::Sent& s : g.sent)
+            for (int k = 0; k < s.size; ++k) out.back().values.push_back(a.f(s.row + k));
+    }
+}
+
+/// Rays that are cast for `count` turns, a power of two or all. Where a gather asks for outputs the shaders run at all that it
+/// meets. Behind one that has met such a gather each casts only its share of that one's rays, so that gathers within gathers stay
+/// linear in their rays: each ray for several turns. What a loop adds up over its turns keeps its mean.
+int raysFor(const Asking& a, int count) {
+    const PathRay& from = *a.point().ray;
+    if (!a.set.context.rules.roulette || from.bounces < 1 || from.asked < 2 || !(from.quiet || a.s.gather->asks)) return count;
+    const int fair = (count + int(from.asked) - 1) / int(from.asked);
+    const int rays = int(std::bit_ceil(uint32_t(fair)));
+    return rays <= rsl::kGatherRays && rays < count ? rays : count;
+}
+
+/// Rays of one lane that are cast.
+void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, uint32_t& asked, std::vector<GatherSent>& out) {
+    const GatherSite& g = *a.s.gather;
+    const RaySite& r = *a.s.rays;
+    const ShadePoint& p = a.point();
+    const bool aimed = a.triple(a.s.rows[1]) != Vec3(0); // refract() at total reflection gives no direction
+    const bool cast = g.category == GatherSite::Category::Rays && a.set.context.world.accel_ && aimed;
+    RayKind kind{RayType::Specular, true, {}, 0};
+    kind.set = a.set.store.raySetOf(a.s, [&](int row) { return a.f(row); }, p.shape, kind.type, kind.label);
+    const RayKind* const kept = a.set.store.kindOf(kind);
+    const bool deep = a.tooDeep(kind.type);
+    const float angle = a.f(a.s.rows[2]);
+    if (begin == 0 && cast && angle > kHemisphere && p.shape && p.ray)
+        a.set.occlusion.noteTurnedAway(a.c, a.s, a.first + a.lane, directionOr(a.triple(a.s.rows[1]), p.surface.n));
+    const float far = std::min(a.number(r.maxDistance, 1e38f), a.number(r.maxHit, 1e38f)), reach = far >= 0 ? far : 1e38f;
+    const float base = a.number(r.base, 0);
+    const int turns = count;
+    count = raysFor(a, turns);
+    std::vector<GatherMet> shaded;
+    for (int turn = begin; turn < end; ++turn) {
+        float* row = rows.of(a.lane, turn - begin);
+        if (turn - begin >= count) {
+            row[0] = -float(count);
+            continue;
+        }
+        const int k = turn % count;
+        const Vec3 w = a.direction(k, count);
+        Vec3 from = a.origin(w);
+        if (const geometry::SurfacePoint* s = a.surface(); base > 0 && s) {
+            const Vec2 u = a.numbers(k, count).pair(childVertex(p.ray->vertex, a.site(), a.occurrence), kSampleBase, 0);
+            from += (s->dPdu * (p.du * (u.x - .5f)) + s->dPdv * (p.dv * (u.y - .5f))) * base;
+        }
+        accel::Hit hit;
+        bool met = false;
+        if (cast && !deep) {
+            ShadowRay as{};
+            as.origin = from;
+            as.dir = w;
+            as.distance = reach;
+            as.time = p.shutter;
+            as.ray = p.ray;
+            as.kind = kept;
+            accel::Ray ray;
+            ray.org = from;
+            ray.dir = w;
+            ray.tfar = reach;
+            ray.time = p.shutter;
+            ray.mask = visibilityBit(kind.type);
+            ray.sides = kind.set.sides;
+            ray.only = kind.set.only;
+            if (p.ray->sample) ray.level = p.ray->sample->level;
+            met = meet(a.set, ray, as, g.threshold >= 0 ? Color(a.triple(g.threshold)) : Color(0), hit);
+            ++a.set.context.raysOf(kind.type);
+        }
+        tellRay(g, row, from, w, met ? float(hit.distance) : 1e38f);
+        if (!met) continue;
+        row[0] = 1;
+        tellHit(a.set.context.world, g, row, hit, w);
+        if (g.shades) shaded.push_back({a.ray(w, from, reach, kept, k, count), row, hit});
+    }
+    sendMet(a, shaded, begin, end, turns, count, kept, asked, out);
+}
+
+} // namespace
+
+void endGatherRay(const GatherSite& g, const shading::TargetValue& v, float* row) {
+    for (const Output& o : g.outputs) {
+        if (o.of == Of::Light) put(row, o, v.radiance);
+        else if (o.of == Of::Opacity) put(row, o, Color(1) - v.transmission);
+    }
+}
+
+GatherRows& GatherCalls::cast(BatchContext& c, const SiteInfo& s, int first, uint64_t mask, int lanes, const float* in,
+                              std::span<const uint32_t> occurrence, std::span<uint32_t> asked, std::vector<GatherSent>& sent) {
+    GatherRows& g = c.gathers[{s.gather->number, first}];
+    g.width = s.gather->width;
+    g.counts.resize(size_t(lanes));
+    g.begins.resize(size_t(lanes));
+    g.rows.assign(size_t(lanes) * size_t(rsl::kGatherRays) * size_t(g.width), 0);
+    sent.clear();
+    for (int lane = 0; lane < lanes; ++lane) {
+        if (!(mask >> lane & 1) || first + lane >= int(c.points.size())) continue;
+        const Asking a{set_, c, s, first, lanes, lane, in, occurrence[size_t(lane)]};
+        const ShadePoint& p = a.point();
+        const float samples = a.f(s.rows[3]);
+        const int count = samples >= 1 && p.ray ? set_.occlusion.samplesOf(samples, p.shape, s, c) : 0,
+                  begin = int(a.f(s.rows[4]));
+        g.counts[size_t(lane)] = count;
+        g.begins[size_t(lane)] = begin;
+        const int end = std::min(begin + rsl::kGatherRays, count);
+        if (s.gather->category == GatherSite::Category::Sky) skySamples(a, g, begin, end, count);
+        else castRays(a, g, begin, end, count, asked[size_t(lane)], sent);
+    }
+    return g;
+}
+
+void GatherCalls::takeSent(BatchContext& c) const {
+    for (size_t i = 0; i < c.targets.size(); ++i) {
+        const auto asks = gathered.find(c.targets[i]);
+        if (asks == gathered.end()) continue;
+        const float* value = asks->second->values.data();
+        for (const GatherSite::Sent& s : asks->second->site->sent) {
+            c.batch->give(s.parameter, int(i), {value, size_t(s.size)});
+            value += s.size;
+        }
+    }
+}
+
+void GatherCalls::tellGather(const BatchContext& c, int point, GatherSent& sent) {
+    const ShadePoint& p = c.points[size_t(point)];
+    if (sent.told || p.shape != sent.met) return;
+    sent.told = true;
+    const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[size_t(point)])];
+    for (const Output& o : sent.site->outputs) {
+        if (o.of != Of::Surface && o.of != Of::Displacement && o.of != Of::Volume) continue;
+        const InstanceRef& shader = o.of == Of::Surface        ? b.surface
+                                    : o.of == Of::Displacement ? b.displacement
+                                                               : b.atmosphere.shader;
+        const shading::Batch* run = o.of == Of::Surface                       ? c.batch.get()
+                                    : o.of == Of::Displacement && c.displaced ? c.displaced->batch.get()
+                                                                              : nullptr;
+        if (const auto t = toldAtHit(inputs_.answers, p, shader, o.id, run, point)) put(sent.row, o, *t);
+    }
+}
+
+} // namespace alpenglow::transport

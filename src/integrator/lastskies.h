@@ -1,0 +1,27 @@
+// Where a path ends by its depth: skies that only rays would find, as shadow rays.
+#pragma once
+#include "integrator/scatterrays.h"
+
+namespace alpenglow::transport {
+
+class LightKernels;
+class LitSurfaces;
+class ShadowRays;
+
+class LastSkies final : VertexStage {
+public:
+    LastSkies(const StageSet&, const VertexLobes&, ScatterRays&);
+    void run();
+
+private:
+    void lastSky(int light);
+    ScatterRays& scatter_;
+    Accumulator& accumulator_;
+    LightKernels& lightKernels_;
+    const LightPathStates& paths_;
+    LitSurfaces& litSurfaces_;
+    MediaStacks& media_;
+    ShadowRays& shadows_;
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,36 @@
+// Outputs by light path (scene/lightpaths.h): PathRay::path from event to event. All keep 0, which is a path that nobody follows.
+#pragma once
+#include "integrator/context.h"
+#include "integrator/vertex.h"
+
+namespace alpenglow::transport {
+
+struct StageSet;
+
+class LightPathStates final : Stage {
+public:
+    explicit LightPathStates(const StageSet&);
+    /// Behind one more event.
+    uint16_t next(uint16_t path, int32_t symbol) const { return path ? automaton->next(path, symbol) : 0; }
+    /// Scattered by a loop over lights, or by ambient(), under that label, towards w.
+    uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w, int label) const;
+    uint16_t atLobe(const LobeVertex&, const ShadePoint&, const PathRay&, const Vec3& w) const; ///< scattered towards w, unit
+    uint16_t atLight(uint16_t path, const BoundLight& l) const {
+        return path ? automaton->next(path, lights[size_t(&l - world_.lights_.data())]) : 0;
+    }
+    /// Photons are known by where they rest: as if a mirror had sent them there from a light without a label.
+    uint16_t atPhotons(uint16_t path) const { return next(next(path, mirror), loopLight); }
+
+    const scene::LightPaths* automaton = nullptr; ///< Settings::lightPaths, under path; null: nobody asks
+    std::vector<int32_t> lights;                  ///< symbols by light
+    // Symbols of events without labels.
+    int32_t straight = 0, volume = 0, object = 0, map = 0, loopLight = 0, mirror = 0;
+    int loopLabel = -1, ambientLabel = -1;
+
+private:
+    int labelOf(const std::string&) const;
+    mutable std::unordered_map<int32_t, int> labelOfRays_; ///< by interned text
+    mutable std::unordered_map<const LobeKind*, int> labelOfLobe_;
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,82 @@
+// The stages of one thread by name. A stage takes from here what it calls, when it is made; it keeps nothing else.
+#pragma once
+
+namespace alpenglow::transport {
+
+class Accumulator;
+class AmbientLight;
+class Atmosphere;
+class BatchPool;
+class BlockVertices;
+struct Context;
+class CameraOutputs;
+class DepthRays;
+class Displacement;
+class EmittedLight;
+class Flights;
+class GatherCalls;
+class HitQueues;
+class Intersector;
+class IrradianceRecords;
+class KernelInputs;
+class LightKernels;
+class LightOutputs;
+class LightPathStates;
+class LitSurfaces;
+class MediaStacks;
+class MediumFlights;
+class NestedTrace;
+class OcclusionCalls;
+class Opacities;
+class PhotonStage;
+class RayStore;
+class Requests;
+class RowShading;
+class ShadowRays;
+class SubsurfaceWalks;
+class SurfacePoints;
+class SurfaceShading;
+class Transparency;
+class VertexLight;
+class WaitingKernels;
+
+struct StageSet {
+    Context& context;
+    RayStore& store;
+    LightPathStates& paths;
+    Accumulator& accumulator;
+    Intersector& intersector;
+    HitQueues& queues;
+    SurfacePoints& surfaces;
+    Flights& flights;
+    EmittedLight& emitted;
+    LitSurfaces& litSurfaces;
+    Transparency& transparency;
+    LightKernels& lightKernels;
+    NestedTrace& nested;
+    MediumFlights& mediumFlights;
+    OcclusionCalls& occlusion;
+    IrradianceRecords& records;
+    GatherCalls& gathers;
+    ShadowRays& shadows;
+    Opacities& opacities;
+    MediaStacks& media;
+    Atmosphere& atmosphere;
+    BatchPool& batches;
+    KernelInputs& inputs;
+    Displacement& displacement;
+    BlockVertices& blocks;
+    CameraOutputs& cameraOutputs;
+    SurfaceShading& shading;
+    RowShading& rowShading;
+    WaitingKernels& waitingKernels;
+    Requests& requests;
+    AmbientLight& ambient;
+    VertexLight& vertexLight;
+    SubsurfaceWalks& subsurface;
+    PhotonStage& photons;
+    LightOutputs& lightOutputs;
+    DepthRays& depthRays;
+};
+
+} // namespace alpenglow::transport

@@ -1,0 +1,161 @@
+// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what
+// it asked for.
+#include "integrator/surfaceshading.h"
+#include "base/direction.h"
+#include "integrator/accumulator.h"
+#include "integrator/ambientlight.h"
+#include "integrator/atmosphere.h"
+#include "integrator/blockvertices.h"
+#include "integrator/cameraoutputs.h"
+#include "integrator/context.h"
+#include "integrator/displacement.h"
+#include "integrator/gathercalls.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/lightoutputs.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/photonstage.h"
+#include "integrator/raystore.h"
+#include "integrator/requests.h"
+#include "integrator/shadowrays.h"
+#include "integrator/stageset.h"
+#include "integrator/transparency.h"
+#include "integrator/vertex.h"
+#include "integrator/vertexlight.h"
+#include "integrator/waitingkernels.h"
+#include "world/outputs.h"
+#include <algorithm>
+
+namespace alpenglow::transport {
+
+SurfaceShading::SurfaceShading(const StageSet& s)
+    : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), atmosphere_(s.atmosphere), blocks_(s.blocks),
+      cameraOutputs_(s.cameraOutputs), displacement_(s.displacement), gathers_(s.gathers), inputs_(s.inputs),
+      lightOutputs_(s.lightOutputs), paths_(s.paths), photons_(s.photons), store_(s.store), requests_(s.requests),
+      shadows_(s.shadows), transparency_(s.transparency), vertexLight_(s.vertexLight), waitingKernels_(s.waitingKernels) {}
+
+/// What a call whose ray has met a point is told besides light.
+void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacity, Sched& sched) {
+    const PathRay& ray = c.rays[size_t(i)];
+    const TargetId target = c.targets[size_t(i)];
+    if (ray.first) {
+        sched.setNearer(target, length(c.points[size_t(i)].P - ray.origin), c.points[size_t(i)].N);
+        sched.setTransmission(target, Color(1) - opacity);
+    }
+    if (!gathers_.gathered.empty())
+        if (const auto asks = gathers_.gathered.find(target); asks != gathers_.gathered.end())
+            gathers_.tellGather(c, i, *asks->second);
+    const RayExtra& extra = store_.extraOf(ray);
+    if (extra.fade.fades() && maxComponent(extra.environment) > 0) { // what does not block shows the sky
+        const Color light = extra.whole * extra.environment * opacity * (1 - extra.kept);
+        accumulator_.deposit(sched, {target, light, LightEvent::Map, &ray, extra.share});
+        if (TraceSums* sums = accumulator_.sumsOf(target)) sums->add(TraceSums::Environment, light);
+    }
+    if (TraceSums* sums = accumulator_.sumsOf(target)) {
+        const Color blocked = extra.part * opacity * extra.kept;
+        sums->add(TraceSums::Blocked, blocked);
+        sums->add(TraceSums::Open, ray.dir * -mean(blocked));
+    }
+}
+
+void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
+    if (c.aside) return lightOutputs_.finishAside(c, first, lanes, sched);
+    shading::Batch& b = *c.batch;
+    int ci = b.plan().Ci, oi = b.plan().Oi;
+    cameraOutputs_.begin(c);
+    bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
+    const bool media = !world_.media_.empty();
+    if (suspended) atmosphere_.hazeOfBatch(c, first, lanes, media || paths_.automaton);
+    for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
+        const PathRay& ray = c.rays[i];
+        const SurfaceBinding& binding = world_.bindings_[c.bindings[i]];
+        Color color = ci >= 0 ? b.color(ci, i) : Color(0), opacity = oi >= 0 ? b.color(oi, i) : Color(1);
+        if (binding.matte && ray.camera()) {
+            sched.setDistance(c.targets[i], 0);
+            color = Color(0);
+        }
+        tellAsker(c, i, opacity, sched);
+        Color shown = color;
+        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // shade() has scaled pairs
+            shown = c.haze[size_t(i)].shown;
+            opacity = c.haze[size_t(i)].opacity;
+        }
+        if (!isFinite(opacity)) accumulator_.notFinite(&ray, "Oi", binding.surface.get());
+        const bool hazed = !c.haze.empty() && c.haze[size_t(i)].on; // then what it gives and what the volume adds are told apart
+        if (isFinite(shown))
+            accumulator_.deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share,
+                                         binding.surface.get(), hazed ? uint16_t(0) : paths_.next(ray.path, paths_.object)});
+        else accumulator_.notFinite(&ray, "Ci", binding.surface.get());
+        if (hazed && ray.path && isFinite(shown))
+            accumulator_.depositThroughVolume(sched, ray, binding.matte && ray.camera() ? shown : c.haze[size_t(i)].slope * color,
+                                              shown);
+        if (ray.counts) {
+            cameraOutputs_.seeNormal(ray, c.points[size_t(i)], opacity);
+            cameraOutputs_.see(ray, opacity, c.depths.empty() ? c.points[size_t(i)].P.z : c.depths[size_t(i)], binding.matte);
+            cameraOutputs_.add(c, i);
+        }
+        const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
+        const Color clear = chance > 0 && !c.opaque ? transparency_.goesOn(c, i) : Color(0);
+        if (ray.counts && ray.sample->grid) accumulator_.results[size_t(ray.sample->path)]->behind = clear;
+        else if (maxComponent(clear) > 0)
+            transparency_.passThrough(binding, ray, c.targets[i], c.points[i], clear, chance,
+                                      asked.empty() ? 0 : asked[size_t(i - first)], sched);
+    }
+}
+
+void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched) {
+    if (c->binding->displacement) displacement_.take(*c);
+    const auto& kernel = *c->bound->kernel;
+    if (photons_.photonTrace()) atmosphere_.hazeOfPhotons(*c);
+    if (photons_.photonTrace() && kernel.facts().suspends) return photons_.photonsByModel(*c, sched);
+    inputs_.fill(*c);
+    if (c->displaced) c->batch->tell(*c->displaced->batch);
+    if (!gathers_.gathered.empty()) gathers_.takeSent(*c);
+    auto aside = lightOutputs_.asides(*c, sched);
+    if (c->binding->moveS) displacement_.moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
+    int n = int(c->points.size());
+    counters_.points += uint64_t(n);
+    ++counters_.batches;
+    counters_.lanesUsed += uint64_t(n);
+    counters_.lanesRun += uint64_t((n + kernel.lanes() - 1) / kernel.lanes() * kernel.lanes());
+
+    if (kernel.facts().suspends) {
+        waitingKernels_.start(c, sched);
+        lightOutputs_.followAsides(lightOutputs_.shareLight(*c, {}, aside, sched), aside, sched);
+        return;
+    }
+    kernel.run(&c->batch->call());
+    c->ran();
+
+    // Affine pairs by point, in order of emission. Atmosphere scales them.
+    const bool media = !world_.media_.empty();
+    bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(),
+                                     [&](int b) { return world_.bindings_[size_t(b)].atmosphere.shader != nullptr; });
+    if (!hazy && aside.empty() && blocks_.takes(*c)) {
+        c->opaque = isOpaque(*c->batch);
+        if (!c->opaque) transparency_.tellClear(*c);
+        if (blocks_.run(*c, sched)) {
+            counters_.inBlocks += uint64_t(n);
+            requests_.requestPairs(*c, std::vector<Color>(size_t(n), Color(1)), nullptr, sched, false);
+            if (!ambient_.asked.empty()) ambient_.gather(*c);
+            shadows_.flush(sched);
+            return finish(*c, 0, n, sched);
+        }
+    }
+    std::vector<Color> slope(n, Color(1));
+    if (hazy && !photons_.photonTrace()) {
+        atmosphere_.hazeOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
+        for (int i = 0; i < n; ++i)
+            if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;
+    }
+    std::vector<AskedLobe> asked; // only where outputs share lobes
+    requests_.requestPairs(*c, slope, aside.empty() ? nullptr : &asked, sched);
+    if (photons_.photonTrace()) photons_.takeModels(*c, false);
+    if (world_.settings_.hider == Hider::Path) transparency_.tellClear(*c);
+    const auto rest = lightOutputs_.shareLight(*c, asked, aside, sched);
+    vertexLight_.gather(*c, sched);
+    shadows_.flush(sched);
+    finish(*c, 0, n, sched);
+    lightOutputs_.followAsides(rest, aside, sched);
+}
+
+} // namespace alpenglow::transport

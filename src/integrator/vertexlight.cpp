@@ -1,0 +1,39 @@
+#include "integrator/vertexlight.h"
+#include "integrator/ambientlight.h"
+#include "integrator/context.h"
+#include "integrator/gather.h"
+#include "integrator/requests.h"
+#include "integrator/stageset.h"
+#include "integrator/subsurfacewalks.h"
+
+namespace alpenglow::transport {
+
+VertexLight::~VertexLight() = default;
+
+VertexLight::VertexLight(const StageSet& s)
+    : Stage(s.context), set_(s), ambient_(s.ambient), requests_(s.requests), subsurface_(s.subsurface) {}
+
+void VertexLight::gather(BatchContext& c, Sched& sched) {
+    if (!ambient_.asked.empty()) ambient_.gather(c);
+    std::unique_ptr<Gather> g = std::move(gather_); // taken, so that one inside of this has its own
+    if (!g) g = std::make_unique<Gather>(set_);
+    g->run(c, sched);
+    requests_.apartAt.clear();
+    gather_ = std::move(g);
+    if (!subsurface_.below.empty()) subsurface_.walk(c, sched);
+}
+
+void VertexLight::tellScaled(const SurfaceBinding& b, bool more) {
+    if (!(more ? tamed_ : tamedClear_).insert(b.surface.get()).second) return;
+    diagnostics_.reportOnce((more ? "energy:" : "energyclear:") + b.surface->name,
+                            {more ? Severity::Warning : Severity::Info,
+                             Rie::NoError,
+                             b.surface->place,
+                             "shader \"" + b.surface->name + "\" reflects" +
+                                 (more ? "" : ", together with what comes through it,") +
+                                 " more light than it receives; its indirect light is scaled down to what it receives",
+                             "--unbiased leaves it as it is",
+                             {}});
+}
+
+} // namespace alpenglow::transport

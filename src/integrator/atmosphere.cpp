@@ -98,6 +98,15 @@ void Atmosphere::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlo
     }
 }
 
+void Atmosphere::scaleRequests(BatchContext& c) {
+    for (const EmitRecord& e : c.emits)
+        for (int lane = 0; lane < e.lanes; ++lane) {
+            const size_t point = size_t(e.first + lane);
+            if (!(e.mask >> lane & 1) || point >= c.haze.size() || !c.haze[point].on) continue;
+            for (int k = 0; k < 3; ++k) c.arena[e.offset + size_t(k * e.lanes + lane)] *= c.haze[point].slope[k];
+        }
+}
+
 void Atmosphere::hazeOfPhotons(BatchContext& c) {
     const WorldImpl& world = world_;
     c.haze.clear();

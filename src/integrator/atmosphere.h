@@ -17,6 +17,8 @@ public:
               BatchContext* surface = nullptr, std::span<const int> of = {});
     /// Fills c.haze for points first to first + count - 1 of a shaded batch.
     void hazeOfBatch(BatchContext&, int first, int count, bool wantSlope);
+    /// What the volumes before the points of a batch leave of the light that its kernel has asked for: scales the weights.
+    static void scaleRequests(BatchContext&);
     /// Takes from the light of emitters what their atmosphere takes between them and the lit points.
     /// inMedium: LightCall::inMedium.
     void hazeOfEmitters(const BoundLight&, std::span<const ShadePoint>, std::span<LightValue>, const std::vector<char>* inMedium);

@@ -16,6 +16,7 @@ namespace alpenglow::transport {
 /// Whether points of the light come from the stage `place` or are one, and its kernel asks for nothing but what that gives.
 bool BlockVertices::inRows(const BoundLight& l) const {
     const bool emitter = l.kind == LightKind::Area;
+    if (l.hazy) return false;
     if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.sky || l.cone) return false;
     const auto& k = *l.kernel.kernel;
     return l.kernel.plan->readsLightRows() && k.sites().empty() && !k.facts().suspends && !k.facts().lightLoops &&

@@ -64,7 +64,7 @@ void BlockVertices::throwDice(size_t b) {
     uint32_t keys[kMostSites];
     for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
     stages_.name(v, keys, next_);
-    if (!rules_.roulette || std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; })) {
+    if (roulette_ == Roulette::None || std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; })) {
         std::fill_n(next_.dice, kBlock, 0.f);
         return;
     }
@@ -77,7 +77,7 @@ void BlockVertices::throwDice(size_t b) {
 
 void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
     throwDice(b);
-    for (Lanes bad = stages_.extend(vertices_[b], rules_.roulette, next_); bad; bad &= bad - 1) {
+    for (Lanes bad = stages_.extend(vertices_[b], roulette_, next_); bad; bad &= bad - 1) {
         const int lane = std::countr_zero(bad);
         accumulator_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
     }

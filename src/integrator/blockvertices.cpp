@@ -29,21 +29,28 @@ BlockVertices::BlockVertices(const StageSet& s)
       stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
+    if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     lastSkies_ = std::any_of(world_.skies_.begin(), world_.skies_.end(),
                              [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
-    const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.localRoulette && !set.lightOnly && set.indirect;
+    const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && world_.media_.empty() && !set.firstSeen && !set.lightPaths &&
-              world_.lightOutputs_.empty() && !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
+    usable_ = set.blocks && rules && lights && world_.media_.empty() && !set.lightPaths && world_.lightOutputs_.empty() &&
+              !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
 }
 
 /// Whether a light's samples are what blocks hold: an emitter or a light with a place, told nothing and asked for nothing more.
-static bool isPlainLight(const BoundLight& l) {
-    return !l.asksSurface && !l.channels && l.sentCl < 0 && !l.hazy && !usesFootprint(l);
+static bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels && l.sentCl < 0 && !usesFootprint(l); }
+
+bool BlockVertices::takesRays(const BatchContext& c) const {
+    const bool firstSeen = world_.settings_.firstSeen;
+    return std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
+        return r.quiet || (r.extra >= 0 && store_.extraOf(r).share >= 0) || (firstSeen && r.counts) ||
+               (lastSkies_ && r.bounces >= world_.maxDepth_) || (world_.photons_ && world_.photons_->pass(r.sample->sample));
+    });
 }
 
 bool BlockVertices::takes(const BatchContext& c) const {
-    return takes(*c.binding, *c.bound) && !c.aside && !c.between && !c.below && !photons_.photonTrace();
+    return takes(*c.binding, *c.bound) && !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
@@ -74,33 +81,28 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
         RayBlock& rays = rays_[b];
         stages_.load(&c.rays[first], int(sizeof(PathRay)), int(n), kRayWords, rays.origin);
         for (size_t k = 0; k < size_t(kBlock); ++k) rays.target[k] = c.targets[first + std::min(k, n - 1)];
-        if (!takeRays(rays) || !loadPoints(b, c)) return false;
+        takeRays(rays);
+        if (!loadPoints(b, c)) return false;
     }
     return true;
 }
 
-/// What paths need to know of the rays that came to a block. False: some ray needs a look by itself.
-bool BlockVertices::takeRays(const RayBlock& rays) {
+/// What paths need to know of the rays that came to a block.
+void BlockVertices::takeRays(const RayBlock& rays) {
     VertexBlock& v = vertices_[size_t(&rays - rays_.data())];
     v.last = 0;
-    bool usual = true;
     for (int k = 0; k < kBlock; ++k) {
         v.bounces[k] = int16_t(rays.bounces[k]);
         v.last |= Lanes(v.bounces[k] >= world_.maxDepth_) << k;
-        usual &= !(rays.flags[k] & kQuietBit);
     }
     for (int k = 0; k < kBlock; ++k) {
         const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
         v.low[k] = sample->numbers.low();
         v.high[k] = sample->numbers.high();
         v.index[k] = sample->numbers.index();
-        if (rays.extra[k] >= 0) usual &= store_.extraAt(rays.extra[k]).share < 0;
-        if (world_.photons_) usual &= !world_.photons_->pass(sample->sample);
     }
-    usual &= v.last == 0 || !lastSkies_;
     for (int q = 0; q < 3; ++q) std::copy_n(rays.weight[q], kBlock, v.weight[q]);
     std::copy_n(rays.vertex, kBlock, v.vertex);
-    return usual;
 }
 
 bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {

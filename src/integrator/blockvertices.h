@@ -30,6 +30,9 @@ public:
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all that a batch whose kernel has run asks for is of this kind.
     bool takes(const BatchContext&) const;
+    /// Whether the rays that came to a batch are of this kind: not of outputs that share light, no photons are gathered, albedos
+    /// are not asked for (Settings::firstSeen), and no sky must be looked for at their end.
+    bool takesRays(const BatchContext&) const;
     /// Lights its points and sends their rays; shadow rays are left in ShadowRays::queue. False: nothing was done, for some point
     /// needs a look by itself.
     bool run(BatchContext&, Sched&);
@@ -60,7 +63,7 @@ private:
 
     // blockvertices.cpp
     bool loadVertices(const BatchContext&);
-    bool takeRays(const RayBlock&);
+    void takeRays(const RayBlock&);
     bool loadPoints(size_t block, const BatchContext&);
     bool findSites(const BatchContext&);
     void beginSite(Site&, int number, const BatchContext&);
@@ -110,7 +113,8 @@ private:
     VertexLight& vertexLight_;
     const Stages& stages_;
     LobeLanesList lanes_;
-    bool usable_ = false;    ///< by what the world is
+    bool usable_ = false; ///< by what the world is
+    Roulette roulette_ = Roulette::None;
     bool lastSkies_ = false; ///< where paths end by their length skies must be asked (Gather::lastSkies)
     size_t blocks_ = 0, points_ = 0;
     std::vector<VertexBlock> vertices_;

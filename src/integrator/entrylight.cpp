@@ -72,8 +72,7 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
 /// What that light is made of besides, where the shader gathers it.
 void Walks::askLights(BatchContext& c, std::span<const Exit> exits, Sched& sched) {
     const size_t had = requests_.lobes.size();
-    const std::vector<Color> whole(c.points.size(), Color(1));
-    requests_.requestPairs(c, whole, nullptr, sched);
+    requests_.requestPairs(c, nullptr, sched);
     for (size_t i = had; i < requests_.lobes.size(); ++i) {
         LobeVertex& l = requests_.lobes[i];
         l.indirect *= asked_[size_t(exits[size_t(l.point)].asked)].indirect;

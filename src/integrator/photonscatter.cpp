@@ -220,8 +220,7 @@ std::shared_ptr<BatchContext> PhotonScatter::shadeBack(std::span<LobeRay* const>
     c->bound->kernel->run(&c->batch->call());
     c->ran();
     const size_t settled = shadows_.settled.size();
-    const std::vector<Color> whole(c->points.size(), Color(1));
-    requests_.requestPairs(*c, whole, nullptr, sched);
+    requests_.requestPairs(*c, nullptr, sched);
     shadows_.settled.erase(shadows_.settled.begin() + long(std::min(settled, shadows_.settled.size())), shadows_.settled.end());
     requests_.rows.prepare();
     return c;

@@ -28,7 +28,6 @@ public:
                              int32_t& label);
 
     const RayExtra& extraOf(const PathRay& r) const { return r.extra < 0 ? noExtra_ : extras_[size_t(r.extra)]; }
-    const RayExtra& extraAt(int32_t number) const { return extras_[size_t(number)]; } ///< by PathRay::extra, >= 0
     /// The same, of a ray that has one.
     RayExtra& ownExtra(const PathRay& r) { return extras_[size_t(r.extra)]; }
     /// For PathRay::extra of one ray, which has it alone: freeExtra() when its points are shaded. -1 where there is nothing in

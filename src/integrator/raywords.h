@@ -41,6 +41,6 @@ static_assert(offsetof(PathRay, diffuseBounces) == offsetof(PathRay, bounces) + 
 #undef ALPENGLOW_RAY_ROW
 
 /// Of RayBlock::flags.
-inline constexpr uint32_t kAskedBits = 0xffff, kQuietBit = 1u << 18;
+inline constexpr uint32_t kAskedBits = 0xffff;
 
 } // namespace alpenglow::transport

@@ -256,8 +256,7 @@ Color Requests::mapTowards(const TraceSite& t, const Vec3& w, float spread) cons
     return {v[0], v[1], v[2]};
 }
 
-void Requests::requestPairs(BatchContext& c, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched& sched,
-                            bool lobesToo) {
+void Requests::requestPairs(BatchContext& c, std::vector<AskedLobe>* asked, Sched& sched, bool lobesToo) {
     const int n = int(c.points.size());
     std::vector<uint32_t>& occurrence = occurrence_;
     occurrence.assign(c.emits.empty() ? 0 : c.bound->sites.size() * size_t(n), 0);
@@ -270,7 +269,7 @@ void Requests::requestPairs(BatchContext& c, std::span<const Color> slope, std::
         for (int lane = 0; lane < e.lanes; ++lane) {
             int point = e.first + lane;
             if (!(e.mask >> lane & 1) || point >= n) continue;
-            Color weight = Color(pair[lane], pair[e.lanes + lane], pair[2 * e.lanes + lane]) * slope[point];
+            Color weight = Color(pair[lane], pair[e.lanes + lane], pair[2 * e.lanes + lane]);
             if (!isFinite(weight)) {
                 accumulator_.notFinite(c, c.rays[size_t(point)], uint32_t(e.site));
                 continue;

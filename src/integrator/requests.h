@@ -32,9 +32,8 @@ inline bool asksShadows(SiteKind k) { return k == SiteKind::Transmission || k ==
 class Requests final : Stage {
 public:
     explicit Requests(const StageSet&);
-    /// What the pairs of a kernel that did not wait ask for. `slope`: by point, what the atmosphere leaves. `asked`: gets the
-    /// lobes; may be null. lobesToo false: all but lobes.
-    void requestPairs(BatchContext&, std::span<const Color> slope, std::vector<AskedLobe>* asked, Sched&, bool lobesToo = true);
+    /// What the pairs of a kernel that did not wait ask for. `asked`: gets the lobes; may be null. lobesToo false: all but lobes.
+    void requestPairs(BatchContext&, std::vector<AskedLobe>* asked, Sched&, bool lobesToo = true);
     /// One call. `in`: rows of its arguments. owns: LobeVertex::ownsTarget.
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
                  bool owns, uint32_t occurrence);

@@ -47,7 +47,8 @@ bool RowShading::takes(const SurfaceBinding& b) const {
 }
 
 bool RowShading::shade(BatchContext& c, Sched& sched) {
-    if (!flights_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() || !accumulator_.traceSums.empty())
+    if (!flights_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() || !accumulator_.traceSums.empty() ||
+        !blocks_.takesRays(c))
         return false;
     // A ray that fades with distance, or whose call asks for distance and normal of the hit, needs the point that it met.
     for (const PathRay& r : c.rays)
@@ -122,7 +123,7 @@ void RowShading::requestOthers(BatchContext& c, Sched& sched) {
     };
     if (std::none_of(c.emits.begin(), c.emits.end(), other)) return;
     surfaces_.pointsOfRows(c);
-    requests_.requestPairs(c, std::vector<Color>(c.rays.size(), Color(1)), nullptr, sched, false);
+    requests_.requestPairs(c, nullptr, sched, false);
     if (!ambient_.asked.empty()) ambient_.gather(c);
 }
 

@@ -112,7 +112,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     if (!gathers_.gathered.empty()) gathers_.takeSent(*c);
     auto aside = lightOutputs_.asides(*c, sched);
     if (c->binding->moveS) displacement_.moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
-    int n = int(c->points.size());
+    const int n = int(c->points.size());
     counters_.points += uint64_t(n);
     ++counters_.batches;
     counters_.lanesUsed += uint64_t(n);
@@ -126,29 +126,28 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     kernel.run(&c->batch->call());
     c->ran();
 
-    // Affine pairs by point, in order of emission. Atmosphere scales them.
+    // Atmospheres scale what the kernel asks for.
     const bool media = !world_.media_.empty();
-    bool hazy = media || std::any_of(c->bindings.begin(), c->bindings.end(),
-                                     [&](int b) { return world_.bindings_[size_t(b)].atmosphere.shader != nullptr; });
-    if (!hazy && aside.empty() && blocks_.takes(*c)) {
+    const bool hazy = !photons_.photonTrace() && (media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) {
+                                                      return world_.bindings_[size_t(b)].atmosphere.shader != nullptr;
+                                                  }));
+    if (hazy) {
+        atmosphere_.hazeOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
+        atmosphere_.scaleRequests(*c);
+    }
+    if (aside.empty() && blocks_.takes(*c)) {
         c->opaque = isOpaque(*c->batch);
         if (!c->opaque) transparency_.tellClear(*c);
         if (blocks_.run(*c, sched)) {
             counters_.inBlocks += uint64_t(n);
-            requests_.requestPairs(*c, std::vector<Color>(size_t(n), Color(1)), nullptr, sched, false);
+            requests_.requestPairs(*c, nullptr, sched, false);
             if (!ambient_.asked.empty()) ambient_.gather(*c);
             shadows_.flush(sched);
             return finish(*c, 0, n, sched);
         }
     }
-    std::vector<Color> slope(n, Color(1));
-    if (hazy && !photons_.photonTrace()) {
-        atmosphere_.hazeOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
-        for (int i = 0; i < n; ++i)
-            if (c->haze[size_t(i)].on) slope[size_t(i)] = c->haze[size_t(i)].slope;
-    }
     std::vector<AskedLobe> asked; // only where outputs share lobes
-    requests_.requestPairs(*c, slope, aside.empty() ? nullptr : &asked, sched);
+    requests_.requestPairs(*c, aside.empty() ? nullptr : &asked, sched);
     if (photons_.photonTrace()) photons_.takeModels(*c, false);
     if (world_.settings_.hider == Hider::Path) transparency_.tellClear(*c);
     const auto rest = lightOutputs_.shareLight(*c, asked, aside, sched);

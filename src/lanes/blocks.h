@@ -123,6 +123,9 @@ struct alignas(64) RayBlock {
     Row importance;
 };
 
+/// What ends paths by chance: nothing, their throughput, or what the lobe that is followed weighs (lobes/sampling.h).
+enum class Roulette : uint8_t { None, Throughput, Local };
+
 /// How select() weighs lobes.
 struct SelectRules {
     uint32_t lighting = 0; ///< bit i: site i is of a lighting shadeop

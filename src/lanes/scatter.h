@@ -73,7 +73,15 @@ static void nameVertices(const VertexBlock& v, const uint32_t* key, ScatterBlock
     }
 }
 
-static Lanes extendPaths(const VertexBlock& v, bool roulette, ScatterBlock& to) {
+/// The chance that paths go on with that of rouletteOfPath() or rouletteLocal() (lobes/sampling.h), behind the third bounce; 0:
+/// they end.
+AL_INLINE vf chanceToGoOn(Roulette rule, const V3& weight, const V3& request, const vf& dice) {
+    const vf likely = rule == Roulette::Local ? maxComponent(request) : vf(1.5f) * rootLanes(maxComponent(absolute(weight)));
+    const vf most = select(likely < 1, likely, vf(1));
+    return select(most >= 1, vf(1), select((most > 0) & (dice < most), most, vf(0)));
+}
+
+static Lanes extendPaths(const VertexBlock& v, Roulette rule, ScatterBlock& to) {
     Lanes bad = 0, goes = 0;
     for (int at = 0; at < kBlock; at += kW) {
         const vm mask = maskFrom(to.goes, at), single = maskFrom(to.single, at);
@@ -85,12 +93,9 @@ static Lanes extendPaths(const VertexBlock& v, bool roulette, ScatterBlock& to) 
         const vm good = finite(weight);
         bad |= bitsFrom(mask & ~good, at);
         vf q(1);
-        if (roulette) {
-            const vf likely = vf(1.5f) * rootLanes(maxComponent(absolute(weight)));
-            const vf most = select(likely < 1, likely, vf(1)),
-                     left = select((most > 0) & (load(to.dice + at) < most), most, vf(0));
-            q = select(loadInt(v.bounces + at) + 1 > 3, select(most >= 1, vf(1), left), vf(1));
-        }
+        if (rule != Roulette::None)
+            q = select(loadInt(v.bounces + at) + 1 > 3, chanceToGoOn(rule, weight, load3(to.request, at), load(to.dice + at)),
+                       vf(1));
         goes |= bitsFrom(mask & good & ~isZero(weight) & (q > 0), at);
         store3(to.weight, at, weight / q);
         store3(to.origin, at, leave(v, at, load3(to.direction, at)));

@@ -45,8 +45,8 @@ struct Stages {
     void (*takeValues)(const LobeBlock&, int site, const float* value, ScatterBlock&);
     /// ScatterBlock::vertex, as childVertex() of answers/random.h. key: by site, the call site's number.
     void (*name)(const VertexBlock&, const uint32_t* key, ScatterBlock&);
-    /// roulette: chance ends paths, by ScatterBlock::dice. Returns points whose throughput is not finite.
-    Lanes (*extend)(const VertexBlock&, bool roulette, ScatterBlock&);
+    /// Paths end by the rule and ScatterBlock::dice. Returns points whose throughput is not finite.
+    Lanes (*extend)(const VertexBlock&, Roulette, ScatterBlock&);
     /// Structures of `words` words (at least 16) each, `stride` bytes apart, to a row for each word. Rows have kBlock numbers:
     /// behind the first `count` structures the last one stands again.
     void (*load)(const void* from, int stride, int count, int words, void* rows);

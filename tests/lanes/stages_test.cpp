@@ -223,6 +223,7 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
     for (int turn = 0; turn < 300; ++turn) {
         VertexBlock v = vertices(d);
         const int count = 1 + turn % 3;
+        const Roulette rule = Roulette(turn / 3 % 3);
         v.through = turn % 4 == 0;
         for (float& p : v.passes) p = v.through && d.rarely() ? d.one() : 1;
         std::vector<LobeBlock> lobes;
@@ -249,7 +250,7 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
             for (int k = 0; k < count; ++k) s->takeValues(lobes[size_t(k)], k, value[0], to);
             s->name(v, keys, to);
             std::copy_n(dice, kBlock, to.dice);
-            EXPECT_EQ(s->extend(v, true, to), 0u);
+            EXPECT_EQ(s->extend(v, rule, to), 0u);
             for (int i = 0; i < kBlock; ++i) {
                 int picked = -1, last = -1, asked = 0;
                 float sum = 0;
@@ -275,7 +276,10 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
                                 : pdf > 0 ? Color(value[0][i], value[1][i], value[2][i]) / pdf
                                           : Color(0);
                 Color weight = at(v.weight, i) * (at(l.weight, i) * (f * (1 / l.chosen[i])));
-                const float q = v.bounces[i] + 1 > 3 ? rouletteOfPath(weight, [&] { return dice[i]; }) : 1;
+                const int depth = v.bounces[i] + 1;
+                const float q = rule == Roulette::None || depth <= 3 ? 1
+                                : rule == Roulette::Local            ? rouletteLocal(depth, at(l.weight, i), dice[i])
+                                                                     : rouletteOfPath(weight, [&] { return dice[i]; });
                 EXPECT_EQ(to.goes >> i & 1, !(weight == Color(0)) && q > 0);
                 if (!(to.goes >> i & 1)) continue;
                 EXPECT_TRUE(same(at(to.weight, i), weight / q));

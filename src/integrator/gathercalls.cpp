@@ -1,8 +1,9 @@
+// Rays of gather statements.
 #include "integrator/gathercalls.h"
 #include "base/direction.h"
 #include "base/exact.h"
 #include "integrator/context.h"
-#include "integrator/gathercalls.h"
+#include "integrator/gatherrows.h"
 #include "integrator/intersector.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/mediastacks.h"
@@ -26,29 +27,6 @@ constexpr float kHemisphere = 1.4f;
 
 using Of = GatherSite::Of;
 using Output = GatherSite::Output;
-
-void put(float* row, const Output& o, std::initializer_list<float> numbers) {
-    if (int(numbers.size()) != o.rows || o.elements || o.open || o.kind == rsl::ir::Kind::String) return; // another type
-    row[o.at] = 1;
-    std::copy(numbers.begin(), numbers.end(), row + o.at + 1);
-}
-void put(float* row, const Output& o, const Vec3& v) { put(row, o, {v.x, v.y, v.z}); }
-
-/// A value of any type, where that fits the variable.
-void put(float* row, const Output& o, const Told& t) {
-    using rsl::ir::Kind;
-    const bool array = o.elements > 0 || o.open, text = o.kind == Kind::String;
-    if (t.kind && (*t.kind != o.kind || (t.elements > 0) != array)) return;
-    const size_t size = text ? t.texts.size() : t.numbers.size(), each = text ? 1 : size_t(rsl::ir::components(o.kind));
-    const size_t most = size_t(std::max(1, o.elements)) * each;
-    if (size == 0 || (!t.kind && !array && size != most) || (!array && size < most)) return;
-    float* to = row + o.at;
-    *to++ = 1;
-    const size_t elements = std::min(size, most) / each;
-    if (o.open) *to++ = float(elements);
-    for (size_t k = 0; k < std::min(size, most); ++k)
-        to[k] = text ? std::bit_cast<float>(rsl::internString(t.texts[k])) : t.numbers[k];
-}
 
 /// One lane of a request: what it asks for, and the point that asks.
 struct Asking {
@@ -138,40 +116,6 @@ struct Asking {
     }
 };
 
-/// What is known of a ray without a shader.
-void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& dir, float distance) {
-    for (const Output& o : g.outputs) {
-        if (o.of == Of::Origin) put(row, o, origin);
-        else if (o.of == Of::Direction) put(row, o, dir);
-        else if (o.of == Of::Length) put(row, o, {distance});
-    }
-}
-
-void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit, const Vec3& dir) {
-    static const std::set<std::string> fixed = {"u", "v", "s", "t", "Ng", "dPdu", "dPdv", "I"};
-    const geometry::Shape& shape = *world.shapes_[hit.shape];
-    std::optional<geometry::SurfacePoint> at;
-    for (const Output& o : g.outputs) {
-        if (o.of != Of::Primitive && o.of != Of::Attribute && o.of != Of::Surface) continue;
-        const std::string& name = rsl::internedString(o.id);
-        if (o.of == Of::Surface && !fixed.count(name)) continue; // the shader tells
-        if (name == "I") {
-            put(row, o, dir * float(hit.distance));
-            continue;
-        }
-        if (o.of == Of::Attribute) {
-            const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[hit.shape])];
-            if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) put(row, o, Told(*i));
-            continue;
-        }
-        if (!at) at = world.accel_->point(hit);
-        if (const auto t = primitiveVariable(shape, *at, name)) put(row, o, *t);
-        else if (name == "u" || name == "v") put(row, o, {name == "u" ? at->u : at->v});
-        else if (name == "Ng" || name == "dPdu" || name == "dPdv")
-            put(row, o, name == "Ng" ? at->Ng : name == "dPdu" ? at->dPdu : at->dPdv);
-    }
-}
-
 /// The first surface that takes so much of the light behind it, with all before it, that its share is over the threshold.
 bool meet(const StageSet& set, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
     Color through(1);
@@ -200,9 +144,9 @@ void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count
         row[0] = 1;
         tellRay(g, row, a.triple(a.s.rows[0]), d.w, 1e38f);
         for (const Output& o : g.outputs) {
-            if (o.of == Of::SkyColor) put(row, o, d.light);
-            else if (o.of == Of::SkyDirection) put(row, o, d.w);
-            else if (o.of == Of::SkySolidAngle) put(row, o, {1 / (d.density * float(count))});
+            if (o.of == Of::SkyColor) putGathered(row, o, d.light);
+            else if (o.of == Of::SkyDirection) putGathered(row, o, d.w);
+            else if (o.of == Of::SkySolidAngle) putGathered(row, o, {1 / (d.density * float(count))});
         }
     }
 }
@@ -350,13 +294,6 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
 
 } // namespace
 
-void endGatherRay(const GatherSite& g, const shading::TargetValue& v, float* row) {
-    for (const Output& o : g.outputs) {
-        if (o.of == Of::Light) put(row, o, v.radiance);
-        else if (o.of == Of::Opacity) put(row, o, Color(1) - v.transmission);
-    }
-}
-
 GatherRows& GatherCalls::cast(BatchContext& c, const SiteInfo& s, int first, uint64_t mask, int lanes, const float* in,
                               std::span<const uint32_t> occurrence, std::span<uint32_t> asked, std::vector<GatherSent>& sent) {
     GatherRows& g = c.gathers[{s.gather->number, first}];
@@ -406,7 +343,7 @@ void GatherCalls::tellGather(const BatchContext& c, int point, GatherSent& sent)
         const shading::Batch* run = o.of == Of::Surface                       ? c.batch.get()
                                     : o.of == Of::Displacement && c.displaced ? c.displaced->batch.get()
                                                                               : nullptr;
-        if (const auto t = toldAtHit(inputs_.answers, p, shader, o.id, run, point)) put(sent.row, o, *t);
+        if (const auto t = toldAtHit(inputs_.answers, p, shader, o.id, run, point)) putGathered(sent.row, o, *t);
     }
 }
 

@@ -21,9 +21,6 @@ struct GatherSent {
     std::vector<float> values; ///< of GatherSite::sent, one after the other
 };
 
-/// What came back for one that was sent.
-void endGatherRay(const GatherSite&, const shading::TargetValue&, float* row);
-
 class GatherCalls final : Stage {
 public:
     explicit GatherCalls(const StageSet&);

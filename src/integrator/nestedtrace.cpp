@@ -3,6 +3,7 @@
 #include "integrator/context.h"
 #include "integrator/flights.h"
 #include "integrator/gathercalls.h"
+#include "integrator/gatherrows.h"
 #include "integrator/litsurfaces.h"
 #include "integrator/medium.h"
 #include "integrator/pipeline.h"

@@ -1,6 +1,7 @@
 // What a strip does while it waits.
 #include "integrator/strips.h"
 #include "integrator/accumulator.h"
+#include "integrator/gatherrows.h"
 #include "integrator/requests.h"
 #include "integrator/shadowrays.h"
 #include "integrator/surfaceshading.h"

@@ -89,6 +89,22 @@ TEST(Rooms, IncludeTable) {
     EXPECT_GT(files, 8);
 }
 
+// The integrator is read first: each stage has a header of its own that one page shows, and nobody reaches inside of another.
+TEST(Rooms, StagesOfTheIntegratorAreSmall) {
+    int headers = 0;
+    for (const auto& e : fs::directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / "src/integrator")) {
+        const bool header = e.path().extension() == ".h";
+        headers += header;
+        std::ifstream in(e.path());
+        std::string line;
+        int lines = 0;
+        for (; std::getline(in, line); ++lines)
+            EXPECT_EQ(line.find("friend "), std::string::npos) << e.path().filename() << ":" << lines + 1 << " has a friend";
+        EXPECT_LE(lines, header ? 150 : 400) << e.path().filename();
+    }
+    EXPECT_GT(headers, 40);
+}
+
 } // namespace
 
 } // namespace rooms_test

@@ -1,0 +1,75 @@
+#include "integrator/gatherrows.h"
+#include "world/raysets.h"
+#include <bit>
+#include <set>
+
+namespace alpenglow::transport {
+
+using Of = GatherSite::Of;
+using Output = GatherSite::Output;
+
+void putGathered(float* row, const Output& o, std::initializer_list<float> numbers) {
+    if (int(numbers.size()) != o.rows || o.elements || o.open || o.kind == rsl::ir::Kind::String) return; // another type
+    row[o.at] = 1;
+    std::copy(numbers.begin(), numbers.end(), row + o.at + 1);
+}
+void putGathered(float* row, const Output& o, const Vec3& v) { putGathered(row, o, {v.x, v.y, v.z}); }
+
+/// A value of any type, where that fits the variable.
+void putGathered(float* row, const Output& o, const Told& t) {
+    using rsl::ir::Kind;
+    const bool array = o.elements > 0 || o.open, text = o.kind == Kind::String;
+    if (t.kind && (*t.kind != o.kind || (t.elements > 0) != array)) return;
+    const size_t size = text ? t.texts.size() : t.numbers.size(), each = text ? 1 : size_t(rsl::ir::components(o.kind));
+    const size_t most = size_t(std::max(1, o.elements)) * each;
+    if (size == 0 || (!t.kind && !array && size != most) || (!array && size < most)) return;
+    float* to = row + o.at;
+    *to++ = 1;
+    const size_t elements = std::min(size, most) / each;
+    if (o.open) *to++ = float(elements);
+    for (size_t k = 0; k < std::min(size, most); ++k)
+        to[k] = text ? std::bit_cast<float>(rsl::internString(t.texts[k])) : t.numbers[k];
+}
+
+/// What is known of a ray without a shader.
+void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& dir, float distance) {
+    for (const Output& o : g.outputs) {
+        if (o.of == Of::Origin) putGathered(row, o, origin);
+        else if (o.of == Of::Direction) putGathered(row, o, dir);
+        else if (o.of == Of::Length) putGathered(row, o, {distance});
+    }
+}
+
+void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit, const Vec3& dir) {
+    static const std::set<std::string> fixed = {"u", "v", "s", "t", "Ng", "dPdu", "dPdv", "I"};
+    const geometry::Shape& shape = *world.shapes_[hit.shape];
+    std::optional<geometry::SurfacePoint> at;
+    for (const Output& o : g.outputs) {
+        if (o.of != Of::Primitive && o.of != Of::Attribute && o.of != Of::Surface) continue;
+        const std::string& name = rsl::internedString(o.id);
+        if (o.of == Of::Surface && !fixed.count(name)) continue; // the shader tells
+        if (name == "I") {
+            putGathered(row, o, dir * float(hit.distance));
+            continue;
+        }
+        if (o.of == Of::Attribute) {
+            const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[hit.shape])];
+            if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) putGathered(row, o, Told(*i));
+            continue;
+        }
+        if (!at) at = world.accel_->point(hit);
+        if (const auto t = primitiveVariable(shape, *at, name)) putGathered(row, o, *t);
+        else if (name == "u" || name == "v") putGathered(row, o, {name == "u" ? at->u : at->v});
+        else if (name == "Ng" || name == "dPdu" || name == "dPdv")
+            putGathered(row, o, name == "Ng" ? at->Ng : name == "dPdu" ? at->dPdu : at->dPdv);
+    }
+}
+
+void endGatherRay(const GatherSite& g, const shading::TargetValue& v, float* row) {
+    for (const Output& o : g.outputs) {
+        if (o.of == Of::Light) putGathered(row, o, v.radiance);
+        else if (o.of == Of::Opacity) putGathered(row, o, Color(1) - v.transmission);
+    }
+}
+
+} // namespace alpenglow::transport

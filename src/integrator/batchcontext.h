@@ -25,6 +25,15 @@ struct Haze {
     bool on = false;
 }; ///< on: a volume shader has run
 
+/// What a strip of a waiting kernel keeps (strips.h).
+struct StripMemory {
+    std::vector<float> in;     ///< rows of the request that it waits for
+    std::vector<int> laneOf;   ///< lanes that ask
+    std::vector<TargetId> ids; ///< by laneOf; of a gather, by the rays that are sent
+    /// By site and lane, how often it has asked there: what other lanes ask for must not change this one's random numbers.
+    std::vector<uint32_t> occurrences;
+};
+
 /// State of one batch while its kernel runs; KernelCall::user.
 struct BatchContext : KernelRun {
     ~BatchContext();

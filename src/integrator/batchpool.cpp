@@ -20,7 +20,8 @@ std::shared_ptr<BatchContext> BatchPool::take() {
 }
 
 void BatchPool::giveBack(std::shared_ptr<BatchContext> c) {
-    if (c.use_count() != 1) return; // a strip waits in it
+    constexpr size_t kMost = 64;
+    if (c.use_count() != 1 || pool_.size() >= kMost) return; // a strip waits in it
     if (c->batch.use_count() != 1) c->batch.reset();
     store_.freeExtras(*c);
     c->forget(); // points stay: SurfacePoints writes them again

@@ -13,14 +13,15 @@
 
 namespace alpenglow::transport {
 
-/// Whether points of the light come from the stage `place` or are one, and its kernel asks for nothing but what that gives.
-bool BlockVertices::inRows(const BoundLight& l) const {
+/// Whether points of the light come from the stage `place` or are one, and a kernel of it asks for nothing but what that gives.
+bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
-    if (l.hazy) return false;
+    if (!of || l.hazy || (emitter && !l.emitter)) return false;
     if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.sky || l.cone) return false;
-    const auto& k = *l.kernel.kernel;
-    return l.kernel.plan->readsLightRows() && k.sites().empty() && !k.facts().suspends && !k.facts().lightLoops &&
-           !l.instance->moving;
+    for (size_t i = 0; emitter && i < l.emitter->flat().size(); ++i)
+        if (of.plan->overriddenBy(l.emitter->flatShape(i))) return false;
+    const auto& k = *of.kernel;
+    return of.plan->readsLightRows() && k.sites().empty() && !k.facts().suspends && !k.facts().lightLoops && !l.instance->moving;
 }
 
 void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
@@ -36,9 +37,9 @@ void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
     parameters_.resize(world_.lights_.size());
     auto& parameters = parameters_[size_t(&light - world_.lights_.data())];
     if (!parameters) parameters = std::make_unique<const shading::ParameterRows>(*light.kernel.plan, light.instance->parameters);
+    const shading::InstanceView view{&light.instance->parameters, &light.instance->toCurrent, nullptr, parameters.get()};
     call->batch->assign(light.kernel.kernel, *light.kernel.plan,
-                        {rows.first(3 * n), rows.subspan(3 * n, 3 * n), rows.subspan(6 * n, 3 * n)},
-                        {&light.instance->parameters, &light.instance->toCurrent, nullptr, parameters.get()});
+                        {rows.first(3 * n), rows.subspan(3 * n, 3 * n), rows.subspan(6 * n, 3 * n)}, {&view, 1}, {});
     inputs_.bind(call->batch->call(), *call);
     light.kernel.kernel->run(&call->batch->call());
     call->ran();
@@ -137,6 +138,7 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
     };
     kept(light.nonDiffuse, l.keptDiffuse);
     kept(light.nonSpecular, l.keptSpecular);
+    if (light.kind != LightKind::Area) placeFar(light, from, first, l);
     for (Lanes left = lit_[b] & placed_[k].points; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         if (light.outLit >= 0 && row(light.outLit, 0)[i] == 0) continue;
@@ -144,27 +146,37 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
         const size_t point = b * kBlock + size_t(i);
         if (!isFinite(Cl)) accumulator_.notFinite(&c.rays[point], "Cl", light.instance.get());
         else if (!(Cl == Color(0))) l.asked |= 1u << i;
-        if (light.kind != LightKind::Area && l.asked >> i & 1) takePlace(light, point, way(i), from, first + size_t(i));
+        if (!(l.asked >> i & 1)) continue;
+        if (light.kind != LightKind::Area) {
+            LightValue says;
+            if (asksShadowDisk(light, from, first + size_t(i), says)) {
+                says.L = way(i);
+                queryAt_[point] = int32_t(values_.size());
+                values_.push_back(says);
+            }
+        }
+        if (!chances_.empty()) l.density[i] *= chances_[point];
     }
 }
 
-/// Where a light without geometry stands as seen from a point. at: in the batch.
-void BlockVertices::takePlace(const BoundLight& light, size_t point, const Vec3& L, const shading::Batch& from, size_t at) {
-    LightBlock& l = lights_[point / kBlock];
-    const size_t i = point % kBlock;
-    const Vec3 w = directionOr(-L, Vec3(0, 0, 1));
-    for (int q = 0; q < 3; ++q) l.w[q][i] = w[q];
-    l.density[i] = 1;
-    const float far = light.kind == LightKind::Distant ? 1e38f : length(L);
-    l.far[i] = far < 1e30f ? far * (1 - 1e-5f) : far;
-    if (light.shadowRadius < 0) return;
-    LightValue v;
-    v.L = L;
-    lightKernels_.takeShadowSays(v, light, from.value(light.shadowRadius, 0, int(at)),
-                                 light.shadowSamples < 0 ? 1 : from.value(light.shadowSamples, 0, int(at)));
-    if (!(v.shadowRadius > 0)) return;
-    queryAt_[point] = int32_t(values_.size());
-    values_.push_back(v);
+/// Where a light without geometry stands as seen from the points of a block. at: of its first one in the batch.
+void BlockVertices::placeFar(const BoundLight& light, const shading::Batch& from, size_t at, LightBlock& l) const {
+    alignas(64) static constexpr Row kNone[3] = {};
+    const float* L = light.outL < 0 ? kNone[0] : from.row(light.outL, 0).data() + at;
+    const int stride = light.outL < 0 ? kBlock : int(from.row(light.outL, 1).data() - from.row(light.outL, 0).data());
+    for (Lanes odd = stages_.placeFar(L, stride, light.kind == LightKind::Distant, l); odd; odd &= odd - 1) {
+        const int i = std::countr_zero(odd);
+        const Vec3 w = directionOr(-Vec3(L[i], L[stride + i], L[2 * stride + i]), Vec3(0, 0, 1));
+        for (int q = 0; q < 3; ++q) l.w[q][i] = w[q];
+    }
+}
+
+/// Whether the light's shadow is that of a disk; then how large it is. at: in the batch.
+bool BlockVertices::asksShadowDisk(const BoundLight& light, const shading::Batch& from, size_t at, LightValue& v) {
+    if (light.shadowRadius < 0) return false;
+    const float samples = light.shadowSamples < 0 ? 1 : from.value(light.shadowSamples, 0, int(at));
+    lightKernels_.takeShadowSays(v, light, from.value(light.shadowRadius, 0, int(at)), samples);
+    return v.shadowRadius > 0;
 }
 
 } // namespace alpenglow::transport

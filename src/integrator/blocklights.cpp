@@ -1,7 +1,7 @@
 // Samples of lights for vertices in blocks, and what their lobes give back of them.
 #include "base/direction.h"
 #include "integrator/accumulator.h"
-#include "integrator/blockvertices.h"
+#include "integrator/chosenlights.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightsample.h"
 #include "integrator/raystore.h"
@@ -10,32 +10,49 @@
 #include "integrator/vertexlight.h"
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 namespace alpenglow::transport {
 
 void BlockVertices::light(BatchContext& c) {
     const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
+    if (!list.chooser.empty()) {
+        findLit(nullptr);
+        if (!litBlocks_.empty()) chosen_->light(list, c);
+        return;
+    }
     for (const int number : list.sampled) {
         const BoundLight& light = world_.lights_[size_t(number)];
         if (!light.importance) continue; // rays alone find it
-        lit_.assign(blocks_, 0);
-        for (size_t k = 0; k < count_; ++k)
-            for (size_t b = 0; b < blocks_ && samples(sites_[k], light); ++b) lit_[b] |= sites_[k].lobes[b].lights;
-        litBlocks_.clear();
-        for (size_t b = 0; b < blocks_; ++b)
-            if (lit_[b]) litBlocks_.push_back(b);
-        if (litBlocks_.empty()) continue;
-        if (inRows(light)) {
-            lightInRows(light, c);
-            continue;
-        }
-        sampleLight(light, c);
-        if (asked_.empty()) continue;
-        values_.assign(asked_.size(), {});
-        lightKernels_.evaluateLight(light, queries_, values_);
-        takeValues(light, c);
-        connect(light, c);
+        findLit(&light);
+        if (!litBlocks_.empty()) lightAlone(light, c);
     }
+}
+
+/// The points that sample a light; null: some light.
+void BlockVertices::findLit(const BoundLight* light) {
+    lit_.assign(blocks_, 0);
+    for (size_t k = 0; k < count_; ++k)
+        for (size_t b = 0; b < blocks_ && (light ? samples(sites_[k], *light) : sites_[k].lights); ++b)
+            lit_[b] |= sites_[k].lobes[b].lights;
+    litBlocks_.clear();
+    for (size_t b = 0; b < blocks_; ++b)
+        if (lit_[b]) litBlocks_.push_back(b);
+}
+
+/// One light, for the points of lit_ and litBlocks_. group: the kernel of the group that it belongs to, where that runs.
+void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c, const BoundKernel* group) {
+    if (!group && inRows_[size_t(&light - world_.lights_.data())]) return lightInRows(light, c);
+    sampleLight(light, c);
+    if (asked_.empty()) return;
+    values_.assign(asked_.size(), {});
+    LightCall call;
+    const std::vector<const BoundLight*> of(group ? asked_.size() : 0, &light);
+    call.kernel = group;
+    call.of = of;
+    lightKernels_.evaluateLight(light, queries_, values_, call);
+    takeValues(light, c);
+    connect(light, c);
 }
 
 /// Whether lobes of a site ask a light for samples. trace() knows emitters and skies, and not those that are illuminance's.
@@ -45,7 +62,7 @@ bool BlockVertices::samples(const Site& s, const BoundLight& light) {
 }
 
 /// The numbers of a stream (NumberBlock) at all points.
-void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock>& to) {
+void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock>& to, bool ofLights) {
     to.resize(blocks_);
     for (size_t b = 0; b < blocks_; ++b) {
         const VertexBlock& v = vertices_[b];
@@ -53,7 +70,7 @@ void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock
         std::copy_n(v.low, kBlock, n.low);
         std::copy_n(v.high, kBlock, n.high);
         std::copy_n(v.index, kBlock, n.index);
-        std::copy_n(v.vertex, kBlock, n.vertex);
+        std::copy_n(ofLights ? v.lightVertex : v.vertex, kBlock, n.vertex);
         std::fill_n(n.stream, kBlock, stream);
         std::fill_n(n.occurrence, kBlock, 0u);
     }
@@ -113,6 +130,7 @@ void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
             const Vec3 end = l.emitter ? leavesFrom(queries_[k].surface, -w) : Vec3();
             for (int q = 0; q < 3; ++q) l.w[q][lane] = w[q], l.Cl[q][lane] = value.Cl[q], l.end[q][lane] = end[q];
             l.density[lane] = drawn ? a.sample.pdf : 1;
+            if (!chances_.empty()) l.density[lane] *= chances_[size_t(a.point)];
             const float far = light.sky || light.kind == LightKind::Distant ? 1e38f : length(value.L);
             l.far[lane] = far < 1e30f ? far * (1 - 1e-5f) : far;
             queryAt_[size_t(a.point)] = int32_t(k);
@@ -130,57 +148,68 @@ void BlockVertices::connect(const BoundLight& light, BatchContext& c) {
         if (lights_[b].asked) connectBlock(b, light, c);
 }
 
+/// What lobes of a site at `points` give back of their lights, by value_: along the rays of shadow_ that were sent already.
+/// pointOf: by lane, the point of the batch. Returns the lanes whose ray is still to be sent.
+Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l,
+                                BatchContext& c, const size_t* pointOf) {
+    Lanes failed = 0, fresh = 0;
+    const float* kept = !s.lighting ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
+    Lanes some = stages_.contribute(points, lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting, value_[0],
+                                    shadow_, &failed);
+    for (; failed; failed &= failed - 1) accumulator_.notFinite(c, c.rays[pointOf[std::countr_zero(failed)]], uint32_t(s.number));
+    for (; some; some &= some - 1) {
+        const int lane = std::countr_zero(some);
+        if (sent_[lane] < 0) {
+            fresh |= 1u << lane;
+            continue;
+        }
+        ShadowRay& first = shadows_.queue[size_t(sent_[lane])];
+        const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};
+        shadows_.more.push_back({light, c.targets[pointOf[lane]], -1, false, 0, first.more});
+        first.more = int32_t(shadows_.more.size()) - 1;
+    }
+    return fresh;
+}
+
 /// Shadow rays from the points of a block: one from each, for all of its lobes.
 void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
+    size_t points[kBlock];
+    std::iota(points, points + kBlock, b * kBlock);
     const LightBlock& l = lights_[b];
     stages_.aim(vertices_[b], l, shadow_);
-    int32_t sent[kBlock];
-    std::fill_n(sent, kBlock, -1);
+    std::fill_n(sent_, kBlock, -1);
     for (size_t k = 0; k < count_; ++k) {
-        Site& s = sites_[k];
+        const Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
         const Lanes asked = lobe.lights & l.asked;
         if (!asked || !samples(s, of)) continue;
         s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
-        Lanes failed = 0;
-        const float* kept = !s.lighting ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
-        Lanes some = stages_.contribute(vertices_[b], lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting,
-                                        value_[0], shadow_, &failed);
-        for (; failed; failed &= failed - 1)
-            accumulator_.notFinite(c, c.rays[b * kBlock + size_t(std::countr_zero(failed))], uint32_t(s.number));
-        for (; some; some &= some - 1) {
-            const int lane = std::countr_zero(some);
-            const size_t point = b * kBlock + size_t(lane);
-            const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};
-            if (sent[lane] >= 0) {
-                ShadowRay& first = shadows_.queue[size_t(sent[lane])];
-                shadows_.more.push_back({light, c.targets[point], -1, false, 0, first.more});
-                first.more = int32_t(shadows_.more.size()) - 1;
-                continue;
-            }
-            sent[lane] = int32_t(shadows_.queue.size());
-            sendShadow(point, of, light, c);
+        for (Lanes some = contribute(s, vertices_[b], lobe, l, c, points); some; some &= some - 1) {
+            const size_t lane = size_t(std::countr_zero(some)), point = b * kBlock + lane;
+            const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
+            sendShadow(point, lane, of, query < 0 ? nullptr : &values_[size_t(query)], c);
         }
     }
 }
 
-void BlockVertices::sendShadow(size_t point, const BoundLight& of, const Color& light, BatchContext& c) {
-    const size_t lane = point % kBlock;
+/// The ray of a lane of shadow_, from a point; says: what the light says of its shadow, null: nothing more.
+void BlockVertices::sendShadow(size_t point, size_t lane, const BoundLight& of, const LightValue* says, BatchContext& c) {
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
+    sent_[lane] = int32_t(shadows_.queue.size());
     ShadowRay& s = shadows_.queue.emplace_back();
-    s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], light,
+    s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], row3(shadow_.light),
          c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
-    const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
-    if (query < 0) return;
-    const LightValue& value = values_[size_t(query)];
-    if (value.shadowRadius > 0) { // to a point of the disk
+    if (!says) return;
+    if (says->shadowRadius > 0) { // to a point of the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
         const Vec2 u = store_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
-        const Vec3 to = onShadowDisk(row3(vertices_[point / kBlock].P) - value.L, s.dir, value.shadowRadius, u) - s.origin;
+        const VertexBlock& v = vertices_[point / kBlock];
+        const Vec3 P(v.P[0][point % kBlock], v.P[1][point % kBlock], v.P[2][point % kBlock]);
+        const Vec3 to = onShadowDisk(P - says->L, s.dir, says->shadowRadius, u) - s.origin;
         s.dir = normalizeOr(to, s.dir);
         s.distance = length(to) * (1 - 1e-5f);
     }
-    if (value.ownShadow) s.distance = 0; // the light's shader looked for itself
+    if (says->ownShadow) s.distance = 0; // the light's shader looked for itself
 }
 
 } // namespace alpenglow::transport

@@ -12,7 +12,7 @@ namespace alpenglow::transport {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
     const bool chooses = count_ > 1 || !c.clear.empty();
-    if (chooses) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_);
+    if (chooses) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_, false);
     pairs_.resize(1);
     for (size_t b = 0; b < blocks_; ++b) {
         stages_.pick(vertices_[b], lobesOf(b).data(), int(count_), chooses ? choices_[b].x : nullptr, next_);
@@ -64,7 +64,7 @@ void BlockVertices::throwDice(size_t b) {
     uint32_t keys[kMostSites];
     for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
     stages_.name(v, keys, next_);
-    if (roulette_ == Roulette::None || std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; })) {
+    if (roulette_ == Roulette::None || (!waits_ && std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; }))) {
         std::fill_n(next_.dice, kBlock, 0.f);
         return;
     }
@@ -77,10 +77,11 @@ void BlockVertices::throwDice(size_t b) {
 
 void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
     throwDice(b);
-    for (Lanes bad = stages_.extend(vertices_[b], roulette_, next_); bad; bad &= bad - 1) {
+    for (Lanes bad = stages_.extend(vertices_[b], waits_ ? Roulette::None : roulette_, next_); bad; bad &= bad - 1) {
         const int lane = std::countr_zero(bad);
         accumulator_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
     }
+    if (waits_ && rules_.roulette) endByChance(b);
     if (!next_.goes) return;
     turnRays(b, c);
     keepLobes(b, c);
@@ -128,7 +129,7 @@ void BlockVertices::turnRays(size_t b, BatchContext&) {
 void BlockVertices::keepLobes(size_t b, BatchContext& c) {
     RayBlock& r = rays_[b];
     const VertexBlock& v = vertices_[b];
-    for (int i = 0; i < kBlock; ++i) r.flags[i] &= kAskedBits; // and no trail
+    for (int i = 0; i < kBlock; ++i) r.flags[i] = (r.flags[i] & kAskedBits) | (waits_ ? kFirstBit : 0); // and no trail
     for (Lanes left = next_.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         const Site& s = sites_[size_t(next_.site[i])];

@@ -1,17 +1,9 @@
 // From requests of a kernel to lobes in blocks, and the chances that their rays are followed.
-#include "integrator/blockvertices.h"
 #include "integrator/accumulator.h"
-#include "integrator/batchpool.h"
-#include "integrator/context.h"
-#include "integrator/kernelinputs.h"
-#include "integrator/lightkernels.h"
-#include "integrator/lightoutputs.h"
-#include "integrator/mediastacks.h"
+#include "integrator/chosenlights.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
-#include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
-#include "integrator/surfacepoints.h"
 #include "integrator/vertexlight.h"
 #include "world/emitterfootprint.h"
 #include <algorithm>
@@ -21,6 +13,9 @@ namespace alpenglow::transport {
 
 namespace {
 Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
+
+/// Whether a light's samples are what blocks hold: an emitter or a light with a place, told nothing and asked for nothing more.
+bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels && l.sentCl < 0 && !usesFootprint(l); }
 } // namespace
 
 BlockVertices::BlockVertices(const StageSet& s)
@@ -36,10 +31,16 @@ BlockVertices::BlockVertices(const StageSet& s)
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
     usable_ = set.blocks && rules && lights && world_.media_.empty() && !set.lightPaths && world_.lightOutputs_.empty() &&
               !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
+    usable_ &= world_.accel_ != nullptr; // of a world that is whole
+    if (!usable_) return;
+    for (const WorldImpl::LightList& list : world_.lightLists_)
+        plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(),
+                                                    [&](int l) { return isPlainLight(world_.lights_[size_t(l)]); }));
+    for (const BoundLight& l : world_.lights_) inRows_.push_back(inRows(l, l.kernel));
+    chosen_ = std::make_unique<ChosenLights>(*this);
 }
 
-/// Whether a light's samples are what blocks hold: an emitter or a light with a place, told nothing and asked for nothing more.
-static bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels && l.sentCl < 0 && !usesFootprint(l); }
+BlockVertices::~BlockVertices() = default;
 
 bool BlockVertices::takesRays(const BatchContext& c) const {
     const bool firstSeen = world_.settings_.firstSeen;
@@ -54,14 +55,13 @@ bool BlockVertices::takes(const BatchContext& c) const {
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
-    if (!usable_ || !kernel.blocks || b.displacement) return false;
-    const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
-    if (list.ofAll || !world_.chooserOf(list).empty()) return false;
-    return std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) { return isPlainLight(world_.lights_[size_t(l)]); });
+    return usable_ && kernel.blocks && !b.displacement && plain_[size_t(b.lightList)];
 }
 
-bool BlockVertices::run(BatchContext& c, Sched& sched) {
-    if (c.emits.empty()) return true;
+bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }
+
+bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
+    waits_ = waits;
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
     if (!loadVertices(c) || !findSites(c) || !request(c)) return false;
@@ -83,6 +83,7 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
         for (size_t k = 0; k < size_t(kBlock); ++k) rays.target[k] = c.targets[first + std::min(k, n - 1)];
         takeRays(rays);
         if (!loadPoints(b, c)) return false;
+        if (waits_) nameLights(vertices_[b], uint32_t(c.emits[0].site));
     }
     return true;
 }
@@ -101,8 +102,10 @@ void BlockVertices::takeRays(const RayBlock& rays) {
         v.high[k] = sample->numbers.high();
         v.index[k] = sample->numbers.index();
     }
-    for (int q = 0; q < 3; ++q) std::copy_n(rays.weight[q], kBlock, v.weight[q]);
+    v.waits = waits_;
+    for (int q = 0; q < 3; ++q) std::copy_n(waits_ ? whole_ : rays.weight[q], kBlock, v.weight[q]); // of its target alone
     std::copy_n(rays.vertex, kBlock, v.vertex);
+    std::copy_n(rays.vertex, kBlock, v.lightVertex);
 }
 
 bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/batchcontext.h"
+#include "integrator/blocklobes.h"
 #include "integrator/context.h"
 #include "integrator/raywords.h"
 #include "lanes/stages.h"
@@ -13,8 +14,6 @@ class Accumulator;
 class BatchPool;
 class KernelInputs;
 class LightKernels;
-class LightOutputs;
-class MediaStacks;
 class PhotonStage;
 class RayStore;
 class ShadowRays;
@@ -26,6 +25,7 @@ class BlockVertices final : Stage {
 public:
     static constexpr size_t kMostSites = 32; ///< that ask, of a kernel
     explicit BlockVertices(const StageSet&);
+    ~BlockVertices();
     /// Whether all that this kernel of a binding asks for is of this kind, with the lights of the binding.
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all that a batch whose kernel has run asks for is of this kind.
@@ -36,32 +36,23 @@ public:
     /// Lights its points and sends their rays; shadow rays are left in ShadowRays::queue. False: nothing was done, for some point
     /// needs a look by itself.
     bool run(BatchContext&, Sched&);
+    /// The same for what strips of a batch wait for. False: nothing was done, and they must ask one by one.
+    bool run(BatchContext&, std::span<class KernelStrip* const>, Sched&);
 
 private:
-    /// A call site of the kernel that asks for lobes of some points.
-    struct Site {
-        int number = 0; ///< of the kernel
-        const SiteInfo* info = nullptr;
-        const LobeLanes* lanes = nullptr;
-        const RayKind* rays = nullptr;
-        bool lighting = false; ///< a lighting shadeop
-        bool lights = false;   ///< its lobe samples lights
-        bool diffuse = false;  ///< of its rays
-        std::vector<LobeBlock> lobes;
-        std::vector<float> narrow; ///< of kernels with strips below a block: arguments, by block
-    };
+    class ChosenLights; ///< chosenlights.h
+    using Site = BlockLobes; ///< a call site of the kernel
     /// What a light is asked at points.
     struct Query {
         int point = 0;
         Emitter::Sample sample;
     };
-
     /// Points that have one of a light; of these, those whose rays could meet it by chance.
     struct Placed {
         Lanes points = 0, metDiffuse = 0, metSpecular = 0;
     };
-
     // blockvertices.cpp
+    bool follow(BatchContext&, Sched&, bool waits);
     bool loadVertices(const BatchContext&);
     void takeRays(const RayBlock&);
     bool loadPoints(size_t block, const BatchContext&);
@@ -75,23 +66,32 @@ private:
 
     // blocklights.cpp
     void light(BatchContext&);
+    void findLit(const BoundLight*);
+    void lightAlone(const BoundLight&, BatchContext&, const BoundKernel* group = nullptr);
     static bool samples(const Site&, const BoundLight&);
     void sampleLight(const BoundLight&, BatchContext&);
-    void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&);
+    void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true);
     void takeValues(const BoundLight&, const BatchContext&);
     void beginLights(const BoundLight&);
     void connect(const BoundLight&, BatchContext&);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
-    void sendShadow(size_t point, const BoundLight&, const Color& light, BatchContext&);
+    Lanes contribute(const Site&, const VertexBlock&, const LobeBlock&, const LightBlock&, BatchContext&, const size_t* points);
+    void sendShadow(size_t point, size_t lane, const BoundLight&, const LightValue* says, BatchContext&);
 
     // blocklightrows.cpp
-    bool inRows(const BoundLight&) const;
+    bool inRows(const BoundLight&, const BoundKernel&) const;
     void lightInRows(const BoundLight&, BatchContext&);
     void placeInRows(const BoundLight&);
     void placeOnEmitter(size_t k, const Emitter&);
     void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
     void takeLightOf(size_t k, const BoundLight&, const shading::Batch&, const BatchContext&);
-    void takePlace(const BoundLight&, size_t point, const Vec3& L, const shading::Batch&, size_t at);
+    void placeFar(const BoundLight&, const shading::Batch&, size_t at, LightBlock&) const;
+    bool asksShadowDisk(const BoundLight&, const shading::Batch&, size_t at, LightValue&);
+
+    // blockwaiting.cpp
+    bool takes(const BatchContext&, std::span<KernelStrip* const>) const;
+    void nameLights(VertexBlock&, uint32_t site) const;
+    void endByChance(size_t block);
 
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
@@ -117,12 +117,15 @@ private:
     Roulette roulette_ = Roulette::None;
     bool lastSkies_ = false; ///< where paths end by their length skies must be asked (Gather::lastSkies)
     size_t blocks_ = 0, points_ = 0;
+    bool waits_ = false;           ///< the kernel waits for what it asks for
+    std::vector<uint32_t> before_; ///< then, by point: rays that it has asked for before
     std::vector<VertexBlock> vertices_;
     std::vector<RayBlock> rays_; ///< that came to them, then those that go on
     std::vector<Site> sites_;    ///< the first `count_`, in the order of the calls
     size_t count_ = 0;
     std::vector<LobeBlock*> block_; ///< lobesOf()
     std::vector<Lanes> lit_;        ///< by block: points that sample lights
+    std::vector<float> chances_;    ///< by point: with which the light was chosen; empty: 1
     std::vector<LightBlock> lights_;
     std::vector<render::NumberBlock> pairs_, choices_;
     std::vector<ShadePoint> queries_;
@@ -135,6 +138,10 @@ private:
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
     ScatterBlock next_{};
     ShadowBlock shadow_{};
+    int32_t sent_[kBlock];     ///< shadow rays of a block, in ShadowRays::queue; -1: none yet
+    std::vector<char> inRows_; ///< by light: its samples need no points
+    std::vector<char> plain_;  ///< by light list: all lights are what blocks hold
+    std::unique_ptr<ChosenLights> chosen_;
     alignas(64) Row whole_; ///< 1
     alignas(64) float value_[kValueRows][kBlock] = {};
     alignas(64) float drawn_[kDrawnRows][kBlock] = {};

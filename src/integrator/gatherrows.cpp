@@ -5,18 +5,15 @@
 
 namespace alpenglow::transport {
 
-using Of = GatherSite::Of;
-using Output = GatherSite::Output;
-
-void putGathered(float* row, const Output& o, std::initializer_list<float> numbers) {
+void putGathered(float* row, const GatherSite::Output& o, std::initializer_list<float> numbers) {
     if (int(numbers.size()) != o.rows || o.elements || o.open || o.kind == rsl::ir::Kind::String) return; // another type
     row[o.at] = 1;
     std::copy(numbers.begin(), numbers.end(), row + o.at + 1);
 }
-void putGathered(float* row, const Output& o, const Vec3& v) { putGathered(row, o, {v.x, v.y, v.z}); }
+void putGathered(float* row, const GatherSite::Output& o, const Vec3& v) { putGathered(row, o, {v.x, v.y, v.z}); }
 
 /// A value of any type, where that fits the variable.
-void putGathered(float* row, const Output& o, const Told& t) {
+void putGathered(float* row, const GatherSite::Output& o, const Told& t) {
     using rsl::ir::Kind;
     const bool array = o.elements > 0 || o.open, text = o.kind == Kind::String;
     if (t.kind && (*t.kind != o.kind || (t.elements > 0) != array)) return;
@@ -33,10 +30,10 @@ void putGathered(float* row, const Output& o, const Told& t) {
 
 /// What is known of a ray without a shader.
 void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& dir, float distance) {
-    for (const Output& o : g.outputs) {
-        if (o.of == Of::Origin) putGathered(row, o, origin);
-        else if (o.of == Of::Direction) putGathered(row, o, dir);
-        else if (o.of == Of::Length) putGathered(row, o, {distance});
+    for (const GatherSite::Output& o : g.outputs) {
+        if (o.of == GatherSite::Of::Origin) putGathered(row, o, origin);
+        else if (o.of == GatherSite::Of::Direction) putGathered(row, o, dir);
+        else if (o.of == GatherSite::Of::Length) putGathered(row, o, {distance});
     }
 }
 
@@ -44,15 +41,15 @@ void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const acce
     static const std::set<std::string> fixed = {"u", "v", "s", "t", "Ng", "dPdu", "dPdv", "I"};
     const geometry::Shape& shape = *world.shapes_[hit.shape];
     std::optional<geometry::SurfacePoint> at;
-    for (const Output& o : g.outputs) {
-        if (o.of != Of::Primitive && o.of != Of::Attribute && o.of != Of::Surface) continue;
+    for (const GatherSite::Output& o : g.outputs) {
+        if (o.of != GatherSite::Of::Primitive && o.of != GatherSite::Of::Attribute && o.of != GatherSite::Of::Surface) continue;
         const std::string& name = rsl::internedString(o.id);
-        if (o.of == Of::Surface && !fixed.count(name)) continue; // the shader tells
+        if (o.of == GatherSite::Of::Surface && !fixed.count(name)) continue; // the shader tells
         if (name == "I") {
             putGathered(row, o, dir * float(hit.distance));
             continue;
         }
-        if (o.of == Of::Attribute) {
+        if (o.of == GatherSite::Of::Attribute) {
             const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[hit.shape])];
             if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) putGathered(row, o, Told(*i));
             continue;
@@ -66,9 +63,9 @@ void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const acce
 }
 
 void endGatherRay(const GatherSite& g, const shading::TargetValue& v, float* row) {
-    for (const Output& o : g.outputs) {
-        if (o.of == Of::Light) putGathered(row, o, v.radiance);
-        else if (o.of == Of::Opacity) putGathered(row, o, Color(1) - v.transmission);
+    for (const GatherSite::Output& o : g.outputs) {
+        if (o.of == GatherSite::Of::Light) putGathered(row, o, v.radiance);
+        else if (o.of == GatherSite::Of::Opacity) putGathered(row, o, Color(1) - v.transmission);
     }
 }
 

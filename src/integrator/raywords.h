@@ -41,6 +41,6 @@ static_assert(offsetof(PathRay, diffuseBounces) == offsetof(PathRay, bounces) + 
 #undef ALPENGLOW_RAY_ROW
 
 /// Of RayBlock::flags.
-inline constexpr uint32_t kAskedBits = 0xffff;
+inline constexpr uint32_t kAskedBits = 0xffff, kFirstBit = 1u << 16;
 
 } // namespace alpenglow::transport

@@ -19,7 +19,7 @@ struct Counters {
     uint64_t ignored = 0;                  ///< rays of trace() that were not sent, for their "weight" is 0
     uint64_t tests = 0, hits = 0;          ///< how often rays were followed to the next surface, and met one
     uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
-    uint64_t inBlocks = 0; ///< of `points`, those whose light was followed 16 at a time
+    uint64_t inBlocks = 0; ///< of `points`, those whose light was followed 16 at a time; of kernels that wait, their calls
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;
     uint64_t records = 0, interpolated = 0; ///< light of hemispheres: found for records, and read from those

@@ -27,14 +27,23 @@ void putResult(const SiteInfo& site, const shading::TargetValue& value, const Tr
     put(rows.unshadowedAreaLight, 3, sums->value(TraceSums::UnshadowedAreaLight));
 }
 
+KernelStrip::KernelStrip(WaitingKernels& stages, std::shared_ptr<BatchContext> c, void* handle, int first, int depth)
+    : stages_(stages), c_(std::move(c)), handle_(handle), first_(first), depth_(depth), bytes_(c_->frame),
+      m_(stages.takeMemory()) {}
+
+KernelStrip::~KernelStrip() {
+    if (handle_) c_->bound->kernel->destroy(handle_);
+    stages_.giveBack(std::move(m_), std::move(c_));
+}
+
 bool KernelStrip::resume(Sched& s, std::span<const shading::TargetValue> results) {
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     if (gather_) {
         for (size_t k = 0; k < results.size(); ++k) {
-            stages_.gathers.gathered.erase(ids_[k]);
+            stages_.gathers.gathered.erase(m_.ids[k]);
             if (!sent_[k].quiet) endGatherRay(*sent_[k].site, results[k], sent_[k].row);
         }
-        for (int lane : laneOf_) out_[lane] = float(gather_->counts[size_t(lane)]);
+        for (int lane : m_.laneOf) out_[lane] = float(gather_->counts[size_t(lane)]);
         gather_ = nullptr;
         c_->bound->kernel->resume(handle_);
         c_->ran();
@@ -42,8 +51,8 @@ bool KernelStrip::resume(Sched& s, std::span<const shading::TargetValue> results
     }
     const bool sums = site.trace && site.trace->sums;
     for (size_t k = 0; k < results.size(); ++k) {
-        putResult(site, results[k], sums ? stages_.accumulator.sumsOf(ids_[k]) : nullptr, out_, lanes_, laneOf_[k]);
-        if (sums) stages_.accumulator.traceSums.erase(ids_[k]);
+        putResult(site, results[k], sums ? stages_.accumulator.sumsOf(m_.ids[k]) : nullptr, out_, lanes_, m_.laneOf[k]);
+        if (sums) stages_.accumulator.traceSums.erase(m_.ids[k]);
     }
     c_->bound->kernel->resume(handle_);
     c_->ran();
@@ -61,21 +70,21 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
     site_ = c_->requestSite;
     lanes_ = c_->requestLanes;
     out_ = c_->requestOut;
-    in_.swap(c_->requestIn);
-    laneOf_.clear();
+    m_.in.swap(c_->requestIn);
+    m_.laneOf.clear();
     for (int lane = 0; lane < lanes_; ++lane)
-        if ((c_->requestMask >> lane & 1) && first_ + lane < int(c_->points.size())) laneOf_.push_back(lane);
-    if (occurrences_.empty()) occurrences_.resize(c_->bound->sites.size() * 64);
+        if ((c_->requestMask >> lane & 1) && first_ + lane < int(c_->points.size())) m_.laneOf.push_back(lane);
+    if (m_.occurrences.empty()) m_.occurrences.resize(c_->bound->sites.size() * 64);
     if (c_->bound->sites[size_t(site_)].kind == SiteKind::Gather) askGather();
-    ids_.resize(gather_ ? sent_.size() : laneOf_.size());
-    s.wait(std::move(self), int(ids_.size()), [&](int i, TargetId id) {
-        ids_[size_t(i)] = id;
+    m_.ids.resize(gather_ ? sent_.size() : m_.laneOf.size());
+    s.wait(std::move(self), int(m_.ids.size()), [&](int i, TargetId id) {
+        m_.ids[size_t(i)] = id;
         s.hold(id);
     });
-    if (ids_.empty()) return false; // ready at once
+    if (m_.ids.empty()) return false; // ready at once
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     if (site.trace && site.trace->sums)
-        for (TargetId id : ids_) stages_.accumulator.traceSums[id] = {};
+        for (TargetId id : m_.ids) stages_.accumulator.traceSums[id] = {};
     stages_.waiting.push_back(this);
     return false;
 }
@@ -83,14 +92,14 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
 /// Finds what the rays of a gather meet. Those whose hits must be shaded are what the strip waits for.
 void KernelStrip::askGather() {
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
-    const std::span<uint32_t> occurrences(occurrences_.data() + size_t(site_) * 64, 64);
+    const std::span<uint32_t> occurrences(m_.occurrences.data() + size_t(site_) * 64, 64);
     uint64_t mask = 0;
-    for (int lane : laneOf_) {
+    for (int lane : m_.laneOf) {
         mask |= uint64_t(1) << lane;
         // The statement begins anew with its first handful of rays.
-        if (in_[size_t(site.rows[4]) * size_t(lanes_) + size_t(lane)] < 0.5f) ++occurrences[size_t(lane)];
+        if (m_.in[size_t(site.rows[4]) * size_t(lanes_) + size_t(lane)] < 0.5f) ++occurrences[size_t(lane)];
     }
-    gather_ = &stages_.gathers.cast(*c_, site, first_, mask, lanes_, in_.data(), occurrences, asked_, sent_);
+    gather_ = &stages_.gathers.cast(*c_, site, first_, mask, lanes_, m_.in.data(), occurrences, asked_, sent_);
     gatherBytes_ = sent_.size() * sizeof(GatherSent);
     for (const auto& [key, g] : c_->gathers)
         if (key.second == first_) gatherBytes_ += g.rows.size() * sizeof(float);
@@ -98,26 +107,26 @@ void KernelStrip::askGather() {
 
 void KernelStrip::ask(Sched& s) {
     if (gather_) {
-        for (size_t k = 0; k < ids_.size(); ++k) {
+        for (size_t k = 0; k < m_.ids.size(); ++k) {
             const PathRay& r = sent_[k].ray;
-            stages_.gathers.gathered[ids_[k]] = &sent_[k];
-            s.spawn(r.bounces + r.layers, ids_[k], r);
+            stages_.gathers.gathered[m_.ids[k]] = &sent_[k];
+            s.spawn(r.bounces + r.layers, m_.ids[k], r);
             stages_.sawDepth(r.bounces);
         }
         return;
     }
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
-    for (size_t k = 0; k < ids_.size(); ++k) {
-        const int lane = laneOf_[k], point = first_ + lane;
-        const uint32_t occurrence = occurrences_[size_t(site_) * 64 + size_t(lane)]++;
+    for (size_t k = 0; k < m_.ids.size(); ++k) {
+        const int lane = m_.laneOf[k], point = first_ + lane;
+        const uint32_t occurrence = m_.occurrences[size_t(site_) * 64 + size_t(lane)]++;
         if (site.kind == SiteKind::LightVisibility) {
-            stages_.requests.lightVisibility(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k]);
+            stages_.requests.lightVisibility(*c_, site, point, m_.in.data(), lanes_, lane, Color(1), m_.ids[k]);
             continue;
         }
         if (c_->rays[size_t(point)].quiet && (site.lobe || site.kind == SiteKind::Ambient)) continue; // nobody hears of light
         const size_t had = stages_.requests.lobes.size();
         if (stages_.shadows.queue.size() > kShadowsAtOnce) stages_.shadows.flush(s);
-        stages_.requests.request(*c_, site, point, in_.data(), lanes_, lane, Color(1), ids_[k], true, occurrence);
+        stages_.requests.request(*c_, site, point, m_.in.data(), lanes_, lane, Color(1), m_.ids[k], true, occurrence);
         if (stages_.requests.lobes.size() == had) continue;
         uint32_t& asked = asked_[size_t(lane)];
         stages_.requests.lobes.back().before = asked;
@@ -125,8 +134,15 @@ void KernelStrip::ask(Sched& s) {
     }
 }
 
+void KernelStrip::noteAsked(uint64_t lobes) {
+    for (const int lane : m_.laneOf) {
+        ++m_.occurrences[size_t(site_) * 64 + size_t(lane)];
+        asked_[size_t(lane)] += lobes >> lane & 1;
+    }
+}
+
 void KernelStrip::asked(Sched& s) {
-    for (TargetId id : ids_) s.release(id);
+    for (TargetId id : m_.ids) s.release(id);
 }
 
 } // namespace alpenglow::transport

@@ -9,15 +9,20 @@ namespace alpenglow::transport {
 /// What a request came back with, where its call takes it. Results are rows of `lanes` floats; `sums` may be null.
 void putResult(const SiteInfo&, const shading::TargetValue&, const TraceSums* sums, float* out, int lanes, int lane);
 
+/// What a strip waits for.
+struct StripRequest {
+    int site = 0, first = 0, lanes = 0; ///< of the kernel; the strip's first point; lanes of the rows
+    bool gather = false;                ///< the rays of a gather, which are found already
+    const StripMemory* memory = nullptr;
+    const uint32_t* asked = nullptr; ///< by lane: rays that it has asked for before
+};
+
 /// A strip of a suspending kernel while it waits. What it asks for is followed together with what other strips of its batch ask
 /// for (WaitingKernels::follow).
 class KernelStrip final : public Sched::Strip {
 public:
-    KernelStrip(WaitingKernels& stages, std::shared_ptr<BatchContext> c, void* handle, int first, int depth)
-        : stages_(stages), c_(std::move(c)), handle_(handle), first_(first), depth_(depth), bytes_(c_->frame) {}
-    ~KernelStrip() override {
-        if (handle_) c_->bound->kernel->destroy(handle_);
-    }
+    KernelStrip(WaitingKernels&, std::shared_ptr<BatchContext>, void* handle, int first, int depth);
+    ~KernelStrip() override;
     int depth() const override { return depth_; }
     /// Its frame, and about what its points take.
     size_t frameBytes() const override { return bytes_ + gatherBytes_ + 4096 + size_t(c_->bound->kernel->lanes()) * 256; }
@@ -29,6 +34,10 @@ public:
     void ask(Sched&);
     /// What it asked for is on its way: it is ready once all of that is complete.
     void asked(Sched&);
+    /// What ask() would ask for, for somebody who does that instead; and then, that it was done. lobes: lanes that send rays, one
+    /// each.
+    StripRequest request() const { return {site_, first_, lanes_, gather_ != nullptr, &m_, asked_.data()}; }
+    void noteAsked(uint64_t lobes);
 
 private:
     void askGather();
@@ -41,14 +50,10 @@ private:
     // The request that it waits for.
     int site_ = 0, lanes_ = 0;
     float* out_ = nullptr;
-    std::vector<float> in_;
-    std::vector<int> laneOf_;
-    std::vector<TargetId> ids_;    ///< by laneOf_; of a gather, by `sent_`
+    StripMemory m_;
     GatherRows* gather_ = nullptr; ///< the gather that it waits for; null: another request
     std::vector<GatherSent> sent_;
     size_t gatherBytes_ = 0;
-    /// By site and lane, how often it has asked there: what other lanes ask for must not change this one's random numbers.
-    std::vector<uint32_t> occurrences_;
     std::array<uint32_t, 64> asked_{}; ///< rays that a lane has asked for so far
 };
 

@@ -1,6 +1,8 @@
 // Kernels that wait: strips are started, ask together, and go on when their rays are back.
 #include "integrator/waitingkernels.h"
 #include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/gathercalls.h"
 #include "integrator/requests.h"
@@ -15,7 +17,7 @@ namespace alpenglow::transport {
 
 WaitingKernels::WaitingKernels(const StageSet& s)
     : Stage(s.context), accumulator(s.accumulator), gathers(s.gathers), requests(s.requests), shadows(s.shadows),
-      shading(s.shading), vertexLight_(s.vertexLight) {}
+      shading(s.shading), batches_(s.batches), blocks_(s.blocks), vertexLight_(s.vertexLight) {}
 
 void WaitingKernels::start(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     const auto& kernel = *c->bound->kernel;
@@ -43,11 +45,29 @@ void WaitingKernels::follow(Sched& sched) {
     strips.swap(waiting);
     for (size_t first = 0, end; first < strips.size(); first = end) {
         const std::shared_ptr<BatchContext> c = strips[first]->context();
-        for (end = first; end < strips.size() && strips[end]->context() == c; ++end) strips[end]->ask(sched);
-        vertexLight_.gather(*c, sched);
+        for (end = first; end < strips.size() && strips[end]->context() == c;) ++end;
+        const auto together = std::span(strips).subspan(first, end - first);
+        if (!blocks_.run(*c, together, sched)) {
+            for (KernelStrip* s : together) s->ask(sched);
+            vertexLight_.gather(*c, sched);
+        }
         shadows.flush(sched);
         for (size_t k = first; k < end; ++k) strips[k]->asked(sched);
     }
+}
+
+StripMemory WaitingKernels::takeMemory() {
+    if (memory_.empty()) return {};
+    StripMemory m = std::move(memory_.back());
+    memory_.pop_back();
+    m.occurrences.clear();
+    return m;
+}
+
+void WaitingKernels::giveBack(StripMemory m, std::shared_ptr<BatchContext> c) {
+    constexpr size_t kMost = 512;
+    if (memory_.size() < kMost) memory_.push_back(std::move(m));
+    batches_.giveBack(std::move(c));
 }
 
 int WaitingKernels::roomFor(const rsl::CompiledKernel& k, const rsl::CompiledKernel* other, const Sched& sched) const {

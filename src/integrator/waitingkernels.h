@@ -6,6 +6,8 @@
 namespace alpenglow::transport {
 
 class Accumulator;
+class BatchPool;
+class BlockVertices;
 class GatherCalls;
 class KernelStrip;
 class Requests;
@@ -31,10 +33,16 @@ public:
     Requests& requests;
     ShadowRays& shadows;
     SurfaceShading& shading;
+    /// What a strip keeps, and its batch once it is done: used again.
+    StripMemory takeMemory();
+    void giveBack(StripMemory, std::shared_ptr<BatchContext>);
     std::vector<KernelStrip*> waiting; ///< whose requests nobody has followed yet
     void sawDepth(int bounces) { counters_.depthMax = std::max(counters_.depthMax, bounces); }
 
 private:
+    std::vector<StripMemory> memory_; ///< of strips that are done
+    BatchPool& batches_;
+    BlockVertices& blocks_;
     std::unordered_map<const rsl::CompiledKernel*, size_t> frameOf_; ///< bytes of a strip's frame, of kernels that were started
     VertexLight& vertexLight_;
 };

@@ -24,9 +24,11 @@ struct alignas(64) VertexBlock {
     Row passes;      ///< by select() and pick(): the chance with which the ray goes on behind the point; 1: beside all others
     int32_t bounces[kBlock];
     uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: render::NumberBlock
+    uint32_t lightVertex[kBlock];                                      ///< in the place of `vertex`, of light samples
     Lanes points = 0;
     Lanes last = 0;       ///< points whose lobes are not followed, for the path is as long as it may be
     bool through = false; ///< something comes through at some point
+    bool waits = false;   ///< a kernel waits for each ray, which tells how far it goes: those that bring nothing are sent, too
 };
 
 /// What a call site of a kernel asks for at the points of a block: a lobe each.

@@ -4,6 +4,20 @@
 
 namespace alpenglow::transport::AL_NAMESPACE {
 
+static Lanes placeFarLights(const float* L, int stride, bool endless, LightBlock& to) {
+    Lanes odd = 0;
+    for (int at = 0; at < kBlock; at += kW) {
+        const V3 l = load3(L + at, stride);
+        vm usual;
+        store3(to.w, at, directionOr(-l, {vf(0), vf(0), vf(1)}, usual));
+        odd |= bitsFrom(~usual, at);
+        const vf far = endless ? vf(1e38f) : length(l);
+        store(to.far + at, select(far < vf(1e30f), far * vf(1 - 1e-5f), far));
+        store(to.density + at, vf(1));
+    }
+    return odd;
+}
+
 static void aimShadowRays(const VertexBlock& v, const LightBlock& l, ShadowBlock& to) {
     for (int at = 0; at < kBlock; at += kW) {
         const V3 w = load3(l.w, at), from = leave(v, at, w);

@@ -217,35 +217,103 @@ AL_INLINE vf roundingError(const V3& p) {
     return vf(1.1920929e-7f) * (absLanes(p.x) + absLanes(p.y) + absLanes(p.z)) + vf(1e-37f);
 }
 
-static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, const double* share,
-                            LightBlock& to, float* P, float* N, int stride) {
+/// Directions, densities and ends of shadow rays of the points at P with normals N. perArea: by point. oneSided: points whose
+/// emitters give no light behind.
+AL_INLINE Lanes seenFrom(const VertexBlock& v, const PlaceRows& r, const double* perArea, Lanes oneSided, const double* share,
+                         LightBlock& to, const float* P, const float* N, int stride) {
     Lanes placed = 0;
-    PlaceRows r;
-    placeAll(v, e, x, y, r);
     for (int at = 0; at < kBlock; at += kH) {
-        pointsOf(e, r, at, P + at, N + at, stride);
         const hd total = loadHalf(r.total + at);
         storeNarrow(to.density + at, total > 0 ? loadHalf(share + at) / total : hd(0));
     }
     for (int at = 0; at < kBlock; at += kW) {
         const V3 p = load3(P + at, stride), n = load3(N + at, stride), d = p - load3(v.P, at);
         const vf angular = load(to.density + at), d2 = dot(d, d), way = rootLanes(d2), cosine = absLanes(dot(d, n)) / way;
-        vd chance;
+        vd chance, even;
         __builtin_memcpy(&chance, share + at, sizeof chance);
-        const vd area = chance * e.perArea * __builtin_convertvector(d2, vd) / __builtin_convertvector(cosine, vd);
+        __builtin_memcpy(&even, perArea + at, sizeof even);
+        const vd area = chance * even * __builtin_convertvector(d2, vd) / __builtin_convertvector(cosine, vd);
         const vf byArea = select((d2 > 0) & (cosine > vf(1e-7f)), __builtin_convertvector(area, vf), vf(0));
         vm angle;
         for (int k = 0; k < kW; ++k) angle[k] = -(r.total[at + k] > 0);
         const vf density = select(angle, angular, byArea);
         const V3 w = d / way;
-        vm ok = (way > 0) & (density > 0) & finite(density);
-        if (e.oneSided) ok &= dot(n, w) < 0;
+        const vm ok = (way > 0) & (density > 0) & finite(density) & (~maskFrom(oneSided, at) | (dot(n, w) < 0));
         store3(to.w, at, w);
         store(to.density + at, density);
         store3(to.end, at, offsetOrigin(p, n, roundingError(p), -w));
         placed |= bitsFrom(ok, at);
     }
     return placed;
+}
+
+static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, const double* share,
+                            LightBlock& to, float* P, float* N, int stride) {
+    PlaceRows r;
+    placeAll(v, e, x, y, r);
+    alignas(64) double perArea[kBlock];
+    for (int at = 0; at < kBlock; at += kH) {
+        pointsOf(e, r, at, P + at, N + at, stride);
+        store(perArea + at, hd(e.perArea));
+    }
+    return seenFrom(v, r, perArea, e.oneSided ? 0xffffu : 0, share, to, P, N, stride);
+}
+
+/// placeAll() where each point has an emitter of its own.
+AL_INLINE void placeEach(const VertexBlock& v, const FlatEmitter* const* lamps, const float* x, const float* y, PlaceRows& r) {
+    alignas(64) double target[kBlock], low[kBlock], high[kBlock];
+    int near[kBlock], count = 0;
+    for (int i = 0; i < kBlock; ++i) {
+        const FlatEmitter& e = *lamps[i];
+        target[i] = double(x[i]) * e.cumulative[e.count - 1];
+        int t = 0;
+        for (int k = 0; k + 1 < e.count; ++k) t += e.cumulative[k] <= target[i];
+        r.triangle[i] = t;
+        low[i] = t ? e.cumulative[t - 1] : 0;
+        high[i] = e.cumulative[t];
+        r.u[0][i] = double(x[i]), r.u[1][i] = double(y[i]), r.total[i] = 0;
+        double middle[3];
+        for (int q = 0; q < 3; ++q) {
+            r.from[q][i] = double(v.P[q][i]);
+            middle[q] = e.centre[q] - r.from[q][i];
+        }
+        if (middle[0] * middle[0] + middle[1] * middle[1] + middle[2] * middle[2] < e.near2) near[count++] = i;
+    }
+    for (int at = 0; at < kBlock; at += kH) {
+        const hd l = loadHalf(low + at), size = loadHalf(high + at) - l, y0 = loadHalf(r.u[1] + at);
+        const hd side = rootOf(size > 0 ? clamp((loadHalf(target + at) - l) / size, hd(0), hd(1)) : hd(0.5));
+        store(r.b1 + at, side * (1 - y0)), store(r.b2 + at, side * y0);
+    }
+    for (int first = 0, last; first < count; first = last) { // near ones of the same emitter together
+        for (last = first + 1; last < count && lamps[near[last]] == lamps[near[first]];) ++last;
+        placeTogether(*lamps[near[first]], r, near + first, last - first);
+    }
+}
+
+static Lanes placeOnEmitters(const VertexBlock& v, const FlatEmitter* const* lamps, const float* x, const float* y,
+                             const double* share, LightBlock& to, float* P, float* N, int stride) {
+    PlaceRows r;
+    placeEach(v, lamps, x, y, r);
+    alignas(64) double corner[3][3][kBlock], perArea[kBlock];
+    Lanes oneSided = 0;
+    for (int i = 0; i < kBlock; ++i) {
+        const FlatEmitter& e = *lamps[i];
+        const int64_t t = r.triangle[i];
+        for (int c = 0; c < 3; ++c)
+            for (int q = 0; q < 3; ++q) corner[c][q][i] = e.corner[e.corners[t][c]][q];
+        for (int q = 0; q < 3; ++q) N[q * stride + i] = e.normal[t][q];
+        perArea[i] = e.perArea;
+        oneSided |= Lanes(e.oneSided) << i;
+    }
+    for (int at = 0; at < kBlock; at += kH) {
+        const auto load3d = [&](int c) {
+            return D3{loadHalf(corner[c][0] + at), loadHalf(corner[c][1] + at), loadHalf(corner[c][2] + at)};
+        };
+        const D3 a = load3d(0), e1 = load3d(1) - a, e2 = load3d(2) - a;
+        const D3 p = a + e1 * loadHalf(r.b1 + at) + e2 * loadHalf(r.b2 + at);
+        storeNarrow(P + at, p.x), storeNarrow(P + at + stride, p.y), storeNarrow(P + at + 2 * stride, p.z);
+    }
+    return seenFrom(v, r, perArea, oneSided, share, to, P, N, stride);
 }
 
 } // namespace alpenglow::transport::AL_NAMESPACE

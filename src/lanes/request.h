@@ -138,6 +138,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
             const vm whole = __builtin_convertvector(total == c, vi), none = __builtin_convertvector(~(total > 0), vi);
             share = select(alone, share, select(none, vf(0), select(whole, vf(1), __builtin_convertvector(c / total, vf))));
         }
+        if (v.waits) share = select(maskFrom(l.asked & ~v.last, at), vf(1), vf(0));
         store(l.chosen + at, share);
     }
     const vd passes = __builtin_convertvector(behind, vd) / total;

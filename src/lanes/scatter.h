@@ -96,7 +96,8 @@ static Lanes extendPaths(const VertexBlock& v, Roulette rule, ScatterBlock& to) 
         if (rule != Roulette::None)
             q = select(loadInt(v.bounces + at) + 1 > 3, chanceToGoOn(rule, weight, load3(to.request, at), load(to.dice + at)),
                        vf(1));
-        goes |= bitsFrom(mask & good & ~isZero(weight) & (q > 0), at);
+        const vm brings = v.waits ? vm(-1) : ~isZero(weight);
+        goes |= bitsFrom(mask & good & brings & (q > 0), at);
         store3(to.weight, at, weight / q);
         store3(to.origin, at, leave(v, at, load3(to.direction, at)));
     }

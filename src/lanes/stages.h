@@ -10,9 +10,11 @@
 //   take        what was drawn of one lobe, to its points            reads LobeBlock; writes ScatterBlock
 //   name        the random number keys of the next vertices          reads VertexBlock; writes ScatterBlock::vertex
 //   extend      the next rays: throughput, roulette, origin          reads VertexBlock, ScatterBlock; writes ScatterBlock
+//   chooseLights which of many lights points ask                     reads LightTree; writes ChosenLight
 //   load, store structures in memory to rows, and back               reads, writes RayBlock
 #pragma once
 #include "lanes/blocks.h"
+#include "lanes/lighttree.h"
 
 namespace alpenglow::transport {
 
@@ -28,6 +30,13 @@ struct Stages {
     /// that have one.
     Lanes (*place)(const VertexBlock&, const FlatEmitter&, const float* x, const float* y, const double* share, LightBlock&,
                    float* P, float* N, int stride);
+    /// The same where each point has an emitter of its own: so many pointers as a block has points, none null.
+    Lanes (*placeEach)(const VertexBlock&, const FlatEmitter* const* lamps, const float* x, const float* y, const double* share,
+                       LightBlock&, float* P, float* N, int stride);
+    /// Of lights without geometry, by the way L from them (three rows): LightBlock::w, far and density. endless: they stand
+    /// nowhere.
+    /// Returns the points whose L is of a length that one by one must be looked at.
+    Lanes (*placeFar)(const float* L, int stride, bool endless, LightBlock&);
     /// Shadow rays from the points toward the light: ShadowBlock::origin, direction and length.
     void (*aim)(const VertexBlock&, const LightBlock&, ShadowBlock&);
     /// For points of LobeBlock::lights and LightBlock::asked. kept: a row, what the lobe takes of the light; met: points from
@@ -53,6 +62,9 @@ struct Stages {
     /// The structures of some points one behind the other, of 16 words or a multiple. Returns how many; what one more would take
     /// is overwritten.
     int (*store)(const void* rows, int words, Lanes points, void* to);
+    /// LightChooser::choose() for some points of a block: P, three rows, and a random number each. Room for
+    /// LightTree::kMostChosen a point. Returns how many; those of a point are in no order.
+    int (*chooseLights)(const LightTree&, const Row* P, const float* random, Lanes points, ChosenLight* to);
 };
 
 /// The stages at 4, 8 or 16 lanes; null where this processor cannot run that.

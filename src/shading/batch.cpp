@@ -1,4 +1,5 @@
 #include "shading/batch.h"
+#include "shading/faceindex.h"
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -177,7 +178,8 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
         };
         if (s.from == From::Variable) surfaceRows_ &= std::all_of(s.offset, s.offset + s.parts, inSurfaceRows) && !s.scalar;
         else surfaceRows_ &= s.from != From::Told && s.from != From::Nothing;
-        lightRows_ &= s.scalar ? s.from == From::Parameter : s.from == From::Variable && inLightRows(s.offset[0]) && s.parts == 1;
+        if (s.from == From::Parameter) lightRows_ &= !s.varying || s.name.name != kFaceIndex;
+        else lightRows_ &= s.from == From::Variable && !s.scalar && inLightRows(s.offset[0]) && s.parts == 1;
         inputs_.push_back(std::move(s));
     }
     for (const rsl::ir::OutputSlot& o : kernel.outputs()) {
@@ -189,6 +191,12 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
     Oi = output("Oi");
     P = output("P");
     N = output("N");
+}
+
+bool BatchPlan::overriddenBy(const geometry::Shape& shape) const {
+    return std::any_of(inputs_.begin(), inputs_.end(), [&](const Source& s) {
+        return s.from == From::Parameter && s.varying && shape.findPrimvar(s.name.name) >= 0;
+    });
 }
 
 int BatchPlan::output(const rsl::OutputName& name) const {
@@ -277,15 +285,16 @@ void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan
 }
 
 void Batch::assign(std::shared_ptr<const rsl::CompiledKernel> k, const BatchPlan& plan, const LightRows& rows,
-                   const InstanceView& view) {
-    const size_t points = rows.P.size() / 3;
+                   std::span<const InstanceView> views, std::span<const uint32_t> viewOf) {
+    const size_t points = rows.size();
     layOut(std::move(k), plan, points);
     primvars_ = false;
     const std::span<const float> of[] = {rows.P, rows.N, rows.Ps};
     for (const BatchPlan::Source& s : plan.inputs_) {
         float* row = storage_.get() + s.firstRow * size_t(call_.stride);
         if (s.from == BatchPlan::From::Parameter) {
-            fillParameter(s, row, std::span<const ShadePoint>(), {{&view, 1}, {}});
+            fillParameter(s, row, rows, {views, viewOf});
+            pad(s, row);
             continue;
         }
         const auto from = of[std::find(std::begin(kLightVariables), std::end(kLightVariables), s.offset[0]) - kLightVariables];

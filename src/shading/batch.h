@@ -57,8 +57,10 @@ public:
     /// geometry::PointNeed: what of ShadePoint::surface is read, and of ShadePoint::lit.
     uint32_t needs() const { return needs_; }
     uint32_t litNeeds() const { return litNeeds_; }
-    /// Whether LightRows and the values of parameters are all that is read.
+    /// Whether LightRows and the values of parameters are all that is read, where no variable of a primitive stands for one.
     bool readsLightRows() const { return lightRows_; }
+    /// Whether a variable of the shape has the name of a parameter that it may stand for.
+    bool overriddenBy(const geometry::Shape&) const;
     /// The same for SurfaceRows: nothing of time and of what moves. Variables of primitives that stand
     /// for parameters are read as well.
     bool readsSurfaceRows() const { return surfaceRows_; }
@@ -95,7 +97,15 @@ private:
 
 /// What kernels of lights mostly read: three rows each, as long as there are points.
 struct LightRows {
+    /// Of which nothing more is known.
+    struct Point {
+        const geometry::Shape* shape;
+        const geometry::SurfacePoint& surface;
+        float shutter = 0;
+    };
     std::span<const float> P, N, Ps;
+    size_t size() const { return P.size() / 3; }
+    Point operator[](size_t) const;
 };
 
 /// What kernels of surfaces mostly read: points where rays met surfaces that stand still.
@@ -140,8 +150,9 @@ public:
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
-    /// The same for a plan that readsLightRows(), of an instance that does not move.
-    void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const LightRows&, const InstanceView&);
+    /// The same for a plan that readsLightRows(), of instances that do not move.
+    void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const LightRows&,
+                std::span<const InstanceView> views, std::span<const uint32_t> viewOf);
     /// The same for a plan that readsSurfaceRows(), of instances that do not move.
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const SurfaceRows&,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
@@ -174,7 +185,7 @@ private:
         const InstanceView& operator[](int point) const { return views[index(point)]; }
     };
     void layOut(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, size_t points);
-    // Points: std::span<const ShadePoint>, or SurfaceRows
+    // Points: std::span<const ShadePoint>, or SurfaceRows; of parameters LightRows, too
     template <class Points> void fillInputs(const Points&, const Views&, const SpaceResolver&);
     template <class Points> void fill(const BatchPlan::Source&, float* row, const Points&, const Views&, const SpaceResolver&);
     template <class Points> void fillColor(const BatchPlan::Source&, float* row, const Points&);

@@ -46,6 +46,11 @@ void Batch::findParameter(const BatchPlan::Source& s, const Views& views) {
         if (!numbers_[k]) numbers_[k] = found_.data() + k * size;
 }
 
+LightRows::Point LightRows::operator[](size_t) const {
+    static const geometry::SurfacePoint nowhere;
+    return {nullptr, nowhere};
+}
+
 template <class Points>
 void Batch::fillParameter(const BatchPlan::Source& s, float* row, const Points& points, const Views& views) {
     const int n = int(points.size()), np = s.parts, comps = s.components, count = s.scalar ? 1 : n;
@@ -128,5 +133,6 @@ void Batch::fillOverridden(const BatchPlan::Source& s, float* row, const Points&
 
 template void Batch::fillParameter(const BatchPlan::Source&, float*, const std::span<const ShadePoint>&, const Views&);
 template void Batch::fillParameter(const BatchPlan::Source&, float*, const SurfaceRows&, const Views&);
+template void Batch::fillParameter(const BatchPlan::Source&, float*, const LightRows&, const Views&);
 
 } // namespace alpenglow::shading

@@ -38,6 +38,7 @@ public:
         return size_t(&entryFrom(from, choose, share) - entries_.data());
     }
     uint32_t flatVisibility(size_t shape) const { return entries_[shape].visibility; }
+    const geometry::Shape& flatShape(size_t shape) const { return *entries_[shape].shape; }
     /// Whether sample() needs its number `choose`.
     bool chooses() const { return entries_.size() > 1; }
 

@@ -16,10 +16,21 @@ float area(const geometry::Bounds& b) {
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/// Squared distance of a ball, never below the square of its radius.
-double distance2(const Vec3& centre, double radius2, const Vec3& at) {
-    const Vec3 to = centre - at;
-    return std::max(double(dot(to, to)), radius2);
+Vec3 centreOf(const LightNode& n) { return {n.centre[0], n.centre[1], n.centre[2]}; }
+void setCentre(LightNode& n, const Vec3& c) {
+    for (int q = 0; q < 3; ++q) n.centre[q] = c[q];
+}
+Cone coneOf(const LightFront& f) { return {{f.axis[0], f.axis[1], f.axis[2]}, float(f.cosine)}; }
+LightFront frontOf(const Cone& c) {
+    LightFront f{{c.axis.x, c.axis.y, c.axis.z}, {}, 0, double(c.cosine), 0};
+    f.sine = std::sqrt(std::max(0.0, 1 - f.cosine * f.cosine));
+    return f;
+}
+
+/// Squared distance of a node, never below the square of its radius.
+double distance2(const LightNode& n, const Vec3& at) {
+    const Vec3 to = centreOf(n) - at;
+    return std::max(double(dot(to, to)), n.radius2);
 }
 
 geometry::Bounds boundsOf(const LightBound& l) {
@@ -54,6 +65,7 @@ Cone around(const Cone& a, const Cone& b) {
 LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wanted_(std::clamp(wanted, 1, kMost)) {
     leafOf_.assign(lights.size(), -1);
     nodes_.reserve(lights.size() * 2);
+    fronts_.reserve(lights.size() * 2);
     std::vector<int> order(lights.size());
     std::iota(order.begin(), order.end(), 0);
     const auto placed = std::stable_partition(order.begin(), order.end(), [&](int i) { return !lights[size_t(i)].everywhere; });
@@ -61,10 +73,15 @@ LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wan
         if (first == last) continue;
         roots_.push_back(int(nodes_.size()));
         nodes_.emplace_back();
+        fronts_.emplace_back();
         build(roots_.back(), {first, last}, lights);
     }
     for (Node& n : nodes_) {
-        n.radius2 = std::max(double(n.radius) * n.radius, 1e-12);
+        n.wide2 = n.leaf() || n.everywhere() ? 0 : 4 * n.radius2;
+        n.radius2 = std::max(n.radius2, 1e-12);
+        LightFront& f = fronts_[size_t(&n - nodes_.data())];
+        f.radius2 = n.radius2;
+        std::copy_n(n.centre, 3, f.centre);
         n.blind = kBlind * n.count / double(leafOf_.size());
     }
 }
@@ -120,6 +137,12 @@ size_t LightChooser::split(std::span<int> order, std::span<const LightBound> lig
     return size_t(part - order.begin());
 }
 
+LightTree LightChooser::tree() const {
+    LightTree t{nodes_.data(), fronts_.data(), {}, int(roots_.size()), double(wanted_), 1 - kBlind, double(leafOf_.size())};
+    std::copy(roots_.begin(), roots_.end(), t.roots);
+    return t;
+}
+
 void LightChooser::build(int node, std::span<int> order, std::span<const LightBound> lights) {
     geometry::Bounds box;
     double power = 0;
@@ -128,52 +151,60 @@ void LightChooser::build(int node, std::span<int> order, std::span<const LightBo
         power += std::isfinite(lights[size_t(i)].power) ? std::max(lights[size_t(i)].power, 0.f) : 0;
     }
     Node& n = nodes_[size_t(node)];
-    n.everywhere = lights[size_t(order[0])].everywhere;
+    n.flags = lights[size_t(order[0])].everywhere ? Node::kEverywhere : 0;
     n.power = power;
     n.count = int(order.size());
-    n.centre = (box.lo + box.hi) * .5f;
-    n.radius = length(box.hi - box.lo) * .5f;
+    const auto setBall = [&](const Vec3& centre, float radius) {
+        setCentre(n, centre);
+        n.radius2 = double(radius) * radius;
+    };
+    const auto setFront = [&](const Cone& front) {
+        fronts_[size_t(node)] = frontOf(front);
+        if (!front.all()) nodes_[size_t(node)].flags |= Node::kFaces;
+    };
+    setBall((box.lo + box.hi) * .5f, length(box.hi - box.lo) * .5f);
     if (order.size() == 1) {
-        n.centre = lights[size_t(order[0])].centre;
-        n.radius = lights[size_t(order[0])].radius;
-        n.light = order[0];
-        n.front = lights[size_t(order[0])].front;
-        n.faces = !n.front.all();
+        const LightBound& light = lights[size_t(order[0])];
+        setBall(light.centre, light.radius);
+        n.next = ~order[0];
+        setFront(light.front);
         leafOf_[size_t(order[0])] = node;
         return;
     }
     const size_t half = split(order, lights);
     const int left = int(nodes_.size());
-    n.left = left; // the reference ends here: the children may move the nodes
+    n.next = left; // the reference ends here: the children may move the nodes
     nodes_.resize(nodes_.size() + 2);
+    fronts_.resize(nodes_.size());
     nodes_[size_t(left)].parent = nodes_[size_t(left) + 1].parent = node;
     build(left, order.first(half), lights);
     build(left + 1, order.subspan(half), lights);
-    Node& both = nodes_[size_t(node)];
-    both.front = around(nodes_[size_t(left)].front, nodes_[size_t(left) + 1].front);
-    both.faces = !both.front.all();
+    setFront(around(coneOf(fronts_[size_t(left)]), coneOf(fronts_[size_t(left) + 1])));
 }
 
-double LightChooser::towards(const Node& n, const Vec3& at) {
-    const Vec3d to = Vec3d(at) - Vec3d(n.centre);
+double LightChooser::towards(const Node& n, const Vec3& at) const {
+    const LightFront& front = fronts_[size_t(&n - nodes_.data())];
+    const Vec3d to = Vec3d(at) - Vec3d(centreOf(n));
     const double d2 = dot(to, to);
     if (!(d2 > n.radius2)) return 1;
     // The angle to the axis, less that of the cone and that under which the node is seen; none may become negative.
-    double cosine = dot(to, Vec3d(n.front.axis)) / std::sqrt(d2), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    const auto less = [&](double c) {
-        const double s = std::sqrt(std::max(0.0, 1 - c * c)), before = cosine;
+    double cosine = dot(to, Vec3d(front.axis[0], front.axis[1], front.axis[2])) / std::sqrt(d2),
+           sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const auto less = [&](double c, double s) {
+        const double before = cosine;
         cosine = before > c ? 1 : before * c + sine * s;
         sine = before > c ? 0 : sine * c - before * s;
     };
-    less(double(n.front.cosine));
-    less(std::sqrt(1 - n.radius2 / d2));
+    less(front.cosine, front.sine);
+    const double seen = std::sqrt(1 - n.radius2 / d2);
+    less(seen, std::sqrt(std::max(0.0, 1 - seen * seen)));
     return std::max(cosine, 0.0);
 }
 
 double LightChooser::importance(const Node& n, const Vec3& at) const {
-    if (n.everywhere) return n.power;
-    const double share = n.power / distance2(n.centre, n.radius2, at);
-    return !std::isfinite(share) ? 0 : n.faces ? share * towards(n, at) : share;
+    if (n.everywhere()) return n.power;
+    const double share = n.power / distance2(n, at);
+    return !std::isfinite(share) ? 0 : n.faces() ? share * towards(n, at) : share;
 }
 
 LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
@@ -182,13 +213,13 @@ LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
     // Nodes that are wide as seen from here are opened, in the order of the tree, while there is room.
     for (int k = 0; k < c.size && c.size < kCut;) {
         const Node& n = nodes_[size_t(c.part[k].node)];
-        const Vec3 to = n.centre - at;
-        if (n.left < 0 || n.everywhere || !(4 * double(n.radius) * n.radius > dot(to, to))) {
+        const Vec3 to = centreOf(n) - at;
+        if (!(n.wide2 > dot(to, to))) {
             ++k;
             continue;
         }
-        c.part[k].node = n.left;
-        c.part[c.size++].node = n.left + 1;
+        c.part[k].node = n.next;
+        c.part[c.size++].node = n.next + 1;
     }
     for (int k = 0; k < c.size; ++k) c.total += c.part[k].importance = importance(nodes_[size_t(c.part[k].node)], at);
     return c;
@@ -198,12 +229,12 @@ double LightChooser::probability(double share, const Node& n) const { return wan
 
 inline std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
     // Of the children's importances only the ratio matters: each is taken times both squared distances, for one division.
-    const Node &a = nodes_[size_t(n.left)], &b = nodes_[size_t(n.left) + 1];
-    double l = n.everywhere ? a.power : a.power * distance2(b.centre, b.radius2, at);
-    double r = n.everywhere ? b.power : b.power * distance2(a.centre, a.radius2, at);
-    if (a.faces) l *= towards(a, at);
-    if (b.faces) r *= towards(b, at);
-    const double left = l + r > 0 && std::isfinite(l + r) ? l / (l + r) : nodes_[size_t(n.left)].count / double(n.count);
+    const Node &a = nodes_[size_t(n.next)], &b = nodes_[size_t(n.next) + 1];
+    double l = n.everywhere() ? a.power : a.power * distance2(b, at);
+    double r = n.everywhere() ? b.power : b.power * distance2(a, at);
+    if (a.faces()) l *= towards(a, at);
+    if (b.faces()) r *= towards(b, at);
+    const double left = l + r > 0 && std::isfinite(l + r) ? l / (l + r) : a.count / double(n.count);
     return {left, 1 - left};
 }
 
@@ -236,13 +267,13 @@ void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
         for (int k = 0; k < size;) {
             Entered& e = entered[k];
             const Node& n = nodes_[size_t(e.node)];
-            if (n.left < 0) {
-                chosen.emplace_back(n.light, float(std::min(probability(e.share, n), 1.0)));
+            if (n.leaf()) {
+                chosen.emplace_back(~n.next, float(std::min(probability(e.share, n), 1.0)));
                 e = entered[--size];
                 continue;
             }
             const auto [left, right] = divide(n, at);
-            const Node &a = nodes_[size_t(n.left)], &b = nodes_[size_t(n.left) + 1];
+            const Node &a = nodes_[size_t(n.next)], &b = nodes_[size_t(n.next) + 1];
             const double shareA = e.share * left, shareB = e.share * right;
             const double pa = probability(shareA, a), pb = probability(shareB, b), middle = e.begin + pa;
             const double below = teethBelow(middle), end = teethBelow(middle + pb);
@@ -252,8 +283,8 @@ void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
                 e = entered[--size];
                 continue;
             }
-            if (inA & inB) entered[size++] = {n.left + 1, shareB, middle, below};
-            e.node = n.left + !inA;
+            if (inA & inB) entered[size++] = {n.next + 1, shareB, middle, below};
+            e.node = n.next + !inA;
             e.share = inA ? shareA : shareB;
             e.begin = inA ? e.begin : middle;
             e.teeth = inA ? e.teeth : below;
@@ -275,15 +306,16 @@ int LightChooser::pick(const Vec3& at, float u, float& p) const {
         if (left < range) break;
         if (k + 1 < c.size) left -= range;
     }
-    for (const Node* n = &nodes_[size_t(node)]; n->left >= 0; n = &nodes_[size_t(node)]) {
-        const double first = divide(*n, at).first, range = probability(share * first, nodes_[size_t(n->left)]);
+    for (const Node* n = &nodes_[size_t(node)]; !n->leaf(); n = &nodes_[size_t(node)]) {
+        const double first = divide(*n, at).first, range = probability(share * first, nodes_[size_t(n->next)]);
         const bool second = !(left < range);
         if (second) left -= range;
-        node = n->left + second;
+        node = n->next + second;
         share *= second ? 1 - first : first;
     }
-    p = pmf(nodes_[size_t(node)].light, at);
-    return nodes_[size_t(node)].light;
+    const int light = ~nodes_[size_t(node)].next;
+    p = pmf(light, at);
+    return light;
 }
 
 float LightChooser::pmf(int light, const Vec3& at) const {
@@ -300,7 +332,7 @@ float LightChooser::pmf(int light, const Vec3& at) const {
             }
         const Node& parent = nodes_[size_t(nodes_[size_t(node)].parent)];
         const auto [left, right] = divide(parent, at);
-        share *= node == parent.left ? left : right;
+        share *= node == parent.next ? left : right;
         node = nodes_[size_t(node)].parent;
     }
 }

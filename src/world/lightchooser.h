@@ -2,6 +2,7 @@
 // logarithm of their number.
 #pragma once
 #include "base/vec.h"
+#include "lanes/lighttree.h"
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -44,7 +45,7 @@ public:
     /// A tenth of the choice does not look at power.
     static constexpr double kBlind = 0.1;
     /// The most that may be `wanted`.
-    static constexpr int kMost = 64;
+    static constexpr int kMost = LightTree::kMost;
 
     LightChooser() = default;
     /// Lights are numbered as they come here. `wanted`: how many of them a choice has, about; 1 to kMost.
@@ -60,27 +61,17 @@ public:
     int pick(const Vec3& at, float u, float& p) const;
     /// The probability that choose(), or pick(), takes this light.
     float pmf(int light, const Vec3& at) const;
+    /// For stages over blocks (lanes/stages.h); good as long as this is.
+    LightTree tree() const;
 
 private:
-    struct alignas(64) Node {
-        Vec3 centre;
-        int left = -1; ///< its children: left, left + 1; -1: a leaf
-        double power = 0;
-        double radius2 = 0; ///< squared, and not zero
-        double blind = 0;   ///< kBlind times its part of all lights
-        float radius = 0;
-        int count = 1;  ///< lights below it
-        int light = -1; ///< of a leaf
-        int parent = -1;
-        bool everywhere = false, faces = false; ///< faces: `front` is not all directions
-        Cone front;
-    };
+    using Node = LightNode;
     /// A node of the cut, and its share of importance in the whole.
     struct Part {
         int node;
         double importance;
     };
-    static constexpr int kCut = 32; ///< nodes of the cut at most
+    static constexpr int kCut = LightTree::kCut;
     struct Cut {
         Part part[kCut];
         int size = 0;
@@ -91,15 +82,16 @@ private:
     size_t split(std::span<int> order, std::span<const LightBound> lights) const;
     double importance(const Node&, const Vec3& at) const;
     /// The greatest cosine at which light of a node can leave towards a point, 0 to 1.
-    static double towards(const Node&, const Vec3& at);
+    double towards(const Node&, const Vec3& at) const;
     Cut cutAt(const Vec3& at) const;
     double probability(double share, const Node&) const;
     /// Shares of the children in that of their parent.
     std::pair<double, double> divide(const Node&, const Vec3& at) const;
 
     std::vector<Node> nodes_;
-    std::vector<int> leafOf_; ///< by light
-    std::vector<int> roots_;  ///< of lights with a place, and of the others
+    std::vector<LightFront> fronts_; ///< by node
+    std::vector<int> leafOf_;        ///< by light
+    std::vector<int> roots_;         ///< of lights with a place, and of the others
     int wanted_ = 1;
 };
 

@@ -46,7 +46,7 @@ TEST(BatchRows, RowsGiveWhatPointsGive) {
             }
         Batch one, all;
         one.assign(kernel, plan, points, {&view, 1}, {}, NoSpaces());
-        all.assign(kernel, plan, {P, N, Ps}, view);
+        all.assign(kernel, plan, {P, N, Ps}, {&view, 1}, {});
         ASSERT_EQ(all.size(), int(n));
         ASSERT_EQ(all.call().stride, one.call().stride);
         EXPECT_EQ(all.call().in[1][0], 7);
@@ -65,7 +65,8 @@ TEST(BatchRows, OtherInputsAreNotInRows) {
     EXPECT_TRUE(readsRows({triple("Ps")}));
     EXPECT_FALSE(readsRows({triple("Ps"), number("s", false)}));
     EXPECT_FALSE(readsRows({triple("Ns")}));
-    EXPECT_FALSE(readsRows({number("param:intensity", false)})) << "variables of the primitive may stand for it";
+    EXPECT_TRUE(readsRows({number("param:intensity", false)})) << "unless a variable of the primitive stands for it";
+    EXPECT_FALSE(readsRows({number("param:__faceindex", false)})) << "known by the primitive alone";
     rsl::ir::Input slopes = triple("P");
     slopes.order = 1;
     EXPECT_FALSE(readsRows({slopes}));

@@ -1,6 +1,7 @@
 // Vertices that are followed 16 at a time (integrator/blockvertices.h) have the bits of those that go one by one.
 #include "display/imageio.h"
 #include "integrator/harness.h"
+#include <cmath>
 
 namespace blocks_test {
 
@@ -60,6 +61,35 @@ std::string roomOf(const std::string& shader, const std::string& more = "") {
     return s + "Polygon \"P\" [-9 -2 0  -9 -2 20  9 -2 20  9 -2 0]\nPolygon \"P\" [-9 -9 9  -9 9 9  9 9 9  9 -9 9]\nWorldEnd\n";
 }
 
+/// Lamps of all kinds, so many that chance chooses among them.
+std::string manyLights(double brightest) {
+    std::string s;
+    int handle = 20;
+    const auto at = [](int i, float y) {
+        return std::to_string(std::sin(float(i)) * 3) + " " + std::to_string(y) + " " +
+               std::to_string(4 + 3 * std::cos(float(i)));
+    };
+    for (int i = 0; i < 12; ++i)
+        s += "LightSource \"pointlight\" " + std::to_string(handle++) + " \"intensity\" 1 \"from\" [" + at(i, 2) + "]" +
+             (i % 3 == 0 ? " \"float radius\" .2\n" : "\n");
+    for (int i = 0; i < 3; ++i)
+        s += "LightSource \"distantlight\" " + std::to_string(handle++) + " \"intensity\" .1 \"from\" [" + at(i, 5) +
+             "] \"to\" [0 0 0]\n";
+    for (int i = 0; i < 12; ++i) {
+        s += "AttributeBegin\nAreaLightSource \"slrect\" " + std::to_string(handle) + " \"float intensity\" " +
+             std::to_string(i == 5 ? brightest : i + 1.) + (i == 7 ? " \"int __importancesample\" 0" : "") +
+             "\nSurface \"constant\"\nColor 0 0 0\nTranslate " + at(5 * i, 1) + "\n";
+        if (i % 4 == 0) s += "Sides 1\n";
+        if (i % 5 == 4) s += "Attribute \"visibility\" \"int specular\" 0\n";
+        s += "Polygon \"P\" [-.2 .3 -.2  .2 .3 -.2  .2 .3 .2  -.2 .3 .2] \"constant float intensity\" [" +
+             std::to_string(i == 9 ? 30 : 2) + "]\n";
+        if (i % 3 == 0) s += "Polygon \"P\" [0 .5 0  .4 .5 0  0 .5 .9]\n";
+        if (i % 6 == 5) s += "Sphere .1 -.1 .1 360\n";
+        s += "AttributeEnd\nIlluminate " + std::to_string(handle++) + " 1\n";
+    }
+    return s + "LightSource \"envlight\" 90 \"float intensity\" .2\nIlluminate 90 1\n";
+}
+
 size_t differences(const Traced& a, const Traced& b) {
     size_t n = 0;
     for (size_t i = 0; i < a.samples.size(); ++i)
@@ -102,6 +132,72 @@ TEST(Blocks, HaveTheBitsOfSinglePoints) {
         EXPECT_EQ(differences(one, all), 0u) << shader;
         EXPECT_EQ(differences(one, narrow), 0u) << shader << ", kernels of 4 lanes";
     }
+}
+
+TEST(Blocks, ChooseAmongManyLights) {
+    writeShader("both", R"(surface both() {
+    normal n = faceforward(normalize(N), I);
+    Ci = Cs * (.5 * diffuse(n) + .3 * specular(n, -normalize(I), .2))
+         + .2 * trace(P, vector n, "distribution", "oren-nayar", "roughness", .5, "samplearealights", 1);
+})");
+    writeShader("own", R"(light own(float intensity = 1; varying float part = .5; color lightcolor = 1;) {
+    illuminate(P, N, PI / 2) Cl = part * intensity * lightcolor;
+})");
+    const std::string own =
+        "AttributeBegin\nAreaLightSource \"own\" 88 \"float intensity\" 3\nSurface \"constant\"\nColor 0 0 0\n"
+        "Polygon \"P\" [-1 2 5  1 2 5  1 2 6  -1 2 6] \"varying float part\" [.1 .5 .9 .2]\nAttributeEnd\n"
+        "AttributeBegin\nAreaLightSource \"own\" 89 \"float intensity\" 2\nSurface \"constant\"\nColor 0 0 0\n"
+        "Polygon \"P\" [2 2 5  2 1 5  2 1 6  2 2 6]\nAttributeEnd\nIlluminate 88 1\nIlluminate 89 1\n";
+    for (const char* shader : {"\"matte\"", "\"plastic\"", "\"both\"", "\"slmaterial\""})
+        for (const std::string more : {"", "Opacity .5 .6 .7\n", own.c_str()}) {
+            const std::string rib = roomOf(shader, manyLights(1e38) + more);
+            const Traced one = trace(rib, false), all = trace(rib, true), narrow = trace(rib, true, 4);
+            EXPECT_GT(sumOf(one), 1) << shader;
+            EXPECT_EQ(one.inBlocks, 0u);
+            EXPECT_GT(all.inBlocks, all.points / 3) << shader;
+            EXPECT_EQ(differences(one, all), 0u) << shader << more;
+            EXPECT_EQ(differences(one, narrow), 0u) << shader << more << ", kernels of 4 lanes";
+        }
+}
+
+TEST(Blocks, FollowWhatKernelsWaitFor) {
+    writeShader("threshold", R"(surface threshold(float samples = 1;) {
+    normal n = faceforward(normalize(N), I);
+    float dist = 0;
+    color light = trace(P, vector(n), dist, "distribution", "cosine", "samplecone", PI / 2, "samplearealights", 1,
+                        "samples", samples, "type", "diffuse");
+    Ci = Cs * (comp(light, 1) > .1 ? light : .3 * light + color(0, .01, .03) * (dist < 1e30 ? 1 : 0));
+})");
+    writeShader("twice", R"(surface twice() {
+    normal n = faceforward(normalize(N), I);
+    color a = trace(P, vector(n), "distribution", "oren-nayar", "roughness", .4, "samplearealights", 1), b = 0;
+    if (comp(a, 0) > .2) b = trace(P, reflect(normalize(I), n));
+    else b = trace(P, reflect(normalize(I), n), "samplecone", .2) * trace(P, vector(n), "samplecone", 1);
+    Ci = .6 * Cs * a + .3 * b * b;
+})");
+    writeShader("around", R"(surface around() {
+    normal n = faceforward(normalize(N), I);
+    float i;
+    color c = 0;
+    for (i = 0; i < 3; i += 1) {
+        color t = trace(P, vector(n), "distribution", "cosine", "samplecone", PI / 2);
+        c += t * t;
+    }
+    Ci = .2 * Cs * c;
+})");
+    for (const char* shader : {"\"threshold\"", "\"threshold\" \"samples\" 3", "\"twice\"", "\"around\""})
+        for (const std::string& more : {std::string(), std::string("Opacity .5 .6 .7\n"), manyLights(6)})
+            for (const int depth : {0, 2, 9}) {
+                const std::string rib = roomOf(shader, more);
+                const Traced one = trace(rib, false, 16, depth), all = trace(rib, true, 16, depth);
+                EXPECT_GT(sumOf(one), 1) << shader;
+                EXPECT_EQ(one.inBlocks, 0u);
+                if (std::string(shader) == "\"threshold\"" && depth > 0)
+                    EXPECT_GT(all.inBlocks, all.points / 2) << shader << depth;
+                EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
+                EXPECT_EQ(differences(one, trace(rib, true, 4, depth)), 0u) << shader << more << depth;
+                EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
+            }
 }
 
 TEST(Blocks, LetLightThroughAndLeaveWhatNeedsALook) {

@@ -110,6 +110,53 @@ TEST(EmitterLanes, PlaceHasTheBitsOfOnePoint) {
     }
 }
 
+/// Points of lamps that each point has of its own are those that each lamp gives by itself.
+TEST(EmitterLanes, EachPointHasALampOfItsOwn) {
+    std::vector<std::unique_ptr<Lamp>> lamps;
+    for (const auto& p : {polygon({-1, -.5f, 0, 1, -.5f, 0, 1, .5f, 0, -1, .5f, 0}), polygon({0, 0, 0, 2, 0, 0, 0, 1, 1}),
+                          polygon({0, 0, 0, .2f, 0, .1f, 0, .1f, 0})})
+        lamps.push_back(std::make_unique<Lamp>(p));
+    std::vector<FlatEmitter> flat;
+    for (const auto& l : lamps) flat.push_back(l->emitter->flat()[0]);
+    flat.push_back(flat[0]);
+    flat.back().oneSided = true;
+    Draws d;
+    constexpr int kStride = 2 * kBlock;
+    alignas(64) static float P[2][3 * kStride], N[2][3 * kStride];
+    for (int turn = 0; turn < 300; ++turn) {
+        const VertexBlock v = points(d, *lamps[size_t(turn) % 3]->shape, turn);
+        Row x, y;
+        alignas(64) double share[kBlock];
+        const FlatEmitter* of[kBlock];
+        for (int i = 0; i < kBlock; ++i) {
+            x[i] = turn % 31 == i ? 0 : d.one(), y[i] = turn % 37 == i ? 0x1.fffffep-1f : d.one();
+            share[i] = double(d.one(.1f));
+            of[i] = &flat[turn % 2 ? d.random() % 4 : size_t(i / 4)];
+        }
+        for (int lanes : {4, 8, 16}) {
+            const Stages* s = stages(lanes);
+            if (!s) continue;
+            LightBlock each{}, one{};
+            const Lanes there = s->placeEach(v, of, x, y, share, each, P[0], N[0], kStride);
+            for (const FlatEmitter& f : flat) {
+                const Lanes alone = s->place(v, f, x, y, share, one, P[1], N[1], kStride);
+                for (int i = 0; i < kBlock; ++i) {
+                    if (of[i] != &f) continue;
+                    ASSERT_EQ(there >> i & 1, alone >> i & 1) << turn << " " << i;
+                    if (!(there >> i & 1)) continue;
+                    EXPECT_TRUE(same(each.density[i], one.density[i]));
+                    for (int q = 0; q < 3; ++q) {
+                        EXPECT_TRUE(same(P[0][q * kStride + i], P[1][q * kStride + i]));
+                        EXPECT_TRUE(same(N[0][q * kStride + i], N[1][q * kStride + i]));
+                        EXPECT_TRUE(same(each.w[q][i], one.w[q][i]));
+                        EXPECT_TRUE(same(each.end[q][i], one.end[q][i]));
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST(EmitterLanes, OthersAreNotFlat) {
     std::vector<float> fan = {0, 0, 0};
     for (int i = 0; i < 7; ++i) fan.insert(fan.end(), {std::cos(float(i) * .8f), std::sin(float(i) * .8f), 0});

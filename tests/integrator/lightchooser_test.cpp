@@ -1,5 +1,7 @@
 // world/lightchooser.h: a light is chosen with exactly the probability that is given with it, and that pmf() tells.
+#include "lanes/stages.h"
 #include "world/lightchooser.h"
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -65,6 +67,45 @@ TEST(LightChooser, FrequenciesAreTheProbabilities) {
                     EXPECT_NEAR(often[size_t(i)] / double(turns), chooser.pmf(i, at), 2.0 / turns) << kind << n << " light " << i;
             }
         }
+}
+
+/// Choices sorted by light.
+LightChooser::Chosen sorted(LightChooser::Chosen c) {
+    std::sort(c.begin(), c.end());
+    return c;
+}
+
+TEST(LightChooser, BlocksChooseAsPointsDo) {
+    std::mt19937 rng(8);
+    std::uniform_real_distribution<float> one(0, 1);
+    std::vector<transport::ChosenLight> found(transport::kBlock * transport::LightTree::kMostChosen);
+    for (const char* kind : {"plain", "spheres", "dark", "uneven", "one place", "line", "some far", "broken", "facing"})
+        for (const int n : {1, 9, 33, 1000})
+            for (const int wanted : {1, 3, 8, 64}) {
+                const auto lights = lightsOf(n, 3, kind);
+                const LightChooser chooser(lights, wanted);
+                alignas(64) transport::Row P[3], u;
+                for (int i = 0; i < transport::kBlock; ++i) {
+                    const Vec3 near(one(rng) * 20 - 10, one(rng) * 4, one(rng) * 20 - 10);
+                    const Vec3 at = i == 0 ? lights[size_t(n / 2)].centre : i == 1 ? near * 1e4f : i == 2 ? near * 1e30f : near;
+                    for (int q = 0; q < 3; ++q) P[q][i] = at[q];
+                    u[i] = i == 3 ? 0 : i == 4 ? 0x1.fffffep-1f : one(rng);
+                }
+                const transport::Lanes asked = uint32_t(rng()) & 0xffffu;
+                for (const int lanes : {4, 8, 16}) {
+                    const transport::Stages* s = transport::stages(lanes);
+                    if (!s) continue;
+                    std::vector<LightChooser::Chosen> chosen(transport::kBlock);
+                    const int count = s->chooseLights(chooser.tree(), P, u, asked, found.data());
+                    for (int k = 0; k < count; ++k)
+                        chosen[size_t(found[size_t(k)].lane)].emplace_back(found[size_t(k)].light, found[size_t(k)].chance);
+                    for (int i = 0; i < transport::kBlock; ++i) {
+                        LightChooser::Chosen single;
+                        if (asked >> i & 1) chooser.choose({P[0][i], P[1][i], P[2][i]}, u[i], single);
+                        EXPECT_EQ(sorted(chosen[size_t(i)]), sorted(single)) << kind << n << " " << wanted << " " << i;
+                    }
+                }
+            }
 }
 
 TEST(LightChooser, SharesOfPower) {

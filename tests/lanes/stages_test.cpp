@@ -217,6 +217,34 @@ TEST(Stages, ShadowRaysStopBeforeTheEmitter) {
     }
 }
 
+TEST(Stages, LightsWithoutGeometryStandWhereTheySay) {
+    Draws d;
+    constexpr int kStride = 48;
+    alignas(64) static float L[3 * kStride];
+    for (int turn = 0; turn < 100; ++turn) {
+        for (int i = 0; i < kBlock; ++i) {
+            const Vec3 way = i == turn % 19   ? Vec3(0)
+                             : i == turn % 23 ? d.vector(1e-20f)
+                             : i == turn % 29 ? d.vector(1e25f)
+                                              : d.vector(9);
+            for (int q = 0; q < 3; ++q) L[q * kStride + i] = way[q];
+        }
+        for (const Stages* s : widths())
+            for (const bool endless : {false, true}) {
+                LightBlock l{};
+                const Lanes odd = s->placeFar(L, kStride, endless, l);
+                for (int i = 0; i < kBlock; ++i) {
+                    const Vec3 way(L[i], L[kStride + i], L[2 * kStride + i]);
+                    EXPECT_EQ(odd >> i & 1, i == turn % 19 || i == turn % 23 || i == turn % 29);
+                    const float far = endless ? 1e38f : length(way);
+                    EXPECT_TRUE(same(l.far[i], far < 1e30f ? far * (1 - 1e-5f) : far));
+                    EXPECT_EQ(l.density[i], 1);
+                    if (!(odd >> i & 1)) EXPECT_TRUE(same(at(l.w, i), directionOr(-way, Vec3(0, 0, 1))));
+                }
+            }
+    }
+}
+
 TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
     Draws d;
     const uint32_t keys[] = {7, 900, 13};

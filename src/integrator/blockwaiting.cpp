@@ -1,0 +1,88 @@
+// What kernels that wait ask for, in blocks: each call has a target of its own, to which its rays bring what they find.
+#include "answers/random.h"
+#include "integrator/blockvertices.h"
+#include "integrator/photonstage.h"
+#include "integrator/strips.h"
+#include "lobes/sampling.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+/// Whether strips of a batch ask for the same, for the first time and for one ray each, at about all of the batch's points.
+bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
+    const SurfaceBinding& b = *c.binding;
+    if (!usable_ || b.displacement || !plain_[size_t(b.lightList)] || c.aside || c.between || c.below || !c.clear.empty() ||
+        c.points.empty() || photons_.photonTrace())
+        return false;
+    size_t asked = 0;
+    for (const KernelStrip* s : strips) {
+        const StripRequest r = s->request();
+        const SiteInfo& site = c.bound->sites[size_t(r.site)];
+        if (r.site != strips[0]->request().site || !site.block || site.kind != SiteKind::Trace || r.gather) return false;
+        for (const int lane : r.memory->laneOf) {
+            const int samples = site.rays->samples;
+            const bool several = samples >= 0 && r.memory->in[size_t(samples) * size_t(r.lanes) + size_t(lane)] > 1;
+            if (several || r.memory->occurrences[size_t(r.site) * 64 + size_t(lane)] != 0) return false;
+        }
+        asked += r.memory->laneOf.size();
+    }
+    return 2 * asked >= c.points.size();
+}
+
+bool BlockVertices::run(BatchContext& c, std::span<KernelStrip* const> strips, Sched& sched) {
+    if (!takes(c, strips)) return false;
+    std::vector<EmitRecord> emits;
+    std::vector<float> arena;
+    std::vector<TargetId> targets = c.targets;
+    before_.assign(c.points.size(), 0);
+    for (const KernelStrip* s : strips) { // as a kernel that does not wait emits it: before the arguments the weight, 1
+        const StripRequest r = s->request();
+        EmitRecord& e = emits.emplace_back();
+        e.site = r.site, e.first = r.first, e.lanes = r.lanes, e.offset = arena.size();
+        arena.insert(arena.end(), 3 * size_t(r.lanes), 1.f);
+        arena.insert(arena.end(), r.memory->in.begin(), r.memory->in.end());
+        arena.resize(e.offset + size_t(rowsOfArguments(c.bound->sites[size_t(r.site)]) + 3) * size_t(r.lanes));
+        for (size_t k = 0; k < r.memory->laneOf.size(); ++k) {
+            const size_t lane = size_t(r.memory->laneOf[k]), point = size_t(r.first) + lane;
+            e.mask |= uint64_t(1) << lane;
+            targets[point] = r.memory->ids[k];
+            before_[point] = r.asked[lane];
+        }
+    }
+    c.emits.swap(emits), c.arena.swap(arena), c.targets.swap(targets);
+    const bool done = follow(c, sched, true);
+    c.emits.swap(emits), c.arena.swap(arena), c.targets.swap(targets);
+    if (!done) return false;
+    for (KernelStrip* s : strips) {
+        uint64_t lobes = 0;
+        counters_.inBlocks += s->request().memory->laneOf.size();
+        for (int lane = 0; lane < s->request().lanes; ++lane) {
+            const size_t point = size_t(s->request().first + lane);
+            if (point < points_ && count_ > 0)
+                lobes |= uint64_t(sites_[0].lobes[point / kBlock].asked >> point % kBlock & 1) << lane;
+        }
+        s->noteAsked(lobes);
+    }
+    return true;
+}
+
+/// The key of the light samples at points whose kernel waits: of the call.
+void BlockVertices::nameLights(VertexBlock& v, uint32_t site) const {
+    for (int i = 0; i < kBlock; ++i) v.lightVertex[i] = childVertex(v.vertex[i], kLightPoint + site, 0);
+}
+
+/// Chance ends rays that a waiting kernel asked for by how many it asks for.
+void BlockVertices::endByChance(size_t b) {
+    RayBlock& r = rays_[b];
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const uint32_t known = r.flags[i] & kAskedBits, before = before_[b * kBlock + size_t(i)];
+        r.flags[i] = (r.flags[i] & ~kAskedBits) | std::min<uint32_t>(std::max(known, before + 1), kAskedBits);
+        const float q = rouletteWaiting(vertices_[b].bounces[i], known, before, 1);
+        if (q < 1 && !(next_.dice[i] < q)) next_.goes &= ~(1u << i);
+        for (int k = 0; k < 3; ++k) next_.weight[k][i] = next_.weight[k][i] / q;
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,327 @@
+#include "integrator/chosenlights.h"
+#include "base/direction.h"
+#include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/kernelinputs.h"
+#include "integrator/lightkernels.h"
+#include "integrator/lightsample.h"
+#include "integrator/shadowrays.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
+    : b_(b), world_(b.world_), chosenHere_(size_t(kBlock) * LightTree::kMostChosen) {
+    for (const WorldImpl::LightGroup& g : world_.lightGroups_) all_.push_back({&g.kernel, {}});
+    for (const BoundLight& l : world_.lights_) {
+        together_.push_back(togetherOf(l));
+        origins_.push_back(originOfLight(*l.instance, 0));
+    }
+}
+
+/// Lights of a group share its kernel, where that reads nothing but rows and parameters.
+int BlockVertices::ChosenLights::togetherOf(const BoundLight& l) const {
+    return l.group >= 0 && b_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel) ? l.group : -1;
+}
+
+void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchContext& c) {
+    choose(list);
+    for (size_t k = 0; k < list.sampled.size(); ++k) {
+        if (begin_[k] == begin_[k + 1]) continue;
+        const int number = list.sampled[k];
+        if (!world_.lights_[size_t(number)].importance) continue; // rays alone find it
+        const auto asked = std::span(sorted_).subspan(begin_[k], begin_[k + 1] - begin_[k]);
+        if (together_[size_t(number)] < 0) {
+            askAlone(asked, c);
+            continue;
+        }
+        std::vector<Asked>& of = all_[size_t(together_[size_t(number)])].asked;
+        of.insert(of.end(), asked.begin(), asked.end());
+    }
+    for (Together& t : all_) {
+        constexpr size_t kMost = kAtOnce * kBlock;
+        for (size_t first = 0; first < t.asked.size(); first += kMost)
+            ask(t, std::span(t.asked).subspan(first, std::min(kMost, t.asked.size() - first)), c);
+        t.asked.clear();
+    }
+}
+
+/// The lights of each point, by their place in the list.
+void BlockVertices::ChosenLights::choose(const WorldImpl::LightList& list) {
+    b_.drawNumbers(kChooseLight << 1 | render::SampleNumbers::kSingle, b_.choices_);
+    chosen_.clear();
+    begin_.assign(list.sampled.size() + 1, 0);
+    const LightTree first = list.chooser.tree(), deeper = list.deeper.tree();
+    for (size_t b = 0; b < b_.blocks_; ++b) {
+        const VertexBlock& v = b_.vertices_[b];
+        Lanes begins = 0;
+        for (int i = 0; i < kBlock; ++i) begins |= Lanes(v.bounces[i] == 0) << i;
+        for (const auto& [tree, lanes] : {std::pair(&first, b_.lit_[b] & begins), std::pair(&deeper, b_.lit_[b] & ~begins)}) {
+            if (!lanes) continue;
+            const int n = b_.stages_.chooseLights(*tree, v.P, b_.choices_[b].x, lanes, chosenHere_.data());
+            for (const ChosenLight& l : std::span(chosenHere_).first(size_t(n))) {
+                chosen_.push_back({l.light, int(b) * kBlock + l.lane, l.chance});
+                ++begin_[size_t(l.light)];
+            }
+        }
+    }
+    size_t sum = 0;
+    for (size_t& n : begin_) sum += std::exchange(n, sum);
+    sorted_.resize(chosen_.size());
+    for (const Asked& a : chosen_) sorted_[begin_[size_t(a.light)]++] = {list.sampled[size_t(a.light)], a.point, a.chance};
+    for (size_t k = begin_.size() - 1; k > 0; --k) begin_[k] = begin_[k - 1];
+    begin_[0] = 0;
+}
+
+/// Points that ask one light, which is sampled point by point.
+void BlockVertices::ChosenLights::askAlone(std::span<const Asked> asked, BatchContext& c) {
+    const BoundLight& light = world_.lights_[size_t(asked[0].light)];
+    b_.findLit(&light);
+    std::vector<Lanes> here(b_.blocks_);
+    b_.chances_.resize(b_.points_);
+    for (const Asked& a : asked) {
+        here[size_t(a.point / kBlock)] |= 1u << a.point % kBlock;
+        b_.chances_[size_t(a.point)] = a.chance;
+    }
+    for (size_t b = 0; b < here.size(); ++b) b_.lit_[b] &= here[b];
+    std::erase_if(b_.litBlocks_, [&](size_t b) { return !b_.lit_[b]; });
+    const BoundKernel* const group = light.group < 0 ? nullptr : &world_.lightGroups_[size_t(light.group)].kernel;
+    if (!b_.litBlocks_.empty()) b_.lightAlone(light, c, group);
+    b_.chances_.clear();
+}
+
+void BlockVertices::ChosenLights::ask(const Together& t, std::span<const Asked> asked, BatchContext& c) {
+    gatherPoints(asked);
+    placeLights();
+    auto call = b_.batches_.take();
+    const shading::Batch& answers = run(*t.kernel, asked, *call);
+    b_.values_.clear();
+    for (size_t k = 0; k < count_; ++k) {
+        takeLight(k, answers, c);
+        if (blocks_[k].lights.asked) connect(blocks_[k], c);
+    }
+    b_.batches_.giveBack(std::move(call));
+}
+
+/// The points of the questions, in rows; the last one again where a block is not full.
+void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
+    count_ = (asked.size() + kBlock - 1) / kBlock;
+    blocks_.resize(std::max(blocks_.size(), count_));
+    pairs_.resize(count_);
+    for (size_t k = 0; k < count_; ++k) {
+        Questions& q = blocks_[k];
+        const size_t first = k * kBlock, n = std::min(asked.size() - first, size_t(kBlock));
+        q.there = n == size_t(kBlock) ? 0xffffu : (1u << n) - 1;
+        VertexBlock& to = q.points;
+        render::NumberBlock& numbers = pairs_[k];
+        for (size_t i = 0; i < size_t(kBlock); ++i) {
+            const Asked& a = asked[first + std::min(i, n - 1)];
+            q.asked[i] = &a;
+            const VertexBlock& v = b_.vertices_[size_t(a.point / kBlock)];
+            const size_t at = size_t(a.point % kBlock);
+            for (int r = 0; r < 3; ++r) {
+                to.P[r][i] = v.P[r][at];
+                to.n[r][i] = v.n[r][at];
+                to.weight[r][i] = v.weight[r][at];
+            }
+            to.error[i] = v.error[at];
+            to.bias[i] = v.bias[at];
+            numbers.low[i] = v.low[at];
+            numbers.high[i] = v.high[at];
+            numbers.index[i] = v.index[at];
+            numbers.vertex[i] = v.lightVertex[at];
+            numbers.stream[i] = (kLightPoint + uint32_t(a.light)) << 1;
+            numbers.occurrence[i] = 0;
+        }
+    }
+}
+
+/// Points of the lights: P and N of LightRows, and of emitters what their samples are.
+void BlockVertices::ChosenLights::placeLights() {
+    const size_t n = count_ * kBlock;
+    lamp_.resize(9 * n);
+    const bool emitters = world_.lights_[size_t(blocks_[0].asked[0]->light)].kind == LightKind::Area;
+    if (emitters) drawNumbers();
+    for (size_t k = 0; k < count_; ++k) {
+        Questions& q = blocks_[k];
+        q.lights.asked = q.lights.metDiffuse = q.lights.metSpecular = 0;
+        q.lights.emitter = q.lights.met = emitters;
+        std::fill_n(q.says, kBlock, -1);
+        for (size_t r = 0; r < 3; ++r) std::copy_n(q.points.P[r], kBlock, lamp_.data() + (6 + r) * n + k * kBlock);
+        if (emitters) {
+            placeOnEmitters(k);
+            continue;
+        }
+        for (size_t i = 0; i < size_t(kBlock); ++i) {
+            const Vec3& origin = origins_[size_t(q.asked[i]->light)];
+            for (size_t r = 0; r < 3; ++r) {
+                lamp_[r * n + k * kBlock + i] = origin[int(r)];
+                lamp_[(3 + r) * n + k * kBlock + i] = 0;
+            }
+        }
+    }
+}
+
+void BlockVertices::ChosenLights::drawNumbers() {
+    bool choices = false;
+    for (size_t k = 0; k < count_; ++k)
+        for (const Asked* a : blocks_[k].asked) choices |= takesChoice(world_.lights_[size_t(a->light)]);
+    if (choices) {
+        choices_ = pairs_;
+        for (render::NumberBlock& n : choices_)
+            for (uint32_t& stream : n.stream) stream |= render::SampleNumbers::kSingle;
+        render::drawBlocks(choices_);
+    } else {
+        choices_.clear();
+    }
+    render::drawBlocks(pairs_);
+}
+
+void BlockVertices::ChosenLights::placeOnEmitters(size_t k) {
+    Questions& q = blocks_[k];
+    alignas(64) double share[kBlock];
+    for (size_t i = 0; i < size_t(kBlock); ++i) {
+        const Emitter& e = *world_.lights_[size_t(q.asked[i]->light)].emitter;
+        const float choose = e.flat().size() > 1 ? choices_[k].x[i] : 0;
+        const size_t shape = e.flatFrom({q.points.P[0][i], q.points.P[1][i], q.points.P[2][i]}, choose, share[i]);
+        q.lamp[i] = &e.flat()[shape];
+        q.visibility[i] = e.flatVisibility(shape);
+    }
+    const size_t n = count_ * kBlock;
+    float* P = lamp_.data() + k * kBlock;
+    q.there &= b_.stages_.placeEach(q.points, q.lamp, pairs_[k].x, pairs_[k].y, share, q.lights, P, P + 3 * n, int(n));
+}
+
+/// The kernel over the questions, each with the parameters of its light.
+const shading::Batch& BlockVertices::ChosenLights::run(const BoundKernel& kernel, std::span<const Asked> asked,
+                                                       BatchContext& call) {
+    const size_t n = count_ * kBlock;
+    views_.clear();
+    viewOf_.resize(n);
+    for (size_t i = 0; i < n; ++i) {
+        if (i >= asked.size()) {
+            viewOf_[i] = viewOf_[i - 1];
+            continue;
+        }
+        if (i == 0 || asked[i].light != asked[i - 1].light) {
+            const BoundLight& l = world_.lights_[size_t(asked[i].light)];
+            views_.push_back(l.instance->view());
+            views_.back().rows = l.rows.get();
+        }
+        viewOf_[i] = uint32_t(views_.size() - 1);
+    }
+    call.bound = &kernel;
+    call.lit = nullptr;
+    call.light = &world_.lights_[size_t(asked[0].light)];
+    call.ownShadows.clear();
+    if (!call.batch) call.batch = std::make_shared<shading::Batch>();
+    const std::span<const float> rows(lamp_);
+    call.batch->assign(kernel.kernel, *kernel.plan, {rows.first(3 * n), rows.subspan(3 * n, 3 * n), rows.subspan(6 * n, 3 * n)},
+                       views_, viewOf_);
+    b_.inputs_.bind(call.batch->call(), call);
+    kernel.kernel->run(&call.batch->call());
+    call.ran();
+    return *call.batch;
+}
+
+/// What the lights send, from the outputs of their kernel.
+void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from, const BatchContext& c) {
+    Questions& q = blocks_[k];
+    LightBlock& l = q.lights;
+    const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)]; // outputs have the same places in all of them
+    const size_t at = k * kBlock;
+    const auto row = [&](int output, int component) { return from.row(output, component).data() + at; };
+    const auto kept = [&](int output, Row& to) {
+        for (int i = 0; i < kBlock; ++i) to[i] = std::max(0.f, 1 - (output < 0 ? 0 : row(output, 0)[i]));
+    };
+    for (int r = 0; r < 3; ++r) std::copy_n(row(first.outCl, r), kBlock, l.Cl[r]);
+    kept(first.nonDiffuse, l.keptDiffuse);
+    kept(first.nonSpecular, l.keptSpecular);
+    if (!l.emitter) b_.placeFar(first, from, at, l);
+    for (Lanes left = q.there; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
+        const Vec3 L = light.outL < 0 ? Vec3() : Vec3(row(light.outL, 0)[i], row(light.outL, 1)[i], row(light.outL, 2)[i]);
+        Color Cl{l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};
+        if (light.intensityScale > 0) { // the kernel divided by the squared distance: radiance does not
+            Cl *= dot(L, L) * light.intensityScale;
+            for (int r = 0; r < 3; ++r) l.Cl[r][i] = Cl[r];
+        }
+        if (light.outLit >= 0 && row(light.outLit, 0)[i] == 0) continue;
+        if (!isFinite(Cl)) b_.accumulator_.notFinite(&c.rays[size_t(q.asked[i]->point)], "Cl", light.instance.get());
+        if (!isFinite(Cl) || Cl == Color(0)) continue;
+        l.asked |= 1u << i;
+        if (l.emitter) {
+            l.metDiffuse |= Lanes((q.visibility[i] & visibilityBit(RayType::Diffuse)) != 0) << i;
+            l.metSpecular |= Lanes((q.visibility[i] & visibilityBit(RayType::Specular)) != 0) << i;
+        } else {
+            takeShadow(q, i, L, from, at + size_t(i));
+        }
+        l.density[i] *= q.asked[i]->chance;
+    }
+}
+
+/// What a light says of its shadow. at: in the batch.
+void BlockVertices::ChosenLights::takeShadow(Questions& q, int i, const Vec3& L, const shading::Batch& from, size_t at) {
+    const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
+    LightValue v;
+    if (!b_.asksShadowDisk(light, from, at, v)) return;
+    v.L = L;
+    q.says[i] = int32_t(b_.values_.size());
+    b_.values_.push_back(v);
+}
+
+/// Lobes of a site at the points of the questions, as far as they are evaluated. Returns those that sample the light.
+Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVertices::Site& s) {
+    Lanes asked = 0;
+    const float* from[kBlock]; // the first row of each lobe's block, at its place
+    for (int i = 0; i < kBlock; ++i) {
+        const Asked& a = *q.asked[i];
+        const size_t at = size_t(a.point % kBlock);
+        const LobeBlock& l = s.lobes[size_t(a.point / kBlock)];
+        from[i] = l.lobe[0] + at;
+        for (int r = 0; r < 3; ++r) lobe_.weight[r][i] = l.weight[r][at];
+        lobe_.chosen[i] = l.chosen[at];
+        const bool samples = (l.lights >> at & 1) && BlockVertices::samples(s, world_.lights_[size_t(a.light)]);
+        asked |= Lanes(samples) << i;
+    }
+    lobe_.asked = lobe_.lights = asked & q.lights.asked;
+    if (!lobe_.lights) return 0;
+    const auto rows = [&](int first, int end) {
+        for (int r = first; r < end; ++r)
+            for (int i = 0; i < kBlock; ++i) lobe_.lobe[r][i] = from[i][r * kBlock];
+    };
+    const int needs = s.lanes->needs;
+    rows(kRowAxis, kRowWo);
+    if (needs & kNeedsWo) rows(kRowWo, kRowHorizon);
+    if (needs & kNeedsHorizon) rows(kRowHorizon, kRowA);
+    if (needs & kNeedsA) rows(kRowA, kRowRoughness);
+    if (needs & kNeedsSurface) rows(kRowRoughness, kRowCount);
+    if (needs & kNeedsNumbers) rows(kRowCount, kRowAlbedo);
+    rows(kRowAlbedo, kLobeRows);
+    return lobe_.lights;
+}
+
+/// Shadow rays of a block of questions: one of each, for all lobes of its point.
+void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
+    BlockVertices& b = b_;
+    b.stages_.aim(q.points, q.lights, b.shadow_);
+    std::fill_n(b.sent_, kBlock, -1);
+    size_t points[kBlock] = {};
+    for (int i = 0; i < kBlock; ++i)
+        if (q.there >> i & 1) points[i] = size_t(q.asked[i]->point);
+    for (size_t k = 0; k < b.count_; ++k) {
+        const BlockVertices::Site& s = b.sites_[k];
+        const Lanes asked = s.lights ? gatherLobes(q, s) : 0;
+        if (!asked) continue;
+        s.lanes->evaluate(lobe_.lobe[0], asked, q.lights.w[0], b.value_[0]);
+        for (Lanes some = b.contribute(s, q.points, lobe_, q.lights, c, points); some; some &= some - 1) {
+            const int i = std::countr_zero(some);
+            const LightValue* says = q.says[i] < 0 ? nullptr : &b.values_[size_t(q.says[i])];
+            b.sendShadow(size_t(q.asked[i]->point), size_t(i), world_.lights_[size_t(q.asked[i]->light)], says, c);
+        }
+    }
+}
+
+} // namespace alpenglow::transport

@@ -1,0 +1,295 @@
+// Stage chooseLights: LightChooser::choose() (world/lightchooser.cpp) for the points of a block, operation by operation.
+#pragma once
+#include "lanes/lighttree.h"
+#include "lanes/records.h"
+
+namespace alpenglow::transport::AL_NAMESPACE {
+
+typedef int64_t vl __attribute__((ext_vector_type(ALPENGLOW_LANES))); ///< mask of vd
+
+AL_INLINE vd doubles(vf x) { return __builtin_convertvector(x, vd); }
+AL_INLINE vl longMask(vm m) { return __builtin_convertvector(m, vl); }
+AL_INLINE vm shortMask(vl m) { return __builtin_convertvector(m, vm); }
+AL_INLINE vd rootOf(vd x) { return __builtin_elementwise_sqrt(x); }
+AL_INLINE vd least0(vd x) { return 0 < x ? x : vd(0); }
+AL_INLINE vl isFinite(vd x) { return __builtin_elementwise_abs(x) < vd(__builtin_inf()); }
+
+/// Nodes in registers, one a lane.
+struct NodeLanes {
+    V3 centre;
+    vi next, count;
+    vm everywhere, faces;
+    vd power, radius2, blind, wide2;
+};
+/// A double of each node from the rows of its two words.
+AL_INLINE vd doubleOf(vu low, vu high) {
+    const vu half[2] = {inTurns<0>(low, high, LaneNumbers()), inTurns<1>(low, high, LaneNumbers())};
+    vd v;
+    __builtin_memcpy(&v, half, sizeof v);
+    return v;
+}
+/// Structures of 16 words, one a lane, to a row for each word.
+AL_INLINE void loadRows(const void* const (&of)[kW], vu (&row)[16]) {
+    for (int first = 0; first < 16; first += kW) {
+        vu square[kW];
+        for (int k = 0; k < kW; ++k) __builtin_memcpy(&square[k], static_cast<const char*>(of[k]) + 4 * first, sizeof square[k]);
+        transpose(square);
+        for (int k = 0; k < kW; ++k) row[first + k] = square[k];
+    }
+}
+AL_INLINE vf floatsOf(vu v) { return __builtin_bit_cast(vf, v); }
+AL_INLINE NodeLanes loadNodes(const void* const (&of)[kW]) {
+    vu row[16];
+    loadRows(of, row);
+    NodeLanes n;
+    n.centre = {floatsOf(row[0]), floatsOf(row[1]), floatsOf(row[2])};
+    n.next = __builtin_bit_cast(vi, row[3]);
+    n.power = doubleOf(row[4], row[5]);
+    n.radius2 = doubleOf(row[6], row[7]);
+    n.blind = doubleOf(row[8], row[9]);
+    n.wide2 = doubleOf(row[10], row[11]);
+    n.count = __builtin_bit_cast(vi, row[12]);
+    n.everywhere = (row[13] & LightNode::kEverywhere) != 0;
+    n.faces = (row[13] & LightNode::kFaces) != 0;
+    return n;
+}
+
+AL_INLINE vd distance2(const NodeLanes& n, const V3& at) {
+    const V3 to = n.centre - at;
+    const vd d2 = doubles(dot(to, to));
+    return d2 < n.radius2 ? n.radius2 : d2;
+}
+
+/// Turns a direction by an angle towards an axis.
+AL_INLINE void turn(vd c, vd s, vd& cosine, vd& sine) {
+    const vd before = cosine;
+    const vl there = before > c;
+    cosine = there ? vd(1) : before * c + sine * s;
+    sine = there ? vd(0) : sine * c - before * s;
+}
+
+/// LightChooser::towards().
+static vd towards(const void* const (&of)[kW], const V3& at) {
+    vu row[16];
+    loadRows(of, row);
+    const auto wide = [&](int r) { return doubles(floatsOf(row[r])); };
+    const vd x = doubles(at.x) - wide(3), y = doubles(at.y) - wide(4), z = doubles(at.z) - wide(5), d2 = x * x + y * y + z * z;
+    const vd radius2 = doubleOf(row[6], row[7]), c = rootOf(1 - radius2 / d2);
+    vd cosine = (x * wide(0) + y * wide(1) + z * wide(2)) / rootOf(d2), sine = rootOf(least0(1 - cosine * cosine));
+    turn(doubleOf(row[8], row[9]), doubleOf(row[10], row[11]), cosine, sine);
+    turn(c, rootOf(least0(1 - c * c)), cosine, sine);
+    return d2 > radius2 ? (cosine < 0 ? vd(0) : cosine) : vd(1);
+}
+AL_INLINE bool anyOf(vm m) { return __builtin_reduce_or(m) != 0; }
+
+/// Nodes that are gone into: where they begin in the running sum of the probabilities, and the teeth of the comb before it.
+struct Ways {
+    static constexpr int kRoom = kBlock * (LightTree::kMostChosen + 1) + kW;
+    int32_t next[kRoom], lane[kRoom];
+    double share[kRoom], begin[kRoom], teeth[kRoom];
+    int size;
+};
+/// What their two children are, by way.
+struct Children {
+    int32_t next[2][Ways::kRoom];
+    int32_t count[2][Ways::kRoom];
+    double weight[2][Ways::kRoom], blind[2][Ways::kRoom];
+    int32_t faces[2 * Ways::kRoom]; ///< those whose front counts: twice the way, and the child
+    int facing;
+};
+struct Choosing {
+    const LightTree& tree;
+    const Row* P;
+    const double* random;
+    ChosenLight* to;
+    int count;
+    Ways *now, *then;
+    Children* children;
+};
+AL_INLINE vd probability(const LightTree& t, vd share, vd blind) { return t.wanted * (t.seeing * share + blind); }
+
+/// Goes on at a node, or takes the light of a leaf; which of both is chance, so there is no branch.
+AL_INLINE void goInto(Choosing& c, Ways& ways, int32_t next, int lane, double share, double p, double begin, double teeth) {
+    c.to[c.count] = {~next, lane, float(1.0 < p ? 1.0 : p)};
+    c.count += next < 0;
+    const int i = ways.size;
+    ways.next[i] = next, ways.lane[i] = lane;
+    ways.share[i] = share, ways.begin[i] = begin, ways.teeth[i] = teeth;
+    ways.size += next >= 0;
+}
+AL_INLINE vd loadDoubles(const double* from) {
+    vd v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+
+/// The cuts of points, lane by lane: a node of some points a turn.
+struct CutLanes {
+    static constexpr int kTurns = 2 * LightTree::kCut; ///< of each node that is opened and each that stays
+    int32_t next[kTurns][kW], count[kTurns][kW];
+    double importance[kTurns][kW], blind[kTurns][kW];
+    Lanes here[kTurns];
+    int turns;
+    vd total;
+};
+
+static void cutAt(const LightTree& t, const V3& at, Lanes asked, CutLanes& c) {
+    alignas(64) int32_t node[LightTree::kCut + 1][kW], now[kW], next[kW], place[kW], size[kW];
+    for (int k = 0; k < kW; ++k) {
+        for (int r = 0; r < t.rootCount; ++r) node[r][k] = t.roots[r];
+        now[k] = t.roots[0], place[k] = 0, size[k] = t.rootCount;
+    }
+    c.total = vd(0);
+    c.turns = 0;
+    for (vm goes = maskFrom(asked, 0); anyOf(goes); ++c.turns) {
+        const void *of[kW], *front[kW];
+        for (int k = 0; k < kW; ++k) of[k] = &t.nodes[now[k]], front[k] = &t.fronts[now[k]];
+        const NodeLanes n = loadNodes(of);
+        const V3 to = n.centre - at;
+        const vd d2 = doubles(dot(to, to));
+        const vm opens = goes & shortMask(n.wide2 > d2) & (loadInt(size) < LightTree::kCut), stays = goes & ~opens;
+        vd importance = n.power / (d2 < n.radius2 ? n.radius2 : d2);
+        importance = isFinite(importance) ? importance : vd(0);
+        if (const vm faces = stays & n.faces & ~n.everywhere; anyOf(faces))
+            importance *= longMask(faces) ? towards(front, at) : vd(1);
+        importance = longMask(n.everywhere) ? n.power : importance;
+        c.total += longMask(stays) ? importance : vd(0);
+        store(c.next[c.turns], n.next), store(c.count[c.turns], n.count);
+        store(c.importance[c.turns], importance), store(c.blind[c.turns], n.blind);
+        c.here[c.turns] = bitsFrom(stays, 0);
+        store(next, n.next);
+        for (int k = 0; k < kW; ++k) node[size[k]][k] = next[k] + 1; // counts where the node is opened
+        const vi position = loadInt(place) - stays, end = loadInt(size) - opens;
+        store(place, position), store(size, end);
+        goes &= position < end;
+        for (int k = 0; k < kW; ++k) now[k] = node[place[k] < LightTree::kCut ? place[k] : 0][k];
+        const vi following = opens ? n.next : loadInt(now);
+        store(now, goes ? following : vi(t.roots[0]));
+    }
+}
+
+/// Enters nodes of the cuts of the points from `from` on.
+static void enterCut(Choosing& c, int from, Lanes points) {
+    CutLanes cut;
+    cutAt(c.tree, load3(c.P, from), points >> from & ((1u << kW) - 1), cut);
+    const vd random = loadDoubles(c.random + from);
+    vd sum(0), teeth = __builtin_elementwise_ceil(sum - random);
+    const bool seen = !anyOf(shortMask(~(cut.total > 0))); // some light is, from each point
+    for (int turn = 0; turn < cut.turns; ++turn) {
+        if (!cut.here[turn]) continue;
+        const vl here = longMask(maskFrom(cut.here[turn], 0));
+        vd share = loadDoubles(cut.importance[turn]) / cut.total;
+        if (!seen) share = cut.total > 0 ? share : __builtin_convertvector(loadInt(cut.count[turn]), vd) / c.tree.lights;
+        const vd p = probability(c.tree, share, loadDoubles(cut.blind[turn]));
+        const vd end = __builtin_elementwise_ceil(sum + p - random);
+        alignas(64) double of[4][kW];
+        store(of[0], share), store(of[1], p), store(of[2], sum), store(of[3], teeth);
+        for (Lanes left = cut.here[turn] & bitsFrom(shortMask((p >= 1) | (end > teeth)), 0); left; left &= left - 1) {
+            const int i = __builtin_ctz(left);
+            goInto(c, *c.now, cut.next[turn][i], from + i, of[0][i], of[1][i], of[2][i], of[3][i]);
+        }
+        sum = here ? sum + p : sum;
+        teeth = here ? end : teeth;
+    }
+}
+
+/// What the children of as many ways as there are lanes weigh, from `first` on; without their fronts.
+static void weigh(const Choosing& c, int first) {
+    const Ways& w = *c.now;
+    Children& to = *c.children;
+    const void *left[kW], *right[kW];
+    alignas(64) Row place[3];
+    const int count = w.size - first < kW ? w.size - first : kW;
+    for (int k = 0; k < kW; ++k) {
+        const int i = first + (k < count ? k : 0);
+        left[k] = &c.tree.nodes[w.next[i]], right[k] = &c.tree.nodes[w.next[i] + 1];
+        for (int q = 0; q < 3; ++q) place[q][k] = c.P[q][w.lane[i]];
+    }
+    const V3 at = load3(place, 0);
+    const NodeLanes a = loadNodes(left), b = loadNodes(right);
+    // Of the importances only the ratio matters: each is taken times both squared distances, for one division.
+    const vl everywhere = longMask(a.everywhere);
+    store(to.weight[0] + first, everywhere ? a.power : a.power * distance2(b, at));
+    store(to.weight[1] + first, everywhere ? b.power : b.power * distance2(a, at));
+    store(to.blind[0] + first, a.blind), store(to.blind[1] + first, b.blind);
+    store(to.next[0] + first, a.next), store(to.next[1] + first, b.next);
+    store(to.count[0] + first, a.count), store(to.count[1] + first, b.count);
+    const Lanes here = (1u << count) - 1;
+    for (Lanes some = here & bitsFrom(a.faces, 0); some; some &= some - 1)
+        to.faces[to.facing++] = 2 * (first + __builtin_ctz(some));
+    for (Lanes some = here & bitsFrom(b.faces, 0); some; some &= some - 1)
+        to.faces[to.facing++] = 2 * (first + __builtin_ctz(some)) + 1;
+}
+
+/// Fronts of as many children as there are lanes, from `first` of those that face on.
+static void face(const Choosing& c, int first) {
+    const Ways& w = *c.now;
+    Children& to = *c.children;
+    const int count = to.facing - first < kW ? to.facing - first : kW;
+    const void* of[kW];
+    alignas(64) Row place[3];
+    for (int k = 0; k < kW; ++k) {
+        const int which = to.faces[first + (k < count ? k : 0)], i = which >> 1;
+        of[k] = &c.tree.fronts[w.next[i] + (which & 1)];
+        for (int q = 0; q < 3; ++q) place[q][k] = c.P[q][w.lane[i]];
+    }
+    alignas(64) double part[kW];
+    store(part, towards(of, load3(place, 0)));
+    for (int k = 0; k < count; ++k) to.weight[to.faces[first + k] & 1][to.faces[first + k] >> 1] *= part[k];
+}
+
+/// A step down of as many ways as there are lanes, from `first` on.
+static void goDown(Choosing& c, int first) {
+    const Ways& w = *c.now;
+    const Children& of = *c.children;
+    const int count = w.size - first < kW ? w.size - first : kW;
+    alignas(64) double number[kW];
+    for (int k = 0; k < kW; ++k) number[k] = c.random[w.lane[first + (k < count ? k : 0)]];
+    const auto load = [](const double* from) { return loadDoubles(from); };
+    const vd random = load(number), share = load(w.share + first), begin = load(w.begin + first), teeth = load(w.teeth + first);
+    const vd l = load(of.weight[0] + first), both = l + load(of.weight[1] + first);
+    const vl seen = (both > 0) & isFinite(both);
+    vd toA = l / both;
+    if (anyOf(shortMask(~seen))) {
+        const vi a = loadInt(of.count[0] + first), b = loadInt(of.count[1] + first);
+        toA = seen ? toA : __builtin_convertvector(a, vd) / __builtin_convertvector(a + b, vd);
+    }
+    const vd shareA = share * toA, shareB = share * (1 - toA);
+    const vd pA = probability(c.tree, shareA, load(of.blind[0] + first)), middle = begin + pA;
+    const vd pB = probability(c.tree, shareB, load(of.blind[1] + first));
+    const vd below = __builtin_elementwise_ceil(middle - random), end = __builtin_elementwise_ceil(middle + pB - random);
+    const Lanes here = (1u << count) - 1, inA = here & bitsFrom(shortMask((pA >= 1) | (below > teeth)), 0),
+                inB = here & bitsFrom(shortMask((pB >= 1) | (end > below)), 0);
+    alignas(64) double to[6][kW];
+    store(to[0], shareA), store(to[1], pA), store(to[2], shareB), store(to[3], pB), store(to[4], middle), store(to[5], below);
+    for (Lanes some = inA; some; some &= some - 1) {
+        const int k = __builtin_ctz(some), i = first + k;
+        goInto(c, *c.then, of.next[0][i], w.lane[i], to[0][k], to[1][k], w.begin[i], w.teeth[i]);
+    }
+    for (Lanes some = inB; some; some &= some - 1) {
+        const int k = __builtin_ctz(some), i = first + k;
+        goInto(c, *c.then, of.next[1][i], w.lane[i], to[2][k], to[3][k], to[4][k], to[5][k]);
+    }
+}
+
+static int chooseLights(const LightTree& tree, const Row* P, const float* random, Lanes points, ChosenLight* to) {
+    alignas(64) double u[kBlock];
+    for (int i = 0; i < kBlock; ++i) u[i] = double(random[i]);
+    Ways ways[2];
+    Children children;
+    ways[0].size = 0;
+    Choosing c{tree, P, u, to, 0, &ways[0], &ways[1], &children};
+    for (int from = 0; from < kBlock; from += kW)
+        if (points >> from & ((1u << kW) - 1)) enterCut(c, from, points);
+    while (c.now->size > 0) {
+        c.then->size = children.facing = 0;
+        for (int first = 0; first < c.now->size; first += kW) weigh(c, first);
+        for (int first = 0; first < children.facing; first += kW) face(c, first);
+        for (int first = 0; first < c.now->size; first += kW) goDown(c, first);
+        Ways* const done = c.now;
+        c.now = c.then, c.then = done;
+    }
+    return c.count;
+}
+
+} // namespace alpenglow::transport::AL_NAMESPACE

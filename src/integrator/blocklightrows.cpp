@@ -6,6 +6,7 @@
 #include "integrator/blockvertices.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
 #include "integrator/vertexlight.h"
 #include <algorithm>
@@ -83,7 +84,7 @@ void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
         const float choose = shapes.size() > 1 ? choices_[b].x[i] : 0;
         of[emitter.flatFrom({v.P[0][i], v.P[1][i], v.P[2][i]}, choose, share[i])] |= 1u << i;
     }
-    Placed& placed = placed_[k] = {};
+    BlockPlaced& placed = placed_[k] = {};
     for (size_t s = 0; s < shapes.size(); ++s) {
         if (!(of[s] & lit_[b])) continue;
         LightBlock mine;

@@ -3,6 +3,7 @@
 #include "integrator/accumulator.h"
 #include "integrator/chosenlights.h"
 #include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
@@ -15,6 +16,7 @@
 namespace alpenglow::transport {
 
 void BlockVertices::light(BatchContext& c) {
+    if (paths_.automaton) surfaces_.pointsOfRows(c); // to tell reflection from transmission
     const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
     if (!list.chooser.empty()) {
         findLit(nullptr);
@@ -89,7 +91,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
             const int lane = std::countr_zero(left), point = int(b) * kBlock + lane;
             if (asked_.size() == queries_.size()) queries_.emplace_back(); // those of the light before are written again
             ShadePoint& q = queries_[asked_.size()];
-            Query& a = asked_.emplace_back();
+            BlockQuery& a = asked_.emplace_back();
             a.point = point;
             tellLit(q, c.points[size_t(point)]);
             LightNumbers u;
@@ -120,7 +122,7 @@ void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
     queryAt_.resize(points_);
     for (size_t k = 0; k < asked_.size(); ++k) {
         const LightValue& value = values_[k];
-        const Query& a = asked_[k];
+        const BlockQuery& a = asked_[k];
         if (value.lit && !isFinite(value.Cl)) accumulator_.notFinite(&c.rays[size_t(a.point)], "Cl", light.instance.get());
         else if (value.lit && value.Cl != Color(0)) {
             LightBlock& l = lights_[size_t(a.point / kBlock)];
@@ -165,7 +167,8 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
         }
         ShadowRay& first = shadows_.queue[size_t(sent_[lane])];
         const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};
-        shadows_.more.push_back({light, c.targets[pointOf[lane]], -1, false, 0, first.more});
+        const uint16_t path = pathOf(s, false, pointOf[lane], {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, c);
+        shadows_.more.push_back({light, c.targets[pointOf[lane]], -1, false, path, first.more});
         first.more = int32_t(shadows_.more.size()) - 1;
     }
     return fresh;
@@ -187,18 +190,27 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
         for (Lanes some = contribute(s, vertices_[b], lobe, l, c, points); some; some &= some - 1) {
             const size_t lane = size_t(std::countr_zero(some)), point = b * kBlock + lane;
             const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
-            sendShadow(point, lane, of, query < 0 ? nullptr : &values_[size_t(query)], c);
+            const uint16_t path = pathOf(s, false, point, {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, c);
+            sendShadow(point, lane, of, query < 0 ? nullptr : &values_[size_t(query)], path, c);
         }
     }
 }
 
+uint16_t BlockVertices::pathOf(const Site& s, bool delta, size_t point, const Vec3& w, const BatchContext& c) const {
+    if (waits_ || !paths_.automaton) return 0;
+    return paths_.atLobe(*s.info->lobe, *s.rays, delta, c.points[point], c.rays[point], w);
+}
+
 /// The ray of a lane of shadow_, from a point; says: what the light says of its shadow, null: nothing more.
-void BlockVertices::sendShadow(size_t point, size_t lane, const BoundLight& of, const LightValue* says, BatchContext& c) {
+void BlockVertices::sendShadow(size_t point, size_t lane, const BoundLight& of, const LightValue* says, uint16_t path,
+                               BatchContext& c) {
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
     sent_[lane] = int32_t(shadows_.queue.size());
     ShadowRay& s = shadows_.queue.emplace_back();
     s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], row3(shadow_.light),
          c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
+    s.path = path;
+    if (path) s.light = paths_.lights[size_t(&of - world_.lights_.data())];
     if (!says) return;
     if (says->shadowRadius > 0) { // to a point of the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());

@@ -3,6 +3,7 @@
 #include "lanes/blocks.h"
 #include "lobes/lobelanes.h"
 #include "shading/point.h"
+#include "world/arealight.h"
 #include "world/sites.h"
 
 namespace alpenglow::transport {
@@ -18,6 +19,17 @@ struct BlockLobes {
     bool diffuse = false;  ///< of its rays
     std::vector<LobeBlock> lobes;
     std::vector<float> narrow; ///< of kernels with strips below a block: arguments, by block
+};
+
+/// What a light is asked at points.
+struct BlockQuery {
+    int point = 0;
+    Emitter::Sample sample;
+};
+
+/// Points that have one of a light; of these, those whose rays could meet it by chance.
+struct BlockPlaced {
+    Lanes points = 0, metDiffuse = 0, metSpecular = 0;
 };
 
 } // namespace alpenglow::transport

@@ -1,6 +1,7 @@
 // The rays on which paths go on from vertices in blocks.
 #include "integrator/accumulator.h"
 #include "integrator/blockvertices.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/raystore.h"
 #include "integrator/vertexlight.h"
 #include <algorithm>
@@ -138,6 +139,10 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         const bool sampled = s.lights && !(next_.single >> i & 1); // then an emitter that it meets counts with the weight of both
         r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
+        if (const uint16_t path = uint16_t(r.path[i])) {
+            const Vec3 w(next_.direction[0][i], next_.direction[1][i], next_.direction[2][i]);
+            r.path[i] += pathOf(s, next_.single >> i & 1, b * kBlock + size_t(i), w, c) - uint32_t(path);
+        }
         r.extra[i] = -1;
         if (next_.indirect[i] == 0 || v.energyScale[i] == 1) continue;
         RayExtra extra;

@@ -1,6 +1,7 @@
 // From requests of a kernel to lobes in blocks, and the chances that their rays are followed.
 #include "integrator/accumulator.h"
 #include "integrator/chosenlights.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
@@ -20,8 +21,8 @@ bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels &&
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lightKernels_(s.lightKernels),
-      photons_(s.photons), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces), vertexLight_(s.vertexLight),
-      stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      paths_(s.paths), photons_(s.photons), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces),
+      vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
@@ -29,8 +30,8 @@ BlockVertices::BlockVertices(const StageSet& s)
                              [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && world_.media_.empty() && !set.lightPaths && world_.lightOutputs_.empty() &&
-              !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
+    usable_ = set.blocks && rules && lights && world_.media_.empty() && world_.lightOutputs_.empty() && !world_.traceSubsets_ &&
+              !world_.globalMaps_ && !world_.shadesAtOpen_;
     usable_ &= world_.accel_ != nullptr; // of a world that is whole
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)

@@ -14,6 +14,7 @@ class Accumulator;
 class BatchPool;
 class KernelInputs;
 class LightKernels;
+class LightPathStates;
 class PhotonStage;
 class RayStore;
 class ShadowRays;
@@ -40,17 +41,8 @@ public:
     bool run(BatchContext&, std::span<class KernelStrip* const>, Sched&);
 
 private:
-    class ChosenLights; ///< chosenlights.h
+    class ChosenLights;      ///< chosenlights.h
     using Site = BlockLobes; ///< a call site of the kernel
-    /// What a light is asked at points.
-    struct Query {
-        int point = 0;
-        Emitter::Sample sample;
-    };
-    /// Points that have one of a light; of these, those whose rays could meet it by chance.
-    struct Placed {
-        Lanes points = 0, metDiffuse = 0, metSpecular = 0;
-    };
     // blockvertices.cpp
     bool follow(BatchContext&, Sched&, bool waits);
     bool loadVertices(const BatchContext&);
@@ -76,7 +68,9 @@ private:
     void connect(const BoundLight&, BatchContext&);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     Lanes contribute(const Site&, const VertexBlock&, const LobeBlock&, const LightBlock&, BatchContext&, const size_t* points);
-    void sendShadow(size_t point, size_t lane, const BoundLight&, const LightValue* says, BatchContext&);
+    void sendShadow(size_t point, size_t lane, const BoundLight&, const LightValue* says, uint16_t path, BatchContext&);
+    /// PathRay::path of light that a lobe of a site sends towards w.
+    uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
 
     // blocklightrows.cpp
     bool inRows(const BoundLight&, const BoundKernel&) const;
@@ -106,6 +100,7 @@ private:
     BatchPool& batches_;
     KernelInputs& inputs_;
     LightKernels& lightKernels_;
+    const LightPathStates& paths_;
     PhotonStage& photons_;
     RayStore& store_;
     ShadowRays& shadows_;
@@ -129,12 +124,12 @@ private:
     std::vector<LightBlock> lights_;
     std::vector<render::NumberBlock> pairs_, choices_;
     std::vector<ShadePoint> queries_;
-    std::vector<Query> asked_;
+    std::vector<BlockQuery> asked_;
     std::vector<LightValue> values_;
-    std::vector<int32_t> queryAt_;  ///< by point: in values_; -1, or empty: that says nothing more than lights_
-    std::vector<size_t> litBlocks_; ///< blocks of which some points sample lights
-    std::vector<float> lamp_;       ///< LightRows of their points
-    std::vector<Placed> placed_;    ///< of litBlocks_
+    std::vector<int32_t> queryAt_;    ///< by point: in values_; -1, or empty: that says nothing more than lights_
+    std::vector<size_t> litBlocks_;   ///< blocks of which some points sample lights
+    std::vector<float> lamp_;         ///< LightRows of their points
+    std::vector<BlockPlaced> placed_; ///< of litBlocks_
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
     ScatterBlock next_{};
     ShadowBlock shadow_{};

@@ -1,6 +1,7 @@
 // What kernels that wait ask for, in blocks: each call has a target of its own, to which its rays bring what they find.
 #include "answers/random.h"
 #include "integrator/blockvertices.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/photonstage.h"
 #include "integrator/strips.h"
 #include "lobes/sampling.h"

@@ -4,6 +4,7 @@
 #include "integrator/batchpool.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/lightkernels.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
 #include "integrator/shadowrays.h"
 #include <algorithm>
@@ -319,7 +320,9 @@ void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
         for (Lanes some = b.contribute(s, q.points, lobe_, q.lights, c, points); some; some &= some - 1) {
             const int i = std::countr_zero(some);
             const LightValue* says = q.says[i] < 0 ? nullptr : &b.values_[size_t(q.says[i])];
-            b.sendShadow(size_t(q.asked[i]->point), size_t(i), world_.lights_[size_t(q.asked[i]->light)], says, c);
+            const Vec3 w(q.lights.w[0][i], q.lights.w[1][i], q.lights.w[2][i]);
+            b.sendShadow(points[i], size_t(i), world_.lights_[size_t(q.asked[i]->light)], says,
+                         b.pathOf(s, false, points[i], w, c), c);
         }
     }
 }

@@ -48,21 +48,26 @@ LightPathStates::LightPathStates(const StageSet& s) : Stage(s.context) {
 
 uint16_t LightPathStates::atLobe(const LobeVertex& l, const ShadePoint& p, const PathRay& ray, const Vec3& w) const {
     // What a kernel that waits asks for is its own business: only what it makes of it is light of the path.
-    if (ray.path == 0 || l.ownsTarget) return 0;
+    return l.ownsTarget ? 0 : atLobe(*l.kind, *l.rays, l.delta, p, ray, w);
+}
+
+uint16_t LightPathStates::atLobe(const LobeKind& kind, const RayKind& rays, bool delta, const ShadePoint& p, const PathRay& ray,
+                                 const Vec3& w) const {
+    if (ray.path == 0) return 0;
     if (p.surface.n == Vec3(0)) return next(ray.path, volume); // a medium: there are no sides
     using scene::PathScattering;
-    const PathScattering how = l.delta                            ? PathScattering::Singular
-                               : l.rays->type == RayType::Diffuse ? PathScattering::Diffuse
-                                                                  : PathScattering::Glossy;
+    const PathScattering how = delta                           ? PathScattering::Singular
+                               : rays.type == RayType::Diffuse ? PathScattering::Diffuse
+                                                               : PathScattering::Glossy;
     int ofRays = -1, ofLobe = -1;
     if (automaton->hasLabels()) {
-        auto known = labelOfLobe_.find(l.kind);
-        if (known == labelOfLobe_.end()) known = labelOfLobe_.emplace(l.kind, labelOf(std::string(l.kind->name))).first;
+        auto known = labelOfLobe_.find(&kind);
+        if (known == labelOfLobe_.end()) known = labelOfLobe_.emplace(&kind, labelOf(std::string(kind.name))).first;
         ofLobe = known->second;
-        if (l.rays->label) {
-            auto label = labelOfRays_.find(l.rays->label);
+        if (rays.label) {
+            auto label = labelOfRays_.find(rays.label);
             if (label == labelOfRays_.end())
-                label = labelOfRays_.emplace(l.rays->label, labelOf(rsl::internedString(l.rays->label))).first;
+                label = labelOfRays_.emplace(rays.label, labelOf(rsl::internedString(rays.label))).first;
             ofRays = label->second;
         }
     }

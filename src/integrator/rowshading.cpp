@@ -8,6 +8,7 @@
 #include "integrator/gathercalls.h"
 #include "integrator/gridrays.h"
 #include "integrator/kernelinputs.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
@@ -22,8 +23,8 @@ namespace alpenglow::transport {
 
 RowShading::RowShading(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), blocks_(s.blocks), cameraOutputs_(s.cameraOutputs),
-      flights_(s.flights), gathers_(s.gathers), inputs_(s.inputs), photons_(s.photons), store_(s.store), requests_(s.requests),
-      shadows_(s.shadows), surfaces_(s.surfaces), shading_(s.shading), transparency_(s.transparency) {
+      flights_(s.flights), gathers_(s.gathers), inputs_(s.inputs), paths_(s.paths), photons_(s.photons), store_(s.store),
+      requests_(s.requests), shadows_(s.shadows), surfaces_(s.surfaces), shading_(s.shading), transparency_(s.transparency) {
     takes_.assign(!world_.moves_ ? size_t(world_.groups_) : 0, 1);
     for (const SurfaceBinding& b : world_.bindings_)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
@@ -148,8 +149,8 @@ void RowShading::finish(BatchContext& c, Sched& sched) {
         const ShaderInstance* of = world_.bindings_[size_t(c.bindings[i])].surface.get();
         if (!isFinite(shown)) accumulator_.notFinite(&ray, "Ci", of);
         else if (!(shown == Color(0)))
-            accumulator_.deposit(sched,
-                                 {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share, of});
+            accumulator_.deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share,
+                                         of, paths_.next(ray.path, paths_.object)});
         if (!ray.counts) continue;
         cameraOutputs_.see(ray, opacity, c.surfaces[i].P.z, false);
     }

@@ -13,6 +13,7 @@ class CameraOutputs;
 class Flights;
 class GatherCalls;
 class KernelInputs;
+class LightPathStates;
 class PhotonStage;
 class RayStore;
 class Requests;
@@ -45,6 +46,7 @@ private:
     Flights& flights_;
     GatherCalls& gathers_;
     KernelInputs& inputs_;
+    const LightPathStates& paths_;
     PhotonStage& photons_;
     RayStore& store_;
     Requests& requests_;

@@ -168,7 +168,7 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
         ShadowRay& first = shadows_.queue[size_t(sent_[lane])];
         const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};
         const uint16_t path = pathOf(s, false, pointOf[lane], {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, c);
-        shadows_.more.push_back({light, c.targets[pointOf[lane]], -1, false, path, first.more});
+        shadows_.more.push_back({light, c.targets[pointOf[lane]], shareOf(c.rays[pointOf[lane]]), false, path, first.more});
         first.more = int32_t(shadows_.more.size()) - 1;
     }
     return fresh;
@@ -196,6 +196,9 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
     }
 }
 
+/// RayExtra::share of what goes on from a ray.
+int32_t BlockVertices::shareOf(const PathRay& r) const { return waits_ ? -1 : store_.extraOf(r).share; }
+
 uint16_t BlockVertices::pathOf(const Site& s, bool delta, size_t point, const Vec3& w, const BatchContext& c) const {
     if (waits_ || !paths_.automaton) return 0;
     return paths_.atLobe(*s.info->lobe, *s.rays, delta, c.points[point], c.rays[point], w);
@@ -209,6 +212,7 @@ void BlockVertices::sendShadow(size_t point, size_t lane, const BoundLight& of, 
     ShadowRay& s = shadows_.queue.emplace_back();
     s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], row3(shadow_.light),
          c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
+    s.share = shareOf(c.rays[point]);
     s.path = path;
     if (path) s.light = paths_.lights[size_t(&of - world_.lights_.data())];
     if (!says) return;

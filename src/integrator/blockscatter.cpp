@@ -144,9 +144,12 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
             r.path[i] += pathOf(s, next_.single >> i & 1, b * kBlock + size_t(i), w, c) - uint32_t(path);
         }
         r.extra[i] = -1;
-        if (next_.indirect[i] == 0 || v.energyScale[i] == 1) continue;
+        const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);
+        const float indirect = next_.indirect[i] == 0 ? 1 : v.energyScale[i];
+        if (indirect == 1 && share < 0) continue;
         RayExtra extra;
-        extra.indirect = v.energyScale[i];
+        extra.indirect = indirect;
+        extra.share = share;
         r.extra[i] = store_.newExtra(extra);
     }
 }

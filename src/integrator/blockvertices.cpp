@@ -30,8 +30,8 @@ BlockVertices::BlockVertices(const StageSet& s)
                              [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && world_.media_.empty() && world_.lightOutputs_.empty() && !world_.traceSubsets_ &&
-              !world_.globalMaps_ && !world_.shadesAtOpen_;
+    usable_ = set.blocks && rules && lights && world_.media_.empty() && !world_.traceSubsets_ && !world_.globalMaps_ &&
+              !world_.shadesAtOpen_;
     usable_ &= world_.accel_ != nullptr; // of a world that is whole
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
@@ -46,8 +46,8 @@ BlockVertices::~BlockVertices() = default;
 bool BlockVertices::takesRays(const BatchContext& c) const {
     const bool firstSeen = world_.settings_.firstSeen;
     return std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
-        return r.quiet || (r.extra >= 0 && store_.extraOf(r).share >= 0) || (firstSeen && r.counts) ||
-               (lastSkies_ && r.bounces >= world_.maxDepth_) || (world_.photons_ && world_.photons_->pass(r.sample->sample));
+        return r.quiet || (firstSeen && r.counts) || (lastSkies_ && r.bounces >= world_.maxDepth_) ||
+               (world_.photons_ && world_.photons_->pass(r.sample->sample));
     });
 }
 

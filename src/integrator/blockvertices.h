@@ -31,7 +31,7 @@ public:
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all that a batch whose kernel has run asks for is of this kind.
     bool takes(const BatchContext&) const;
-    /// Whether the rays that came to a batch are of this kind: not of outputs that share light, no photons are gathered, albedos
+    /// Whether the rays that came to a batch are of this kind: no photons are gathered, albedos
     /// are not asked for (Settings::firstSeen), and no sky must be looked for at their end.
     bool takesRays(const BatchContext&) const;
     /// Lights its points and sends their rays; shadow rays are left in ShadowRays::queue. False: nothing was done, for some point
@@ -69,6 +69,7 @@ private:
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     Lanes contribute(const Site&, const VertexBlock&, const LobeBlock&, const LightBlock&, BatchContext&, const size_t* points);
     void sendShadow(size_t point, size_t lane, const BoundLight&, const LightValue* says, uint16_t path, BatchContext&);
+    int32_t shareOf(const PathRay&) const;
     /// PathRay::path of light that a lobe of a site sends towards w.
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
 

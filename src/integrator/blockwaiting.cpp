@@ -14,7 +14,7 @@ namespace alpenglow::transport {
 bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
     const SurfaceBinding& b = *c.binding;
     if (!usable_ || b.displacement || !plain_[size_t(b.lightList)] || c.aside || c.between || c.below || !c.clear.empty() ||
-        c.points.empty() || photons_.photonTrace())
+        c.points.empty() || photons_.photonTrace() || !takesRays(c))
         return false;
     size_t asked = 0;
     for (const KernelStrip* s : strips) {

@@ -1,6 +1,7 @@
 // Vertices that are followed 16 at a time (integrator/blockvertices.h) have the bits of those that go one by one.
 #include "display/imageio.h"
 #include "integrator/harness.h"
+#include "scene/lightpaths.h"
 #include <cmath>
 
 namespace blocks_test {
@@ -15,8 +16,7 @@ struct Traced {
     std::vector<SampleResult> samples;
     uint64_t inBlocks, points, cut;
 };
-Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1) {
-    Settings s;
+Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = {}) {
     s.maxDepth = maxDepth;
     s.hider = Hider::Path;
     s.blocks = blocks;
@@ -93,7 +93,9 @@ std::string manyLights(double brightest) {
 size_t differences(const Traced& a, const Traced& b) {
     size_t n = 0;
     for (size_t i = 0; i < a.samples.size(); ++i)
-        n += !(a.samples[i].color == b.samples[i].color) || a.samples[i].z != b.samples[i].z;
+        n += !(a.samples[i].color == b.samples[i].color) || a.samples[i].z != b.samples[i].z ||
+             a.samples[i].parts != b.samples[i].parts || !(a.samples[i].albedo == b.samples[i].albedo) ||
+             !(a.samples[i].normal == b.samples[i].normal) || a.samples[i].aovs != b.samples[i].aovs;
     return n;
 }
 double sumOf(const Traced& t) {
@@ -221,6 +223,34 @@ TEST(Blocks, LetLightThroughAndLeaveWhatNeedsALook) {
         EXPECT_EQ(differences(trace(rib, false), all), 0u) << shader;
         EXPECT_GT(all.inBlocks, all.points / 2) << shader;
     }
+}
+
+TEST(Blocks, TellOfLightWhatOutputsAsk) {
+    writeShader("apart", R"(surface apart(output varying color soft = 0, sheen = 0;) {
+    normal n = faceforward(normalize(N), I);
+    soft = Cs * diffuse(n);
+    sheen = .4 * specular(n, -normalize(I), .2);
+    Ci = .8 * soft + sheen;
+})");
+    Settings local, first, paths, outputs;
+    local.localRoulette = first.firstSeen = true;
+    Diagnostics d;
+    paths.lightPaths = std::make_shared<scene::LightPaths>(
+        std::vector<scene::LightPaths::Source>{{"C<RD>L", {}}, {"C<RG>[LO]", {}}, {"C.*<RD>.+L", {}}}, d);
+    ASSERT_EQ(d.all().size(), 0u);
+    outputs.outputs = {{"soft"}, {"sheen"}};
+    const std::string fog = "Atmosphere \"fog\" \"distance\" 9 \"background\" [.3 .2 .1]\n";
+    for (const Settings& s : {Settings(), local, first, paths, outputs})
+        for (const std::string& more : {std::string(), fog, fog + "Opacity .5 .6 .7\n", manyLights(6)})
+            for (const char* shader : {"\"apart\"", "\"facets\""}) {
+                const std::string rib = roomOf(shader, more);
+                const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
+                EXPECT_GT(sumOf(one), 1) << shader << more;
+                EXPECT_EQ(differences(one, all), 0u) << shader << more;
+                EXPECT_EQ(differences(one, trace(rib, true, 4, -1, s)), 0u) << shader << more;
+                // Of first vertices some outputs ask for more than blocks hold.
+                EXPECT_GT(all.inBlocks, s.firstSeen || !s.outputs.empty() ? 0 : all.points / 4) << shader << more;
+            }
 }
 
 TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {

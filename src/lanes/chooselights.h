@@ -82,20 +82,30 @@ static vd towards(const void* const (&of)[kW], const V3& at) {
 }
 AL_INLINE bool anyOf(vm m) { return __builtin_reduce_or(m) != 0; }
 
-/// Nodes that are gone into: where they begin in the running sum of the probabilities, and the teeth of the comb before it.
+/// Ways down the tree, of all points: the node that each is at, its share of the choice, where it begins in the running sum of
+/// the probabilities, and the teeth of the comb before that.
 struct Ways {
     static constexpr int kRoom = kBlock * (LightTree::kMostChosen + 1) + kW;
     int32_t next[kRoom], lane[kRoom];
-    double share[kRoom], begin[kRoom], teeth[kRoom];
-    int size;
+    float at[3][kRoom];
+    double random[kRoom], share[kRoom], begin[kRoom], teeth[kRoom];
+    int size = 0;
+    /// The last one in the place of another.
+    void drop(int i) {
+        const int last = --size;
+        next[i] = next[last], lane[i] = lane[last];
+        for (int q = 0; q < 3; ++q) at[q][i] = at[q][last];
+        random[i] = random[last], share[i] = share[last], begin[i] = begin[last], teeth[i] = teeth[last];
+    }
 };
 /// What their two children are, by way.
 struct Children {
-    int32_t next[2][Ways::kRoom];
-    int32_t count[2][Ways::kRoom];
+    int32_t next[2][Ways::kRoom], count[2][Ways::kRoom];
     double weight[2][Ways::kRoom], blind[2][Ways::kRoom];
     int32_t faces[2 * Ways::kRoom]; ///< those whose front counts: twice the way, and the child
     int facing;
+    int32_t over[Ways::kRoom]; ///< ways that have ended, in their order
+    int ended;
 };
 struct Choosing {
     const LightTree& tree;
@@ -103,19 +113,22 @@ struct Choosing {
     const double* random;
     ChosenLight* to;
     int count;
-    Ways *now, *then;
-    Children* children;
+    Ways& ways;
+    Children& children;
 };
 AL_INLINE vd probability(const LightTree& t, vd share, vd blind) { return t.wanted * (t.seeing * share + blind); }
+AL_INLINE void choose(Choosing& c, int32_t leaf, int lane, double p) {
+    c.to[c.count++] = {~leaf, lane, float(1.0 < p ? 1.0 : p)};
+}
 
-/// Goes on at a node, or takes the light of a leaf; which of both is chance, so there is no branch.
-AL_INLINE void goInto(Choosing& c, Ways& ways, int32_t next, int lane, double share, double p, double begin, double teeth) {
-    c.to[c.count] = {~next, lane, float(1.0 < p ? 1.0 : p)};
-    c.count += next < 0;
-    const int i = ways.size;
-    ways.next[i] = next, ways.lane[i] = lane;
-    ways.share[i] = share, ways.begin[i] = begin, ways.teeth[i] = teeth;
-    ways.size += next >= 0;
+/// Goes into a node, or takes the light of a leaf.
+AL_INLINE void goInto(Choosing& c, int32_t next, int lane, double share, double p, double begin, double teeth) {
+    if (next < 0) return choose(c, next, lane, p);
+    Ways& w = c.ways;
+    const int i = w.size++;
+    w.next[i] = next, w.lane[i] = lane;
+    for (int q = 0; q < 3; ++q) w.at[q][i] = c.P[q][lane];
+    w.random[i] = c.random[lane], w.share[i] = share, w.begin[i] = begin, w.teeth[i] = teeth;
 }
 AL_INLINE vd loadDoubles(const double* from) {
     vd v;
@@ -142,16 +155,18 @@ static void cutAt(const LightTree& t, const V3& at, Lanes asked, CutLanes& c) {
     c.total = vd(0);
     c.turns = 0;
     for (vm goes = maskFrom(asked, 0); anyOf(goes); ++c.turns) {
-        const void *of[kW], *front[kW];
-        for (int k = 0; k < kW; ++k) of[k] = &t.nodes[now[k]], front[k] = &t.fronts[now[k]];
+        const void* of[kW];
+        for (int k = 0; k < kW; ++k) of[k] = &t.nodes[now[k]];
         const NodeLanes n = loadNodes(of);
         const V3 to = n.centre - at;
         const vd d2 = doubles(dot(to, to));
         const vm opens = goes & shortMask(n.wide2 > d2) & (loadInt(size) < LightTree::kCut), stays = goes & ~opens;
         vd importance = n.power / (d2 < n.radius2 ? n.radius2 : d2);
         importance = isFinite(importance) ? importance : vd(0);
-        if (const vm faces = stays & n.faces & ~n.everywhere; anyOf(faces))
-            importance *= longMask(faces) ? towards(front, at) : vd(1);
+        if (const vm faces = stays & n.faces & ~n.everywhere; anyOf(faces)) {
+            for (int k = 0; k < kW; ++k) of[k] = &t.fronts[now[k]];
+            importance *= longMask(faces) ? towards(of, at) : vd(1);
+        }
         importance = longMask(n.everywhere) ? n.power : importance;
         c.total += longMask(stays) ? importance : vd(0);
         store(c.next[c.turns], n.next), store(c.count[c.turns], n.count);
@@ -186,7 +201,7 @@ static void enterCut(Choosing& c, int from, Lanes points) {
         store(of[0], share), store(of[1], p), store(of[2], sum), store(of[3], teeth);
         for (Lanes left = cut.here[turn] & bitsFrom(shortMask((p >= 1) | (end > teeth)), 0); left; left &= left - 1) {
             const int i = __builtin_ctz(left);
-            goInto(c, *c.now, cut.next[turn][i], from + i, of[0][i], of[1][i], of[2][i], of[3][i]);
+            goInto(c, cut.next[turn][i], from + i, of[0][i], of[1][i], of[2][i], of[3][i]);
         }
         sum = here ? sum + p : sum;
         teeth = here ? end : teeth;
@@ -195,17 +210,15 @@ static void enterCut(Choosing& c, int from, Lanes points) {
 
 /// What the children of as many ways as there are lanes weigh, from `first` on; without their fronts.
 static void weigh(const Choosing& c, int first) {
-    const Ways& w = *c.now;
-    Children& to = *c.children;
+    const Ways& w = c.ways;
+    Children& to = c.children;
     const void *left[kW], *right[kW];
-    alignas(64) Row place[3];
     const int count = w.size - first < kW ? w.size - first : kW;
     for (int k = 0; k < kW; ++k) {
-        const int i = first + (k < count ? k : 0);
-        left[k] = &c.tree.nodes[w.next[i]], right[k] = &c.tree.nodes[w.next[i] + 1];
-        for (int q = 0; q < 3; ++q) place[q][k] = c.P[q][w.lane[i]];
+        left[k] = &c.tree.nodes[w.next[first + (k < count ? k : 0)]];
+        right[k] = static_cast<const LightNode*>(left[k]) + 1;
     }
-    const V3 at = load3(place, 0);
+    const V3 at{load(w.at[0] + first), load(w.at[1] + first), load(w.at[2] + first)};
     const NodeLanes a = loadNodes(left), b = loadNodes(right);
     // Of the importances only the ratio matters: each is taken times both squared distances, for one division.
     const vl everywhere = longMask(a.everywhere);
@@ -223,31 +236,30 @@ static void weigh(const Choosing& c, int first) {
 
 /// Fronts of as many children as there are lanes, from `first` of those that face on.
 static void face(const Choosing& c, int first) {
-    const Ways& w = *c.now;
-    Children& to = *c.children;
+    const Ways& w = c.ways;
+    Children& to = c.children;
     const int count = to.facing - first < kW ? to.facing - first : kW;
     const void* of[kW];
     alignas(64) Row place[3];
     for (int k = 0; k < kW; ++k) {
         const int which = to.faces[first + (k < count ? k : 0)], i = which >> 1;
         of[k] = &c.tree.fronts[w.next[i] + (which & 1)];
-        for (int q = 0; q < 3; ++q) place[q][k] = c.P[q][w.lane[i]];
+        for (int q = 0; q < 3; ++q) place[q][k] = w.at[q][i];
     }
     alignas(64) double part[kW];
     store(part, towards(of, load3(place, 0)));
     for (int k = 0; k < count; ++k) to.weight[to.faces[first + k] & 1][to.faces[first + k] >> 1] *= part[k];
 }
 
-/// A step down of as many ways as there are lanes, from `first` on.
-static void goDown(Choosing& c, int first) {
-    const Ways& w = *c.now;
-    const Children& of = *c.children;
-    const int count = w.size - first < kW ? w.size - first : kW;
-    alignas(64) double number[kW];
-    for (int k = 0; k < kW; ++k) number[k] = c.random[w.lane[first + (k < count ? k : 0)]];
-    const auto load = [](const double* from) { return loadDoubles(from); };
-    const vd random = load(number), share = load(w.share + first), begin = load(w.begin + first), teeth = load(w.teeth + first);
-    const vd l = load(of.weight[0] + first), both = l + load(of.weight[1] + first);
+/// A step down of as many ways as there are lanes, of `size`, from `first` on. Most go on in their place; where both children are
+/// gone into, the second is a way of its own.
+static void goDown(Choosing& c, int first, int size) {
+    Ways& w = c.ways;
+    Children& of = c.children;
+    const int count = size - first < kW ? size - first : kW;
+    const vd random = loadDoubles(w.random + first), share = loadDoubles(w.share + first), begin = loadDoubles(w.begin + first),
+             teeth = loadDoubles(w.teeth + first), l = loadDoubles(of.weight[0] + first),
+             both = l + loadDoubles(of.weight[1] + first);
     const vl seen = (both > 0) & isFinite(both);
     vd toA = l / both;
     if (anyOf(shortMask(~seen))) {
@@ -255,39 +267,46 @@ static void goDown(Choosing& c, int first) {
         toA = seen ? toA : __builtin_convertvector(a, vd) / __builtin_convertvector(a + b, vd);
     }
     const vd shareA = share * toA, shareB = share * (1 - toA);
-    const vd pA = probability(c.tree, shareA, load(of.blind[0] + first)), middle = begin + pA;
-    const vd pB = probability(c.tree, shareB, load(of.blind[1] + first));
+    const vd pA = probability(c.tree, shareA, loadDoubles(of.blind[0] + first)), middle = begin + pA;
+    const vd pB = probability(c.tree, shareB, loadDoubles(of.blind[1] + first));
     const vd below = __builtin_elementwise_ceil(middle - random), end = __builtin_elementwise_ceil(middle + pB - random);
-    const Lanes here = (1u << count) - 1, inA = here & bitsFrom(shortMask((pA >= 1) | (below > teeth)), 0),
-                inB = here & bitsFrom(shortMask((pB >= 1) | (end > below)), 0);
-    alignas(64) double to[6][kW];
-    store(to[0], shareA), store(to[1], pA), store(to[2], shareB), store(to[3], pB), store(to[4], middle), store(to[5], below);
-    for (Lanes some = inA; some; some &= some - 1) {
-        const int k = __builtin_ctz(some), i = first + k;
-        goInto(c, *c.then, of.next[0][i], w.lane[i], to[0][k], to[1][k], w.begin[i], w.teeth[i]);
+    const vl inA = (pA >= 1) | (below > teeth), inB = (pB >= 1) | (end > below);
+    const vm here = maskFrom((1u << count) - 1, 0), a = shortMask(inA), b = shortMask(inB);
+    const vl ours = longMask(here), second = ours & ~inA;
+    const vi nextA = loadInt(of.next[0] + first), nextB = loadInt(of.next[1] + first), next = a ? nextA : nextB;
+    const Lanes leaves = bitsFrom(here & (a | b) & (next < 0), 0), over = leaves | bitsFrom(here & ~(a | b), 0);
+    store(w.next + first, here ? next : loadInt(w.next + first));
+    store(w.share + first, second ? shareB : ours ? shareA : share);
+    store(w.begin + first, second ? middle : begin);
+    store(w.teeth + first, second ? below : teeth);
+    alignas(64) double to[5][kW];
+    store(to[0], inA ? pA : pB), store(to[1], shareB), store(to[2], pB), store(to[3], middle), store(to[4], below);
+    for (Lanes some = over; some; some &= some - 1) of.over[of.ended++] = first + __builtin_ctz(some);
+    for (Lanes some = leaves; some; some &= some - 1) {
+        const int k = __builtin_ctz(some);
+        choose(c, w.next[first + k], w.lane[first + k], to[0][k]);
     }
-    for (Lanes some = inB; some; some &= some - 1) {
-        const int k = __builtin_ctz(some), i = first + k;
-        goInto(c, *c.then, of.next[1][i], w.lane[i], to[2][k], to[3][k], to[4][k], to[5][k]);
+    for (Lanes some = bitsFrom(here & a & b, 0); some; some &= some - 1) {
+        const int k = __builtin_ctz(some);
+        goInto(c, of.next[1][first + k], w.lane[first + k], to[1][k], to[2][k], to[3][k], to[4][k]);
     }
 }
 
 static int chooseLights(const LightTree& tree, const Row* P, const float* random, Lanes points, ChosenLight* to) {
     alignas(64) double u[kBlock];
     for (int i = 0; i < kBlock; ++i) u[i] = double(random[i]);
-    Ways ways[2];
+    Ways ways;
     Children children;
-    ways[0].size = 0;
-    Choosing c{tree, P, u, to, 0, &ways[0], &ways[1], &children};
+    Choosing c{tree, P, u, to, 0, ways, children};
     for (int from = 0; from < kBlock; from += kW)
         if (points >> from & ((1u << kW) - 1)) enterCut(c, from, points);
-    while (c.now->size > 0) {
-        c.then->size = children.facing = 0;
-        for (int first = 0; first < c.now->size; first += kW) weigh(c, first);
+    while (ways.size > 0) {
+        children.facing = children.ended = 0;
+        const int size = ways.size;
+        for (int first = 0; first < size; first += kW) weigh(c, first);
         for (int first = 0; first < children.facing; first += kW) face(c, first);
-        for (int first = 0; first < c.now->size; first += kW) goDown(c, first);
-        Ways* const done = c.now;
-        c.now = c.then, c.then = done;
+        for (int first = 0; first < size; first += kW) goDown(c, first, size);
+        while (children.ended > 0) ways.drop(children.over[--children.ended]);
     }
     return c.count;
 }

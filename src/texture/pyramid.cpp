@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace alpenglow::texture {
 namespace {
@@ -239,30 +240,63 @@ void Level::addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int c
     }
 }
 
-display::Image reduced(const display::Image& m, const Reduction& how, Wrap swrap, Wrap twrap) {
-    int w = std::max(1, m.width / 2), h = std::max(1, m.height / 2);
-    size_t n = m.channels.size();
-    Kernel k = kernelOf(how.filter);
-    Taps tx = tapsFor(m.width, w, k, how.swidth, swrap), ty = tapsFor(m.height, h, k, how.twidth, twrap);
-    // Rows first, in double, so that the mean survives many levels.
-    std::vector<double> half(size_t(w) * size_t(m.height) * n);
-    for (int y = 0; y < m.height; ++y)
-        for (int x = 0; x < w; ++x)
-            for (size_t i = tx.begin[size_t(x)]; i < tx.begin[size_t(x) + 1]; ++i)
-                for (size_t c = 0; c < n; ++c)
-                    half[(size_t(y) * size_t(w) + size_t(x)) * n + c] +=
-                        double(tx.weight[i]) * double(m.pixel(tx.source[i], y)[c]);
+namespace {
+/// Rows of a picture that are reduced along themselves: the last ones that were asked for are kept. In double, so that the mean
+/// survives many levels.
+class ReducedRows {
+public:
+    ReducedRows(const PictureRows& m, int width, const Taps& taps, size_t kept)
+        : m_(m), taps_(taps), channels_(m.channels.size()), rows_(kept), which_(kept, -1),
+          whole_(size_t(m.width) * m.channels.size()) {
+        for (std::vector<double>& r : rows_) r.resize(size_t(width) * channels_);
+    }
+    const std::vector<double>& row(int y) {
+        const size_t slot = size_t(y) % rows_.size();
+        std::vector<double>& to = rows_[slot];
+        if (std::exchange(which_[slot], y) == y) return to;
+        m_.read(y, whole_.data());
+        std::fill(to.begin(), to.end(), 0.0);
+        for (size_t x = 0; x + 1 < taps_.begin.size(); ++x)
+            for (size_t i = taps_.begin[x]; i < taps_.begin[x + 1]; ++i)
+                for (size_t c = 0; c < channels_; ++c)
+                    to[x * channels_ + c] += double(taps_.weight[i]) * double(whole_[size_t(taps_.source[i]) * channels_ + c]);
+        return to;
+    }
+
+private:
+    const PictureRows& m_;
+    const Taps& taps_;
+    size_t channels_;
+    std::vector<std::vector<double>> rows_;
+    std::vector<int> which_;
+    std::vector<float> whole_;
+};
+} // namespace
+
+display::Image reduced(const PictureRows& m, const Reduction& how, Wrap swrap, Wrap twrap) {
+    const int w = std::max(1, m.width / 2), h = std::max(1, m.height / 2);
+    const Kernel k = kernelOf(how.filter);
+    const Taps tx = tapsFor(m.width, w, k, how.swidth, swrap), ty = tapsFor(m.height, h, k, how.twidth, twrap);
+    size_t most = 1;
+    for (size_t y = 0; y + 1 < ty.begin.size(); ++y) most = std::max(most, ty.begin[y + 1] - ty.begin[y]);
+    ReducedRows rows(m, w, tx, most);
     display::Image out = display::makeImage(w, h, m.channels);
-    std::vector<double> row(size_t(w) * n);
+    std::vector<double> row(size_t(w) * m.channels.size());
     for (int y = 0; y < h; ++y) {
         std::fill(row.begin(), row.end(), 0.0);
         for (size_t i = ty.begin[size_t(y)]; i < ty.begin[size_t(y) + 1]; ++i) {
-            const double* from = &half[size_t(ty.source[i]) * row.size()];
+            const std::vector<double>& from = rows.row(ty.source[i]);
             for (size_t j = 0; j < row.size(); ++j) row[j] += double(ty.weight[i]) * from[j];
         }
         for (size_t j = 0; j < row.size(); ++j) out.pixel(0, y)[j] = float(row[j]);
     }
     return out;
+}
+
+display::Image reduced(const display::Image& m, const Reduction& how, Wrap swrap, Wrap twrap) {
+    const size_t n = size_t(m.width) * m.channels.size();
+    return reduced({m.width, m.height, m.channels, [&](int y, float* to) { std::copy_n(m.pixel(0, y), n, to); }}, how, swrap,
+                   twrap);
 }
 
 std::vector<display::Image> reducedLevels(const display::Image& m, const Reduction& how, Wrap swrap, Wrap twrap) {
@@ -273,6 +307,14 @@ std::vector<display::Image> reducedLevels(const display::Image& m, const Reducti
         levels.push_back(std::move(next));
         last = &levels.back();
     }
+    return levels;
+}
+
+std::vector<display::Image> reducedLevels(const PictureRows& m, const Reduction& how, Wrap swrap, Wrap twrap) {
+    std::vector<display::Image> levels;
+    if (m.width <= 1 && m.height <= 1) return levels;
+    levels.push_back(reduced(m, how, swrap, twrap));
+    for (display::Image& below : reducedLevels(levels[0], how, swrap, twrap)) levels.push_back(std::move(below));
     return levels;
 }
 

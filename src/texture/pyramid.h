@@ -3,8 +3,10 @@
 #include "display/image.h"
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -106,6 +108,16 @@ bool isReductionFilter(std::string_view name);
 display::Image reduced(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
 /// All levels below a picture, down to 1x1.
 std::vector<display::Image> reducedLevels(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp,
+                                          Wrap twrap = Wrap::Clamp);
+/// A picture that is read row by row: read(y, row) fills width times channels numbers.
+struct PictureRows {
+    int width = 0, height = 0;
+    std::vector<std::string> channels;
+    std::function<void(int, float*)> read;
+};
+/// The same of such a picture.
+display::Image reduced(const PictureRows&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
+std::vector<display::Image> reducedLevels(const PictureRows&, const Reduction& = {}, Wrap swrap = Wrap::Clamp,
                                           Wrap twrap = Wrap::Clamp);
 /// How many of image.levels, from the first on, are each half the one before and have its channels.
 size_t storedLevels(const display::Image&);

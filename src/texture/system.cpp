@@ -31,7 +31,8 @@ Level levelOf(display::Image& m, bool codes) {
     if (codes) {
         std::vector<uint8_t> numbers;
         numbers.reserve(m.data.size() + Texels<uint8_t>::kBeyond);
-        for (float v : m.data) numbers.push_back(uint8_t(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f)));
+        for (const float v : m.data) // the nearest
+            numbers.push_back(v > 0 ? uint8_t(double(std::min(v, 1.0f) * 255.0f) + 0.5) : uint8_t(0));
         m.data = {};
         l.codes = std::move(numbers);
     } else {
@@ -87,15 +88,19 @@ bool fitsCodes(const display::Image& m) {
 /// The light of the numbers of a picture, which are in the level.
 display::Image lightOf(const display::Image& picture, const Level& level, const Decode& curve) {
     display::Image light = display::makeImage(picture.width, picture.height, picture.channels);
-    if (level.codes.empty()) {
-        light.data.assign(level.values.data(), level.values.data() + level.values.size());
-        decode(light, curve);
-        return light;
-    }
-    const auto n = size_t(level.channels);
-    for (size_t i = 0; i < light.data.size(); i += n)
-        for (size_t c = 0; c < n; ++c) light.data[i + c] = level.texel(i + c, int(c), true);
+    light.data.assign(level.values.data(), level.values.data() + level.values.size());
+    decode(light, curve);
     return light;
+}
+
+/// The same of a level of codes, row by row: as floats they would take four times the memory.
+PictureRows lightRowsOf(const display::Image& picture, const Level& level) {
+    const auto read = [&level](int y, float* to) {
+        const auto n = size_t(level.channels), row = size_t(level.width) * n, first = size_t(y) * row;
+        for (size_t i = 0; i < row; i += n)
+            for (size_t c = 0; c < n; ++c) to[i + c] = level.texel(first + i + c, int(c), true);
+    };
+    return {picture.width, picture.height, picture.channels, read};
 }
 
 /// Adds to the levels of a texture those of its light.
@@ -108,9 +113,11 @@ void addLight(Texture& tex, const display::Image& picture, const Decode& curve, 
         first.colours = colourChannels(picture);
     }
     if (tex.levels.size() == 1 && !first.codes.empty()) return;
-    display::Image light = lightOf(picture, first, curve);
+    display::Image light;
+    if (first.codes.empty()) light = lightOf(picture, first, curve);
     size_t at = 1;
-    for (display::Image& l : reducedLevels(light, {}, swrap, twrap))
+    for (display::Image& l : first.codes.empty() ? reducedLevels(light, {}, swrap, twrap)
+                                                 : reducedLevels(lightRowsOf(picture, first), {}, swrap, twrap))
         if (at < tex.levels.size()) tex.levels[at++].light = std::move(l.data);
     if (first.codes.empty()) first.light = std::move(light.data);
 }

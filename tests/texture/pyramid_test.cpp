@@ -31,6 +31,26 @@ TEST(Pyramid, SizesAndMeans) {
     EXPECT_FLOAT_EQ(reduced(five).data[0], (1 + 2 + 1.5f) / 2.5f);
 }
 
+/// A periodic picture that is turned by two texels is reduced to one that is turned by one, whichever rows are asked for again.
+TEST(Pyramid, PeriodicPicturesTurn) {
+    const Image m = pattern(16, 24, {"r", "g", "b"});
+    for (const char* filter : {"box", "triangle", "lanczos"})
+        for (const auto& [dx, dy] : {std::pair(2, 0), std::pair(0, 2), std::pair(6, 10)}) {
+            const PictureRows turned{16, 24, m.channels, [&, right = dx, down = dy](int y, float* to) {
+                                         for (int x = 0; x < 16; ++x)
+                                             std::copy_n(m.pixel((x + right) % 16, (y + down) % 24), 3, to + 3 * x);
+                                     }};
+            const Image a = reduced(m, {filter}, Wrap::Periodic, Wrap::Periodic),
+                        b = reduced(turned, {filter}, Wrap::Periodic, Wrap::Periodic);
+            ASSERT_EQ(b.height, 12);
+            for (int y = 0; y < 12; ++y)
+                for (int x = 0; x < 8; ++x)
+                    for (int c = 0; c < 3; ++c)
+                        EXPECT_EQ(b.pixel(x, y)[c], a.pixel((x + dx / 2) % 8, (y + dy / 2) % 12)[c]) << filter << x << " " << y;
+            EXPECT_EQ(reducedLevels(turned, {filter}).size(), 4u); // 8x12, 4x6, 2x3, 1x1
+        }
+}
+
 TEST(Pyramid, EveryKernelKeepsAConstant) {
     Image m = constant(20, 15, 0.75f, 1);
     for (const char* f : {"box", "triangle", "gaussian", "catmull-rom", "mitchell", "lanczos", "sinc", "disk", "bessel"}) {

@@ -1,6 +1,6 @@
 // Rays of a scene by kind, traced by us and by Embree in turns: nanoseconds of CPU a ray, one thread, the least of all turns.
-// ray_bench [--repeats N] [--rays N] [--kind NAME] [--ours] FILE.rib ...
-// --ours: without Embree. The scenes: ../shared/bench/cycles (README.md there) and examples/muttenzer_box.rib.
+// ray_bench [--repeats N] [--rays N] [--kind NAME] [--ours] [--builds N] FILE.rib ...
+// --ours: without Embree. --builds: no rays, but what it takes to build shapes and the tree, the least of N. The scenes: ../shared/bench/cycles (README.md there) and examples/muttenzer_box.rib.
 #include "bench/box_embree.h"
 #include "bench/ray_set.h"
 #include "geometry/build.h"
@@ -23,6 +23,7 @@ struct Arguments {
     size_t rays = 60'000;
     std::string kind;
     bool ours = false;
+    int builds = 0;
     std::vector<std::string> files;
 };
 
@@ -37,6 +38,12 @@ struct Frames final : scene::FrameConsumer {
     void render(std::shared_ptr<const scene::Frame> f) override { frame = std::move(f); }
     void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}
 };
+
+double clockSeconds() {
+    timespec t{};
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
 
 template <class F> void timed(double& least, F f) {
     const double begin = cpuSeconds();
@@ -109,6 +116,45 @@ void measure(const accel::Accel& accel, const bench::BareEmbree* embree, const s
     std::fflush(stdout);
 }
 
+double peakMebibytes() {
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    return double(used.ru_maxrss) / 1024;
+}
+
+/// Least seconds, of the clock and of CPU.
+struct Least {
+    double clock = INFINITY, cpu = INFINITY;
+    template <class F> void of(F f) {
+        const double c = clockSeconds(), p = cpuSeconds();
+        f();
+        clock = std::min(clock, clockSeconds() - c);
+        cpu = std::min(cpu, cpuSeconds() - p);
+    }
+};
+
+std::vector<geometry::ShapeRef> shapesOf(const scene::Frame& frame, Diagnostics& diag) {
+    std::vector<geometry::ShapeRef> shapes = geometry::buildShapes(frame, diag);
+    geometry::DiceOptions dice;
+    dice.camera = geometry::DiceCamera::from(frame.options);
+    geometry::diceShapes(shapes, dice, diag);
+    return shapes;
+}
+
+/// Memory is what the process held at most, before and behind all builds.
+void measureBuilds(const std::string& file, const scene::Frame& frame, int times, Diagnostics& diag) {
+    Least shape, tree;
+    const double before = peakMebibytes();
+    for (int i = 0; i < times; ++i) {
+        std::vector<geometry::ShapeRef> shapes;
+        shape.of([&] { shapes = shapesOf(frame, diag); });
+        std::unique_ptr<accel::Accel> accel;
+        tree.of([&] { accel = std::make_unique<accel::Accel>(std::move(shapes), std::vector<uint32_t>(), diag); });
+    }
+    std::printf("%s: shapes %.3f s (CPU %.3f), tree %.3f s (CPU %.3f), memory %.0f to %.0f MiB\n", file.c_str(), shape.clock,
+                shape.cpu, tree.clock, tree.cpu, before, peakMebibytes());
+}
+
 bool measureScene(const std::string& file, const Arguments& arguments) {
     Diagnostics diag;
     Frames frames;
@@ -118,18 +164,18 @@ bool measureScene(const std::string& file, const Arguments& arguments) {
         for (const Diagnostic& d : diag.all()) std::fprintf(stderr, "%s\n", toString(d).c_str());
         return false;
     }
-    std::vector<geometry::ShapeRef> shapes = geometry::buildShapes(*frames.frame, diag);
-    geometry::DiceOptions dice;
-    dice.camera = geometry::DiceCamera::from(frames.frame->options);
-    geometry::diceShapes(shapes, dice, diag);
+    if (arguments.builds > 0) {
+        measureBuilds(file, *frames.frame, arguments.builds, diag);
+        return true;
+    }
+    const std::vector<geometry::ShapeRef> shapes = shapesOf(*frames.frame, diag);
     double built = INFINITY, theirs = INFINITY;
     std::unique_ptr<accel::Accel> accel;
     timed(built, [&] { accel = std::make_unique<accel::Accel>(shapes, std::vector<uint32_t>(), diag); });
-    rusage used{};
-    getrusage(RUSAGE_SELF, &used);
+    const double peak = peakMebibytes();
     std::unique_ptr<bench::BareEmbree> embree;
     if (!arguments.ours) timed(theirs, [&] { embree = std::make_unique<bench::BareEmbree>(shapes); });
-    std::printf("\n%s: built in %.2f s of CPU (peak memory %.0f MiB)", file.c_str(), built, double(used.ru_maxrss) / 1024);
+    std::printf("\n%s: built in %.2f s of CPU (peak memory %.0f MiB)", file.c_str(), built, peak);
     if (embree) std::printf(", Embree's scene in %.2f s", theirs);
     std::printf("\n| kind | rays | met | ours, ns |%s digest\n", embree ? " Embree, ns | Embree / ours | differ |" : "");
     for (const auto& [name, k] : bench::raysOf(*frames.frame, *accel, arguments.rays, diag))
@@ -146,6 +192,7 @@ int main(int argc, char** argv) {
         if (!std::strcmp(argv[i], "--repeats")) a.repeats = std::max(1, std::atoi(value()));
         else if (!std::strcmp(argv[i], "--rays")) a.rays = size_t(std::max(1, std::atoi(value())));
         else if (!std::strcmp(argv[i], "--kind")) a.kind = value();
+        else if (!std::strcmp(argv[i], "--builds")) a.builds = std::max(1, std::atoi(value()));
         else if (!std::strcmp(argv[i], "--ours")) a.ours = true;
         else a.files.emplace_back(argv[i]);
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace alpenglow::geometry {
 
@@ -43,6 +44,11 @@ public:
     virtual ~InCapsules() = default;
     /// Encloses all that a ray can hit of a primitive, camera space. False: none does.
     virtual bool capsule(uint32_t prim, Capsule&) const = 0;
+    /// The same of primitives that follow one another; where none is known the radius is infinite.
+    virtual void capsules(uint32_t first, std::span<Capsule> out) const {
+        for (Capsule& c : out)
+            if (!capsule(first++, c)) c.radius = INFINITY;
+    }
     /// Asks memory for what exactHits() of a primitive will read.
     virtual void fetch(uint32_t prim) const = 0;
 };

@@ -3,6 +3,7 @@
 #include "geometry/curves.h"
 #include "base/exact.h"
 #include "geometry/capsule.h"
+#include "geometry/curve_boxes.h"
 #include "geometry/dice.h"
 #include "geometry/factories.h"
 #include "geometry/keyed.h"
@@ -29,10 +30,17 @@ public:
     Curves(ShapeSource s, CurveSet set, Diagnostics&);
 
     uint32_t exactPrims() const override { return set_.segments() * parts_; }
+    void exactBoundsOf(uint32_t first, std::span<Bounds> out) const override;
+    void treeBoundsOf(uint32_t first, std::span<Bounds> out) const override;
     int exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted, float time,
                     ExactHit out[4]) const override;
 
-    bool capsule(uint32_t prim, Capsule&) const override;
+    bool capsule(uint32_t prim, Capsule& c) const override {
+        c.radius = 0;
+        capsules(prim, {&c, 1});
+        return !joined();
+    }
+    void capsules(uint32_t first, std::span<Capsule> out) const override;
     void fetch(uint32_t prim) const override { set_.fetch(prim / parts_); }
 
     int faces() const override { return int(source_.primitive->ints.size()); }
@@ -49,7 +57,11 @@ public:
     void dice(const DiceOptions&, Diagnostics&) override;
 
 protected:
-    Bounds keyBounds(uint32_t prim) const override;
+    Bounds keyBounds(uint32_t prim) const override {
+        Bounds b;
+        boxes().bounds(prim, {&b, 1});
+        return b;
+    }
     bool fits(KeyedShape& later) const override {
         auto& c = static_cast<Curves&>(later);
         c.parts_ = parts_;
@@ -70,7 +82,7 @@ private:
         to = double(prim % parts_ + 1) / parts_;
     }
     void chooseParts();
-    int hull(uint32_t prim, Vec3d p[4], double& wide) const;
+    CurveBoxes boxes() const { return {set_, toCamera(), parts_}; }
     Vec3d toObject(const Vec3d& p) const { return transformPoint(toObject_, p); }
     SurfacePoint pointOf(uint32_t segment, double u, double f, const Vec3d& from, float time) const;
     LocalPoint local(const CurveSegment&, const CurveFacing&, double u, double f) const;
@@ -91,8 +103,6 @@ private:
     uint32_t parts_ = 1; ///< primitives of a segment
     Matrix toObject_;
     double side_ = 1; ///< +1, -1: of Ng along dPdu ^ dPdv of object space
-    double reach_[3]; ///< half the extent of a unit ball of object space along camera axes
-    double stretch_;  ///< no direction of object space becomes longer
     mutable std::once_flag made_;
     /// Summed up by segment, of each what is round the curve and the discs at its begin and end; of what moves, the mean of its
     /// keys.
@@ -103,15 +113,6 @@ Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : KeyedShape(std:
     toObject_ = inverse(toCamera());
     const bool mirrored = determinant3(toCamera()) < 0;
     side_ = (mirrored ? -1 : 1) * double(orientation_);
-    const auto& m = toCamera().m;
-    for (int k = 0; k < 3; ++k) reach_[k] = std::sqrt(m[0][k] * m[0][k] + m[1][k] * m[1][k] + m[2][k] * m[2][k]);
-    // The largest singular value squared is below each sum of a row of the product with the transpose.
-    stretch_ = 0;
-    for (int i = 0; i < 3; ++i) {
-        double sum = 0;
-        for (int k = 0; k < 3; ++k) sum += std::fabs(m[i][0] * m[k][0] + m[i][1] * m[k][1] + m[i][2] * m[k][2]);
-        stretch_ = std::max(stretch_, std::sqrt(sum));
-    }
     const scene::Param* round = attributes().value("dice:roundcurve");
     if (set_.hasNormals()) facing_.kind = CurveFacing::Given;
     else {
@@ -168,61 +169,23 @@ void Curves::load(uint32_t segment, size_t k, double way, CurveSegment& g) const
     if (k > 0) set_.load(segment, to), g.axis = to.axis; // one axis at all times, or the frame would turn over at a key
 }
 
-/// Points whose hull holds the middle of a primitive, and half its width at the most.
-int Curves::hull(uint32_t prim, Vec3d p[4], double& wide) const {
-    CurveSegment g;
-    set_.load(prim / parts_, g);
-    double from, to;
-    wide = g.widest();
-    part(prim, from, to);
-    if (g.linear) {
-        p[0] = g.p[1] + (g.p[2] - g.p[1]) * from;
-        p[1] = g.p[1] + (g.p[2] - g.p[1]) * to;
-        wide *= 2; // mitres
-        return 2;
+void Curves::exactBoundsOf(uint32_t first, std::span<Bounds> out) const {
+    boxes().bounds(first, out);
+    std::vector<Bounds> more(joined() ? out.size() : 0);
+    for (size_t k = 1; k < keys(); ++k) {
+        static_cast<const Curves&>(key(k)).boxes().bounds(first, more);
+        for (size_t i = 0; i < out.size(); ++i) out[i].add(more[i]);
     }
-    std::copy(g.p, g.p + 4, p);
-    bernsteinPart<3>(p, from, to);
-    return 4;
 }
 
-bool Curves::capsule(uint32_t prim, Capsule& out) const {
-    if (joined()) return false;
-    Vec3d p[4];
-    double wide, bent = 0;
-    const int n = hull(prim, p, wide);
-    for (int i = 0; i < n; ++i) p[i] = transformPoint(toCamera(), p[i]);
-    // How far the inner points are off the chord. The middle is off it by B1(f) off[0] + B2(f) off[1], and B1 + B2 <= 3/4: that
-    // lies in the triangle of 0 and 3/4 of both, about which the capsule is put.
-    const Vec3d e = p[n - 1] - p[0];
-    const double ee = dot(e, e);
-    Vec3d off[2];
-    for (int i = 1; i + 1 < n; ++i) {
-        const double s = ee > 0 ? std::clamp(dot(p[i] - p[0], e) / ee, 0.0, 1.0) : 0;
-        off[i - 1] = (p[i] - p[0] - e * s) * 0.75;
-    }
-    const Vec3d shift = (off[0] + off[1]) * 0.25;
-    for (const Vec3d& o : {Vec3d(0.0), off[0], off[1]}) bent = std::max(bent, length(o - shift));
-    out = Capsule::between(p[0] + shift, p[n - 1] + shift, wide * stretch_ * 1.000001 + bent);
-    return true;
+void Curves::treeBoundsOf(uint32_t first, std::span<Bounds> out) const {
+    if (joined() || !boxes().quick()) exactBoundsOf(first, out);
+    else boxes().quickBounds(first, out, bounds());
 }
 
-Bounds Curves::keyBounds(uint32_t prim) const {
-    Vec3d p[4];
-    double wide;
-    const int n = hull(prim, p, wide);
-    const Vec3d reach(reach_[0] * wide * 1.000001, reach_[1] * wide * 1.000001, reach_[2] * wide * 1.000001);
-    Vec3d lo(INFINITY), hi(-INFINITY);
-    for (int i = 0; i < n; ++i) {
-        const Vec3d c = transformPoint(toCamera(), p[i]);
-        const double slack = 1e-6 * (std::fabs(c.x) + std::fabs(c.y) + std::fabs(c.z)) + 1e-30;
-        const Vec3d r = reach + Vec3d(slack), from = c - r, to = c + r;
-        lo = {std::min(lo.x, from.x), std::min(lo.y, from.y), std::min(lo.z, from.z)};
-        hi = {std::max(hi.x, to.x), std::max(hi.y, to.y), std::max(hi.z, to.z)};
-    }
-    Bounds b;
-    b.lo = Vec3(lo), b.hi = Vec3(hi);
-    return b;
+void Curves::capsules(uint32_t first, std::span<Capsule> out) const {
+    if (!joined()) return boxes().capsules(first, out);
+    for (Capsule& c : out) c.radius = INFINITY;
 }
 
 double Curves::turnOf(const CurveSegment& g, double f, const Vec3d& across) const {

@@ -1,4 +1,6 @@
 #include "geometry/keyed.h"
+#include "base/parallel.h"
+#include <mutex>
 #include <typeinfo>
 
 namespace alpenglow::geometry {
@@ -22,7 +24,17 @@ bool KeyedShape::join(std::vector<ShapeRef> later, std::vector<float> times, Dia
 
 void KeyedShape::measure() {
     bounds_ = {};
-    for (uint32_t i = 0; i < exactPrims(); ++i) bounds_.add(exactBounds(i));
+    constexpr uint32_t kRun = 4096;
+    const uint32_t n = exactPrims();
+    std::mutex adding;
+    parallelFor(uint32_t(0), (n + kRun - 1) / kRun, [&](uint32_t run) {
+        std::vector<Bounds> of(std::min(kRun, n - run * kRun));
+        exactBoundsOf(run * kRun, of);
+        Bounds all;
+        for (const Bounds& b : of) all.add(b);
+        std::lock_guard lock(adding);
+        bounds_.add(all);
+    });
 }
 
 Bounds KeyedShape::exactBounds(uint32_t prim) const {

@@ -38,6 +38,12 @@ public:
                             ExactHit out[4]) const = 0;
     /// Boxes hold the shape at all times.
     Bounds exactBounds(uint32_t prim) const override;
+    /// The same of primitives that follow one another.
+    virtual void exactBoundsOf(uint32_t first, std::span<Bounds> out) const {
+        for (Bounds& b : out) b = exactBounds(first++);
+    }
+    /// As exactBoundsOf(), for trees: may be a little larger, but within bounds().
+    virtual void treeBoundsOf(uint32_t first, std::span<Bounds> out) const { exactBoundsOf(first, out); }
     Bounds bounds() const final { return bounds_; }
 
     using Shape::sampleArea;

@@ -127,6 +127,7 @@ public:
 
 private:
     struct Builder;
+    void orderChildren(); ///< of nodes: what likely stops a ray that comes to it is the last, where shadow rays begin
     void followKeys(std::span<const geometry::ShapeRef> keys, std::span<const float> times);
     void followLeaf(size_t leaf, std::span<const geometry::ShapeRef> keys, std::span<const float> times, Box& first, Box& last);
     struct Mesh {

@@ -1,6 +1,10 @@
-// Building: surface area heuristic over sixteen bins of centroids, the largest child first until there are eight.
-#include "accel/tree_refs.h"
+// Building: ranges of references are cut in two by the surface area heuristic (tree_cut.h), large ones over groups
+// (tree_groups.h).
+#include "accel/tree_cut.h"
+#include "accel/tree_groups.h"
+#include "accel/tree_leaf.h"
 #include "base/parallel.h"
+#include "geometry/keyed.h"
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -12,8 +16,10 @@ namespace alpenglow::accel {
 
 namespace {
 
-constexpr int kBins = 16;
 constexpr size_t kParallel = 8192; // references below which a task of its own costs more than it brings
+constexpr size_t kExactRun = 256;  // exact primitives that are measured at once
+constexpr size_t kPieces = 65536;  // of which all pieces are known at once: some megabytes of a thread
+constexpr size_t kGrouped = 512;   // more are put into groups first
 
 } // namespace
 
@@ -23,7 +29,9 @@ struct Tree::Builder {
     std::span<const Part> parts;
     bool quick = false;     ///< over the leaves of grids
     uint32_t triangles = 0; // numbers from here on are primitives of exact shapes: exact[number - triangles]
-    std::vector<Exact> exact;
+    size_t exacts = 0;      ///< primitives of exact shapes: first the parts, then those of shapes one after the other
+    std::vector<Mesh> exactShapes;
+    std::vector<uint32_t> placeOf; ///< by exact primitive, its place in the tree
     std::unique_ptr<Ref[]> refs;
     size_t groups = 0; ///< references to triangles, the first ones
     // Nodes as they come, by any thread: pieces that stay where they are. A leaf's child is the number of its first reference,
@@ -42,158 +50,36 @@ struct Tree::Builder {
         return i;
     }
 
-    void triangle(uint32_t id, Vec3 corner[3]) const {
-        uint32_t shape, prim;
-        tree.find(id, shape, prim);
-        const geometry::TriMesh& m = shapes[shape]->mesh();
-        for (int k = 0; k < 3; ++k) corner[k] = m.P[m.index[3 * size_t(prim) + size_t(k)]];
-    }
-    /// The vertices of a leaf of these references, and its list of corners. False: they do not make one leaf.
-    bool leafOf(const Range& r, Leaf* out) const {
-        if (r.size() == 1 && (refs[r.begin].id() >= triangles || !out)) return true; // what comes together has room
+    /// Whether references make one leaf.
+    bool isLeaf(const Range& r) const {
+        if (r.size() == 1) return true; // what comes together has room
         if (r.size() > kLeafTriangles) return false;
-        Vec3 vertex[kLeafVertices];
-        size_t n = 0, t = 0;
-        uint64_t corners = 0;
-        for (size_t i = r.begin; i < r.end; ++i) {
-            const uint32_t first = refs[i].id(), many = refs[i].many();
-            if (first >= triangles || t + many > kLeafTriangles) return false;
-            for (uint32_t id = first; id < first + many; ++id, ++t) {
-                Vec3 corner[3];
-                triangle(id, corner);
-                for (size_t k = 0; k < 3; ++k) {
-                    const auto same = [&](const Vec3& v) { return std::memcmp(&v, &corner[k], sizeof v) == 0; };
-                    const size_t v = size_t(std::find_if(vertex, vertex + n, same) - vertex);
-                    if (v == n) {
-                        if (n == kLeafVertices) return false;
-                        vertex[n++] = corner[k];
-                    }
-                    corners |= uint64_t(v) << Leaf::cornerAt(t, int(k));
-                }
-                if (out) out->id[t] = id;
-            }
-        }
-        if (!out) return true;
-        out->corners = corners | uint64_t(t) << 59;
-        for (size_t v = 0; v < kLeafVertices; ++v)
-            for (int a = 0; a < 3; ++a) out->p[a][v] = vertex[std::min(v, n - 1)][a];
-        return true;
+        const std::span of(&refs[r.begin], r.size());
+        return std::all_of(of.begin(), of.end(), [&](const Ref& ref) { return ref.id() < triangles; }) &&
+               LeafMaker{tree, shapes}.fits(of);
+    }
+    bool allExact(const Range& r) const {
+        return std::all_of(&refs[r.begin], &refs[0] + r.end, [&](const Ref& ref) { return ref.id() >= triangles; });
     }
 
     Range measured(size_t begin, size_t end) const {
-        Range r;
-        r.begin = begin;
-        r.end = end;
-        for (size_t i = begin; i < end; ++i) {
-            r.box.add(refs[i].lo, refs[i].hi);
-            const Four c = refs[i].twiceCentre();
-            r.centres.add(c, c);
-        }
-        r.leaf = leafOf(r, nullptr);
+        Range r = measuredRange(refs.get(), begin, end);
+        r.leaf = isLeaf(r);
         return r;
     }
-
-    /// Where to cut: the axis and the bins before it; axis -1: nothing divides the centres.
-    struct Cut {
-        int axis = -1, bin = 0, bins = kBins;
-        Four from{}, scale{};
-        Box below, above; ///< of what lies there
-    };
-    typedef int32_t Whole4 __attribute__((vector_size(16)));
-    /// By axis.
-    static Whole4 binsOf(const Cut& c, Four twiceCentre) {
-        // No float's bits: what has no whole number goes to a bin at an end.
-        const Four at = least(most((twiceCentre - c.from) * c.scale, Four{}), all(float(c.bins - 1)));
-        return __builtin_convertvector(at, Whole4);
-    }
-    static Four all(float f) { return Four{f, f, f, f}; }
-    Cut bestCut(const Range& r) const {
-        Cut cut;
-        cut.bins = r.size() <= 4 ? 4 : r.size() <= 16 ? 8 : kBins; // most ranges are small
-        cut.from = r.centres.lo;
-        const Four wide = r.centres.hi - r.centres.lo;
-        bool any = false;
-        for (int a = 0; a < 3; ++a) {
-            cut.scale[a] = wide[a] > 0 ? float(cut.bins) * 0.99999f / wide[a] : 0;
-            if (!std::isfinite(cut.scale[a])) cut.scale[a] = 0;
-            any |= cut.scale[a] > 0;
-        }
-        if (!any) return cut;
-        struct Bin {
-            Box box;
-            size_t n;
-        };
-        alignas(Bin) std::byte room[3 * kBins * sizeof(Bin)];
-        Bin* const bins[3] = {reinterpret_cast<Bin*>(room), reinterpret_cast<Bin*>(room) + kBins,
-                              reinterpret_cast<Bin*>(room) + 2 * kBins};
-        for (Bin* of : bins)
-            for (int k = 0; k < cut.bins; ++k) new (&of[k]) Bin{Box(), 0};
-        for (size_t i = r.begin; i < r.end; ++i) {
-            const Whole4 at = binsOf(cut, refs[i].twiceCentre());
-            for (int a = 0; a < 3; ++a) {
-                Bin& b = bins[a][at[a]];
-                b.box.add(refs[i].lo, refs[i].hi);
-                b.n += refs[i].many();
-            }
-        }
-        // A leaf costs as much for one triangle as for four.
-        const auto leaves = [](size_t n) { return double((n + 3) / 4); };
-        double lowest = INFINITY;
-        for (int a = 0; a < 3; ++a) {
-            if (!(cut.scale[a] > 0)) continue;
-            double above[kBins] = {};
-            Box box;
-            size_t n = 0;
-            for (int k = cut.bins - 1; k > 0; --k) {
-                box.add(bins[a][k].box);
-                n += bins[a][k].n;
-                above[k] = n ? box.halfArea() * leaves(n) : INFINITY;
-            }
-            box = Box();
-            n = 0;
-            for (int k = 1; k < cut.bins; ++k) {
-                box.add(bins[a][k - 1].box);
-                n += bins[a][k - 1].n;
-                const double cost = n ? box.halfArea() * leaves(n) + above[k] : INFINITY;
-                if (cost < lowest) lowest = cost, cut.axis = a, cut.bin = k;
-            }
-        }
-        for (int k = 0; cut.axis >= 0 && k < cut.bins; ++k) (k < cut.bin ? cut.below : cut.above).add(bins[cut.axis][k].box);
-        return cut;
-    }
     void split(const Range& r, bool halves, Range& a, Range& b) {
-        const Cut cut = halves || r.size() == 2 ? Cut() : bestCut(r);
-        const size_t middle = cut.axis >= 0 ? partition(r, cut, a, b) : r.begin;
-        if (middle > r.begin && middle < r.end) {
-            a.box = cut.below, b.box = cut.above;
-            a.begin = r.begin, a.end = b.begin = middle, b.end = r.end;
-            a.leaf = leafOf(a, nullptr);
-            b.leaf = leafOf(b, nullptr);
+        if (!halves && r.size() > 2 && cutInTwo(refs.get(), r, a, b)) {
+            a.leaf = isLeaf(a);
+            b.leaf = isLeaf(b);
             return;
         }
         a = measured(r.begin, r.begin + r.size() / 2);
         b = measured(r.begin + r.size() / 2, r.end);
     }
-    /// Those below a cut to the front; returns where the others begin. a, b: boxes of their centres.
-    size_t partition(const Range& r, const Cut& cut, Range& a, Range& b) {
-        Ref *front = &refs[r.begin], *back = &refs[0] + r.end;
-        Box below, above;
-        Four c{};
-        const auto isBelow = [&](const Ref& ref) {
-            c = ref.twiceCentre();
-            return binsOf(cut, c)[cut.axis] < cut.bin;
-        };
-        for (;;) {
-            for (; front < back && isBelow(*front); ++front) below.add(c, c);
-            if (front == back) break;
-            above.add(c, c);
-            for (--back; front < back && !isBelow(*back); --back) above.add(c, c);
-            if (front == back) break;
-            below.add(c, c);
-            std::swap(*front++, *back);
-        }
-        a.centres = below, b.centres = above;
-        return size_t(front - &refs[0]);
+    std::vector<Half> grouped(const Range& r, int depth) {
+        std::vector<Half> halves = inGroups(refs.get(), r, depth);
+        for (Half& h : halves) h.range.leaf = isLeaf(h.range);
+        return halves;
     }
 
     /// A range that is divided in two again and again down to its leaves; which of these pieces become the children of nodes is
@@ -204,7 +90,7 @@ struct Tree::Builder {
             uint32_t size;
             bool leaf;
             size_t begin;
-            int left = -1, right = -1; // -1: a leaf
+            int left = -1, right = -1; // -1: a leaf. Only right is -1: `size` leaves from `left` on
             // By a number of children, what it costs at the least when they are this piece or lie below it; and how many of them
             // lie on its left side then, 0: it is one.
             float cost[kWide + 1] = {};
@@ -216,9 +102,43 @@ struct Tree::Builder {
             const int at = int(list.size());
             list.push_back({.box = r.box, .size = uint32_t(r.size()), .leaf = r.leaf, .begin = r.begin});
             if (r.leaf) return at;
+            if (r.size() <= 4 && builder.allExact(r)) return fan(builder, r, at);
+            if (r.size() > kGrouped && depth < kDeepest / 2)
+                if (const std::vector<Half> halves = builder.grouped(r, kDeepest - 32 - depth); !halves.empty()) {
+                    list.pop_back();
+                    return take(builder, halves, 0, depth);
+                }
             Range first, second;
             builder.split(r, depth >= kDeepest - 20, first, second);
-            const int left = divide(builder, first, depth + 1), right = divide(builder, second, depth + 1);
+            const int left = divide(builder, first, depth + 1);
+            return join(at, left, divide(builder, second, depth + 1));
+        }
+        /// A range that was divided into groups.
+        int take(Builder& builder, const std::vector<Half>& halves, int half, int depth) {
+            const Half& h = halves[size_t(half)];
+            if (h.left < 0 || h.range.leaf) return divide(builder, h.range, depth);
+            const int at = int(list.size());
+            list.push_back({.box = h.range.box, .size = uint32_t(h.range.size()), .leaf = false, .begin = h.range.begin});
+            const int left = take(builder, halves, h.left, depth + 1);
+            return join(at, left, take(builder, halves, h.right, depth + 1));
+        }
+        /// Primitives that make a node: how they could be divided further hardly matters.
+        int fan(Builder& builder, const Range& r, int at) {
+            Piece& p = list[size_t(at)];
+            p.left = int(list.size());
+            for (uint32_t n = 1; n <= kWide; ++n) {
+                const bool open = n >= p.size;
+                p.cost[n] = open ? 0 : float(p.box.halfArea());
+                p.lefts[n] = open;
+            }
+            p.cost[1] = float(p.box.halfArea());
+            for (size_t i = r.begin; i < r.end; ++i) {
+                const Ref& ref = builder.refs[i];
+                list.push_back({.box = Box{ref.lo, ref.hi}, .size = 1, .leaf = true, .begin = i});
+            }
+            return at;
+        }
+        int join(int at, int left, int right) {
             list[size_t(at)].left = left;
             list[size_t(at)].right = right;
             weigh(list[size_t(at)]);
@@ -242,6 +162,10 @@ struct Tree::Builder {
                 out[count++] = piece;
                 return;
             }
+            if (p.right < 0) {
+                for (uint32_t k = 0; k < p.size; ++k) out[count++] = p.left + int(k);
+                return;
+            }
             children(p.left, p.lefts[n], out, count);
             children(p.right, n - p.lefts[n], out, count);
         }
@@ -263,38 +187,59 @@ struct Tree::Builder {
     }
 
     size_t makeNode(const Range& all, int depth) {
-        constexpr size_t kPieces = 65536; // some megabytes of a thread
         if (all.size() <= kPieces) {
             Pieces small;
             small.list.reserve(all.size());
             return makeNode(small, small.divide(*this, all, depth));
         }
-        Range child[kWide] = {all};
+        std::vector<Half> halves;
+        if (depth < 12) halves = grouped(all, 24);
+        return makeNode({all, halves.empty() ? -1 : 0}, halves, depth);
+    }
+    /// A range, and the half that it is or -1: nothing is known of its inside.
+    struct Open {
+        Range range;
+        int half = -1;
+    };
+    size_t makeNode(const Open& all, const std::vector<Half>& halves, int depth) {
+        Open child[kWide] = {all};
         int n = 1;
         while (n < kWide) {
             int largest = -1;
-            for (int k = 0; k < n; ++k)
-                if (!child[k].leaf && (largest < 0 || child[k].box.halfArea() > child[largest].box.halfArea())) largest = k;
+            for (int k = 0; k < n; ++k) {
+                const Range& r = child[k].range;
+                if (!r.leaf && (largest < 0 || r.box.halfArea() > child[largest].range.box.halfArea())) largest = k;
+            }
             if (largest < 0) break;
-            Range a, b;
-            split(child[largest], depth >= kDeepest / 2, a, b);
-            child[largest] = a;
-            child[n++] = b;
+            Open &first = child[largest], &second = child[n++];
+            if (const Half* h = first.half < 0 ? nullptr : &halves[size_t(first.half)]; h && h->left >= 0) {
+                first = {halves[size_t(h->left)].range, h->left};
+                second = {halves[size_t(h->right)].range, h->right};
+            } else {
+                const Range r = first.range;
+                first.half = -1;
+                split(r, depth >= kDeepest / 2, first.range, second.range);
+            }
         }
         const size_t at = newNode();
         Node& node = this->node(at);
         Box boxes[kWide];
-        for (int k = 0; k < n; ++k) boxes[k] = child[k].box;
-        setBoxes(node, all.box, {boxes, size_t(n)});
+        for (int k = 0; k < n; ++k) boxes[k] = child[k].range.box;
+        setBoxes(node, all.range.box, {boxes, size_t(n)});
         TaskGroup below;
         for (int k = 0; k < n; ++k) {
-            if (child[k].leaf) {
-                node.child[k] = uint32_t(child[k].begin);
-                node.spare[k] = uint8_t(child[k].size());
-            } else if (child[k].size() > kParallel) {
-                below.run([&, k] { node.child[k] = uint32_t(makeNode(child[k], depth + 1)); });
+            const Open& c = child[k];
+            const auto make = [&, k] {
+                const bool goesOn = c.half >= 0 && halves[size_t(c.half)].left >= 0 && c.range.size() > kPieces;
+                node.child[k] = uint32_t(goesOn ? makeNode(c, halves, depth + 1) : makeNode(c.range, depth + 1));
+            };
+            if (c.range.leaf) {
+                node.child[k] = uint32_t(c.range.begin);
+                node.spare[k] = uint8_t(c.range.size());
+            } else if (c.range.size() > kParallel) {
+                below.run(make);
             } else {
-                node.child[k] = uint32_t(makeNode(child[k], depth + 1));
+                make();
             }
         }
         below.wait();
@@ -306,7 +251,7 @@ struct Tree::Builder {
         std::vector<Node> nodes;
         nodes.reserve(made);
         struct Leaves {
-            size_t begin, size, at;
+            uint32_t begin, size;
         };
         std::vector<Leaves> leaves;
         nodes.push_back(node(root));
@@ -320,12 +265,13 @@ struct Tree::Builder {
                     const uint32_t id = refs[c].id();
                     if (id >= triangles) {
                         nodes[at].child[k] = kLeaf | kExact | uint32_t(tree.exact_.size());
-                        tree.exact_.push_back(exact[id - triangles]);
+                        placeOf[id - triangles] = uint32_t(tree.exact_.size());
+                        tree.exact_.push_back(exactAt(id - triangles));
                         continue;
                     }
                     if (leaves.size() >= kIndex) throw std::length_error("leaves");
                     nodes[at].child[k] = kLeaf | uint32_t(leaves.size());
-                    leaves.push_back({c, size, 0});
+                    leaves.push_back({c, size});
                 } else {
                     inner[n++] = uint32_t(nodes.size());
                     nodes[at].child[k] = uint32_t(nodes.size());
@@ -335,20 +281,16 @@ struct Tree::Builder {
             std::memset(nodes[at].spare, 0, sizeof nodes[at].spare);
             for (int k = 0; k < n; ++k) self(self, inner[k]);
         };
+        placeOf.resize(exacts);
         place(place, 0);
         pieces.clear();
         tree.leaves_.resize(leaves.size());
-        parallelFor(size_t(0), leaves.size(), [&](size_t i) {
-            Range r;
-            r.begin = leaves[i].begin;
-            r.end = r.begin + leaves[i].size;
-            leafOf(r, &tree.leaves_[i]);
-        });
+        parallelFor(size_t(0), leaves.size(),
+                    [&](size_t i) { LeafMaker{tree, shapes}.make({&refs[leaves[i].begin], leaves[i].size}, &tree.leaves_[i]); });
         refs.reset();
-        exact = {};
         makeCapsules();
-        nodes.shrink_to_fit();
         tree.nodes_ = std::move(nodes);
+        if (!quick && keys.empty() && parts.empty() && !tree.capsules()) tree.orderChildren();
     }
 
     void makeCapsules() {
@@ -363,10 +305,31 @@ struct Tree::Builder {
             return;
         }
         tree.capsules_.resize(tree.exact_.size());
-        parallelFor(size_t(0), tree.exact_.size(), [&](size_t i) {
-            const Exact& e = tree.exact_[i];
-            geometry::Capsule& c = tree.capsules_[i];
-            if ((e.shape & kPart) || !of[e.shape] || !of[e.shape]->capsule(e.prim, c)) c.radius = INFINITY;
+        eachExactRun([&](const Exact& first, size_t from, size_t to) {
+            geometry::Capsule run[kExactRun];
+            if (!(first.shape & kPart) && of[first.shape]) of[first.shape]->capsules(first.prim, {run, to - from});
+            else
+                for (size_t i = from; i < to; ++i) run[i - from].radius = INFINITY;
+            for (size_t i = from; i < to; ++i) tree.capsules_[placeOf[i]] = run[i - from];
+        });
+    }
+    Exact exactAt(size_t i) const {
+        if (i < parts.size()) return parts[i].as;
+        const auto next =
+            std::upper_bound(exactShapes.begin(), exactShapes.end(), i, [](size_t at, const Mesh& m) { return at < m.first; });
+        return {next[-1].shape, uint32_t(i) - next[-1].first};
+    }
+    /// Primitives of exact shapes by some that follow one another in one shape, or by some parts: f(the first of them, from, to),
+    /// on any thread.
+    template <class F> void eachExactRun(F f) const {
+        parallelFor(size_t(0), (exacts + kExactRun - 1) / kExactRun, [&](size_t run) {
+            const size_t end = std::min(exacts, (run + 1) * kExactRun);
+            for (size_t from = run * kExactRun, to; from < end; from = to) {
+                const Exact first = exactAt(from);
+                to = from < parts.size() ? parts.size() : from + shapes[first.shape]->exactPrims() - first.prim;
+                to = std::min(to, end);
+                f(first, from, to);
+            }
         });
     }
 
@@ -377,17 +340,17 @@ struct Tree::Builder {
         const auto primsOf = [&](uint32_t s) {
             return shapes[s]->exact() && (parts.empty() || !inParts[s]) ? shapes[s]->exactPrims() : 0;
         };
-        size_t n = parts.size();
-        for (uint32_t s = 0; s < shapes.size(); ++s) n += primsOf(s);
-        if (triangles + n >= kIndex) throw std::length_error("exact primitives");
-        exact.reserve(n);
-        for (const Part& p : parts) exact.push_back(p.as);
+        exacts = parts.size();
         for (uint32_t s = 0; s < shapes.size(); ++s)
-            for (uint32_t p = 0, many = primsOf(s); p < many; ++p) exact.push_back({s, p});
+            if (const uint32_t many = primsOf(s)) {
+                if (triangles + exacts + many >= kIndex) throw std::length_error("exact primitives");
+                exactShapes.push_back({uint32_t(exacts), s});
+                exacts += many;
+            }
     }
     /// Triangles that reach too far, before all others are put into boxes.
     void leaveOut() {
-        Ref* const end = &refs[0] + groups + exact.size();
+        Ref* const end = &refs[0] + groups + exacts;
         [[maybe_unused]] const Ref* const kept =
             std::remove_if(&refs[0], end, [&](const Ref& r) { return r.id() < triangles && tooFar(r); });
     }
@@ -401,7 +364,7 @@ struct Tree::Builder {
         const geometry::Shape& shape = *shapes[tree.meshes_[run.mesh].shape];
         const bool grid = quick && keys.empty() && shape.diced();
         for (uint32_t t = run.from; t < run.to;) {
-            const uint32_t many = grid ? together(shape.mesh(), t, run.to) : 1;
+            const uint32_t many = grid ? together(shape.mesh(), t, run.to) : keys.empty() ? pair(shape.mesh(), t, run.to) : 1;
             f(shape.mesh(), t, many);
             t += many;
         }
@@ -417,7 +380,7 @@ struct Tree::Builder {
             eachTogether(runs[i], [&](const geometry::TriMesh&, uint32_t, uint32_t) { ++runs[i].at; });
         });
         for (Run& r : runs) groups += std::exchange(r.at, groups);
-        refs.reset(new Ref[groups + exact.size()]);
+        refs.reset(new Ref[groups + exacts]);
         std::atomic<size_t> beyond{0};
         std::atomic<uint32_t> beyondOf{uint32_t(shapes.size())};
         parallelFor(size_t(0), runs.size(), [&](size_t i) {
@@ -445,6 +408,22 @@ struct Tree::Builder {
         if (beyond > 0) tree.beyondOf_ = beyondOf;
     }
 
+    void makeExactRefs() {
+        eachExactRun([&](const Exact& first, size_t from, size_t to) {
+            geometry::Bounds bounds[kExactRun];
+            if (from < parts.size()) {
+                for (size_t i = from; i < to; ++i) bounds[i - from] = parts[i].bounds;
+            } else {
+                const geometry::Shape& shape = *shapes[first.shape];
+                const auto* keyed = to > from + 1 ? dynamic_cast<const geometry::KeyedShape*>(&shape) : nullptr;
+                if (keyed) keyed->treeBoundsOf(first.prim, {bounds, to - from});
+                else
+                    for (size_t i = 0; i < to - from; ++i) bounds[i] = shape.exactBounds(first.prim + uint32_t(i));
+            }
+            for (size_t i = from; i < to; ++i) refs[groups + i] = refOf(triangles + uint32_t(i), bounds[i - from]);
+        });
+    }
+
     void listMeshes() {
         size_t count = 0;
         for (uint32_t s = 0; s < shapes.size(); ++s) {
@@ -465,14 +444,11 @@ struct Tree::Builder {
     void run() {
         listMeshes();
         listExact();
-        if (!triangles && exact.empty()) return;
+        if (!triangles && !exacts) return;
         makeTriangleRefs();
-        tree.exact_.reserve(exact.size());
-        parallelFor(size_t(0), exact.size(), [&](size_t i) {
-            refs[groups + i] = refOf(triangles + uint32_t(i),
-                                     i < parts.size() ? parts[i].bounds : shapes[exact[i].shape]->exactBounds(exact[i].prim));
-        });
-        const size_t all = groups + exact.size();
+        tree.exact_.reserve(exacts);
+        makeExactRefs();
+        const size_t all = groups + exacts;
         pieces.resize(all / kPiece + 2); // a node has two children at least
         if (tree.beyond_ > 0) leaveOut();
         const size_t kept = all - tree.beyond_;

@@ -37,4 +37,23 @@ uint32_t together(const geometry::TriMesh& m, uint32_t from, uint32_t to) {
     return std::max(1u, t - from);
 }
 
+uint32_t pair(const geometry::TriMesh& m, uint32_t from, uint32_t to) {
+    constexpr double kLarger = 1.3;
+    if (from + 2 > to) return 1;
+    const uint32_t* corner = &m.index[3 * size_t(from)];
+    int shared = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 3; k < 6; ++k) shared += corner[i] == corner[k];
+    if (shared != 2) return 1;
+    Box box[2];
+    for (int i = 0; i < 6; ++i) {
+        const Vec3& p = m.P[corner[i]];
+        if (Tree::reaches(p)) return 1;
+        box[i / 3].add(Four{p.x, p.y, p.z, 0}, Four{p.x, p.y, p.z, 0});
+    }
+    Box both = box[0];
+    both.add(box[1]);
+    return both.halfArea() <= kLarger * std::max(box[0].halfArea(), box[1].halfArea()) ? 2 : 1;
+}
+
 } // namespace alpenglow::accel

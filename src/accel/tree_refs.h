@@ -41,4 +41,8 @@ inline bool tooFar(const Ref& r) {
 /// a leaf holds, which are neighbours one after the other. So a tree over a diced surface is built over its leaves.
 uint32_t together(const geometry::TriMesh&, uint32_t from, uint32_t to);
 
+/// 2 where this triangle and the next share an edge and fill a box that is hardly larger than that of one of them: halves of a
+/// quad. Otherwise 1.
+uint32_t pair(const geometry::TriMesh&, uint32_t from, uint32_t to);
+
 } // namespace alpenglow::accel

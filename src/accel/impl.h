@@ -207,6 +207,7 @@ struct Accel::Impl {
         bool moves;
     };
     std::vector<Place> places; ///< Tree::Exact::shape of a part is into it
+    bool placesMove = false;   ///< some of them do, or are of what deforms
     void readyPlaced();
     /// Boxes of what is placed, each of a part of its geometry's tree: a ray comes to the parts that it may meet, the nearest
     /// first, and passes what overlaps them (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial Re-Braiding",

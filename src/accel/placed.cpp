@@ -55,7 +55,9 @@ std::vector<Tree::Part> Accel::Impl::partsOfPlaces() {
         if (!isPlaced(s) || geometryAt(s).tree.empty()) continue;
         const auto* p = shapes[s]->placed();
         Place place{{}, &geometryAt(s), p, p->deforming(), s, p->placeMoves()};
-        if (p->toGeometry(0, place.in)) places.push_back(place);
+        if (!p->toGeometry(0, place.in)) continue;
+        placesMove |= place.moves || place.deforming;
+        places.push_back(place);
     }
     std::vector<Tree::Part> parts;
     if (places.empty()) return parts;

@@ -31,7 +31,7 @@ void Accel::Impl::walkNearest(std::span<const Ray> rays, std::span<Hit> hits, bo
 }
 
 void Accel::Impl::walkNearestTogether(std::span<const Ray> rays, std::span<Hit> hits, bool plain, const StopFlag* stop) const {
-    if (tree.empty() || !geometries.empty()) return walkNearest(rays, hits, plain, stop);
+    if (tree.empty() || placesMove) return walkNearest(rays, hits, plain, stop);
     (hasAvx2() && !plain ? avx2::nearestTogether : common::nearestTogether)(*this, rays, hits, stop);
 }
 

@@ -408,4 +408,65 @@ TEST(Placed, CompanyChangesNoBit) {
     EXPECT_GT(placed, 100u);
 }
 
+// Rays from an eye to about one place, sixteen at a time, through instances whose geometry is a mesh, curves or a lone sphere:
+// the hits are those that each has alone, with the instructions of every processor.
+TEST(Placed, RaysTogetherMeetWhatTheyMeetAlone) {
+    scene::Frame f = manyBalls(2, 0);
+    auto curves = std::make_shared<scene::Primitive>();
+    curves->kind = "Curves";
+    curves->strings = {"linear", "nonperiodic"};
+    curves->ints.assign(20, 3);
+    std::mt19937 rng(5);
+    std::uniform_real_distribution<float> u(-1, 1);
+    std::vector<float> P;
+    for (int i = 0; i < 20 * 9; ++i) P.push_back(u(rng));
+    curves->params = {variable("P", scene::Class::Vertex, scene::Type::Point, P),
+                      variable("constantwidth", scene::Class::Constant, scene::Type::Float, {0.2f})};
+    auto sphere = std::make_shared<scene::Primitive>();
+    sphere->kind = "Sphere";
+    sphere->numbers = {1, -1, 1, 360};
+    curves->attributes = sphere->attributes = f.objects[0].primitives[0]->attributes;
+    f.objects.push_back({"curves", {curves}});
+    f.objects.push_back({"sphere", {sphere}});
+    for (size_t i = 0; i < f.instances.size(); ++i) f.instances[i].object = i % 3;
+    const World w(f, 1);
+    ASSERT_TRUE(w.accel->sound());
+    Accel::Impl in;
+    in.shapes = w.shapes;
+    in.visibility.assign(w.shapes.size(), accel::kAll);
+    in.readyPlaced();
+    in.buildTree();
+    ASSERT_FALSE(in.placesMove);
+    std::vector<Ray> r;
+    for (int bundle = 0; bundle < 300; ++bundle) {
+        const Vec3 eye(8 * u(rng), 8 * u(rng), 8 * u(rng)), aim(6 * u(rng), 6 * u(rng), 20 + 6 * u(rng));
+        for (int k = 0; k < 16; ++k) {
+            Ray x;
+            x.org = eye;
+            x.dir = aim - eye + Vec3(u(rng), u(rng), u(rng)) * (bundle % 5 ? 0.3f : 9.f);
+            if (k == 3) x.tfar = 1;
+            if (k == 5 && bundle % 4 == 0) x.excludeShape = uint32_t(bundle) % uint32_t(w.shapes.size());
+            r.push_back(x);
+        }
+    }
+    std::vector<Hit> alone(r.size());
+    in.walkNearest(r, alone);
+    size_t hits[3] = {};
+    for (const bool plain : {false, true}) {
+        std::vector<Hit> together(r.size());
+        in.walkNearestTogether(r, together, plain);
+        for (size_t i = 0; i < r.size(); ++i) {
+            ASSERT_EQ(together[i].shape, alone[i].shape) << i;
+            if (!alone[i].valid()) continue;
+            const std::string& kind = w.shapes[alone[i].shape]->kind();
+            ++hits[kind == "Sphere" ? 0 : kind == "Curves" ? 1 : 2];
+            ASSERT_EQ(together[i].prim, alone[i].prim);
+            ASSERT_EQ(together[i].distance, alone[i].distance);
+            ASSERT_EQ(together[i].b1, alone[i].b1);
+            ASSERT_EQ(together[i].b2, alone[i].b2);
+        }
+    }
+    for (const size_t n : hits) EXPECT_GT(n, 100u);
+}
+
 } // namespace placed_test

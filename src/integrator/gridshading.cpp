@@ -1,5 +1,6 @@
 #include "integrator/gridshading.h"
 #include "base/hash.h"
+#include "integrator/context.h"
 #include "integrator/intersector.h"
 #include "integrator/limits.h"
 #include "integrator/pipeline.h"
@@ -262,6 +263,7 @@ void GridShading::show(std::span<const CameraRay> rays, std::span<SampleResult> 
 }
 
 bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    pipeline_.stages().context.stop = stop; // camera rays meet surfaces before anything is shaded
     unfinished_ = false;
     const bool whole = follow(rays, out, stop) && followSampleBySample(rays, out, stop);
     if (!whole || unfinished_) forget(); // what was shaded is void
@@ -270,6 +272,7 @@ bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult>
 }
 
 bool GridShading::depths(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
+    pipeline_.stages().context.stop = stop;
     pipeline_.unfinished() = false;
     begin(rays, out);
     pipeline_.counters().paths += rays.size();

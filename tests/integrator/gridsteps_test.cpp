@@ -219,4 +219,17 @@ TEST(GridSteps, BitsDependOnNothingElse) {
             }
 }
 
+// Rays of a camera meet surfaces before anything is shaded; with many surfaces in one place that takes long.
+TEST(GridShading, StopsAmongTheRaysOfTheCamera) {
+    Scene s(gridPicture("Surface \"constant\"\n" + kSquare), bySettings(true));
+    const std::vector<CameraRay> rays = samplesOf(1);
+    std::vector<SampleResult> out(rays.size());
+    Integrator integrator(s.world, s.diagnostics);
+    const StopFlag stop{1};
+    EXPECT_FALSE(integrator.trace(rays, out, &stop));
+    EXPECT_EQ(integrator.counters().hits, 0u);
+    EXPECT_TRUE(integrator.trace(rays, out, nullptr));
+    EXPECT_EQ(integrator.counters().hits, rays.size());
+}
+
 } // namespace gridsteps_test

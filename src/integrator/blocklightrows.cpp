@@ -156,7 +156,6 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
                 values_.push_back(says);
             }
         }
-        if (!chances_.empty()) l.density[i] *= chances_[point];
     }
 }
 

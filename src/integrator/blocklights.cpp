@@ -42,17 +42,13 @@ void BlockVertices::findLit(const BoundLight* light) {
         if (lit_[b]) litBlocks_.push_back(b);
 }
 
-/// One light, for the points of lit_ and litBlocks_. group: the kernel of the group that it belongs to, where that runs.
-void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c, const BoundKernel* group) {
-    if (!group && inRows_[size_t(&light - world_.lights_.data())]) return lightInRows(light, c);
+/// One light, for the points of lit_ and litBlocks_.
+void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
+    if (inRows_[size_t(&light - world_.lights_.data())]) return lightInRows(light, c);
     sampleLight(light, c);
     if (asked_.empty()) return;
     values_.assign(asked_.size(), {});
-    LightCall call;
-    const std::vector<const BoundLight*> of(group ? asked_.size() : 0, &light);
-    call.kernel = group;
-    call.of = of;
-    lightKernels_.evaluateLight(light, queries_, values_, call);
+    lightKernels_.evaluateLight(light, queries_, values_);
     takeValues(light, c);
     connect(light, c);
 }
@@ -79,6 +75,15 @@ void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock
     render::drawBlocks(to);
 }
 
+/// A point of the light for a lit one. False: this draw brings nothing.
+bool BlockVertices::placeQuery(const BoundLight& light, const LightNumbers& u, const ShadePoint& lit, ShadePoint& q,
+                               Emitter::Sample& s) const {
+    tellLit(q, lit);
+    if (!placeLightSample(world_, light, u, true, q, s)) return false;
+    // Sides 1: from where rays pass through the emitter they cannot meet it, and it sends nothing.
+    return light.kind != LightKind::Area || light.mean || !s.shape->oneSided() || dot(meetsNormal(q.surface), s.direction) < 0;
+}
+
 /// A point of the light for each point that samples it.
 void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
@@ -93,14 +98,10 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
             ShadePoint& q = queries_[asked_.size()];
             BlockQuery& a = asked_.emplace_back();
             a.point = point;
-            tellLit(q, c.points[size_t(point)]);
             LightNumbers u;
             if (takesPair(light, true)) u.pair = {pairs_[b].x[lane], pairs_[b].y[lane]};
             if (takesChoice(light)) u.choose = choices_[b].x[lane];
-            bool placed = placeLightSample(world_, light, u, true, q, a.sample);
-            // Sides 1: from where rays pass through the emitter they cannot meet it, and it sends nothing.
-            if (placed && light.kind == LightKind::Area && !light.mean && a.sample.shape->oneSided())
-                placed = dot(meetsNormal(q.surface), a.sample.direction) < 0;
+            const bool placed = placeQuery(light, u, c.points[size_t(point)], q, a.sample);
             if (!placed) asked_.pop_back();
         }
     queries_.resize(asked_.size());
@@ -125,24 +126,27 @@ void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
         const BlockQuery& a = asked_[k];
         if (value.lit && !isFinite(value.Cl)) accumulator_.notFinite(&c.rays[size_t(a.point)], "Cl", light.instance.get());
         else if (value.lit && value.Cl != Color(0)) {
-            LightBlock& l = lights_[size_t(a.point / kBlock)];
-            const int lane = a.point % kBlock;
-            const bool drawn = l.emitter || light.sky;
-            const Vec3 w = drawn ? a.sample.direction : directionOr(-value.L, Vec3(0, 0, 1));
-            const Vec3 end = l.emitter ? leavesFrom(queries_[k].surface, -w) : Vec3();
-            for (int q = 0; q < 3; ++q) l.w[q][lane] = w[q], l.Cl[q][lane] = value.Cl[q], l.end[q][lane] = end[q];
-            l.density[lane] = drawn ? a.sample.pdf : 1;
-            if (!chances_.empty()) l.density[lane] *= chances_[size_t(a.point)];
-            const float far = light.sky || light.kind == LightKind::Distant ? 1e38f : length(value.L);
-            l.far[lane] = far < 1e30f ? far * (1 - 1e-5f) : far;
+            takeValue(lights_[size_t(a.point / kBlock)], a.point % kBlock, light, value, queries_[k], a.sample);
             queryAt_[size_t(a.point)] = int32_t(k);
-            l.keptDiffuse[lane] = value.kept(RayType::Diffuse);
-            l.keptSpecular[lane] = value.kept(RayType::Specular);
-            l.asked |= 1u << lane;
-            l.metDiffuse |= Lanes((a.sample.visibility & visibilityBit(RayType::Diffuse)) != 0) << lane;
-            l.metSpecular |= Lanes((a.sample.visibility & visibilityBit(RayType::Specular)) != 0) << lane;
         }
     }
+}
+
+/// What a light sends from a point of it, in a lane.
+void BlockVertices::takeValue(LightBlock& l, int lane, const BoundLight& light, const LightValue& value, const ShadePoint& query,
+                              const Emitter::Sample& sample) {
+    const bool drawn = l.emitter || light.sky;
+    const Vec3 w = drawn ? sample.direction : directionOr(-value.L, Vec3(0, 0, 1));
+    const Vec3 end = l.emitter ? leavesFrom(query.surface, -w) : Vec3();
+    for (int q = 0; q < 3; ++q) l.w[q][lane] = w[q], l.Cl[q][lane] = value.Cl[q], l.end[q][lane] = end[q];
+    l.density[lane] = drawn ? sample.pdf : 1;
+    const float far = light.sky || light.kind == LightKind::Distant ? 1e38f : length(value.L);
+    l.far[lane] = far < 1e30f ? far * (1 - 1e-5f) : far;
+    l.keptDiffuse[lane] = value.kept(RayType::Diffuse);
+    l.keptSpecular[lane] = value.kept(RayType::Specular);
+    l.asked |= 1u << lane;
+    l.metDiffuse |= Lanes((sample.visibility & visibilityBit(RayType::Diffuse)) != 0) << lane;
+    l.metSpecular |= Lanes((sample.visibility & visibilityBit(RayType::Specular)) != 0) << lane;
 }
 
 void BlockVertices::connect(const BoundLight& light, BatchContext& c) {

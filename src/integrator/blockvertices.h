@@ -14,6 +14,7 @@ class Accumulator;
 class BatchPool;
 class KernelInputs;
 class LightKernels;
+struct LightNumbers;
 class LightPathStates;
 class PhotonStage;
 class RayStore;
@@ -59,10 +60,13 @@ private:
     // blocklights.cpp
     void light(BatchContext&);
     void findLit(const BoundLight*);
-    void lightAlone(const BoundLight&, BatchContext&, const BoundKernel* group = nullptr);
+    void lightAlone(const BoundLight&, BatchContext&);
     static bool samples(const Site&, const BoundLight&);
     void sampleLight(const BoundLight&, BatchContext&);
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true);
+    bool placeQuery(const BoundLight&, const LightNumbers&, const ShadePoint& lit, ShadePoint& query, Emitter::Sample&) const;
+    static void takeValue(LightBlock&, int lane, const BoundLight&, const LightValue&, const ShadePoint& query,
+                          const Emitter::Sample&);
     void takeValues(const BoundLight&, const BatchContext&);
     void beginLights(const BoundLight&);
     void connect(const BoundLight&, BatchContext&);
@@ -121,7 +125,6 @@ private:
     size_t count_ = 0;
     std::vector<LobeBlock*> block_; ///< lobesOf()
     std::vector<Lanes> lit_;        ///< by block: points that sample lights
-    std::vector<float> chances_;    ///< by point: with which the light was chosen; empty: 1
     std::vector<LightBlock> lights_;
     std::vector<render::NumberBlock> pairs_, choices_;
     std::vector<ShadePoint> queries_;

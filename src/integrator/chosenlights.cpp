@@ -7,6 +7,7 @@
 #include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
 #include "integrator/shadowrays.h"
+#include "integrator/surfacepoints.h"
 #include <algorithm>
 #include <bit>
 
@@ -14,16 +15,18 @@ namespace alpenglow::transport {
 
 BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
     : b_(b), world_(b.world_), chosenHere_(size_t(kBlock) * LightTree::kMostChosen) {
-    for (const WorldImpl::LightGroup& g : world_.lightGroups_) all_.push_back({&g.kernel, {}});
+    for (const WorldImpl::LightGroup& g : world_.lightGroups_)
+        for (int k = 0; k < 4; ++k) all_.push_back({&g.kernel, (k & 1) != 0, {}});
     for (const BoundLight& l : world_.lights_) {
         together_.push_back(togetherOf(l));
         origins_.push_back(originOfLight(*l.instance, 0));
     }
 }
 
-/// Lights of a group share its kernel, where that reads nothing but rows and parameters.
+/// Lights of a group share its kernel; those together that have a density, or not, and whose samples are rows, or not.
 int BlockVertices::ChosenLights::togetherOf(const BoundLight& l) const {
-    return l.group >= 0 && b_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel) ? l.group : -1;
+    if (l.group < 0) return -1;
+    return 4 * l.group + 2 * int(l.hasDensity()) + int(b_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel));
 }
 
 void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchContext& c) {
@@ -34,7 +37,7 @@ void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchC
         if (!world_.lights_[size_t(number)].importance) continue; // rays alone find it
         const auto asked = std::span(sorted_).subspan(begin_[k], begin_[k + 1] - begin_[k]);
         if (together_[size_t(number)] < 0) {
-            askAlone(asked, c);
+            askByPoints(nullptr, asked, c);
             continue;
         }
         std::vector<Asked>& of = all_[size_t(together_[size_t(number)])].asked;
@@ -42,8 +45,11 @@ void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchC
     }
     for (Together& t : all_) {
         constexpr size_t kMost = kAtOnce * kBlock;
-        for (size_t first = 0; first < t.asked.size(); first += kMost)
-            ask(t, std::span(t.asked).subspan(first, std::min(kMost, t.asked.size() - first)), c);
+        for (size_t first = 0; first < t.asked.size(); first += kMost) {
+            const auto some = std::span(t.asked).subspan(first, std::min(kMost, t.asked.size() - first));
+            if (t.rows) askInRows(*t.kernel, some, c);
+            else askByPoints(t.kernel, some, c);
+        }
         t.asked.clear();
     }
 }
@@ -75,34 +81,71 @@ void BlockVertices::ChosenLights::choose(const WorldImpl::LightList& list) {
     begin_[0] = 0;
 }
 
-/// Points that ask one light, which is sampled point by point.
-void BlockVertices::ChosenLights::askAlone(std::span<const Asked> asked, BatchContext& c) {
-    const BoundLight& light = world_.lights_[size_t(asked[0].light)];
-    b_.findLit(&light);
-    std::vector<Lanes> here(b_.blocks_);
-    b_.chances_.resize(b_.points_);
-    for (const Asked& a : asked) {
-        here[size_t(a.point / kBlock)] |= 1u << a.point % kBlock;
-        b_.chances_[size_t(a.point)] = a.chance;
-    }
-    for (size_t b = 0; b < here.size(); ++b) b_.lit_[b] &= here[b];
-    std::erase_if(b_.litBlocks_, [&](size_t b) { return !b_.lit_[b]; });
-    const BoundKernel* const group = light.group < 0 ? nullptr : &world_.lightGroups_[size_t(light.group)].kernel;
-    if (!b_.litBlocks_.empty()) b_.lightAlone(light, c, group);
-    b_.chances_.clear();
-}
-
-void BlockVertices::ChosenLights::ask(const Together& t, std::span<const Asked> asked, BatchContext& c) {
+void BlockVertices::ChosenLights::askInRows(const BoundKernel& kernel, std::span<const Asked> asked, BatchContext& c) {
     gatherPoints(asked);
     placeLights();
     auto call = b_.batches_.take();
-    const shading::Batch& answers = run(*t.kernel, asked, *call);
+    const shading::Batch& answers = run(kernel, asked, *call);
     b_.values_.clear();
     for (size_t k = 0; k < count_; ++k) {
         takeLight(k, answers, c);
         if (blocks_[k].lights.asked) connect(blocks_[k], c);
     }
     b_.batches_.giveBack(std::move(call));
+}
+
+/// The same where the samples of lights are points. group: the kernel that they share; null: they are of one light.
+void BlockVertices::ChosenLights::askByPoints(const BoundKernel* group, std::span<const Asked> asked, BatchContext& c) {
+    gatherPoints(asked);
+    drawNumbers();
+    b_.surfaces_.pointsOfRows(c);
+    placeQueries(c);
+    if (of_.empty()) return;
+    std::vector<const BoundLight*> lights;
+    for (const auto& [k, lane] : of_) lights.push_back(&world_.lights_[size_t(blocks_[k].asked[lane]->light)]);
+    LightCall call;
+    call.kernel = group;
+    if (group) call.of = lights;
+    b_.values_.assign(of_.size(), {});
+    b_.lightKernels_.evaluateLight(*lights[0], b_.queries_, b_.values_, call);
+    for (size_t n = 0; n < of_.size(); ++n) {
+        const auto& [k, lane] = of_[n];
+        Questions& q = blocks_[k];
+        const LightValue& v = b_.values_[n];
+        if (v.lit && !isFinite(v.Cl)) {
+            b_.accumulator_.notFinite(&c.rays[size_t(q.asked[lane]->point)], "Cl", lights[n]->instance.get());
+        } else if (v.lit && v.Cl != Color(0)) {
+            BlockVertices::takeValue(q.lights, lane, *lights[n], v, b_.queries_[n], samples_[n]);
+            q.lights.density[lane] *= q.asked[lane]->chance;
+            q.says[lane] = int32_t(n);
+        }
+    }
+    for (size_t k = 0; k < count_; ++k)
+        if (blocks_[k].lights.asked) connect(blocks_[k], c);
+}
+
+/// Points of the lights, one by one: BlockVertices::queries_.
+void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
+    std::vector<ShadePoint>& queries = b_.queries_;
+    samples_.clear();
+    of_.clear();
+    for (size_t k = 0; k < count_; ++k) {
+        Questions& q = blocks_[k];
+        const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)];
+        q.lights.emitter = first.kind == LightKind::Area;
+        q.lights.met = first.hasDensity();
+        for (Lanes left = q.there; left; left &= left - 1) {
+            const int lane = std::countr_zero(left);
+            const BoundLight& light = world_.lights_[size_t(q.asked[lane]->light)];
+            const LightNumbers u{{pairs_[k].x[lane], pairs_[k].y[lane]}, choices_.empty() ? 0 : choices_[k].x[lane]};
+            if (of_.size() == queries.size()) queries.emplace_back(); // those of before are written again
+            samples_.emplace_back();
+            if (b_.placeQuery(light, u, c.points[size_t(q.asked[lane]->point)], queries[of_.size()], samples_.back()))
+                of_.emplace_back(k, lane);
+            else samples_.pop_back();
+        }
+    }
+    queries.resize(of_.size());
 }
 
 /// The points of the questions, in rows; the last one again where a block is not full.
@@ -114,6 +157,8 @@ void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
         Questions& q = blocks_[k];
         const size_t first = k * kBlock, n = std::min(asked.size() - first, size_t(kBlock));
         q.there = n == size_t(kBlock) ? 0xffffu : (1u << n) - 1;
+        q.lights.asked = q.lights.metDiffuse = q.lights.metSpecular = 0;
+        std::fill_n(q.says, kBlock, -1);
         VertexBlock& to = q.points;
         render::NumberBlock& numbers = pairs_[k];
         for (size_t i = 0; i < size_t(kBlock); ++i) {
@@ -146,9 +191,7 @@ void BlockVertices::ChosenLights::placeLights() {
     if (emitters) drawNumbers();
     for (size_t k = 0; k < count_; ++k) {
         Questions& q = blocks_[k];
-        q.lights.asked = q.lights.metDiffuse = q.lights.metSpecular = 0;
         q.lights.emitter = q.lights.met = emitters;
-        std::fill_n(q.says, kBlock, -1);
         for (size_t r = 0; r < 3; ++r) std::copy_n(q.points.P[r], kBlock, lamp_.data() + (6 + r) * n + k * kBlock);
         if (emitters) {
             placeOnEmitters(k);

@@ -20,9 +20,10 @@ private:
         int light = 0, point = 0;
         float chance = 1;
     };
-    /// Lights whose questions one kernel answers.
+    /// Lights whose questions one kernel answers; rows: it reads nothing but rows.
     struct Together {
         const BoundKernel* kernel = nullptr;
+        bool rows = false;
         std::vector<Asked> asked;
     };
     /// Of a block of questions.
@@ -38,9 +39,10 @@ private:
 
     int togetherOf(const BoundLight&) const;
     void choose(const WorldImpl::LightList&);
-    void askAlone(std::span<const Asked>, BatchContext&);
-    void ask(const Together&, std::span<const Asked>, BatchContext&);
+    void askInRows(const BoundKernel&, std::span<const Asked>, BatchContext&);
+    void askByPoints(const BoundKernel* group, std::span<const Asked>, BatchContext&);
     void gatherPoints(std::span<const Asked>);
+    void placeQueries(const BatchContext&);
     void drawNumbers();
     void placeOnEmitters(size_t block);
     void placeLights();
@@ -52,7 +54,7 @@ private:
 
     BlockVertices& b_;
     const WorldImpl& world_;
-    std::vector<int> together_; ///< by light, of all_; -1: it goes alone
+    std::vector<int> together_; ///< by light, of all_; -1: it has a kernel of its own
     std::vector<Vec3> origins_; ///< by light
     std::vector<Together> all_;
     std::vector<Asked> chosen_, sorted_;
@@ -63,7 +65,9 @@ private:
     std::vector<float> lamp_; ///< shading::LightRows
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_;
-    std::vector<ChosenLight> chosenHere_; ///< of a block
+    std::vector<ChosenLight> chosenHere_;    ///< of a block
+    std::vector<Emitter::Sample> samples_;   ///< of BlockVertices::queries_,
+    std::vector<std::pair<size_t, int>> of_; ///< whose blocks and lanes these are
     LobeBlock lobe_;
 };
 

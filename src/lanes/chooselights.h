@@ -189,7 +189,7 @@ static void enterCut(Choosing& c, int from, Lanes points) {
     cutAt(c.tree, load3(c.P, from), points >> from & ((1u << kW) - 1), cut);
     const vd random = loadDoubles(c.random + from);
     vd sum(0), teeth = __builtin_elementwise_ceil(sum - random);
-    const bool seen = !anyOf(shortMask(~(cut.total > 0))); // some light is, from each point
+    const bool seen = !anyOf(maskFrom(points, from) & shortMask(~(cut.total > 0))); // some light is, from each point
     for (int turn = 0; turn < cut.turns; ++turn) {
         if (!cut.here[turn]) continue;
         const vl here = longMask(maskFrom(cut.here[turn], 0));

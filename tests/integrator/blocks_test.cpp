@@ -81,8 +81,8 @@ std::string manyLights(double brightest) {
              "\nSurface \"constant\"\nColor 0 0 0\nTranslate " + at(5 * i, 1) + "\n";
         if (i % 4 == 0) s += "Sides 1\n";
         if (i % 5 == 4) s += "Attribute \"visibility\" \"int specular\" 0\n";
-        s += "Polygon \"P\" [-.2 .3 -.2  .2 .3 -.2  .2 .3 .2  -.2 .3 .2] \"constant float intensity\" [" +
-             std::to_string(i == 9 ? 30 : 2) + "]\n";
+        s += "Polygon \"P\" [-.2 .3 -.2  .2 .3 -.2  .2 .3 .2  -.2 .3 .2]";
+        s += i % 4 == 1 ? " \"constant float intensity\" [2]\n" : "\n";
         if (i % 3 == 0) s += "Polygon \"P\" [0 .5 0  .4 .5 0  0 .5 .9]\n";
         if (i % 6 == 5) s += "Sphere .1 -.1 .1 360\n";
         s += "AttributeEnd\nIlluminate " + std::to_string(handle++) + " 1\n";

@@ -19,7 +19,7 @@ BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
         for (int k = 0; k < 4; ++k) all_.push_back({&g.kernel, (k & 1) != 0, {}});
     for (const BoundLight& l : world_.lights_) {
         together_.push_back(togetherOf(l));
-        origins_.push_back(originOfLight(*l.instance, 0));
+        origins_.push_back(l.instance ? originOfLight(*l.instance, 0) : Vec3()); // none: its shader was refused
     }
 }
 

@@ -5,6 +5,7 @@
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
+#include "integrator/mediastacks.h"
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
 #include "integrator/surfacepoints.h"
@@ -16,7 +17,7 @@
 namespace alpenglow::transport {
 
 void BlockVertices::light(BatchContext& c) {
-    if (paths_.automaton) surfaces_.pointsOfRows(c); // to tell reflection from transmission
+    if (paths_.automaton || !world_.media_.empty()) surfaces_.pointsOfRows(c); // on which side of them rays go on
     const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
     if (!list.chooser.empty()) {
         findLit(nullptr);
@@ -194,8 +195,8 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
         for (Lanes some = contribute(s, vertices_[b], lobe, l, c, points); some; some &= some - 1) {
             const size_t lane = size_t(std::countr_zero(some)), point = b * kBlock + lane;
             const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
-            const uint16_t path = pathOf(s, false, point, {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, c);
-            sendShadow(point, lane, of, query < 0 ? nullptr : &values_[size_t(query)], path, c);
+            sendShadow(s, point, lane, {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, of,
+                       query < 0 ? nullptr : &values_[size_t(query)], c);
         }
     }
 }
@@ -208,17 +209,18 @@ uint16_t BlockVertices::pathOf(const Site& s, bool delta, size_t point, const Ve
     return paths_.atLobe(*s.info->lobe, *s.rays, delta, c.points[point], c.rays[point], w);
 }
 
-/// The ray of a lane of shadow_, from a point; says: what the light says of its shadow, null: nothing more.
-void BlockVertices::sendShadow(size_t point, size_t lane, const BoundLight& of, const LightValue* says, uint16_t path,
-                               BatchContext& c) {
+/// The ray of a lane of shadow_, from a point towards w; says: what the light says of its shadow, null: nothing more.
+void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, const Vec3& w, const BoundLight& of,
+                               const LightValue* says, BatchContext& c) {
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
     sent_[lane] = int32_t(shadows_.queue.size());
     ShadowRay& s = shadows_.queue.emplace_back();
     s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], row3(shadow_.light),
          c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
     s.share = shareOf(c.rays[point]);
-    s.path = path;
-    if (path) s.light = paths_.lights[size_t(&of - world_.lights_.data())];
+    if (!world_.media_.empty()) s.media = media_.towards(c, int(point), w);
+    s.path = pathOf(site, false, point, w, c);
+    if (s.path) s.light = paths_.lights[size_t(&of - world_.lights_.data())];
     if (!says) return;
     if (says->shadowRadius > 0) { // to a point of the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());

@@ -2,6 +2,7 @@
 #include "integrator/accumulator.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
+#include "integrator/mediastacks.h"
 #include "integrator/raystore.h"
 #include "integrator/vertexlight.h"
 #include <algorithm>
@@ -142,6 +143,11 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         if (const uint16_t path = uint16_t(r.path[i])) {
             const Vec3 w(next_.direction[0][i], next_.direction[1][i], next_.direction[2][i]);
             r.path[i] += pathOf(s, next_.single >> i & 1, b * kBlock + size_t(i), w, c) - uint32_t(path);
+        }
+        if (!world_.media_.empty()) {
+            const Vec3 w(next_.direction[0][i], next_.direction[1][i], next_.direction[2][i]);
+            const auto media = reinterpret_cast<uintptr_t>(media_.towards(c, int(b * kBlock + size_t(i)), w));
+            r.media[0][i] = uint32_t(media), r.media[1][i] = uint32_t(uint64_t(media) >> 32);
         }
         r.extra[i] = -1;
         const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);

@@ -21,7 +21,7 @@ bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels &&
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lightKernels_(s.lightKernels),
-      paths_(s.paths), photons_(s.photons), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces),
+      paths_(s.paths), media_(s.media), photons_(s.photons), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces),
       vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
@@ -30,13 +30,15 @@ BlockVertices::BlockVertices(const StageSet& s)
                              [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && world_.media_.empty() && !world_.traceSubsets_ && !world_.globalMaps_ &&
+    usable_ = set.blocks && rules && lights && !world_.scatters_ && !world_.traceSubsets_ && !world_.globalMaps_ &&
               !world_.shadesAtOpen_;
     usable_ &= world_.accel_ != nullptr; // of a world that is whole
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
-        plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(),
-                                                    [&](int l) { return isPlainLight(world_.lights_[size_t(l)]); }));
+        plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
+            const BoundLight& light = world_.lights_[size_t(l)];
+            return isPlainLight(light) && !(light.hazy && !world_.media_.empty());
+        }));
     for (const BoundLight& l : world_.lights_) inRows_.push_back(inRows(l, l.kernel));
     chosen_ = std::make_unique<ChosenLights>(*this);
 }

@@ -16,6 +16,7 @@ class KernelInputs;
 class LightKernels;
 struct LightNumbers;
 class LightPathStates;
+class MediaStacks;
 class PhotonStage;
 class RayStore;
 class ShadowRays;
@@ -56,7 +57,6 @@ private:
     void prepare();
     bool select(const BatchContext&);
     std::span<LobeBlock*> lobesOf(size_t block);
-
     // blocklights.cpp
     void light(BatchContext&);
     void findLit(const BoundLight*);
@@ -72,11 +72,11 @@ private:
     void connect(const BoundLight&, BatchContext&);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     Lanes contribute(const Site&, const VertexBlock&, const LobeBlock&, const LightBlock&, BatchContext&, const size_t* points);
-    void sendShadow(size_t point, size_t lane, const BoundLight&, const LightValue* says, uint16_t path, BatchContext&);
+    void sendShadow(const Site&, size_t point, size_t lane, const Vec3& w, const BoundLight&, const LightValue* says,
+                    BatchContext&);
     int32_t shareOf(const PathRay&) const;
     /// PathRay::path of light that a lobe of a site sends towards w.
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
-
     // blocklightrows.cpp
     bool inRows(const BoundLight&, const BoundKernel&) const;
     void lightInRows(const BoundLight&, BatchContext&);
@@ -106,6 +106,7 @@ private:
     KernelInputs& inputs_;
     LightKernels& lightKernels_;
     const LightPathStates& paths_;
+    MediaStacks& media_;
     PhotonStage& photons_;
     RayStore& store_;
     ShadowRays& shadows_;

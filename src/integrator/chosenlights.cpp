@@ -364,8 +364,7 @@ void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
             const int i = std::countr_zero(some);
             const LightValue* says = q.says[i] < 0 ? nullptr : &b.values_[size_t(q.says[i])];
             const Vec3 w(q.lights.w[0][i], q.lights.w[1][i], q.lights.w[2][i]);
-            b.sendShadow(points[i], size_t(i), world_.lights_[size_t(q.asked[i]->light)], says,
-                         b.pathOf(s, false, points[i], w, c), c);
+            b.sendShadow(s, points[i], size_t(i), w, world_.lights_[size_t(q.asked[i]->light)], says, c);
         }
     }
 }

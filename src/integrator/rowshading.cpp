@@ -25,7 +25,7 @@ RowShading::RowShading(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), blocks_(s.blocks), cameraOutputs_(s.cameraOutputs),
       flights_(s.flights), gathers_(s.gathers), inputs_(s.inputs), paths_(s.paths), photons_(s.photons), store_(s.store),
       requests_(s.requests), shadows_(s.shadows), surfaces_(s.surfaces), shading_(s.shading), transparency_(s.transparency) {
-    takes_.assign(!world_.moves_ ? size_t(world_.groups_) : 0, 1);
+    takes_.assign(!world_.moves_ && world_.media_.empty() ? size_t(world_.groups_) : 0, 1);
     for (const SurfaceBinding& b : world_.bindings_)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
 }

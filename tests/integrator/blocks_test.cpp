@@ -239,9 +239,11 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
         std::vector<scene::LightPaths::Source>{{"C<RD>L", {}}, {"C<RG>[LO]", {}}, {"C.*<RD>.+L", {}}}, d);
     ASSERT_EQ(d.all().size(), 0u);
     outputs.outputs = {{"soft"}, {"sheen"}};
+    const std::string inside = "Interior \"medium\" \"color scattering\" [0 0 0] \"color absorption\" [.2 .5 .3]\n";
     const std::string fog = "Atmosphere \"fog\" \"distance\" 9 \"background\" [.3 .2 .1]\n";
     for (const Settings& s : {Settings(), local, first, paths, outputs})
-        for (const std::string& more : {std::string(), fog, fog + "Opacity .5 .6 .7\n", manyLights(6)})
+        for (const std::string& more :
+             {std::string(), fog, fog + "Opacity .5 .6 .7\n", inside + "Opacity .5 .6 .7\n", manyLights(6)})
             for (const char* shader : {"\"apart\"", "\"facets\""}) {
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);

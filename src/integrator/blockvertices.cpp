@@ -58,7 +58,7 @@ bool BlockVertices::takes(const BatchContext& c) const {
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
-    return usable_ && kernel.blocks && !b.displacement && plain_[size_t(b.lightList)];
+    return usable_ && kernel.blocks && plain_[size_t(b.lightList)];
 }
 
 bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }
@@ -121,7 +121,7 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
         const size_t i = first + std::min(k, n - 1); // the last point again
         const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
         const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
-        if (s.matte || s.maxDiffuse >= 0 || s.maxSpecular >= 0 || p.displaced || !(rows || c.points[i].P == p.P)) return false;
+        if (s.matte || s.maxDiffuse >= 0 || s.maxSpecular >= 0 || !(rows || c.points[i].P == p.P)) return false;
         for (int q = 0; q < 3; ++q) {
             v.P[q][k] = p.P[q];
             v.n[q][k] = p.n[q];

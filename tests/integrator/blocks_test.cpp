@@ -239,11 +239,13 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
         std::vector<scene::LightPaths::Source>{{"C<RD>L", {}}, {"C<RG>[LO]", {}}, {"C.*<RD>.+L", {}}}, d);
     ASSERT_EQ(d.all().size(), 0u);
     outputs.outputs = {{"soft"}, {"sheen"}};
+    writeShader("bumpy", R"(displacement bumpy() { P += .03 * sin(20 * u) * normalize(N); N = calculatenormal(P); })");
+    const std::string bumpy = "Attribute \"displacementbound\" \"float sphere\" .1\nDisplacement \"bumpy\"\n";
     const std::string inside = "Interior \"medium\" \"color scattering\" [0 0 0] \"color absorption\" [.2 .5 .3]\n";
     const std::string fog = "Atmosphere \"fog\" \"distance\" 9 \"background\" [.3 .2 .1]\n";
     for (const Settings& s : {Settings(), local, first, paths, outputs})
         for (const std::string& more :
-             {std::string(), fog, fog + "Opacity .5 .6 .7\n", inside + "Opacity .5 .6 .7\n", manyLights(6)})
+             {std::string(), fog, fog + "Opacity .5 .6 .7\n", inside + "Opacity .5 .6 .7\n", bumpy, manyLights(6)})
             for (const char* shader : {"\"apart\"", "\"facets\""}) {
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);

@@ -13,8 +13,8 @@ namespace alpenglow::transport {
 /// Whether strips of a batch ask for the same, for the first time and for one ray each, at about all of the batch's points.
 bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
     const SurfaceBinding& b = *c.binding;
-    if (!usable_ || !plain_[size_t(b.lightList)] || c.aside || c.between || c.below || !c.clear.empty() ||
-        c.points.empty() || photons_.photonTrace() || !takesRays(c))
+    if (!usable_ || !plain_[size_t(b.lightList)] || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
+        photons_.photonTrace() || !takesRays(c))
         return false;
     size_t asked = 0;
     for (const KernelStrip* s : strips) {

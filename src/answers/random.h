@@ -16,6 +16,7 @@ enum RandomUse : uint32_t {
     kDrawAgain,
     kAmbient,
     kAlbedo,
+    kGuideRay,
     kLightPoint = 1u << 21
 };
 

@@ -18,6 +18,8 @@ void Accumulator::begin(size_t samples) {
 void Accumulator::deposit(Sched& sched, const Deposit& d) {
     if (!isFinite(d.light) && d.event != LightEvent::Output) // of those the target keeps count
         return notFinite(d.path, d.event == LightEvent::Sampled ? "light that is sampled" : "light", d.of);
+    // The guide's rays bring the light of lights that they meet; all other light is that of the lobe's own ray.
+    if (d.path && d.path->guided() && d.event != LightEvent::Met && d.event != LightEvent::Sky) return;
     sched.add(d.target, d.light);
     depositPart(sched, d.path, d.end, d.light);
     for (int32_t share = d.share; share >= 0; share = shares[size_t(share)].next)
@@ -53,6 +55,7 @@ void Accumulator::notFinite(const BatchContext& c, const PathRay& ray, uint32_t 
 
 /// The parts of what a volume shader shows: what the surface gives by itself, `met` of it, and what the volume adds.
 void Accumulator::depositThroughVolume(Sched& sched, const PathRay& ray, const Color& met, const Color& shown) {
+    if (ray.guided()) return;
     depositPart(sched, &ray, paths_.next(ray.path, paths_.object), ray.weight * met);
     depositPart(sched, &ray, paths_.next(paths_.next(ray.path, paths_.volume), paths_.object), ray.weight * (shown - met));
 }

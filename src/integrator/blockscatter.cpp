@@ -1,5 +1,6 @@
 // The rays on which paths go on from vertices in blocks.
 #include "integrator/accumulator.h"
+#include "integrator/blockguide.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
@@ -158,6 +159,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         extra.share = share;
         r.extra[i] = store_.newExtra(extra);
     }
+    guided_->keep(b, c);
 }
 
 void BlockVertices::spawn(const RayBlock& rays, Sched& sched) {

@@ -1,5 +1,6 @@
 // From requests of a kernel to lobes in blocks, and the chances that their rays are followed.
 #include "integrator/accumulator.h"
+#include "integrator/blockguide.h"
 #include "integrator/chosenlights.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/photonstage.h"
@@ -33,6 +34,7 @@ BlockVertices::BlockVertices(const StageSet& s)
     usable_ = set.blocks && rules && lights && !world_.scatters_ && !world_.traceSubsets_ && !world_.globalMaps_ &&
               !world_.shadesAtOpen_;
     usable_ &= world_.accel_ != nullptr; // of a world that is whole
+    guided_ = std::make_unique<Guided>(*this, s.guide);
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
         plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
@@ -71,6 +73,7 @@ bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
     prepare();
     if (!select(c)) return false;
     light(c);
+    guided_->run(c, sched);
     scatter(c, sched);
     return true;
 }
@@ -85,6 +88,7 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
         stages_.load(&c.rays[first], int(sizeof(PathRay)), int(n), kRayWords, rays.origin);
         for (size_t k = 0; k < size_t(kBlock); ++k) rays.target[k] = c.targets[first + std::min(k, n - 1)];
         takeRays(rays);
+        guided_->mark(b, c);
         if (!loadPoints(b, c)) return false;
         if (waits_) nameLights(vertices_[b], uint32_t(c.emits[0].site));
     }
@@ -220,7 +224,8 @@ void BlockVertices::prepare() {
                 continue;
             }
             s.lanes->prepare(l.lobe[0], l.asked);
-            for (int i = 0; s.lights && i < kBlock; ++i) l.lights |= Lanes((l.asked >> i & 1) && l.lobe[kRowDelta][i] == 0) << i;
+            for (int i = 0; s.lights && i < kBlock; ++i)
+                l.lights |= Lanes((l.asked & ~vertices_[b].guided) >> i & (l.lobe[kRowDelta][i] == 0)) << i;
         }
     }
 }

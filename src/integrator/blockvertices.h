@@ -33,8 +33,7 @@ public:
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all that a batch whose kernel has run asks for is of this kind.
     bool takes(const BatchContext&) const;
-    /// Whether the rays that came to a batch are of this kind: no photons are gathered, albedos
-    /// are not asked for (Settings::firstSeen), and no sky must be looked for at their end.
+    /// Whether the rays that came to a batch are: no photons, albedos or skies at their end must be looked for.
     bool takesRays(const BatchContext&) const;
     /// Lights its points and sends their rays; shadow rays are left in ShadowRays::queue. False: nothing was done, for some point
     /// needs a look by itself.
@@ -44,6 +43,7 @@ public:
 
 private:
     class ChosenLights;      ///< chosenlights.h
+    class Guided;            ///< blockguide.h
     using Site = BlockLobes; ///< a call site of the kernel
     // blockvertices.cpp
     bool follow(BatchContext&, Sched&, bool waits);
@@ -86,7 +86,6 @@ private:
     void takeLightOf(size_t k, const BoundLight&, const shading::Batch&, const BatchContext&);
     void placeFar(const BoundLight&, const shading::Batch&, size_t at, LightBlock&) const;
     bool asksShadowDisk(const BoundLight&, const shading::Batch&, size_t at, LightValue&);
-
     // blockwaiting.cpp
     bool takes(const BatchContext&, std::span<KernelStrip* const>) const;
     void nameLights(VertexBlock&, uint32_t site) const;
@@ -142,6 +141,7 @@ private:
     std::vector<char> inRows_; ///< by light: its samples need no points
     std::vector<char> plain_;  ///< by light list: all lights are what blocks hold
     std::unique_ptr<ChosenLights> chosen_;
+    std::unique_ptr<Guided> guided_;
     alignas(64) Row whole_; ///< 1
     alignas(64) float value_[kValueRows][kBlock] = {};
     alignas(64) float drawn_[kDrawnRows][kBlock] = {};

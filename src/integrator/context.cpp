@@ -29,6 +29,7 @@ void Counters::operator+=(const Counters& o) {
     depthCap += o.depthCap;
     depthSum += o.depthSum;
     paths += o.paths;
+    guided += o.guided;
     records += o.records;
     interpolated += o.interpolated;
     depthMax = std::max(depthMax, o.depthMax);

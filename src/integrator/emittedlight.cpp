@@ -45,7 +45,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
             if (!l.seenBy(*r.kind)) continue;
             // A lobe that samples lights: those that are off for its surface do not light it by chance either.
             if (r.lobeBinding >= 0 && !world_.bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
-            if (photons_.bringsPhotons(r, number)) continue;
+            if (photons_.bringsPhotons(r, number) || (r.guided() && !(r.trail & shading::kTrailMirrored))) continue;
             ShadePoint& p = q.emplace_back();
             p.Ps = r.origin;
             p.P = r.origin + r.dir;
@@ -65,6 +65,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
                 const PathRay& r = of[i]->payload;
                 const bool weighed = r.bounces > 0 && !r.kind->fromTrace; // met by a lobe of a lighting shadeop
                 float weight = weighed ? value[i].kept(r.type()) : 1.f;
+                if (r.lobePdf < 0) weight *= -r.lobePdf;
                 if (l.sky && r.lobePdf >= 0) { // its lobe has sampled this sky
                     float pdf = l.sky->pdf(r.dir);
                     if (rules_.pickOne && r.lobeBinding >= 0)
@@ -119,7 +120,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
             const PathRay& r = *p.ray;
             if (v.lit && !isFinite(v.Cl)) accumulator_.notFinite(&r, "Cl", light.instance.get());
             if (!v.lit || v.Cl == Color(0) || !isFinite(v.Cl) || photons_.bringsPhotons(r, met[i].light)) continue;
-            float weight = 1;
+            float weight = r.lobePdf < 0 ? -r.lobePdf : 1;
             if (r.lobePdf >= 0 && light.emitter && light.importance) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
                 if (rules_.pickOne && r.lobeBinding >= 0)
@@ -143,7 +144,7 @@ void EmittedLight::shine(const BatchContext& c, Sched& sched) {
     for (size_t i = 0; i < c.points.size(); ++i) {
         const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
         const PathRay& r = c.rays[i];
-        if (b.areaLight < 0 || (b.matte && r.camera())) continue;
+        if (b.areaLight < 0 || (b.matte && r.camera()) || (r.guided() && !(r.trail & shading::kTrailMirrored))) continue;
         if (!rules_.emissionCounts && r.lobePdf < 0 && !r.kind->asksLights) continue;
         if (r.lobeBinding >=
             0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either

@@ -7,8 +7,9 @@ namespace alpenglow::transport {
 
 Gather::Gather(const StageSet& s)
     : VertexStage(s, *this), selection_(s, *this, photonScatter_), lightSampling_(s, *this, connection_, photonScatter_),
-      connection_(s, *this, lightSampling_), lastSkies_(s, *this, scatter_), photonScatter_(s, *this, selection_, scatter_),
-      scatter_(s, *this, selection_, connection_, photonScatter_), litSurfaces_(s.litSurfaces), photons_(s.photons) {}
+      connection_(s, *this, lightSampling_), lastSkies_(s, *this, scatter_), guideScatter_(s, *this, selection_),
+      photonScatter_(s, *this, selection_, scatter_), scatter_(s, *this, selection_, connection_, photonScatter_),
+      litSurfaces_(s.litSurfaces), photons_(s.photons) {}
 
 void Gather::run(BatchContext& c, Sched& sched) {
     if (requests_.lobes.empty()) return;
@@ -20,6 +21,7 @@ void Gather::run(BatchContext& c, Sched& sched) {
     selection_.besideLights();
     if (rules_.lightsAtRequests) lightSampling_.run(sched);
     if (rules_.emissionCounts) lastSkies_.run();
+    guideScatter_.run(sched);
     if (photons_.photonTrace()) photonScatter_.restPhotons();
     else if (rules_.pickOne) photonScatter_.takePhotons(sched);
     scatter_.run(sched);

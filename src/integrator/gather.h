@@ -3,12 +3,14 @@
 //   LightSampling  points of lights for the points of the batch, and what the lights' kernels send from there
 //   Connection     lobes with those points: contributions, with one shadow ray for all lobes of a vertex that can share it
 //   LastSkies      at the last vertex of a path: skies that only rays would find
+//   GuideScatter   rays toward where caustics come from
 //   PhotonScatter  photons that rest, and what paths gather of them
 //   ScatterRays    directions of the lobes whose rays are followed, and the rays
 // A stage reads what the ones before it wrote and changes nothing else; none looks at two points at a time, so results do not
 // depend on who shares the batch.
 #pragma once
 #include "integrator/connection.h"
+#include "integrator/guidescatter.h"
 #include "integrator/lastskies.h"
 #include "integrator/lightsampling.h"
 #include "integrator/lobeselection.h"
@@ -33,6 +35,7 @@ private:
     LightSampling lightSampling_;
     Connection connection_;
     LastSkies lastSkies_;
+    GuideScatter guideScatter_;
     PhotonScatter photonScatter_;
     ScatterRays scatter_;
     LitSurfaces& litSurfaces_;

@@ -73,9 +73,11 @@ void LobeSelection::choosePoint(size_t point) {
         cut |= from.bounces + 1 - from.scattered - c_->between > world_.maxDepth_ && l.chosen > 0;
         const bool noIndirect =
             l.rays->type == RayType::Diffuse && !world_.settings_.indirect && !photonScatter_.sampledByPaths(l);
-        const bool deep = l.below < 0 && tooDeep(l, from, b); // walks end in light
-        const bool stays = l.directOnly || deep || (l.below < 0 && noIndirect);
-        l.last = deep && !l.directOnly && !noIndirect && l.chosen > 0;
+        const bool deep = l.below < 0 && tooDeep(l, from, b);               // walks end in light
+        const bool ended = from.guided() && !PhotonScatter::mirrorsPath(l); // the guide's rays go on by mirrors alone
+        const bool stays = l.directOnly || deep || (l.below < 0 && noIndirect) || ended;
+        l.last = deep && !l.directOnly && !noIndirect && !ended && l.chosen > 0;
+        if (ended) l.lights = false;
         if (stays) l.chosen = 0;
         l.followed = l.chosen > 0 || (l.ownsTarget && !stays);
     }

@@ -72,6 +72,7 @@ struct PhotonJob {
     uint64_t seed = 0;
     uint32_t pass = 0;     ///< other passes have other photons
     bool caustics = false; ///< only photons that mirrors and glass sent are kept, and none goes on behind other lobes
+    bool learns = false;   ///< PhotonUse::learns
     double scale = 1;      ///< of their power: one over how many are emitted
     bool models = true;    ///< Attribute "photon" "shadingmodel" counts
     float width = 0;       ///< caustics: lobes whose spread is below, in radians, count as mirrors

@@ -110,6 +110,7 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
     const size_t n = c.points.size();
     for (size_t i = 0; i < n; ++i) {
         const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
+        if (photonTrace_->job->learns) continue;
         if (photonTrace_->job->caustics) sayNoCaustics(b, diagnostics_);
         else if (b.photons.model == PhotonModel::Shader)
             diagnostics_.reportOnce(

@@ -1,7 +1,9 @@
 #include "integrator/photons.h"
 #include "integrator/photonstage.h"
 #include "integrator/pipeline.h"
+#include "integrator/unmade.h"
 #include "photons/photonfile.h"
+#include "world/causticguide.h"
 #include <set>
 
 namespace alpenglow::transport {
@@ -18,6 +20,7 @@ struct PhotonEmission::Impl {
         j.seed = world->settings_.seed;
         j.pass = pass;
         j.caustics = use.caustics;
+        j.learns = use.learns;
         j.models = !use.caustics;
         j.width = use.caustics ? use.width : 0;
         j.scale = 1 / emitted;
@@ -121,6 +124,37 @@ bool savePhotonMap(const World& world, const std::string& name, std::span<const 
                    bool allowWrite, Diagnostics& d) {
     const auto& w = static_cast<const WorldImpl&>(world);
     return photons::savePhotons(name, photons, emitted, w.cameraToWorld_, {".", allowWrite}, d);
+}
+
+bool mayHaveCaustics(const World& world) {
+    const auto& w = static_cast<const WorldImpl&>(world);
+    if (hasUnmade(world)) return false; // worlds change while rays are followed
+    return std::any_of(w.bindings_.begin(), w.bindings_.end(), [](const SurfaceBinding& b) {
+        return b.surfaceS && !b.surfaceS.kernel->facts().suspends &&
+               std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(),
+                           [](const SiteInfo& s) { return s.kind == SiteKind::Trace; });
+    });
+}
+
+GuideFigures guideCaustics(const World& world, std::span<const StoredPhoton> stored, double emitted, float brightness) {
+    constexpr size_t kFewest = 64;
+    constexpr double kLeast = 1e-5; ///< of all light
+    const auto& w = static_cast<const WorldImpl&>(world);
+    std::vector<GuidePhoton> photons;
+    double power = 0;
+    for (const StoredPhoton& s : stored) {
+        const float l = luminance(s.photon.power);
+        if (!s.caustic || !(l > 0)) continue;
+        const int side = CausticGuide::sideOf(photons::unpackUnit(s.photon.normal));
+        photons.push_back({s.photon.P, s.photon.P + s.way, side, l});
+        power += l;
+    }
+    w.photons_->guide.reset();
+    if (photons.size() < kFewest || !(power > kLeast * emitted) || !(brightness > 0)) return {photons.size()};
+    auto guide = std::make_shared<const CausticGuide>(photons, brightness);
+    const GuideFigures figures{photons.size(), guide->cells(), guide->lobes()};
+    w.photons_->guide = std::move(guide);
+    return figures;
 }
 
 void setPhotonPasses(const World& world, uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>> passes) {

@@ -20,6 +20,7 @@ struct PhotonUse {
     bool sky = true;       ///< environments, too
     bool caustics = false; ///< only what mirrors and glass send is wanted
     float width = 0;       ///< and lobes whose spread is below, in radians
+    bool learns = false;   ///< nobody sees these photons: shaders print and bake nothing, and nothing is said of them
 };
 
 /// How photons of one world are emitted. The world must have been made for the hider path.
@@ -71,6 +72,17 @@ bool savePhotonMap(const World&, const std::string& name, std::span<const photon
                    Diagnostics&);
 /// Shaders of this world find photons under this name.
 void setPhotonMap(const World&, const std::string& name, std::vector<photons::Photon>);
+/// Whether light may come to surfaces by way of mirrors or clear glass, so that photons could find some.
+bool mayHaveCaustics(const World&);
+/// How a world's paths are guided (world/causticguide.h).
+struct GuideFigures {
+    uint64_t photons = 0; ///< of mirrors and glass that came to rest
+    uint64_t cells = 0, lobes = 0;
+};
+/// From now on paths send rays where these photons of mirrors and clear glass came from. emitted: luminance of all light that was
+/// emitted; brightness: mean luminance of the picture. They are not guided where such light is little. Nobody follows rays
+/// meanwhile.
+GuideFigures guideCaustics(const World&, std::span<const StoredPhoton>, double emitted, float brightness);
 /// Photons of samples from `first` on, in the place of those before. Nobody follows rays meanwhile.
 void setPhotonPasses(const World&, uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>>);
 

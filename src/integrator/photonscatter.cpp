@@ -9,6 +9,7 @@
 #include "integrator/photonscatter.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
+#include "integrator/guiderays.h"
 #include "integrator/intersector.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/lightkernels.h"
@@ -26,7 +27,7 @@ namespace alpenglow::transport {
 
 PhotonScatter::PhotonScatter(const StageSet& s, const VertexLobes& v, LobeSelection& selection, ScatterRays& scatter)
     : VertexStage(s, v), selection_(selection), scatter_(scatter), accumulator_(s.accumulator), batches_(s.batches),
-      intersector_(s.intersector), inputs_(s.inputs), paths_(s.paths), photons_(s.photons), shadows_(s.shadows),
+      guide_(s.guide), intersector_(s.intersector), inputs_(s.inputs), paths_(s.paths), photons_(s.photons), shadows_(s.shadows),
       transparency_(s.transparency) {}
 
 namespace {
@@ -98,6 +99,8 @@ bool PhotonScatter::seesAll(const LobeVertex& l) const {
 uint8_t PhotonScatter::trailBehind(const LobeVertex& l) const {
     const uint8_t trail = rayOf(l).trail;
     if (photons_.photonTrace()) return mirrors(l) ? trail : uint8_t(shading::kTrailSpread);
+    if (l.guide) return l.guide;
+    if (guide_.on()) return mirrorsPath(l) ? GuideRays::trailBehindMirror(rayOf(l)) : 0; // then no photons are gathered
     if (spreads(l)) return shading::kTrailSpread;
     return mirrors(l) && (trail & shading::kTrailSpread) ? shading::kTrailSpread | shading::kTrailMirrored : 0;
 }
@@ -137,6 +140,7 @@ void PhotonScatter::restPhotons() {
         s.number = t.first + uint32_t(from.sample->path);
         s.binding = c_->bindings[point];
         s.caustic = caustic;
+        s.way = from.lobeOrigin - s.photon.P;
         s.time = from.sample->shutter;
         t.out->push_back(s);
     }

@@ -7,6 +7,7 @@
 namespace alpenglow::transport {
 
 class BatchPool;
+class GuideRays;
 class Intersector;
 class KernelInputs;
 class ShadowRays;
@@ -18,6 +19,8 @@ public:
     /// `below`: PhotonStage::narrowBelow(); in: the direction from which the lobe's point was seen, unit.
     bool isNarrow(const LobeVertex&, float below, const Vec3& in) const;
     uint8_t trailBehind(const LobeVertex&) const; ///< PathRay::trail
+    /// Whether a guided path goes on along a lobe: a single direction whose light adds to that of its point.
+    static bool mirrorsPath(const LobeVertex& l) { return l.delta && l.below < 0 && !l.ownsTarget; }
     bool leftToPhotons(const LobeVertex&, const BoundLight&) const;
     bool sampledByPaths(const LobeVertex&) const;
     /// Of a photon that goes on along a lobe; nothing: the surfaces' depths end its way.
@@ -44,6 +47,7 @@ private:
     ScatterRays& scatter_;
     Accumulator& accumulator_;
     BatchPool& batches_;
+    GuideRays& guide_;
     Intersector& intersector_;
     KernelInputs& inputs_;
     const LightPathStates& paths_;

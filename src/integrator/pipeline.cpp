@@ -12,6 +12,7 @@
 #include "integrator/emittedlight.h"
 #include "integrator/flights.h"
 #include "integrator/gathercalls.h"
+#include "integrator/guiderays.h"
 #include "integrator/hitqueues.h"
 #include "integrator/intersector.h"
 #include "integrator/irradiancerecords.h"
@@ -63,6 +64,7 @@ struct Pipeline::Parts {
     OcclusionCalls occlusion;
     IrradianceRecords records;
     GatherCalls gathers;
+    GuideRays guide;
     ShadowRays shadows;
     Opacities opacities;
     MediaStacks media;
@@ -86,16 +88,16 @@ struct Pipeline::Parts {
 
 Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     : context(std::move(w), d),
-      set{context,    store,         paths,        accumulator,  intersector,    queues,        surfaces,  flights,
-          emitted,    litSurfaces,   transparency, lightKernels, nested,         mediumFlights, occlusion, records,
-          gathers,    shadows,       opacities,    media,        atmosphere,     batches,       inputs,    displacement,
-          blocks,     cameraOutputs, shading,      rowShading,   waitingKernels, requests,      ambient,   vertexLight,
-          subsurface, photons,       lightOutputs, depthRays},
+      set{context,      store,       paths,         accumulator,  intersector, queues,         surfaces,  flights,
+          emitted,      litSurfaces, transparency,  lightKernels, nested,      mediumFlights,  occlusion, records,
+          gathers,      guide,       shadows,       opacities,    media,       atmosphere,     batches,   inputs,
+          displacement, blocks,      cameraOutputs, shading,      rowShading,  waitingKernels, requests,  ambient,
+          vertexLight,  subsurface,  photons,       lightOutputs, depthRays},
       store(set), paths(set), accumulator(set), intersector(set), queues(set), surfaces(set), flights(set), emitted(set),
       litSurfaces(set), transparency(set), lightKernels(set), nested(set), mediumFlights(set), occlusion(set), records(set),
-      gathers(set), shadows(set), opacities(set), media(set), atmosphere(set), batches(set), inputs(set), displacement(set),
-      blocks(set), cameraOutputs(set), shading(set), rowShading(set), waitingKernels(set), requests(set), ambient(set),
-      vertexLight(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set) {
+      gathers(set), guide(set), shadows(set), opacities(set), media(set), atmosphere(set), batches(set), inputs(set),
+      displacement(set), blocks(set), cameraOutputs(set), shading(set), rowShading(set), waitingKernels(set), requests(set),
+      ambient(set), vertexLight(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set) {
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
     const WorldImpl& world = context.world;
     if (std::any_of(world.media_.begin(), world.media_.end(), event)) flights.happens(mediumFlights);
@@ -267,6 +269,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     std::vector<const Sched::Task*> missed;
     for (size_t i = 0; i < slice.size(); ++i) {
         if (!hits[i].valid()) missed.push_back(&slice[i]);
+        else if (p.guide.bringsNothing(slice[i].payload, world().bindingOf_[hits[i].shape])) p.store.freeExtra(slice[i].payload);
         else p.queues.add(slice[i], hits[i], sched);
     }
     p.flights.fly(missed, sched);
@@ -302,6 +305,7 @@ void Pipeline::shadeHits(size_t group, Sched& sched) {
     if (w.globalMaps_) p.photons.takeGlobalMaps(*c, sched);
     if (c->rays.empty()) return p.batches.giveBack(std::move(c));
     if (p.photons.photonTrace()) p.photons.tilt(*c);
+    c->again = p.photons.photonTrace() && p.photons.photonTrace()->job->learns;
     const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
     c->binding = &w.bindings_[size_t(c->bindings[0])];
     c->bound = group >= size_t(w.groups_)             ? &w.primitiveHit_

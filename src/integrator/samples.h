@@ -22,6 +22,7 @@ struct Counters {
     uint64_t inBlocks = 0; ///< of `points`, those whose light was followed 16 at a time; of kernels that wait, their calls
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;
+    uint64_t guided = 0;                    ///< rays that the caustic guide aimed, which are among the others, too
     uint64_t records = 0, interpolated = 0; ///< light of hemispheres: found for records, and read from those
     int depthMax = 0;
     size_t peakFrameBytes = 0; ///< suspended kernel frames at one time, the largest of all threads

@@ -3,6 +3,7 @@
 #include "integrator/scatterrays.h"
 #include "integrator/accumulator.h"
 #include "integrator/connection.h"
+#include "integrator/guiderays.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/lobeselection.h"
@@ -20,7 +21,8 @@ namespace alpenglow::transport {
 ScatterRays::ScatterRays(const StageSet& s, const VertexLobes& v, LobeSelection& selection, Connection& connection,
                          PhotonScatter& photonScatter)
     : VertexStage(s, v), selection_(selection), connection_(connection), photonScatter_(photonScatter),
-      accumulator_(s.accumulator), paths_(s.paths), media_(s.media), photons_(s.photons), subsurface_(s.subsurface) {}
+      accumulator_(s.accumulator), guide_(s.guide), paths_(s.paths), media_(s.media), photons_(s.photons),
+      subsurface_(s.subsurface) {}
 
 void ScatterRays::run(Sched& sched) {
     sent.clear();
@@ -267,6 +269,7 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     // Whether its lobe samples lights: then an emitter that it meets counts with the weight of both.
     const bool sampled = l.lights && !l.elsewhere && !l.delta;
     r.lobePdf = sampled && rules_.lightsAtRequests ? (rules_.pickOne || l.ownsTarget ? pdf * l.chosen : pdf) : -1;
+    if (guide_.on() && PhotonScatter::mirrorsPath(l)) r.lobePdf = guide_.pdfBehindMirror(from);
     r.lobeOrigin = p.P;
     r.lobeBinding = sampled || (photon && !c_->between) ? c_->bindings[size_t(s.point)] : -1;
     r.footprint = from.footprint.after(length(p.P - from.origin));

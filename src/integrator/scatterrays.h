@@ -7,6 +7,7 @@ namespace alpenglow::transport {
 
 class Accumulator;
 class Connection;
+class GuideRays;
 class LightPathStates;
 class LobeSelection;
 class MediaStacks;
@@ -53,6 +54,7 @@ private:
     Connection& connection_;
     PhotonScatter& photonScatter_;
     Accumulator& accumulator_;
+    GuideRays& guide_;
     const LightPathStates& paths_;
     MediaStacks& media_;
     PhotonStage& photons_;

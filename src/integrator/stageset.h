@@ -15,6 +15,7 @@ class Displacement;
 class EmittedLight;
 class Flights;
 class GatherCalls;
+class GuideRays;
 class HitQueues;
 class Intersector;
 class IrradianceRecords;
@@ -58,6 +59,7 @@ struct StageSet {
     OcclusionCalls& occlusion;
     IrradianceRecords& records;
     GatherCalls& gathers;
+    GuideRays& guide;
     ShadowRays& shadows;
     Opacities& opacities;
     MediaStacks& media;

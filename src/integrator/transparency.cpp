@@ -1,5 +1,6 @@
 #include "integrator/transparency.h"
 #include "integrator/context.h"
+#include "integrator/guiderays.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
 #include "integrator/photonstage.h"
@@ -10,7 +11,7 @@
 namespace alpenglow::transport {
 
 Transparency::Transparency(const StageSet& s)
-    : Stage(s.context), paths_(s.paths), media_(s.media), photons_(s.photons), store_(s.store) {}
+    : Stage(s.context), guide_(s.guide), paths_(s.paths), media_(s.media), photons_(s.photons), store_(s.store) {}
 
 bool isOpaque(const shading::Batch& b) {
     const int oi = b.plan().Oi;
@@ -92,6 +93,7 @@ void Transparency::passThrough(const SurfaceBinding& b, const PathRay& ray, Targ
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.first = false;
+    guide_.passThrough(r, int(&b - world_.bindings_.data()));
     r.path = paths_.next(ray.path, paths_.straight);
     r.media = media_.beyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
     media_.tellLost(r.media, p);

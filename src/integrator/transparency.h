@@ -5,6 +5,7 @@
 
 namespace alpenglow::transport {
 
+class GuideRays;
 class LightPathStates;
 class MediaStacks;
 class PhotonStage;
@@ -29,6 +30,7 @@ public:
                      uint32_t asked, Sched&);
 
 private:
+    const GuideRays& guide_;
     const LightPathStates& paths_;
     MediaStacks& media_;
     PhotonStage& photons_;

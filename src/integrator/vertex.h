@@ -71,6 +71,7 @@ struct LobeVertex {
     bool directOnly = false; ///< light is sampled, no ray is sent
     float indirect = 1;      ///< factor of its rays
     float albedo = 0;        ///< kind->albedo(params)
+    uint8_t guide = 0;       ///< GuideRays::Aim::trail() of its own ray
     float chosen = 1;        ///< probability that the indirect ray of this lobe is followed
     bool last = false;       ///< its ray would go too deep: light that only rays find is looked for in its place
     Vec3 beside;             ///< unit, toward a light that its rays may pass in a medium

@@ -26,6 +26,7 @@ struct alignas(64) VertexBlock {
     uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: render::NumberBlock
     uint32_t lightVertex[kBlock];                                      ///< in the place of `vertex`, of light samples
     Lanes points = 0;
+    Lanes guided = 0;     ///< points of rays that the caustic guide aimed: mirrors alone are followed
     Lanes last = 0;       ///< points whose lobes are not followed, for the path is as long as it may be
     bool through = false; ///< something comes through at some point
     bool waits = false;   ///< a kernel waits for each ray, which tells how far it goes: those that bring nothing are sent, too

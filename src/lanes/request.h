@@ -106,9 +106,10 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
         const vf albedo = load(l.lobe[kRowAlbedo] + at), worth = worthOf(weight, left, competes) * albedo;
         if (rules.lighting >> s & 1) sum = choose(mask, sum + weight * albedo, sum);
         found.failed |= bitsFrom(mask & ~finite(worth), at);
+        const vm ended = maskFrom(v.guided, at) & (load(l.lobe[kRowDelta] + at) == 0);
         const vm follows = mask & ~(worth < 0);
         found.cut |= bitsFrom(follows & (worth > 0), at) & v.last;
-        store(l.chosen + at, select(follows & ~maskFrom(v.last, at), worth, vf(0)));
+        store(l.chosen + at, select(follows & ~maskFrom(v.last, at) & ~ended, worth, vf(0)));
         lobes -= mask;
     }
     const vf scale = energyScaleOf(sum, clear, rules);

@@ -38,6 +38,9 @@ void accumulate(RenderStats& all, const RenderStats& f) {
         all.classic.*member += before.classic.*member;
     all.shading.points += before.shading.points;
     all.shading.batches += before.shading.batches;
+    for (auto member :
+         {&RenderStats::Guide::photons, &RenderStats::Guide::cells, &RenderStats::Guide::lobes, &RenderStats::Guide::rays})
+        all.guide.*member += before.guide.*member;
     all.depth.maximum = std::max(all.depth.maximum, before.depth.maximum);
     all.errors += before.errors;
     all.warnings += before.warnings;

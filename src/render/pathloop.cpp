@@ -279,7 +279,7 @@ void PathLoop::traceTile(int worker, size_t tile, const Pass& pass) {
 bool PathLoop::tracePass(const Pass& pass) {
     bool whole = false;
     try {
-        whole = (pass.steps || caustics_.ready(pass.first, pass.count)) &&
+        whole = caustics_.prepare() && (pass.steps || caustics_.ready(pass.first, pass.count)) &&
                 job_.run(
                     tiles_.size(), [&](int worker, size_t i) { traceTile(worker, i, pass); },
                     [&](size_t done) {

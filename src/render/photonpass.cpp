@@ -2,6 +2,7 @@
 #include "base/hash.h"
 #include "photons/limits.h"
 #include "photons/photonmap.h"
+#include "render/guidepass.h"
 #include "scene/scene.h"
 #include <algorithm>
 #include <utility>
@@ -57,11 +58,15 @@ uint64_t photonsToEmit(const scene::Options& o, Diagnostics& d) {
 }
 
 PhotonPasses::PhotonPasses(Job& job, std::shared_ptr<const transport::World> world, const transport::PhotonUse& use)
-    : job_(job), emission_(std::move(world), use, job.diagnostics), threads_(size_t(job.team.threads())) {}
+    : PhotonPasses(job, std::move(world), use, job.diagnostics) {}
+
+PhotonPasses::PhotonPasses(Job& job, std::shared_ptr<const transport::World> world, const transport::PhotonUse& use,
+                           Diagnostics& d)
+    : job_(job), diagnostics_(d), emission_(std::move(world), use, d), threads_(size_t(job.team.threads())) {}
 
 transport::PhotonEmission::Thread& PhotonPasses::thread(int worker) {
     auto& t = threads_[size_t(worker)];
-    if (!t) t = std::make_unique<transport::PhotonEmission::Thread>(emission_, job_.diagnostics);
+    if (!t) t = std::make_unique<transport::PhotonEmission::Thread>(emission_, diagnostics_);
     return *t;
 }
 
@@ -95,11 +100,11 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<transport::St
         size_t more = stored.size();
         for (const auto& o : of) more += o.size();
         if (more > limits::kPhotons) {
-            job_.diagnostics.report(Severity::Error, Rie::Limit, {},
-                                    "photon maps hold no more than " + std::to_string(limits::kPhotons) +
-                                        " photons: emission ends after " + std::to_string(done * kBlock) + " of " +
-                                        std::to_string(count),
-                                    "they share the light of all lights, so maps are right, and coarser");
+            diagnostics_.report(Severity::Error, Rie::Limit, {},
+                                "photon maps hold no more than " + std::to_string(limits::kPhotons) +
+                                    " photons: emission ends after " + std::to_string(done * kBlock) + " of " +
+                                    std::to_string(count),
+                                "they share the light of all lights, so maps are right, and coarser");
             break;
         }
         for (const auto& o : of) stored.insert(stored.end(), o.begin(), o.end());
@@ -151,14 +156,14 @@ bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t 
             if (stored.size() <= most || done >= blocks) continue;
             const uint32_t emitted = uint32_t(done) * kBlock;
             for (transport::StoredPhoton& s : stored) s.photon.power *= float(count) / float(emitted);
-            job_.diagnostics.reportOnce("photonsatrest",
-                                        {Severity::Warning,
-                                         Rie::Limit,
-                                         {},
-                                         "more than " + std::to_string(most) + " photons of a pass came to rest: it ends after " +
-                                             std::to_string(emitted) + " of " + std::to_string(count),
-                                         "they share the light of all lights, so caustics are right, and coarser",
-                                         {}});
+            diagnostics_.reportOnce("photonsatrest",
+                                    {Severity::Warning,
+                                     Rie::Limit,
+                                     {},
+                                     "more than " + std::to_string(most) + " photons of a pass came to rest: it ends after " +
+                                         std::to_string(emitted) + " of " + std::to_string(count),
+                                     "they share the light of all lights, so caustics are right, and coarser",
+                                     {}});
             thin(stored, most, first + pass);
             take(pass, std::exchange(stored, {}));
             break;
@@ -185,7 +190,8 @@ CausticPasses::CausticPasses(Job& job) : job_(job) {}
 bool CausticPasses::begin() {
     const scene::Options& o = job_.world->frame().options;
     begun_ = true;
-    if (!asked(o) || !job_.world->photons()) return true;
+    if (!asked(o)) return learnCaustics(job_);
+    if (!job_.world->photons()) return true;
     // One photon for four pixels, of the whole picture: a crop shows what the picture shows.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
     count_ = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 18)));
@@ -230,7 +236,7 @@ float CausticPasses::widthOf(const scene::Options& o) {
 }
 
 bool CausticPasses::ready(uint32_t first, uint32_t count) {
-    if (!begun_ && !begin()) return false;
+    if (!prepare()) return false;
     if (!passes_) return true;
     std::vector<std::unique_ptr<photons::PhotonGrid>> grids(count);
     const auto take = [&](uint32_t pass, std::vector<transport::StoredPhoton> stored) {

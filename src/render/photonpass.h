@@ -10,6 +10,8 @@ namespace alpenglow::render {
 class PhotonPasses {
 public:
     PhotonPasses(Job&, std::shared_ptr<const transport::World>, const transport::PhotonUse&);
+    /// The same, with messages for somebody else.
+    PhotonPasses(Job&, std::shared_ptr<const transport::World>, const transport::PhotonUse&, Diagnostics&);
     transport::PhotonEmission& emission() { return emission_; }
     /// All photons that come to rest of `count` of a pass. False: stopped, or more than limits::kPhotons came to rest, which was
     /// reported; then *emitted is how many were emitted of which these are.
@@ -28,6 +30,7 @@ private:
                     std::vector<std::vector<transport::StoredPhoton>>& of);
     transport::PhotonEmission::Thread& thread(int worker);
     Job& job_;
+    Diagnostics& diagnostics_;
     transport::PhotonEmission emission_;
     std::vector<std::unique_ptr<transport::PhotonEmission::Thread>> threads_; ///< by worker
 };
@@ -41,6 +44,8 @@ public:
     explicit CausticPasses(Job&);
     /// Whether Hider "path" "caustics" asks for them.
     static bool asked(const scene::Options&);
+    /// Before anything is traced: finds caustics by photons, which paths then aim at, or which stand for them. False: stopped.
+    bool prepare() { return begun_ || begin(); }
     /// Before samples first to first + count - 1 of any pixel are traced. False: stopped.
     bool ready(uint32_t first, uint32_t count);
 

@@ -445,6 +445,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.depthSum += double(c.depthSum);
     stats_.paths += double(c.paths);
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
+    stats_.guide = {job.guide.photons, job.guide.cells, job.guide.lobes, c.guided};
     stats_.nonFinite += f.nonFinite;
     if (!settings_.pixel) {
         sayEmptyPicture(job, *f.frame, diagnostics_);

@@ -112,6 +112,7 @@ transport::Counters Job::counters() const {
         all.depthCap += c.depthCap;
         all.depthSum += c.depthSum;
         all.paths += c.paths;
+        all.guided += c.guided;
         all.records += c.records;
         all.interpolated += c.interpolated;
         all.depthMax = std::max(all.depthMax, c.depthMax);

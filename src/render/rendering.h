@@ -1,6 +1,7 @@
 // The two loops that turn camera rays into pixels, and what they share. Inside render/.
 #pragma once
 #include "base/numberlanes.h"
+#include "integrator/photons.h"
 #include "render/camera.h"
 #include "render/engine.h"
 #include "render/filtersampler.h"
@@ -45,6 +46,7 @@ struct Job {
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, as last told
     std::atomic<uint64_t> rayTotal{0};
+    transport::GuideFigures guide;              ///< of path
     std::atomic<bool> met{false}, shone{false}; ///< some camera ray met a surface; brought light
 
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,

@@ -71,6 +71,7 @@ std::string toJson(const RenderStats& s) {
                     {"suspendingKernels", s.shading.suspendingKernels},
                     {"kernels", s.shading.kernels},
                     {"cacheHits", s.shading.cacheHits}};
+    j["guide"] = {{"photons", s.guide.photons}, {"cells", s.guide.cells}, {"lobes", s.guide.lobes}, {"rays", s.guide.rays}};
     j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
     j["errors"] = s.errors;
     j["warnings"] = s.warnings;
@@ -106,6 +107,10 @@ std::string toTable(const RenderStats& s) {
                                    "{} from the cache",
                                    grouped(s.shading.points), grouped(s.shading.batches), 100 * s.shading.laneOccupancy,
                                    s.shading.kernels, s.shading.affineKernels, s.shading.suspendingKernels, s.shading.cacheHits));
+    if (s.guide.cells)
+        row("guide", fmt::format("{} photons of mirrors and glass, {} cells, {} lobes; {} rays aimed, {:.1f} % of all",
+                                 grouped(s.guide.photons), grouped(s.guide.cells), grouped(s.guide.lobes), grouped(s.guide.rays),
+                                 100 * double(s.guide.rays) / double(std::max<uint64_t>(s.totalRays, 1))));
     if (s.noise.known)
         row("noise", fmt::format("{:.5f}: the mean relative error of the light on surfaces (docs/noise.md)", s.noise.noise));
     if (!s.curve.empty()) row("curve", s.curve);

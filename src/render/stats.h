@@ -34,6 +34,11 @@ struct RenderStats {
         double laneOccupancy = 0; ///< active lanes / lanes, 0..1
         int affineKernels = 0, suspendingKernels = 0, kernels = 0, cacheHits = 0;
     } shading;
+    /// The caustic guide of path (docs/light.md): photons of mirrors and glass that it was learned from, cells and lobes, and
+    /// the rays that it aimed, which are among `rays`, too.
+    struct Guide {
+        uint64_t photons = 0, cells = 0, lobes = 0, rays = 0;
+    } guide;
     struct Depth {
         int maximum = 0;
         double average = 0;

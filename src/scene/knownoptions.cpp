@@ -172,6 +172,9 @@ constexpr OptionDescription kHiderParameters[] = {
     {"extrememotiondof", "", "", "", Ignored, kPrman},
     {"focalDist", "float", "that of DepthOfField", "5", Used,
      "raytrace: distance along the axis that a lens by lensDiameter has in focus."},
+    {"guide", "int", "1", "0", Used,
+     "path: 1: where light reaches surfaces by way of mirrors and clear glass, rays are sent toward them, which photons have "
+     "found before the first sample: less noise, and no bias; 0: paths find such light by chance alone."},
     {"jitter", "int", "1", "0", Used,
      "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "
      "pattern."},

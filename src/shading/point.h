@@ -117,11 +117,15 @@ struct Footprint {
     Footprint after(float way) const { return {at(way), spread}; }
 };
 
-/// What a path has gone through, as far as photons are concerned (PathRay::trail).
+/// What a path has gone through, as far as photons and the caustic guide are concerned (PathRay::trail).
 enum Trail : uint8_t {
-    kTrailSpread = 1,  ///< a lobe that spreads light, at whose point photons are gathered or come to rest
-    kTrailMirrored = 2 ///< behind the last of these: single directions alone, which photons can come along
+    kTrailSpread = 1,   ///< a lobe that spreads light, at whose point photons are gathered or come to rest
+    kTrailMirrored = 2, ///< behind the last of these: single directions alone, which photons can come along
+    kTrailGuide = 4,    ///< unit of three bits: kGuided, or the code of the chance (CausticGuide::chanceOf) with which the last
+                        ///< lobe that spreads light also sent a ray by the caustic guide; 0: it sent none
+    kTrailSide = 32     ///< unit of three bits: CausticGuide::sideOf() there
 };
+inline constexpr int kGuided = 7; ///< in place of the code: the guide aimed this ray, and it brings light behind mirrors alone
 
 /// A ray on its way, with what its hit needs: who pays for what it finds, which random numbers it may use, how it was made.
 /// Small, since each is written and read several times.
@@ -145,7 +149,7 @@ struct PathRay {
     bool passed : 1 = false; ///< no camera ray, and went through a surface: it began at lobeOrigin
     uint8_t trail = 0;       ///< Trail, as bits
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
-    /// cannot have produced this direction, so emission counts in full (pathtracer.md 3).
+    /// cannot have produced this direction, so emission counts with the weight -lobePdf (pathtracer.md 3).
     float lobePdf = -1;
     Vec3 lobeOrigin;      ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
     int lobeBinding = -1; ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
@@ -156,6 +160,9 @@ struct PathRay {
     bool camera() const { return kind->type == RayType::Camera; }
     float time() const { return sample ? sample->time : 0; }
     float shutter() const { return sample ? sample->shutter : 0; }
+    /// Of `trail`: kGuided or a code of the caustic guide.
+    int guideCode() const { return trail / kTrailGuide & 7; }
+    bool guided() const { return guideCode() == kGuided; }
     /// The volume that it is in, by number; -1: none.
     int medium() const { return media ? media->top() : -1; }
     /// Camera: the way from the eye to the origin, before the near plane and through what was met. No lobe has drawn such a ray.

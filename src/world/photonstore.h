@@ -11,6 +11,8 @@
 
 namespace alpenglow::transport {
 
+class CausticGuide;
+
 class PhotonStore {
 public:
     /// Photons come from files in the space of the world; `worldToCamera` takes them to that of rays.
@@ -40,6 +42,8 @@ public:
     /// Passes for samples from `first` on, in the place of those before. lights: by light, whether its photons are in them.
     void setPasses(uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>> passes);
     std::vector<uint8_t> lightsOfPasses;
+    /// Null: paths find caustics by chance alone. Changes while nobody follows rays.
+    std::shared_ptr<const CausticGuide> guide;
     float widthOfPasses = 0; ///< photons follow lobes whose spread is below, in radians, as they do mirrors
 
 private:

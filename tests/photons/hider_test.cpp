@@ -3,6 +3,8 @@
 #include "cli/command_folder.h"
 #include "photons/limits.h"
 #include "statistics/nightly.h"
+#include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace hider_test {
@@ -150,6 +152,75 @@ TEST_F(PhotonHider, SameNarrowLobesInMotionOverThreadsAndParts) {
     EXPECT_EQ(differ("merged.exr"), 0);
     render("mirrors", " \"float causticwidth\" 0", "-t 2");
     EXPECT_EQ(differ("mirrors.exr"), 1); // photons followed some
+}
+
+std::string read(const std::filesystem::path& name) {
+    std::ifstream f(name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(f), {}};
+}
+
+/// A ball of glass between a lamp and a floor. `hider`: parameters.
+std::string glassRoom(const std::string& hider = "") {
+    return "Format 60 45 1\nProjection \"perspective\" \"fov\" 50\nHider \"path\" " + hider +
+           "\nTranslate 0 -.5 4\nRotate -20 1 0 0\nWorldBegin\nSides 2\n"
+           "AttributeBegin AreaLightSource \"slrect\" 1 \"float intensity\" 5 Surface \"constant\" Color 0 0 0 Polygon \"P\" "
+           "[-.3 2 -.3  .3 2 -.3  .3 2 .3  -.3 2 .3] AttributeEnd\nIlluminate 1 1\n"
+           "AttributeBegin Surface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5 "
+           "Translate 0 1 0 Sphere .6 -.6 .6 360 AttributeEnd\n"
+           "Surface \"slmaterial\" \"color diffusecolor\" [.8 .6 .4] Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\nWorldEnd\n";
+}
+
+TEST_F(PhotonHider, GuidedPathsAreTheSameHoweverTheyAreSplit) {
+    write("glass.rib", glassRoom());
+    const auto picture = [&](const std::string& options, const std::string& name = "a.exr") {
+        std::filesystem::remove(dir / name);
+        run("render glass.rib -q --spp 12 -o " + name + " " + options, "2>&1");
+        EXPECT_EQ(status, 0) << options;
+        return read(dir / name);
+    };
+    const std::string whole = picture("--threads 1 --stats s.json");
+    const auto stats = nlohmann::json::parse(read(dir / "s.json"));
+    EXPECT_GT(stats["guide"]["photons"], 100);
+    EXPECT_GT(stats["guide"]["cells"], 5);
+    EXPECT_GT(stats["guide"]["rays"], 1000);
+    for (const char* options : {"--threads 2", "--threads 5", "--lanes 4", "--lanes 16 --threads 3"})
+        EXPECT_TRUE(picture(options) == whole) << options;
+    for (const char* k : {"1", "2", "3"}) picture(std::string("--part ") + k + "/3", std::string("p") + k + ".exr");
+    run("merge p3.exr p1.exr p2.exr -o m.exr", "2>&1");
+    EXPECT_TRUE(read(dir / "m.exr") == whole) << "parts";
+    run("render glass.rib -q --spp 5 -o c.exr --checkpoint c.part", "2>&1");
+    EXPECT_TRUE(picture("--checkpoint c.part --resume") == whole) << "resumed";
+}
+
+TEST_F(PhotonHider, GuideCanBeRefused) {
+    write("glass.rib", glassRoom("\"int guide\" 0"));
+    run("render glass.rib -q --spp 4 -o a.exr --stats s.json", "2>&1");
+    EXPECT_EQ(status, 0);
+    const auto stats = nlohmann::json::parse(read(dir / "s.json"));
+    EXPECT_EQ(stats["guide"]["cells"], 0);
+    EXPECT_EQ(stats["guide"]["rays"], 0);
+}
+
+// Photons that are to teach paths alone print nothing, bake nothing and are not complained of.
+TEST_F(PhotonHider, LearningIsSilent) {
+    write("says.sl",
+          "surface says() { printf(\"here\\n\"); Oi = 1; if (comp(trace(P, reflect(normalize(I), normalize(N))), 0) > .1) "
+          "Ci = 1; else Ci = .5 * diffuse(normalize(N)); }");
+    std::string room = glassRoom();
+    room.insert(room.find("WorldEnd"), "Surface \"says\" Translate 0 1 1.5 Sphere .3 -.3 .3 360\n");
+    write("glass.rib", room);
+    const std::string guided = run("render glass.rib -q --spp 2 -o a.exr --threads 1", "2>&1");
+    room.insert(room.find("\"path\"") + 6, " \"int guide\" 0");
+    write("glass.rib", room);
+    const auto count = [](const std::string& text) {
+        size_t n = 0;
+        for (size_t at = text.find("here"); at != std::string::npos; at = text.find("here", at + 1)) ++n;
+        return n;
+    };
+    const size_t plain = count(run("render glass.rib -q --spp 2 -o a.exr --threads 1", "2>&1"));
+    EXPECT_GT(plain, 10u);
+    EXPECT_LT(std::fabs(double(count(guided)) - double(plain)), .2 * double(plain)) << "guided rays meet it, photons say nothing";
+    EXPECT_EQ(guided.find("makes no caustics"), std::string::npos) << guided;
 }
 
 } // namespace

@@ -1,0 +1,112 @@
+#include "integrator/blockguide.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/mediastacks.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+BlockVertices::Guided::Guided(BlockVertices& b, GuideRays& g) : b_(b), guide_(g) {}
+
+void BlockVertices::Guided::mark(size_t block, const BatchContext& c) {
+    VertexBlock& v = b_.vertices_[block];
+    v.guided = 0;
+    if (!on()) return;
+    for (size_t i = block * kBlock; i < std::min(b_.points_, (block + 1) * kBlock); ++i)
+        v.guided |= Lanes(c.rays[i].guided()) << i % kBlock;
+}
+
+BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i, const BatchContext& c) const {
+    const VertexBlock& v = b_.vertices_[block];
+    Point found;
+    float most = 0;
+    const auto weightOf = [&](const LobeBlock& l) { return Color(l.weight[0][i], l.weight[1][i], l.weight[2][i]); };
+    for (size_t k = 0; k < b_.count_; ++k) {
+        const LobeBlock& l = b_.sites_[k].lobes[block];
+        if (!(l.lights >> i & 1) || !(l.chosen[i] > 0)) continue;
+        const float gives = luminance(absolute(weightOf(l))) * l.lobe[kRowAlbedo][i];
+        if (gives > most) found.site = int(k), most = gives;
+    }
+    if (found.site < 0) return found;
+    const LobeBlock& l = b_.sites_[size_t(found.site)].lobes[block];
+    const PathRay& from = c.rays[block * kBlock + size_t(i)];
+    const float brings = luminance(absolute(from.weight * weightOf(l))) * l.lobe[kRowAlbedo][i];
+    const Vec3 P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
+    found.aim = guide_.aimAt(P, n, from.dir, brings);
+    return found;
+}
+
+void BlockVertices::Guided::run(BatchContext& c, Sched& sched) {
+    if (!on() || b_.waits_) return;
+    points_.assign(b_.blocks_ * kBlock, {});
+    for (size_t block = 0; block < b_.blocks_; ++block) {
+        const VertexBlock& v = b_.vertices_[block];
+        Lanes drawn = 0;
+        for (Lanes left = v.points & ~v.guided & ~v.last; left; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            const size_t at = block * kBlock + size_t(i);
+            Point& p = points_[at] = pointOf(block, i, c);
+            Vec3 w;
+            if (!guide_.draws(c.rays[at], p.aim, {v.P[0][i], v.P[1][i], v.P[2][i]}, w)) continue;
+            for (int q = 0; q < 3; ++q) w_[q][i] = w[q];
+            drawn |= 1u << i;
+        }
+        for (size_t k = 0; k < b_.count_ && drawn; ++k) {
+            Lanes of = 0;
+            for (Lanes left = drawn; left; left &= left - 1)
+                of |= Lanes(points_[block * kBlock + size_t(std::countr_zero(left))].site == int(k)) << std::countr_zero(left);
+            if (of) send(block, int(k), of, c, sched);
+        }
+    }
+}
+
+void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext& c, Sched& sched) {
+    const VertexBlock& v = b_.vertices_[block];
+    const Site& s = b_.sites_[size_t(site)];
+    const LobeBlock& l = s.lobes[block];
+    alignas(64) float value[kValueRows][kBlock];
+    s.lanes->evaluate(l.lobe[0], of, w_[0], value[0]);
+    for (; of; of &= of - 1) {
+        const int i = std::countr_zero(of);
+        const size_t at = block * kBlock + size_t(i);
+        const PathRay& from = c.rays[at];
+        const Vec3 w(w_[0][i], w_[1][i], w_[2][i]), P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
+        const LobeValue f{
+            {value[kRowColour][i], value[kRowColour + 1][i], value[kRowColour + 2][i]}, value[kRowFcos][i], value[kRowPdf][i]};
+        const Vec3 origin = v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);
+        const uint16_t path = from.path ? b_.pathOf(s, false, at, w, c) : uint16_t(0);
+        guide_.send({from,
+                     c.targets[at],
+                     P,
+                     {l.weight[0][i], l.weight[1][i], l.weight[2][i]},
+                     s.lighting ? v.energyScale[i] : 1,
+                     l.chosen[i],
+                     l.lobe[kRowSpread][i],
+                     s.rays,
+                     b_.shareOf(from),
+                     1,
+                     1e38f},
+                    points_[at].aim, w, f, origin, path, b_.world_.media_.empty() ? from.media : b_.media_.towards(c, int(at), w),
+                    sched);
+    }
+}
+
+void BlockVertices::Guided::keep(size_t block, const BatchContext& c) {
+    if (!on()) return;
+    RayBlock& r = b_.rays_[block];
+    for (Lanes left = b_.next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const size_t at = block * kBlock + size_t(i);
+        uint8_t trail = 0;
+        if (b_.next_.single >> i & 1) {
+            if (b_.waits_) continue;
+            trail = GuideRays::trailBehindMirror(c.rays[at]);
+            r.pdf[i] = guide_.pdfBehindMirror(c.rays[at]);
+        } else if (!b_.waits_ && points_[at].site == b_.next_.site[i]) {
+            trail = points_[at].aim.trail();
+        }
+        r.flags[i] |= uint32_t(trail) << 24;
+    }
+}
+
+} // namespace alpenglow::transport

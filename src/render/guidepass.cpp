@@ -1,0 +1,71 @@
+#include "render/guidepass.h"
+#include "photons/limits.h"
+#include "render/filtersampler.h"
+#include "render/photonpass.h"
+#include "scene/scene.h"
+#include <algorithm>
+
+namespace alpenglow::render {
+
+namespace {
+
+constexpr uint32_t kPilot = 0xfffffffeu, kLearned = 0xfffffffdu; ///< passes of photons: others have other numbers
+constexpr uint64_t kOtherSeed = 0x6775696465ull; ///< so that what is learned knows nothing of the picture's own samples
+
+bool refused(const scene::Options& o) {
+    const scene::Param* p = scene::find(o.hiderParams, "guide");
+    return p && !p->numbers.empty() && p->numbers[0] == 0;
+}
+
+/// Mean luminance of the whole picture, without its brightest fiftieth: a caustic that a path has met by chance says nothing of
+/// the rest. From 1,024 samples that are no samples of the picture.
+float brightnessOf(Job& job) {
+    constexpr int kSide = 32;
+    const scene::Options& o = job.world->frame().options;
+    const FilterSampler filter(job.plan.basis.filter);
+    std::vector<PixelSample> samples;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) samples.push_back({x * std::max(o.xres, 1) / kSide, y * std::max(o.yres, 1) / kSide, 0});
+    NumberRows numbers;
+    std::vector<transport::CameraRay> rays;
+    std::vector<float> weights;
+    pathRays(job.camera, filter, job.settings.seed ^ kOtherSeed, samples, numbers, rays, weights);
+    for (transport::CameraRay& r : rays) r.sample = 0x40000000u; // no picture has so many
+    std::vector<transport::SampleResult> results(rays.size());
+    Diagnostics silent;
+    const auto tracer = job.engine.tracer(job.world, silent);
+    if (!tracer->trace(rays, results, &job.halt) || job.halt) return 0;
+    std::vector<double> light;
+    for (const transport::SampleResult& r : results)
+        if (const float l = luminance(r.color); l >= 0) light.push_back(l);
+    std::sort(light.begin(), light.end());
+    double sum = 0;
+    for (size_t i = 0; i < light.size() * 49 / 50; ++i) sum += light[i];
+    return float(sum / double(std::max<size_t>(light.size(), 1)));
+}
+
+} // namespace
+
+bool learnCaustics(Job& job) {
+    const scene::Options& o = job.world->frame().options;
+    if (refused(o) || !job.world->photons() || !transport::mayHaveCaustics(*job.world)) return true;
+    Diagnostics silent;
+    PhotonPasses passes(job, job.world, {true, false, true, 0, true}, silent);
+    if (!passes.emission().lights()) return true;
+    std::vector<transport::StoredPhoton> found;
+    const auto take = [&](uint32_t, std::vector<transport::StoredPhoton> stored) { found = std::move(stored); };
+    // So few for small pictures that nobody waits for them; of the whole picture: a crop shows what the picture shows.
+    const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
+    const auto pilot = uint32_t(std::clamp(pixels / 2, double(1u << 12), double(1u << 15)));
+    if (!passes.emit(kPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
+    if (found.empty()) return true;
+    passes.emission().learn(found, kPilot, pilot);
+    const auto photons = uint32_t(std::clamp(2 * pixels, double(1u << 13), double(1u << 17)));
+    if (!passes.emit(kLearned, 1, photons, limits::kPhotonsAtRest, take)) return false;
+    const float brightness = brightnessOf(job);
+    job.guide = transport::guideCaustics(*job.world, found, passes.emission().power(), brightness);
+    job.world->flushPrints(false);
+    return !job.pollStop();
+}
+
+} // namespace alpenglow::render

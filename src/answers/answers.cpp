@@ -14,7 +14,7 @@ void KernelRun::forget() {
     lit = nullptr;
     volume = nullptr;
     aside = nullptr;
-    below = between = again = false;
+    below = between = again = dark = forShadow = false;
     displaced.reset();
     for (LightLoop& loop : loops) loop.reset(-1);
     ambient.clear();

@@ -21,6 +21,7 @@ struct KernelRun {
     const LightOutput* aside = nullptr; ///< the run gives this output and nothing else
     bool forShadow = false;             ///< the kernel tells its opacity to shadow rays
     bool again = false;                 ///< it is no shading of its own: nothing is printed and baked
+    bool dark = false;                  ///< loops over lights find none
     bool below = false;                 ///< walks below a surface come out at the points: light is gathered; no kernel
     bool between = false;               ///< the points lie on the way of rays, inside of a medium, on no surface
     std::shared_ptr<const KernelRun>

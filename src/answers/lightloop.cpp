@@ -77,7 +77,7 @@ int32_t Answers::lightBegin(KernelRun& c, int site, int first, uint64_t mask, in
     loop.light = -1;
     loop.rows.assign(rows, rows + size_t(7) * size_t(lanes));
     loop.refresh = info.refresh;
-    if (!c.binding) return 0;
+    if (!c.binding || c.dark) return 0;
     const int row = loop.setup >= 0 ? c.bound->sites[size_t(loop.setup)].rowCategory : -1;
     if (row < 0) {
         loop.lights = turnsOf(*c.binding, info.nameId);

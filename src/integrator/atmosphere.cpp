@@ -23,12 +23,15 @@ void Atmosphere::haze(const Medium& medium, const SurfaceBinding& binding, std::
         c.binding = &binding;
         c.surface = surface;
         c.again = !first;
+        c.dark = running_ > 0;
         c.surfacePoint.assign(of.begin(), of.end());
         c.points.swap(points); // lent
         std::vector<shading::InstanceView> views(c.points.size(), medium.shader->view());
         c.batch = std::make_shared<shading::Batch>(kernel, *medium.kernel.plan, c.points, views, world_);
         inputs_.bind(c.batch->call(), c);
+        ++running_;
         kernel->run(&c.batch->call());
+        --running_;
         c.ran();
         int ci = c.batch->plan().Ci, oi = c.batch->plan().Oi;
         for (size_t i = 0; i < c.points.size(); ++i)

@@ -27,6 +27,7 @@ public:
     void hazeOfPhotons(BatchContext&);
 
 private:
+    int running_ = 0; ///< runs of volumes' kernels, one within the other
     void keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of);
     KernelInputs& inputs_;
 };

@@ -14,6 +14,7 @@
 #include "integrator/stageset.h"
 #include "integrator/strips.h"
 #include "lobes/sampling.h"
+#include "world/gathersite.h"
 
 namespace alpenglow::transport {
 
@@ -62,6 +63,15 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
 /// A gather in a light's kernel.
 void LightKernels::gather(BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
     const int lanes = c.requestLanes;
+    if (!world_.accel_ || !c.points[size_t(first)].ray) { // lights that are measured see nothing: one ray that meets nothing
+        GatherRows& g = c.gathers[{s.gather->number, first}];
+        g.width = s.gather->width;
+        g.counts.assign(size_t(lanes), 1);
+        g.begins.assign(size_t(lanes), 0);
+        g.rows.assign(size_t(lanes) * size_t(rsl::kGatherRays) * size_t(g.width), 0.f);
+        std::fill_n(c.requestOut, lanes, 1.f);
+        return;
+    }
     const size_t points = asked.size() / c.bound->sites.size();
     std::vector<uint32_t> occurrence(size_t(lanes), 0), rays(size_t(lanes), 0);
     for (int lane = 0; lane < lanes; ++lane) {

@@ -398,6 +398,26 @@ TEST(Gather, InALight) {
     EXPECT_NEAR(s.estimate(kNear, 50).mean(), 1 - ofWall(.5, 1), .01);
 }
 
+// Of many lights some are sampled, by how bright they were found to be before there was anything to gather from.
+TEST(Gather, OfALightThatIsMeasured) {
+    writeShader("gatheropen",
+                "light gatheropen(float open = 0) { float seen = open; vector up = vector \"world\" (0, 1, 0); if (open == "
+                "0) gather(\"\", Ps, up, PI / 2, 16, \"distribution\", \"cosine\") { } else seen += 1 / 16; "
+                "illuminate(point \"shader\" (0, 0, 0)) Cl = seen; }\n");
+    const auto lit = [&](const std::string& open) {
+        std::string lights;
+        for (int i = 0; i < 12; ++i)
+            lights += "TransformBegin Translate " + std::to_string(.3 * i - 1.5) + " 3 0 LightSource \"gatheropen\" " +
+                      std::to_string(i + 1) + " \"open\" " + open + " TransformEnd\n";
+        Settings direct = withShaders(Hider::Path);
+        direct.indirect = false;
+        return Scene(world(kSeen + lights + "Surface \"matte\" \"Ka\" 0\n" + kFloor), direct).estimate(kNear, 2000);
+    };
+    const Moments gathered = lit("0"), known = lit("1");
+    EXPECT_GT(known.mean(), 0);
+    EXPECT_NEAR(gathered.mean(), known.mean(), kZ * std::hypot(gathered.se(), known.se()) + 1e-5);
+}
+
 TEST(Gather, AsksShadersFromALight) {
     writeShader("gtold", "surface gtold(float given = 2; output varying float own = 0) { own = given + 1; Ci = Cs; Oi = Os; }\n");
     writeShader("glightasks",

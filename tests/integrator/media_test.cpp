@@ -212,6 +212,38 @@ TEST(MediaLight, ThroughABall) {
     }
 }
 
+// Volume shaders that loop over lights whose light comes through volumes: those ask for no light themselves, else a ball that is
+// lit by a lamp would be lit through itself without end.
+TEST(MediaLight, LoopsThatWouldRunInThemselves) {
+    writeShader("litvolume",
+                "volume litvolume(float k = .5) { color sum = 0; illuminance(P) sum += Cl; Ci = Ci * exp(-k * length(I)) + "
+                ".01 * sum; }\n");
+    writeShader("through",
+                "light through() { illuminate(point \"shader\" (0, 0, 0)) Cl = 4 * transmission(Ps, point \"shader\" (0, 0, "
+                "0)); }\n");
+    const std::string seen = "Attribute \"visibility\" \"int camera\" 1 \"int transmission\" 1\nLightSource \"through\" 1\n";
+    const std::string floor =
+        "AttributeBegin Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1 Polygon \"P\" [-9 -9 6  -9 9 6  9 9 6  9 -9 "
+        "6] AttributeEnd\n";
+    const std::string lamp =
+        "AttributeBegin Atmosphere \"litvolume\" AreaLightSource \"slrect\" 2 \"float intensity\" 5 Surface "
+        "\"constant\" Color 0 0 0 Polygon \"P\" [-1 2 3  1 2 3  1 2 4  -1 2 4] AttributeEnd Illuminate 2 1\n";
+    const std::string veil = "Surface \"constant\" Color 0 0 0 Opacity .25 .25 .25 ";
+    for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
+        // The floor below the middle: through both sides of the veil and two units of the volume.
+        const auto at = [&](const std::string& ball) {
+            return Scene(world(seen + floor + ball), withShaders(h)).one(rayTo({2, 0, 4.5}, {0, 0, 6})).x;
+        };
+        const double without = at("");
+        EXPECT_GT(without, .01);
+        EXPECT_NEAR(at(ball(1, "Translate 0 0 3 " + veil + "Interior \"litvolume\" ")) / without, .75 * .75 * std::exp(-.5 * 2),
+                    .02)
+            << int(h);
+        Scene lit(world(seen + lamp + "Atmosphere \"litvolume\" " + floor), withShaders(h));
+        EXPECT_GT(lit.one(rayTo({2, 0, 4.5}, {0, 0, 6})).x, 0) << int(h);
+    }
+}
+
 // What shines by itself behind sheets and balls has the same ways before it as what its shader colours.
 TEST(MediaLight, TheWayToEmitters) {
     writeShader("beer", "volume beer(float k = 1) { Ci *= exp(-k * length(I)); }\n");

@@ -2,6 +2,8 @@
 // chosen by how far rays come do not know.
 #include "base/exact.h"
 #include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/blockvertices.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
@@ -68,9 +70,13 @@ struct Near {
 class MediumFlights::NearLight {
 public:
     NearLight(MediumFlights& stage, const Medium& m, const BoundLight& l, std::span<const Near> points)
-        : stage_(stage), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area), at_(points.size()),
-          drawn_(area_ ? points.size() : 0), query_(points.size()), value_(points.size()) {}
+        : stage_(stage), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area) {}
     void run() {
+        if (runInRows()) return;
+        at_.resize(points_.size());
+        drawn_.resize(area_ ? points_.size() : 0);
+        query_.resize(points_.size());
+        value_.resize(points_.size());
         for (size_t i = 0; i < points_.size(); ++i) ask(i);
         const std::vector<char> inMedium(points_.size(), 1);
         LightCall call;
@@ -80,6 +86,37 @@ public:
     }
 
 private:
+    uint32_t use() const { return kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data()); }
+    static uint32_t vertexOf(const PathRay& r) { return childVertex(r.vertex, kFlight, 5); }
+    /// By blocks, where the light is such a one.
+    bool runInRows() {
+        auto c = stage_.batches_.take();
+        c->between = true;
+        c->binding = &stage_.world_.bindings_[size_t(medium_.binding)];
+        c->points.clear();
+        for (const Near& n : points_) {
+            c->rays.push_back(*n.flight->ray);
+            c->rays.back().vertex = vertexOf(*n.flight->ray);
+            c->targets.push_back(n.flight->target);
+            c->flown.emplace_back().t = n.t;
+        }
+        std::vector<BlockLit> found;
+        const bool done = stage_.blocks_.light(*c, *medium_.homogeneous, light_, found);
+        for (const BlockLit& l : found) {
+            const PathRay& r = c->rays[l.point];
+            const Vec3 from = r.origin + r.dir * points_[l.point].t, way = l.end - from;
+            const float far = area_ ? length(way) : l.far;
+            if (!(far > 0)) continue;
+            const Color light = scattered(points_[l.point], l.Cl, l.phase, l.kept, area_ ? l.density : 0);
+            if (light == Color(0)) continue;
+            ShadowRay s{from, l.w, far, light, points_[l.point].flight->target, r.shutter()};
+            if (area_) s.dir = way / far, s.distance = far * (1 - 1e-6f);
+            if (l.shadowRadius > 0) toDisk(s, l.L, l.w, l.shadowRadius, points_[l.point]);
+            queue(s, points_[l.point]);
+        }
+        stage_.batches_.giveBack(std::move(c));
+        return done;
+    }
     void ask(size_t i) {
         const WorldImpl& w = stage_.world_;
         const PathRay& r = *points_[i].flight->ray;
@@ -96,9 +133,8 @@ private:
         if (!area_) return;
         Emitter::Sample& s = drawn_[i];
         const Random numbers = stage_.store_.random(r);
-        const uint32_t vertex = childVertex(r.vertex, kFlight, 5), use = kLightPoint + uint32_t(&light_ - w.lights_.data());
-        const float choose = light_.emitter->chooses() ? numbers.one(vertex, use, 0) : 0;
-        const Vec2 u = numbers.pair(vertex, use, 0);
+        const float choose = light_.emitter->chooses() ? numbers.one(vertexOf(r), use(), 0) : 0;
+        const Vec2 u = numbers.pair(vertexOf(r), use(), 0);
         bool there = light_.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light_.pointNeeds);
         if (there && w.accel_->hasSolids())
             there = w.accel_->keeps(w.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter);
@@ -120,23 +156,35 @@ private:
         if (!(far > 0)) return;
         const Vec3 to = area_ ? drawn_[i].direction : way / far;
         const float phase = OneLobe(*kind, {r.dir, -r.dir, {}, medium_.homogeneous->anisotropy}).value(to).fcos;
-        Color c = *n.weight * medium_.homogeneous->scattering * medium_.homogeneous->left(n.t) * v.Cl;
-        c *= phase * n.scale * v.kept(RayType::Diffuse) * (area_ ? 1 / drawn_[i].pdf : float(kPi)); // Cl is irradiance / pi
+        const Color c = scattered(n, v.Cl, phase, v.kept(RayType::Diffuse), area_ ? drawn_[i].pdf : 0);
         if (c == Color(0)) return;
-        ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter, &r};
-        if (v.shadowRadius > 0) {
-            const uint32_t use = kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data());
-            const Vec2 u = stage_.store_.random(r).pair(childVertex(r.vertex, kFlight, 5), use, 0);
-            const Vec3 onDisk = onShadowDisk(p.Ps - v.L, to, v.shadowRadius, u) - p.Ps;
-            shadow.dir = normalizeOr(onDisk, to);
-            shadow.distance = length(onDisk) * (1 - 1e-5f);
-        }
+        ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter};
+        if (v.shadowRadius > 0) toDisk(shadow, v.L, to, v.shadowRadius, n);
         if (v.ownShadow) shadow.distance = 0;
-        shadow.media = r.media;
-        shadow.share = stage_.store_.extraOf(r).share;
-        shadow.path = stage_.paths_.next(r.path, stage_.paths_.volume);
-        if (shadow.path) shadow.light = stage_.paths_.lights[size_t(&light_ - stage_.world_.lights_.data())];
-        stage_.shadows_.queue.push_back(shadow);
+        queue(shadow, n);
+    }
+    /// What comes back along the way of the light Cl at its point. density: of the sample of an emitter; 0: of another light.
+    Color scattered(const Near& n, const Color& Cl, float phase, float kept, float density) const {
+        const Homogeneous& h = *medium_.homogeneous;
+        const Color c = *n.weight * h.scattering * h.left(n.t) * Cl;
+        return c * (phase * n.scale * kept * (density > 0 ? 1 / density : float(kPi))); // Cl is irradiance / pi
+    }
+    /// Turns a shadow ray to a point of the disk about a light.
+    void toDisk(ShadowRay& s, const Vec3& L, const Vec3& to, float radius, const Near& n) const {
+        const PathRay& r = *n.flight->ray;
+        const Vec2 u = stage_.store_.random(r).pair(vertexOf(r), use(), 0);
+        const Vec3 onDisk = onShadowDisk(s.origin - L, to, radius, u) - s.origin;
+        s.dir = normalizeOr(onDisk, to);
+        s.distance = length(onDisk) * (1 - 1e-5f);
+    }
+    void queue(ShadowRay& s, const Near& n) const {
+        const PathRay& r = *n.flight->ray;
+        s.ray = &r;
+        s.media = r.media;
+        s.share = stage_.store_.extraOf(r).share;
+        s.path = stage_.paths_.next(r.path, stage_.paths_.volume);
+        if (s.path) s.light = stage_.paths_.lights[size_t(&light_ - stage_.world_.lights_.data())];
+        stage_.shadows_.queue.push_back(s);
     }
 
     MediumFlights& stage_;

@@ -4,6 +4,7 @@
 #include "integrator/accumulator.h"
 #include "integrator/atmosphere.h"
 #include "integrator/batchpool.h"
+#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/flights.h"
 #include "integrator/lightkernels.h"
@@ -20,9 +21,9 @@
 namespace alpenglow::transport {
 
 MediumFlights::MediumFlights(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches), flights_(s.flights),
-      lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media), store_(s.store),
-      requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
+    : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches), blocks_(s.blocks),
+      flights_(s.flights), lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media),
+      store_(s.store), requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
 
 namespace {
 
@@ -211,21 +212,21 @@ Vec3 MediumFlights::besideLight(const Medium& m, const PathRay& r, const Vec3& f
 
 /// Points where light is scattered gather it as surfaces do, by the lobe of the medium.
 void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
-    static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
     auto c = batches_.take();
     const Medium& m = world_.media_[size_t(crossings[0].way.medium)];
     c->bound = &m.kernel;
     c->binding = &world_.bindings_[size_t(m.binding)];
     c->between = true;
+    c->points.clear(); // those of the batch before
+    lights_.clear();
     for (const Crossing& x : crossings) {
         if (!x.stops) continue;
         const Flight& f = flights[x.flight];
         PathRay& r = c->rays.emplace_back(*f.ray);
-        const double density = x.way.density(x.way.t);
+        const Vec3d left = x.way.leftAt(x.way.t);
+        const double density = x.way.density(left);
         for (int k = 0; k < 3; ++k)
-            r.weight[k] = density > 0 ? float(x.weight[k] * m.homogeneous->scattering[k] *
-                                              (exact::exp(-double(x.way.extinction[k]) * x.way.t) / density))
-                                      : 0;
+            r.weight[k] = density > 0 ? float(x.weight[k] * m.homogeneous->scattering[k] * (left[k] / density)) : 0;
         r.vertex = childVertex(f.ray->vertex, kFlight, 0);
         r.counts = r.first = false;
         if (rules_.roulette) {
@@ -239,26 +240,27 @@ void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing>
         c->targets.push_back(f.target);
         c->bindings.push_back(m.binding);
         c->flown.push_back(x.way);
+        lights_.push_back(besideLight(m, r, r.origin + r.dir * x.way.t));
     }
-    const size_t n = c->rays.size();
-    c->points.resize(n);
-    for (size_t i = 0; i < n; ++i) {
-        const PathRay& r = c->rays[i];
-        ShadePoint& p = c->points[i] = {};
-        p.shape = m.shape;
-        p.P = p.surface.P = r.origin + r.dir * c->flown[i].t;
-        p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: there are no sides
-        p.I = p.P - r.begin();
-        p.E = r.origin;
-        p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();
-        world_.tellTime(p);
-        p.ray = &r;
+    if (!c->rays.empty()) gather(*c, m, sched);
+    shadows_.flush(sched); // they know its rays
+    batches_.giveBack(std::move(c));
+}
+
+/// Light at points in a medium. lights_: by point, besideLight().
+void MediumFlights::gather(BatchContext& c, const Medium& m, Sched& sched) {
+    static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
+    if (blocks_.needsPoints(*c.binding)) placePoints(c, m);
+    if (blocks_.run(c, *m.homogeneous, lights_, sched)) return;
+    if (c.points.empty()) placePoints(c, m);
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const PathRay& r = c.rays[i];
         LobeVertex& l = requests_.lobes.emplace_back();
-        const Vec3 light = besideLight(m, r, p.P);
+        const Vec3& light = lights_[i];
         l.kind = light == Vec3(0) ? plain : beside;
         l.point = int(i);
         l.weight = Color(1);
-        l.target = c->targets[i];
+        l.target = c.targets[i];
         l.site = kFlight;
         if (world_.lightsAsk()) {
             l.lit = int(litSurfaces_.values.size());
@@ -266,9 +268,23 @@ void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing>
         }
         l.place = requests_.rows.add(*l.kind, {r.dir, light == Vec3(0) ? -r.dir : light, {}, m.homogeneous->anisotropy});
     }
-    if (n > 0) vertexLight_.gather(*c, sched);
-    shadows_.flush(sched); // they know its rays
-    batches_.giveBack(std::move(c));
+    vertexLight_.gather(c, sched);
+}
+
+void MediumFlights::placePoints(BatchContext& c, const Medium& m) const {
+    c.points.resize(c.rays.size());
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const PathRay& r = c.rays[i];
+        ShadePoint& p = c.points[i];
+        p.shape = m.shape;
+        p.P = p.surface.P = r.origin + r.dir * c.flown[i].t;
+        p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: there are no sides
+        p.I = p.P - r.begin();
+        p.E = r.origin;
+        p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();
+        world_.tellTime(p);
+        p.ray = &r;
+    }
 }
 
 } // namespace alpenglow::transport

@@ -1,5 +1,6 @@
 // Ways through media that scatter (world/bound.h, Homogeneous), in closed form.
 #pragma once
+#include "integrator/beside.h"
 #include "integrator/context.h"
 #include "integrator/flight.h"
 
@@ -21,8 +22,11 @@ private:
 
 class Accumulator;
 class Atmosphere;
+struct BatchContext;
 class BatchPool;
+class BlockVertices;
 class Flights;
+struct KernelRun;
 class LightKernels;
 class LightPathStates;
 class LitSurfaces;
@@ -51,6 +55,10 @@ public:
     /// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one,
     /// all with the same chance: a density for any of them is right. `away`: how far it is.
     Vec3 besideLight(const Medium&, const PathRay&, const Vec3& from, float* away = nullptr) const;
+    /// The same for rays that leave a point of a surface, of lobes that give back most from there.
+    Beside besideSurface(const KernelRun&, size_t point) const;
+    /// Whether rays of surfaces pass lights in some medium, by what the render is.
+    bool surfacesAim() const;
 
 private:
     struct Crossing {
@@ -62,14 +70,18 @@ private:
     std::optional<Crossing> cross(Flight&, size_t number, Sched&);
     void pass(Flight&, Sched&);
     void scatter(std::span<Flight>, std::span<const Crossing>, Sched&);
+    void gather(BatchContext&, const Medium&, Sched&);
+    void placePoints(BatchContext&, const Medium&) const;
     void nearLights(std::span<Flight>, std::span<const Crossing>, Sched&);
     void addOpacity(const PathRay&, const Color&); ///< to the sample of a camera ray
     void glow(const Flight&, const Homogeneous&, Sched&);
     class NearLight;
+    std::vector<Vec3> lights_;
     int leaks_ = 0; ///< rays that left the scene inside of such a medium
     Accumulator& accumulator_;
     Atmosphere& atmosphere_;
     BatchPool& batches_;
+    BlockVertices& blocks_;
     Flights& flights_;
     LightKernels& lightKernels_;
     LitSurfaces& litSurfaces_;

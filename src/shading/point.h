@@ -89,8 +89,11 @@ struct FreeFlight {
     int medium = -1; ///< of the world; -1: there is no such way
     Color extinction{0};
     double chance[3] = {}; ///< of the densities of the channels, with what makes them densities
-    /// With which points are chosen, a unit of length.
-    double density(float t) const;
+    /// What is left of light after so long a way, channel by channel.
+    Vec3d leftAt(float at) const;
+    /// With which points are chosen, a unit of length; where so much is left.
+    double density(const Vec3d& left) const;
+    double density(float at) const { return density(leftAt(at)); }
     bool operator==(const FreeFlight&) const = default;
 };
 

@@ -229,6 +229,7 @@ public:
         std::vector<uint8_t> opaque, clear;
         geometry::Bounds clearBounds;
     } byOpacity_;
+    bool mediaOverrule_ = false; ///< media differ in priority: some surfaces bound nothing, and stop no ray, inside of others
     void sortByOpacity();
     /// What surfaces are to photons that are visible to rays as `visibility` says, by shape. photonattributes.cpp
     void bindPhotons(std::span<const uint32_t> visibility);

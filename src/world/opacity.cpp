@@ -1,9 +1,12 @@
 // What surfaces take from shadow rays: a number where it is known beforehand, else the kernel that tells it.
 #include "world/impl.h"
+#include "world/surfaces.h"
+#include <algorithm>
 
 namespace alpenglow::transport {
 
 void WorldImpl::sortByOpacity() {
+    mediaOverrule_ = std::any_of(media_.begin(), media_.end(), [&](const Medium& m) { return m.priority != media_[0].priority; });
     if (allOpaque_) return;
     for (size_t i = 0; i < shapes_.size(); ++i) {
         const bool opaque = bindings_[size_t(bindingOf_[i])].opacity.opaque();
@@ -77,6 +80,20 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     evaluator.run(k, nullptr, point, b.surface->view(), [&](const shading::Batch& batch) { o = batch.color(k.plan->Oi, 0); });
     for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
     return result;
+}
+
+bool SurfaceBinder::vanishes(const SurfaceBinding& b) const {
+    const BoundKernel& k = b.surfaceS;
+    const auto& facts = k.kernel->facts();
+    if (!k.kernel->inputs().empty() || !k.kernel->sites().empty() || facts.suspends || facts.lightLoops || b.displacement ||
+        b.moveS || b.atmosphere.shader || b.areaLight >= 0 || b.matte || k.plan->Ci < 0 || k.plan->Oi < 0)
+        return false;
+    std::vector<ShadePoint> point(1);
+    bool nothing = false;
+    evaluator_.run(k, nullptr, point, b.surface->view(), [&](const shading::Batch& batch) {
+        nothing = batch.color(k.plan->Ci, 0) == Color(0) && batch.color(k.plan->Oi, 0) == Color(0);
+    });
+    return nothing;
 }
 
 } // namespace alpenglow::transport

@@ -1,5 +1,5 @@
-// Rays that leave surfaces in a medium and pass a light there: what they find is about 1 / sine of the angle that they are off
-// its direction, so that draws by a lobe alone bring it with a variance without bound. A part of the draws is even in that angle.
+// Lights that rays of surfaces may pass in a medium (beside.h): which, and how many of the draws of a lobe are for one.
+#include "integrator/beside.h"
 #include "integrator/lobeselection.h"
 #include "integrator/mediastacks.h"
 #include "integrator/medium.h"
@@ -14,69 +14,69 @@ constexpr float kMostBeside = 0.3f; ///< of a lobe's draws
 constexpr float kThin = 0.2f;       ///< optical length to a light where it is half of that
 } // namespace
 
-/// Finds the lights, and how many draws are for them: the fewer the less the lobe gives back from there, and the less is
-/// scattered on the way there.
-void LobeSelection::besideLights() {
-    if (!world_.scatters_ || !rules_.pickOne || !rules_.lightsAtRequests || c_->between || photons_.photonTrace() ||
-        world_.settings_.mediumSampling == MediumSampling::Distance)
-        return;
-    aimed_.clear();
-    for (size_t point = 0; point < c_->points.size(); ++point)
-        if (begin_[point] != begin_[point + 1]) besideLight(point);
-    if (aimed_.empty()) return;
-    for (int i : aimed_) requests_.rows.ask(requests_.lobes[size_t(i)].place, requests_.lobes[size_t(i)].beside);
-    requests_.rows.evaluate();
-    for (int i : aimed_) {
-        LobeVertex& l = requests_.lobes[size_t(i)];
-        const LobeValue v = requests_.rows.value(l.place);
-        l.besideShare *= v.fcos > 0 && v.pdf > 0 ? std::min(1.f, v.pdf * float(kPi)) : 0;
-    }
+float Beside::density(const Vec3& w, float ofLobe) const {
+    if (!(share > 0)) return ofLobe;
+    const float sine = std::max(length(cross(w, light)), 1e-6f);
+    return (1 - share) * ofLobe + share * float(0.5 / (kPi * kPi)) / sine;
 }
 
-/// Of a point: the light on the side that it is seen from, else on the other one.
-void LobeSelection::besideLight(size_t point) {
-    const PathRay& ray = c_->rays[point];
-    const ShadePoint& p = c_->points[point];
+std::optional<Vec3> Beside::draw(Vec2& u) const {
+    if (!(share > 0)) return {};
+    if (u.x >= share) {
+        u.x = std::min((u.x - share) / (1 - share), 1 - 0x1p-24f);
+        return {};
+    }
+    const Vec2 off = unitCircle(0.5f * u.x / share), about = unitCircle(u.y);
+    return Basis(light).toWorld({off.y * about.x, off.y * about.y, off.x});
+}
+
+bool MediumFlights::surfacesAim() const {
+    return world_.scatters_ && rules_.pickOne && rules_.lightsAtRequests &&
+           world_.settings_.mediumSampling != MediumSampling::Distance;
+}
+
+/// On the side that the point is seen from, else on the other one.
+Beside MediumFlights::besideSurface(const KernelRun& c, size_t point) const {
+    const PathRay& ray = c.rays[point];
+    const ShadePoint& p = c.points[point];
     const Vec3 n = dot(p.surface.n, ray.dir) > 0 ? -p.surface.n : p.surface.n;
     for (const Vec3& side : {n, -n}) {
-        const int medium = MediaStacks::mediumOf(media_.towards(*c_, int(point), side));
+        const int medium = MediaStacks::mediumOf(media_.towards(c, int(point), side));
         if (medium < 0) continue;
         const Medium& m = world_.media_[size_t(medium)];
         if (!m.homogeneous || !(maxComponent(m.homogeneous->scattering) > 0)) continue;
         float away = 0;
-        const Vec3 to = mediumFlights_.besideLight(m, ray, p.P, &away);
+        const Vec3 to = besideLight(m, ray, p.P, &away);
         if (!(dot(to, side) > 0)) continue;
-        const float thick = away * mean(m.homogeneous->scattering);
-        for (int i : lobesOf(point)) {
-            LobeVertex& l = requests_.lobes[size_t(i)];
-            // What a kernel is told of its rays is by their lobe alone.
-            if (l.delta || !l.followed || !(l.chosen > 0) || l.ownsTarget || l.elsewhere || l.below >= 0 ||
-                (l.trace && l.trace->onlyLights))
-                continue;
-            l.beside = to;
-            l.besideShare = kMostBeside * thick / (thick + kThin);
-            aimed_.push_back(i);
-        }
-        return;
+        const float thick = away * mean(m.homogeneous->scattering); // less where little is scattered on the way there
+        return {to, kMostBeside * thick / (thick + kThin)};
     }
+    return {};
 }
 
-/// The density of a lobe's draws toward w, those beside its light among them.
-float LobeSelection::densityBeside(const LobeVertex& l, const Vec3& w, float ofLobe) {
-    if (!(l.besideShare > 0)) return ofLobe;
-    const float sine = std::max(length(cross(w, l.beside)), 1e-6f);
-    return (1 - l.besideShare) * ofLobe + l.besideShare * float(0.5 / (kPi * kPi)) / sine;
+void LobeSelection::besideLights() {
+    if (!mediumFlights_.surfacesAim() || c_->between || photons_.photonTrace()) return;
+    aimed_.clear();
+    for (size_t point = 0; point < c_->points.size(); ++point)
+        if (begin_[point] != begin_[point + 1]) besideLight(point);
+    if (aimed_.empty()) return;
+    for (int i : aimed_) requests_.rows.ask(requests_.lobes[size_t(i)].place, requests_.lobes[size_t(i)].beside.light);
+    requests_.rows.evaluate();
+    for (int i : aimed_) requests_.lobes[size_t(i)].beside.weigh(requests_.rows.value(requests_.lobes[size_t(i)].place));
 }
 
-/// A direction beside the light by u, or nothing: then u is for the lobe.
-std::optional<Vec3> LobeSelection::drawBeside(const LobeVertex& l, Vec2& u) {
-    if (!(l.besideShare > 0)) return {};
-    if (u.x >= l.besideShare) {
-        u.x = std::min((u.x - l.besideShare) / (1 - l.besideShare), 1 - 0x1p-24f);
-        return {};
+void LobeSelection::besideLight(size_t point) {
+    const Beside beside = mediumFlights_.besideSurface(*c_, point);
+    if (!(beside.share > 0)) return;
+    for (int i : lobesOf(point)) {
+        LobeVertex& l = requests_.lobes[size_t(i)];
+        // What a kernel is told of its rays is by their lobe alone.
+        if (l.delta || !l.followed || !(l.chosen > 0) || l.ownsTarget || l.elsewhere || l.below >= 0 ||
+            (l.trace && l.trace->onlyLights))
+            continue;
+        l.beside = beside;
+        aimed_.push_back(i);
     }
-    const Vec2 off = unitCircle(0.5f * u.x / l.besideShare), about = unitCircle(u.y);
-    return Basis(l.beside).toWorld({off.y * about.x, off.y * about.y, off.x});
 }
 
 } // namespace alpenglow::transport

@@ -3,6 +3,7 @@
 #include "integrator/mediastacks.h"
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 namespace alpenglow::transport {
 
@@ -37,7 +38,7 @@ BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i,
 }
 
 void BlockVertices::Guided::run(BatchContext& c, Sched& sched) {
-    if (!on() || b_.waits_) return;
+    if (!on() || b_.waits_ || c.between) return;
     points_.assign(b_.blocks_ * kBlock, {});
     for (size_t block = 0; block < b_.blocks_; ++block) {
         const VertexBlock& v = b_.vertices_[block];
@@ -66,6 +67,9 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
     const LobeBlock& l = s.lobes[block];
     alignas(64) float value[kValueRows][kBlock];
     s.lanes->evaluate(l.lobe[0], of, w_[0], value[0]);
+    size_t points[kBlock];
+    std::iota(points, points + kBlock, block * kBlock);
+    s.addBeside(of, w_, points, value[kRowPdf]);
     for (; of; of &= of - 1) {
         const int i = std::countr_zero(of);
         const size_t at = block * kBlock + size_t(i);
@@ -102,7 +106,7 @@ void BlockVertices::Guided::keep(size_t block, const BatchContext& c) {
             if (b_.waits_) continue;
             trail = GuideRays::trailBehindMirror(c.rays[at]);
             r.pdf[i] = guide_.pdfBehindMirror(c.rays[at]);
-        } else if (!b_.waits_ && points_[at].site == b_.next_.site[i]) {
+        } else if (!b_.waits_ && !c.between && points_[at].site == b_.next_.site[i]) {
             trail = points_[at].aim.trail();
         }
         r.flags[i] |= uint32_t(trail) << 24;

@@ -26,6 +26,12 @@ bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
 }
 
 void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
+    askInRows(light, c);
+    connect(light, c);
+}
+
+/// A sample of the light for each point of litBlocks_ that is lit.
+void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
     placeInRows(light);
     const size_t n = litBlocks_.size() * kBlock;
     auto call = batches_.take();
@@ -46,7 +52,6 @@ void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
     call->ran();
     takeRows(light, *call->batch, c);
     batches_.giveBack(std::move(call));
-    connect(light, c);
 }
 
 /// A point of the light for each point of blocks where some sample it.

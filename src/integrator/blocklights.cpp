@@ -17,7 +17,7 @@
 namespace alpenglow::transport {
 
 void BlockVertices::light(BatchContext& c) {
-    if (paths_.automaton || !world_.media_.empty()) surfaces_.pointsOfRows(c); // on which side of them rays go on
+    if (paths_.automaton) surfaces_.pointsOfRows(c); // to tell reflection from transmission
     const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
     if (!list.chooser.empty()) {
         findLit(nullptr);
@@ -28,6 +28,7 @@ void BlockVertices::light(BatchContext& c) {
         const BoundLight& light = world_.lights_[size_t(number)];
         if (!light.importance) continue; // rays alone find it
         findLit(&light);
+        if (c.between) takeParts(light, c);
         if (!litBlocks_.empty()) lightAlone(light, c);
     }
 }
@@ -160,6 +161,7 @@ void BlockVertices::connect(const BoundLight& light, BatchContext& c) {
 Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l,
                                 BatchContext& c, const size_t* pointOf) {
     Lanes failed = 0, fresh = 0;
+    s.addBeside(lobe.lights & l.asked, l.w, pointOf, value_[kRowPdf]);
     const float* kept = !s.lighting ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
     Lanes some = stages_.contribute(points, lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting, value_[0],
                                     shadow_, &failed);
@@ -183,7 +185,8 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
 void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
     size_t points[kBlock];
     std::iota(points, points + kBlock, b * kBlock);
-    const LightBlock& l = lights_[b];
+    LightBlock& l = lights_[b];
+    l.parted = c.between; // takeParts()
     stages_.aim(vertices_[b], l, shadow_);
     std::fill_n(sent_, kBlock, -1);
     for (size_t k = 0; k < count_; ++k) {
@@ -206,7 +209,7 @@ int32_t BlockVertices::shareOf(const PathRay& r) const { return waits_ ? -1 : st
 
 uint16_t BlockVertices::pathOf(const Site& s, bool delta, size_t point, const Vec3& w, const BatchContext& c) const {
     if (waits_ || !paths_.automaton) return 0;
-    return paths_.atLobe(*s.info->lobe, *s.rays, delta, c.points[point], c.rays[point], w);
+    return paths_.atLobe(*s.kind, *s.rays, delta, c.points[point], c.rays[point], w);
 }
 
 /// The ray of a lane of shadow_, from a point towards w; says: what the light says of its shadow, null: nothing more.

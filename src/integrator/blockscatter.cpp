@@ -10,15 +10,16 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace alpenglow::transport {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
-    const bool chooses = count_ > 1 || !c.clear.empty();
+    const bool chooses = !c.between && (count_ > 1 || !c.clear.empty()); // each point of a medium has one lobe
     if (chooses) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_, false);
     pairs_.resize(1);
     for (size_t b = 0; b < blocks_; ++b) {
-        stages_.pick(vertices_[b], lobesOf(b).data(), int(count_), chooses ? choices_[b].x : nullptr, next_);
+        stages_.pick(vertices_[b], lobesOf(b).data(), int(count_), chooses ? choices_[b].x : whole_, next_);
         for (size_t i = b * kBlock; i < std::min(points_, (b + 1) * kBlock) && !c.clear.empty(); ++i)
             c.passes[i] = vertices_[b].passes[i % kBlock];
         drawDirections(b);
@@ -36,6 +37,8 @@ static Lanes pickedOf(const ScatterBlock& s, int site) {
 /// Directions of the lobes that were picked, and what they give back from there.
 void BlockVertices::drawDirections(size_t b) {
     const VertexBlock& v = vertices_[b];
+    size_t points[kBlock];
+    std::iota(points, points + kBlock, b * kBlock);
     render::NumberBlock& n = pairs_[0];
     std::copy_n(v.low, kBlock, n.low);
     std::copy_n(v.high, kBlock, n.high);
@@ -49,7 +52,7 @@ void BlockVertices::drawDirections(size_t b) {
         if (!picked) continue;
         Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
-        s.lanes->sample(lobe.lobe[0], picked, n.x, drawn_[0]);
+        s.draw(b, picked, n, drawn_);
         stages_.takeDirections(lobe, int(k), s.lighting, drawn_[0], next_);
     }
     for (size_t k = 0; k < count_; ++k) {
@@ -57,6 +60,7 @@ void BlockVertices::drawDirections(size_t b) {
         if (!picked) continue;
         const LobeBlock& lobe = sites_[k].lobes[b];
         sites_[k].lanes->evaluate(lobe.lobe[0], picked, next_.direction[0], value_[0]);
+        sites_[k].addBeside(picked, next_.direction, points, value_[kRowPdf]);
         stages_.takeValues(lobe, int(k), value_[0], next_);
     }
 }
@@ -92,7 +96,7 @@ void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
 }
 
 /// The rays of a block go on from its vertices.
-void BlockVertices::turnRays(size_t b, BatchContext&) {
+void BlockVertices::turnRays(size_t b, BatchContext& c) {
     const VertexBlock& v = vertices_[b];
     RayBlock& r = rays_[b];
     alignas(64) Row towards, from;
@@ -119,6 +123,7 @@ void BlockVertices::turnRays(size_t b, BatchContext&) {
         const int bounces = v.bounces[i] + 1;
         r.depth[i] = bounces + int16_t(r.specular[i] >> 16);
         r.bounces[i] += 1 + (uint32_t(s.diffuse) << 16);
+        r.path[i] += uint32_t(c.between) << 16;
         r.specular[i] = (r.specular[i] & 0xffff0000u) | uint16_t(r.specular[i] + !s.diffuse);
         n.depthMax = std::max(n.depthMax, bounces);
         n.depthSum += 1; // over camera rays: the mean number of bounces
@@ -145,7 +150,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
             const Vec3 w(next_.direction[0][i], next_.direction[1][i], next_.direction[2][i]);
             r.path[i] += pathOf(s, next_.single >> i & 1, b * kBlock + size_t(i), w, c) - uint32_t(path);
         }
-        if (!world_.media_.empty()) {
+        if (!world_.media_.empty() && !c.between) {
             const Vec3 w(next_.direction[0][i], next_.direction[1][i], next_.direction[2][i]);
             const auto media = reinterpret_cast<uintptr_t>(media_.towards(c, int(b * kBlock + size_t(i)), w));
             r.media[0][i] = uint32_t(media), r.media[1][i] = uint32_t(uint64_t(media) >> 32);
@@ -153,8 +158,9 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         r.extra[i] = -1;
         const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);
         const float indirect = next_.indirect[i] == 0 ? 1 : v.energyScale[i];
-        if (indirect == 1 && share < 0) continue;
+        if (indirect == 1 && share < 0 && !c.between) continue;
         RayExtra extra;
+        if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];
         extra.indirect = indirect;
         extra.share = share;
         r.extra[i] = store_.newExtra(extra);

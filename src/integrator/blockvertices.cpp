@@ -6,6 +6,7 @@
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
+#include "integrator/surfacepoints.h"
 #include "integrator/vertexlight.h"
 #include "world/emitterfootprint.h"
 #include <algorithm>
@@ -22,8 +23,8 @@ bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels &&
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lightKernels_(s.lightKernels),
-      paths_(s.paths), media_(s.media), photons_(s.photons), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces),
-      vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      paths_(s.paths), media_(s.media), mediumFlights_(s.mediumFlights), photons_(s.photons), store_(s.store),
+      shadows_(s.shadows), surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
@@ -31,8 +32,7 @@ BlockVertices::BlockVertices(const StageSet& s)
                              [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && !world_.scatters_ && !world_.traceSubsets_ && !world_.globalMaps_ &&
-              !world_.shadesAtOpen_;
+    usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
     usable_ &= world_.accel_ != nullptr; // of a world that is whole
     guided_ = std::make_unique<Guided>(*this, s.guide);
     if (!usable_) return;
@@ -50,8 +50,8 @@ BlockVertices::~BlockVertices() = default;
 bool BlockVertices::takesRays(const BatchContext& c) const {
     const bool firstSeen = world_.settings_.firstSeen;
     return std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
-        return r.quiet || (firstSeen && r.counts) || (lastSkies_ && r.bounces >= world_.maxDepth_) ||
-               (world_.photons_ && world_.photons_->pass(r.sample->sample));
+        return r.quiet || (firstSeen && r.counts) || (lastSkies_ && r.bounces - r.scattered - c.between >= world_.maxDepth_) ||
+               r.scattered >= limits::kPathDepth || (world_.photons_ && world_.photons_->pass(r.sample->sample));
     });
 }
 
@@ -66,12 +66,23 @@ bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) co
 bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }
 
 bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
+    begin(c, waits);
+    return loadVertices(c) && findSites(c) && request(c) && followLobes(c, sched);
+}
+
+void BlockVertices::begin(const BatchContext& c, bool waits) {
     waits_ = waits;
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
-    if (!loadVertices(c) || !findSites(c) || !request(c)) return false;
+    vertices_.resize(std::max(vertices_.size(), blocks_));
+    rays_.resize(std::max(rays_.size(), blocks_));
+}
+
+bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
     if (!select(c)) return false;
+    if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // on which side of them rays go on
+    besideLights(c);
     light(c);
     guided_->run(c, sched);
     scatter(c, sched);
@@ -80,28 +91,28 @@ bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
 
 /// The points and rays, from their structures to rows.
 bool BlockVertices::loadVertices(const BatchContext& c) {
-    vertices_.resize(std::max(vertices_.size(), blocks_));
-    rays_.resize(std::max(rays_.size(), blocks_));
     for (size_t b = 0; b < blocks_; ++b) {
         const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
         RayBlock& rays = rays_[b];
         stages_.load(&c.rays[first], int(sizeof(PathRay)), int(n), kRayWords, rays.origin);
         for (size_t k = 0; k < size_t(kBlock); ++k) rays.target[k] = c.targets[first + std::min(k, n - 1)];
-        takeRays(rays);
+        takeRays(rays, c.between);
         guided_->mark(b, c);
-        if (!loadPoints(b, c)) return false;
+        if (c.between) loadFlown(b, c);
+        else if (!loadPoints(b, c)) return false;
         if (waits_) nameLights(vertices_[b], uint32_t(c.emits[0].site));
     }
     return true;
 }
 
 /// What paths need to know of the rays that came to a block.
-void BlockVertices::takeRays(const RayBlock& rays) {
+void BlockVertices::takeRays(const RayBlock& rays, bool between) {
     VertexBlock& v = vertices_[size_t(&rays - rays_.data())];
     v.last = 0;
     for (int k = 0; k < kBlock; ++k) {
         v.bounces[k] = int16_t(rays.bounces[k]);
-        v.last |= Lanes(v.bounces[k] >= world_.maxDepth_) << k;
+        v.last |= Lanes(v.bounces[k] - int16_t(rays.path[k] >> 16) - between >= world_.maxDepth_)
+                  << k; // those in media do not count
     }
     for (int k = 0; k < kBlock; ++k) {
         const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
@@ -166,7 +177,8 @@ bool BlockVertices::findSites(const BatchContext& c) {
 void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.number = number;
     s.info = &c.bound->sites[size_t(number)];
-    s.lanes = &lanes_.lobes[s.info->lobe->index];
+    s.kind = s.info->lobe;
+    s.lanes = &lanes_.lobes[s.kind->index];
     s.lighting = s.info->kind != SiteKind::Trace;
     s.lights = s.lighting || s.info->rowLights >= 0;
     if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;

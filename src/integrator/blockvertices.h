@@ -6,23 +6,10 @@
 #include "integrator/blocklobes.h"
 #include "integrator/context.h"
 #include "integrator/raywords.h"
+#include "integrator/stageset.h"
 #include "lanes/stages.h"
 
 namespace alpenglow::transport {
-
-class Accumulator;
-class BatchPool;
-class KernelInputs;
-class LightKernels;
-struct LightNumbers;
-class LightPathStates;
-class MediaStacks;
-class PhotonStage;
-class RayStore;
-class ShadowRays;
-struct StageSet;
-class SurfacePoints;
-class VertexLight;
 
 class BlockVertices final : Stage {
 public:
@@ -40,6 +27,12 @@ public:
     bool run(BatchContext&, Sched&);
     /// The same for what strips of a batch wait for. False: nothing was done, and they must ask one by one.
     bool run(BatchContext&, std::span<class KernelStrip* const>, Sched&);
+    /// The same inside of a medium, whose lobes are its. beside: by point, MediumFlights::besideLight(). needsPoints(): its
+    /// points.
+    bool run(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
+    bool needsPoints(const SurfaceBinding&) const;
+    /// Samples of one light for such points, and the values of their lobes toward them, to `found`. False: nothing was done.
+    bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 
 private:
     class ChosenLights;      ///< chosenlights.h
@@ -47,8 +40,10 @@ private:
     using Site = BlockLobes; ///< a call site of the kernel
     // blockvertices.cpp
     bool follow(BatchContext&, Sched&, bool waits);
+    bool followLobes(BatchContext&, Sched&);
+    void begin(const BatchContext&, bool waits);
     bool loadVertices(const BatchContext&);
-    void takeRays(const RayBlock&);
+    void takeRays(const RayBlock&, bool between);
     bool loadPoints(size_t block, const BatchContext&);
     bool findSites(const BatchContext&);
     void beginSite(Site&, int number, const BatchContext&);
@@ -64,7 +59,8 @@ private:
     static bool samples(const Site&, const BoundLight&);
     void sampleLight(const BoundLight&, BatchContext&);
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true);
-    bool placeQuery(const BoundLight&, const LightNumbers&, const ShadePoint& lit, ShadePoint& query, Emitter::Sample&) const;
+    bool placeQuery(const BoundLight&, const struct LightNumbers&, const ShadePoint& lit, ShadePoint& query,
+                    Emitter::Sample&) const;
     static void takeValue(LightBlock&, int lane, const BoundLight&, const LightValue&, const ShadePoint& query,
                           const Emitter::Sample&);
     void takeValues(const BoundLight&, const BatchContext&);
@@ -80,6 +76,7 @@ private:
     // blocklightrows.cpp
     bool inRows(const BoundLight&, const BoundKernel&) const;
     void lightInRows(const BoundLight&, BatchContext&);
+    void askInRows(const BoundLight&, const BatchContext&);
     void placeInRows(const BoundLight&);
     void placeOnEmitter(size_t k, const Emitter&);
     void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
@@ -90,7 +87,11 @@ private:
     bool takes(const BatchContext&, std::span<KernelStrip* const>) const;
     void nameLights(VertexBlock&, uint32_t site) const;
     void endByChance(size_t block);
-
+    void besideLights(const BatchContext&); // blockbeside.cpp
+    // blockmedium.cpp
+    void beginMedium(std::span<const Vec3> beside, float anisotropy);
+    void loadFlown(size_t block, const BatchContext&);
+    void takeParts(const BoundLight&, const BatchContext&);
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
     void drawDirections(size_t block);
@@ -99,13 +100,13 @@ private:
     void turnRays(size_t block, BatchContext&);
     void keepLobes(size_t block, BatchContext&);
     void spawn(const RayBlock&, Sched&);
-
     Accumulator& accumulator_;
     BatchPool& batches_;
     KernelInputs& inputs_;
     LightKernels& lightKernels_;
     const LightPathStates& paths_;
     MediaStacks& media_;
+    MediumFlights& mediumFlights_;
     PhotonStage& photons_;
     RayStore& store_;
     ShadowRays& shadows_;
@@ -115,14 +116,13 @@ private:
     LobeLanesList lanes_;
     bool usable_ = false; ///< by what the world is
     Roulette roulette_ = Roulette::None;
-    bool lastSkies_ = false; ///< where paths end by their length skies must be asked (Gather::lastSkies)
-    size_t blocks_ = 0, points_ = 0;
-    bool waits_ = false;           ///< the kernel waits for what it asks for
-    std::vector<uint32_t> before_; ///< then, by point: rays that it has asked for before
+    bool lastSkies_ = false;                     ///< where paths end by their length skies must be asked (Gather::lastSkies)
+    size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: of sites_ that are asked
+    bool waits_ = false;                         ///< the kernel waits for what it asks for
+    std::vector<uint32_t> before_;               ///< then, by point: rays that it has asked for before
     std::vector<VertexBlock> vertices_;
-    std::vector<RayBlock> rays_; ///< that came to them, then those that go on
-    std::vector<Site> sites_;    ///< the first `count_`, in the order of the calls
-    size_t count_ = 0;
+    std::vector<RayBlock> rays_;    ///< that came to them, then those that go on
+    std::vector<Site> sites_;       ///< the first `count_`, in the order of the calls
     std::vector<LobeBlock*> block_; ///< lobesOf()
     std::vector<Lanes> lit_;        ///< by block: points that sample lights
     std::vector<LightBlock> lights_;

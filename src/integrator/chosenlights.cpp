@@ -6,6 +6,7 @@
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
+#include "integrator/medium.h"
 #include "integrator/shadowrays.h"
 #include "integrator/surfacepoints.h"
 #include <algorithm>
@@ -355,6 +356,11 @@ void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
     size_t points[kBlock] = {};
     for (int i = 0; i < kBlock; ++i)
         if (q.there >> i & 1) points[i] = size_t(q.asked[i]->point);
+    q.lights.parted = c.between;
+    for (Lanes left = c.between ? q.there & q.lights.asked : 0; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        q.lights.part[i] = b.mediumFlights_.shareOfDistance(c.flown[points[i]], world_.lights_[size_t(q.asked[i]->light)]);
+    }
     for (size_t k = 0; k < b.count_; ++k) {
         const BlockVertices::Site& s = b.sites_[k];
         const Lanes asked = s.lights ? gatherLobes(q, s) : 0;

@@ -104,7 +104,7 @@ Color Connection::contribution(const Reached& r) {
     if (!light.hasDensity()) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi
     float other = 0; // the density with which the lobe's own ray would have come here
     if (!world_.settings_.lightOnly && l.chosen > 0 && (lightSampling_.queries.drawn[k].visibility & visibilityBit(l.rays->type)))
-        other = LobeSelection::densityBeside(l, r.w, r.value.pdf) * l.chosen;
+        other = l.beside.density(r.w, r.value.pdf) * l.chosen;
     const float pdf = drawn * chance;
     return c * (kept * fcos / pdf * misWeight(pdf, other));
 }

@@ -2,6 +2,8 @@
 // chosen by how far rays come do not know.
 #include "base/exact.h"
 #include "integrator/accumulator.h"
+#include "integrator/batchpool.h"
+#include "integrator/blockvertices.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
@@ -12,20 +14,25 @@
 
 namespace alpenglow::transport {
 
-std::optional<Equiangular> Equiangular::of(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
-    if (!l.placed || how == MediumSampling::Distance) return {};
-    Equiangular q;
+bool Equiangular::look(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
+    if (!l.placed || how == MediumSampling::Distance) return false;
     const Vec3d to = Vec3d(l.place) - Vec3d(f.origin), dir(f.dir);
-    q.length_ = f.length;
-    q.nearest_ = dot(to, dir);
-    const Vec3d beside = to - dir * q.nearest_;
-    q.away_ = std::max({std::sqrt(dot(beside, beside)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
+    length_ = f.length;
+    nearest_ = dot(to, dir);
+    const Vec3d beside = to - dir * nearest_;
+    away_ = std::max({std::sqrt(dot(beside, beside)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
     const double sigma = (double(f.extinction.x) + f.extinction.y + f.extinction.z) / 3;
     const double reach = sigma * f.length > 4 ? 4 / sigma : double(f.length); // beyond it little is left
-    if (!(q.away_ > 0) || (how == MediumSampling::Both && !(q.away_ < 2 * reach))) return {};
+    if (!(away_ > 0) || (how == MediumSampling::Both && !(away_ < 2 * reach))) return false;
+    const double behind = length_ - nearest_, square = away_ * away_;
+    return away_ * length_ > 1e-9 * std::sqrt((square + nearest_ * nearest_) * (square + behind * behind)); // sine of the angle
+}
+
+std::optional<Equiangular> Equiangular::of(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
+    Equiangular q;
+    if (!q.look(f, l, how)) return {};
     q.from_ = exact::atan2(-q.nearest_, q.away_);
     q.to_ = exact::atan2(q.length_ - q.nearest_, q.away_);
-    if (!(q.to_ - q.from_ > 1e-9)) return {};
     return q;
 }
 
@@ -39,15 +46,21 @@ double Equiangular::density(float t) const {
     return away_ / ((to_ - from_) * (away_ * away_ + d * d));
 }
 
+/// Whether points that are chosen for a light bring all of its light. Where ways are thin those by distance are no better, and
+/// cost a shadow ray; of lights that shine into a cone they still are.
+static bool alone(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
+    return how == MediumSampling::Equiangular || (f.thin && l.kind == LightKind::Area);
+}
+
 /// Where lights are chosen for a way as a whole.
 static Vec3 middle(const FreeFlight& f) { return f.origin + f.dir * (0.5f * f.length); }
 
 float MediumFlights::shareOfDistance(const FreeFlight& f, const BoundLight& l) const {
     const WorldImpl& w = world_;
     const MediumSampling how = w.settings_.mediumSampling;
+    if (!rules_.lightsAtRequests || !Equiangular::sees(f, l, how)) return 1;
+    if (alone(f, l, how)) return 0;
     const auto q = Equiangular::of(f, l, how);
-    if (!q || !rules_.lightsAtRequests) return 1;
-    if (how == MediumSampling::Equiangular) return 0;
     const float chance = lightKernels_.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f), 0);
     return misWeight(float(f.density(f.t)), float(q->density(f.t) * chance));
 }
@@ -68,9 +81,13 @@ struct Near {
 class MediumFlights::NearLight {
 public:
     NearLight(MediumFlights& stage, const Medium& m, const BoundLight& l, std::span<const Near> points)
-        : stage_(stage), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area), at_(points.size()),
-          drawn_(area_ ? points.size() : 0), query_(points.size()), value_(points.size()) {}
+        : stage_(stage), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area) {}
     void run() {
+        if (runInRows()) return;
+        at_.resize(points_.size());
+        drawn_.resize(area_ ? points_.size() : 0);
+        query_.resize(points_.size());
+        value_.resize(points_.size());
         for (size_t i = 0; i < points_.size(); ++i) ask(i);
         const std::vector<char> inMedium(points_.size(), 1);
         LightCall call;
@@ -80,6 +97,37 @@ public:
     }
 
 private:
+    uint32_t use() const { return kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data()); }
+    static uint32_t vertexOf(const PathRay& r) { return childVertex(r.vertex, kFlight, 5); }
+    /// By blocks, where the light is such a one.
+    bool runInRows() {
+        auto c = stage_.batches_.take();
+        c->between = true;
+        c->binding = &stage_.world_.bindings_[size_t(medium_.binding)];
+        c->points.clear();
+        for (const Near& n : points_) {
+            c->rays.push_back(*n.flight->ray);
+            c->rays.back().vertex = vertexOf(*n.flight->ray);
+            c->targets.push_back(n.flight->target);
+            c->flown.emplace_back().t = n.t;
+        }
+        std::vector<BlockLit> found;
+        const bool done = stage_.blocks_.light(*c, *medium_.homogeneous, light_, found);
+        for (const BlockLit& l : found) {
+            const PathRay& r = c->rays[l.point];
+            const Vec3 from = r.origin + r.dir * points_[l.point].t, way = l.end - from;
+            const float far = area_ ? length(way) : l.far;
+            if (!(far > 0)) continue;
+            const Color light = scattered(points_[l.point], l.Cl, l.phase, l.kept, area_ ? l.density : 0);
+            if (light == Color(0)) continue;
+            ShadowRay s{from, l.w, far, light, points_[l.point].flight->target, r.shutter()};
+            if (area_) s.dir = way / far, s.distance = far * (1 - 1e-6f);
+            if (l.shadowRadius > 0) toDisk(s, l.L, l.w, l.shadowRadius, points_[l.point]);
+            queue(s, points_[l.point]);
+        }
+        stage_.batches_.giveBack(std::move(c));
+        return done;
+    }
     void ask(size_t i) {
         const WorldImpl& w = stage_.world_;
         const PathRay& r = *points_[i].flight->ray;
@@ -96,9 +144,8 @@ private:
         if (!area_) return;
         Emitter::Sample& s = drawn_[i];
         const Random numbers = stage_.store_.random(r);
-        const uint32_t vertex = childVertex(r.vertex, kFlight, 5), use = kLightPoint + uint32_t(&light_ - w.lights_.data());
-        const float choose = light_.emitter->chooses() ? numbers.one(vertex, use, 0) : 0;
-        const Vec2 u = numbers.pair(vertex, use, 0);
+        const float choose = light_.emitter->chooses() ? numbers.one(vertexOf(r), use(), 0) : 0;
+        const Vec2 u = numbers.pair(vertexOf(r), use(), 0);
         bool there = light_.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light_.pointNeeds);
         if (there && w.accel_->hasSolids())
             there = w.accel_->keeps(w.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter);
@@ -120,23 +167,35 @@ private:
         if (!(far > 0)) return;
         const Vec3 to = area_ ? drawn_[i].direction : way / far;
         const float phase = OneLobe(*kind, {r.dir, -r.dir, {}, medium_.homogeneous->anisotropy}).value(to).fcos;
-        Color c = *n.weight * medium_.homogeneous->scattering * medium_.homogeneous->left(n.t) * v.Cl;
-        c *= phase * n.scale * v.kept(RayType::Diffuse) * (area_ ? 1 / drawn_[i].pdf : float(kPi)); // Cl is irradiance / pi
+        const Color c = scattered(n, v.Cl, phase, v.kept(RayType::Diffuse), area_ ? drawn_[i].pdf : 0);
         if (c == Color(0)) return;
-        ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter, &r};
-        if (v.shadowRadius > 0) {
-            const uint32_t use = kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data());
-            const Vec2 u = stage_.store_.random(r).pair(childVertex(r.vertex, kFlight, 5), use, 0);
-            const Vec3 onDisk = onShadowDisk(p.Ps - v.L, to, v.shadowRadius, u) - p.Ps;
-            shadow.dir = normalizeOr(onDisk, to);
-            shadow.distance = length(onDisk) * (1 - 1e-5f);
-        }
+        ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter};
+        if (v.shadowRadius > 0) toDisk(shadow, v.L, to, v.shadowRadius, n);
         if (v.ownShadow) shadow.distance = 0;
-        shadow.media = r.media;
-        shadow.share = stage_.store_.extraOf(r).share;
-        shadow.path = stage_.paths_.next(r.path, stage_.paths_.volume);
-        if (shadow.path) shadow.light = stage_.paths_.lights[size_t(&light_ - stage_.world_.lights_.data())];
-        stage_.shadows_.queue.push_back(shadow);
+        queue(shadow, n);
+    }
+    /// What comes back along the way of the light Cl at its point. density: of the sample of an emitter; 0: of another light.
+    Color scattered(const Near& n, const Color& Cl, float phase, float kept, float density) const {
+        const Homogeneous& h = *medium_.homogeneous;
+        const Color c = *n.weight * h.scattering * h.left(n.t) * Cl;
+        return c * (phase * n.scale * kept * (density > 0 ? 1 / density : float(kPi))); // Cl is irradiance / pi
+    }
+    /// Turns a shadow ray to a point of the disk about a light.
+    void toDisk(ShadowRay& s, const Vec3& L, const Vec3& to, float radius, const Near& n) const {
+        const PathRay& r = *n.flight->ray;
+        const Vec2 u = stage_.store_.random(r).pair(vertexOf(r), use(), 0);
+        const Vec3 onDisk = onShadowDisk(s.origin - L, to, radius, u) - s.origin;
+        s.dir = normalizeOr(onDisk, to);
+        s.distance = length(onDisk) * (1 - 1e-5f);
+    }
+    void queue(ShadowRay& s, const Near& n) const {
+        const PathRay& r = *n.flight->ray;
+        s.ray = &r;
+        s.media = r.media;
+        s.share = stage_.store_.extraOf(r).share;
+        s.path = stage_.paths_.next(r.path, stage_.paths_.volume);
+        if (s.path) s.light = stage_.paths_.lights[size_t(&light_ - stage_.world_.lights_.data())];
+        stage_.shadows_.queue.push_back(s);
     }
 
     MediumFlights& stage_;
@@ -157,9 +216,16 @@ void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossi
     const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
     const LightChooser& chooser = w.chooserOf(list);
     const std::vector<int>& on = w.sampledOf(list);
-    std::map<int, std::vector<Near>> near; // by light
     LightChooser::Chosen chosen;
     for (size_t k = 0; k < on.size() && chooser.empty(); ++k) chosen.emplace_back(int(k), 1.f);
+    struct Asked {
+        const Crossing* crossing;
+        int light;
+        float chance;
+        Equiangular points;
+    };
+    std::vector<Asked> asked;
+    numbers_.clear();
     for (const Crossing& x : crossings) {
         const Flight& f = flights[x.flight];
         const uint32_t vertex = childVertex(f.ray->vertex, kFlight, 2);
@@ -169,11 +235,20 @@ void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossi
             if (list.ofAll && !list.lights.contains(light)) continue;
             const auto q = Equiangular::of(x.way, w.lights_[size_t(light)], how);
             if (!q) continue;
-            const float t = q->at(store_.random(*f.ray).one(vertex, kLightPoint + uint32_t(light), 0));
-            const double density = q->density(t) * chance;
-            const float share = how == MediumSampling::Equiangular ? 1 : misWeight(float(density), float(x.way.density(t)));
-            if (density > 0 && share > 0) near[light].push_back({&x.way, &f, &x.weight, t, float(share / density)});
+            asked.push_back({&x, light, chance, *q});
+            numbers_.askOne(store_.random(*f.ray).numbers(), vertex, kLightPoint + uint32_t(light), 0);
         }
+    }
+    numbers_.draw();
+    std::map<int, std::vector<Near>> near; // by light
+    for (size_t i = 0; i < asked.size(); ++i) {
+        const auto& [x, light, chance, points] = asked[i];
+        const float t = points.at(numbers_.one(i));
+        const double density = points.density(t) * chance;
+        const float share =
+            alone(x->way, w.lights_[size_t(light)], how) ? 1 : misWeight(float(density), float(x->way.density(t)));
+        if (density > 0 && share > 0)
+            near[light].push_back({&x->way, &flights[x->flight], &x->weight, t, float(share / density)});
     }
     for (const auto& [light, points] : near) {
         NearLight(*this, m, w.lights_[size_t(light)], points).run();

@@ -14,7 +14,7 @@ GuideScatter::GuideScatter(const StageSet& s, const VertexLobes& v, const LobeSe
 /// Its ray goes out into the scene like any other, lights are sampled for it, and it adds to what its point brings.
 bool GuideScatter::mayGuide(const LobeVertex& l) const {
     return l.followed && l.chosen > 0 && l.lights && !l.delta && !l.elsewhere && !l.ownsTarget && l.below < 0 && !(l.base > 0) &&
-           l.besideShare == 0 && l.indirect > 0 && !l.fade.fades() && !l.rays->gathersPhotons;
+           l.indirect > 0 && !l.fade.fades() && !l.rays->gathersPhotons;
 }
 
 int GuideScatter::guidedLobe(size_t point) const {
@@ -55,11 +55,12 @@ void GuideScatter::run(Sched& sched) {
         const Vec3& w = sent_[k].w;
         const PathRay& from = rayOf(l);
         const ShadePoint& p = c_->points[size_t(l.point)];
+        LobeValue value = requests_.rows.value(l.place);
+        value.pdf = l.beside.density(w, value.pdf);
         const float indirect = (l.lobeOfShader ? selection_.indirectScale[size_t(l.point)] : 1) * l.indirect;
         guide_.send({from, l.target, p.P, l.weight, indirect, l.chosen, requests_.rows.spread(l.place), l.rays, shareOf(l),
                      l.importance, l.maxDistance},
-                    aims[k], w, requests_.rows.value(l.place), origin(l, w), paths_.atLobe(l, p, from, w),
-                    media_.towards(*c_, l.point, w), sched);
+                    aims[k], w, value, origin(l, w), paths_.atLobe(l, p, from, w), media_.towards(*c_, l.point, w), sched);
     }
 }
 

@@ -2,7 +2,6 @@
 // pass. Reads Requests::lobes; writes LobeVertex::albedo, delta, chosen, followed, last, beside.
 #pragma once
 #include "integrator/vertexlobes.h"
-#include <optional>
 
 namespace alpenglow::transport {
 
@@ -20,11 +19,7 @@ public:
     LobeSelection(const StageSet&, const VertexLobes&, PhotonScatter&);
     void choose();
     void measureAlbedos(); ///< of lobes that AOVs show and that have no closed form
-    /// Finds lights beside rays of lobes, and the part of their draws that is for them (beside.cpp).
-    void besideLights();
-    /// The density of a lobe's draws toward w, those beside its light among them.
-    static float densityBeside(const LobeVertex&, const Vec3& w, float ofLobe);
-    static std::optional<Vec3> drawBeside(const LobeVertex&, Vec2& u);
+    void besideLights();   ///< finds lights beside rays of lobes (beside.cpp)
     /// The factor of indirect light with which no more leaves than arrives.
     float energyScale(size_t point, const Color& reflected, const Color& clear);
 

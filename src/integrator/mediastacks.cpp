@@ -39,9 +39,9 @@ const Media* MediaStacks::beyond(const SurfaceBinding& b, const Media* from, con
 
 const Media* MediaStacks::towards(const KernelRun& c, int point, const Vec3& w) {
     if (world_.media_.empty() || size_t(point) >= c.bindings.size()) return nullptr;
-    const ShadePoint& p = c.points[size_t(point)];
     const PathRay& ray = c.rays[size_t(point)];
     if (c.between) return ray.media;
+    const ShadePoint& p = c.points[size_t(point)];
     const Media* m = beyond(world_.bindings_[size_t(c.bindings[size_t(point)])], ray.media, p.surface.n, ray.dir, w);
     tellLost(m, p);
     return m;

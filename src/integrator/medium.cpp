@@ -4,6 +4,7 @@
 #include "integrator/accumulator.h"
 #include "integrator/atmosphere.h"
 #include "integrator/batchpool.h"
+#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/flights.h"
 #include "integrator/lightkernels.h"
@@ -20,14 +21,15 @@
 namespace alpenglow::transport {
 
 MediumFlights::MediumFlights(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches), flights_(s.flights),
-      lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media), store_(s.store),
-      requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
+    : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches), blocks_(s.blocks),
+      flights_(s.flights), lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media),
+      store_(s.store), requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
 
 namespace {
 
 /// Mean free paths of what is scattered (similarity: (1 - g) of it turns aside) from which hardly any path comes out again.
 constexpr double kDeepInside = 300;
+constexpr float kThin = 2; ///< mean free paths of ways that are FreeFlight::thin
 /// As often a path is scattered so deep inside for certain; at twice the depth half as often.
 constexpr double kScatteredForCertain = 64;
 constexpr int kLeaksSaid = 16; ///< ways out of a medium that has no end there: rounding at an edge makes a few
@@ -63,23 +65,25 @@ void MediumFlights::glow(const Flight& f, const Homogeneous& h, Sched& sched) {
     accumulator_.deposit(sched, {f.target, f.ray->weight * c, LightEvent::Surface, f.ray, store_.extraOf(*f.ray).share});
 }
 
+bool MediumFlights::leaks(const Flight& f) {
+    if (f.point) return false;
+    const Medium& m = world_.media_[size_t(f.ray->medium())];
+    if (++leaks_ == kLeaksSaid)
+        diagnostics_.reportOnce("leak:" + m.shader->name,
+                                {Severity::Warning,
+                                 Rie::Consistency,
+                                 m.shape ? m.shape->place() : m.shader->place,
+                                 "rays leave the scene inside of the medium \"" + m.shader->name +
+                                     "\": the primitive whose Interior it is does not enclose it; such ways are empty",
+                                 "a medium fills what lies behind a surface until the next one: close it",
+                                 {}});
+    return true;
+}
+
 /// What happens on a way through a medium up to a surface; a point on it where light is scattered, if it is.
-std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t number, Sched& sched) {
+std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t flight, Vec2 u, Sched& sched) {
     const PathRay& ray = *f.ray;
-    const Medium& m = world_.media_[size_t(ray.medium())];
-    const Homogeneous& h = *m.homogeneous;
-    if (!f.point) {
-        if (++leaks_ == kLeaksSaid)
-            diagnostics_.reportOnce("leak:" + m.shader->name,
-                                    {Severity::Warning,
-                                     Rie::Consistency,
-                                     m.shape ? m.shape->place() : m.shader->place,
-                                     "rays leave the scene inside of the medium \"" + m.shader->name +
-                                         "\": the primitive whose Interior it is does not enclose it; such ways are empty",
-                                     "a medium fills what lies behind a surface until the next one: close it",
-                                     {}});
-        return {};
-    }
+    const Homogeneous& h = *world_.media_[size_t(ray.medium())].homogeneous;
     const Color before = ray.weight, left = h.left(f.length);
     glow(f, h, sched);
     const bool both = ray.counts; // what the camera sees, opacity and depth stay exact
@@ -89,14 +93,14 @@ std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t nu
     f.left = left;
     if (!(maxComponent(h.scattering) > 0) || !(sum > 0) || !std::isfinite(sum) || !(f.length > 0)) return {};
     part = part / sum;
-    Crossing c{number, {}, before * store_.extraOf(ray).indirect};
+    Crossing c{flight, {}, before * store_.extraOf(ray).indirect};
     c.way.origin = ray.origin;
     c.way.dir = ray.dir;
     c.way.length = f.length;
     c.way.medium = ray.medium();
     c.way.extinction = h.extinction();
+    c.way.thin = mean(c.way.extinction) * f.length < kThin;
     double survives = 0, drawn = 0;
-    const Vec2 u = store_.random(ray).pair(childVertex(ray.vertex, kFlight, 6), kFlight, 0); // others than its lobe's
     double at = u.x;
     int channel = 2;
     for (int k = 0; k < 2 && channel == 2; ++k)
@@ -162,17 +166,28 @@ void MediumFlights::pass(Flight& f, Sched& sched) {
 
 void MediumFlights::happen(std::span<Flight> flights, Sched& sched) {
     const WorldImpl& w = world_;
-    std::vector<Crossing> crossings;
+    const auto crosses = [&](const Flight& f) {
+        const int medium = f.over ? -1 : f.ray->medium();
+        return medium >= 0 && w.media_[size_t(medium)].homogeneous;
+    };
+    numbers_.clear();
+    for (const Flight& f : flights) // others than those of its lobe
+        if (crosses(f)) numbers_.askPair(store_.random(*f.ray).numbers(), childVertex(f.ray->vertex, kFlight, 6), kFlight, 0);
+    numbers_.draw();
+    std::vector<Crossing>& crossings = crossings_;
+    crossings.clear();
+    size_t number = 0;
     for (size_t i = 0; i < flights.size(); ++i) {
         Flight& f = flights[i];
-        if (f.over) continue;
-        const int medium = f.ray->medium();
-        if (medium >= 0 && w.media_[size_t(medium)].homogeneous)
-            if (auto c = cross(f, i, sched)) crossings.push_back(*c);
+        if (crosses(f)) {
+            const Vec2 u = numbers_.pair(number++);
+            if (!leaks(f))
+                if (const auto c = cross(f, i, u, sched)) crossings.push_back(*c);
+        }
         if (!f.over && f.point && w.bindings_[size_t(f.binding)].overruled(f.ray->media)) pass(f, sched);
     }
-    std::stable_sort(crossings.begin(), crossings.end(),
-                     [](const Crossing& a, const Crossing& b) { return a.way.medium < b.way.medium; });
+    const auto before = [](const Crossing& a, const Crossing& b) { return a.way.medium < b.way.medium; };
+    if (!std::is_sorted(crossings.begin(), crossings.end(), before)) std::stable_sort(crossings.begin(), crossings.end(), before);
     for (size_t first = 0, end; first < crossings.size(); first = end) { // of one medium, whose lights are one list
         for (end = first; end < crossings.size() && crossings[end].way.medium == crossings[first].way.medium;) ++end;
         const auto of = std::span<const Crossing>(crossings).subspan(first, end - first);
@@ -211,21 +226,21 @@ Vec3 MediumFlights::besideLight(const Medium& m, const PathRay& r, const Vec3& f
 
 /// Points where light is scattered gather it as surfaces do, by the lobe of the medium.
 void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
-    static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
     auto c = batches_.take();
     const Medium& m = world_.media_[size_t(crossings[0].way.medium)];
     c->bound = &m.kernel;
     c->binding = &world_.bindings_[size_t(m.binding)];
     c->between = true;
+    c->points.clear(); // those of the batch before
+    lights_.clear();
     for (const Crossing& x : crossings) {
         if (!x.stops) continue;
         const Flight& f = flights[x.flight];
         PathRay& r = c->rays.emplace_back(*f.ray);
-        const double density = x.way.density(x.way.t);
+        const Vec3d left = x.way.leftAt(x.way.t);
+        const double density = x.way.density(left);
         for (int k = 0; k < 3; ++k)
-            r.weight[k] = density > 0 ? float(x.weight[k] * m.homogeneous->scattering[k] *
-                                              (exact::exp(-double(x.way.extinction[k]) * x.way.t) / density))
-                                      : 0;
+            r.weight[k] = density > 0 ? float(x.weight[k] * m.homogeneous->scattering[k] * (left[k] / density)) : 0;
         r.vertex = childVertex(f.ray->vertex, kFlight, 0);
         r.counts = r.first = false;
         if (rules_.roulette) {
@@ -239,26 +254,27 @@ void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing>
         c->targets.push_back(f.target);
         c->bindings.push_back(m.binding);
         c->flown.push_back(x.way);
+        lights_.push_back(besideLight(m, r, r.origin + r.dir * x.way.t));
     }
-    const size_t n = c->rays.size();
-    c->points.resize(n);
-    for (size_t i = 0; i < n; ++i) {
-        const PathRay& r = c->rays[i];
-        ShadePoint& p = c->points[i] = {};
-        p.shape = m.shape;
-        p.P = p.surface.P = r.origin + r.dir * c->flown[i].t;
-        p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: there are no sides
-        p.I = p.P - r.begin();
-        p.E = r.origin;
-        p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();
-        world_.tellTime(p);
-        p.ray = &r;
+    if (!c->rays.empty()) gather(*c, m, sched);
+    shadows_.flush(sched); // they know its rays
+    batches_.giveBack(std::move(c));
+}
+
+/// Light at points in a medium. lights_: by point, besideLight().
+void MediumFlights::gather(BatchContext& c, const Medium& m, Sched& sched) {
+    static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
+    if (blocks_.needsPoints(*c.binding)) placePoints(c, m);
+    if (blocks_.run(c, *m.homogeneous, lights_, sched)) return;
+    if (c.points.empty()) placePoints(c, m);
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const PathRay& r = c.rays[i];
         LobeVertex& l = requests_.lobes.emplace_back();
-        const Vec3 light = besideLight(m, r, p.P);
+        const Vec3& light = lights_[i];
         l.kind = light == Vec3(0) ? plain : beside;
         l.point = int(i);
         l.weight = Color(1);
-        l.target = c->targets[i];
+        l.target = c.targets[i];
         l.site = kFlight;
         if (world_.lightsAsk()) {
             l.lit = int(litSurfaces_.values.size());
@@ -266,9 +282,23 @@ void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing>
         }
         l.place = requests_.rows.add(*l.kind, {r.dir, light == Vec3(0) ? -r.dir : light, {}, m.homogeneous->anisotropy});
     }
-    if (n > 0) vertexLight_.gather(*c, sched);
-    shadows_.flush(sched); // they know its rays
-    batches_.giveBack(std::move(c));
+    vertexLight_.gather(c, sched);
+}
+
+void MediumFlights::placePoints(BatchContext& c, const Medium& m) const {
+    c.points.resize(c.rays.size());
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const PathRay& r = c.rays[i];
+        ShadePoint& p = c.points[i];
+        p.shape = m.shape;
+        p.P = p.surface.P = r.origin + r.dir * c.flown[i].t;
+        p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: there are no sides
+        p.I = p.P - r.begin();
+        p.E = r.origin;
+        p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();
+        world_.tellTime(p);
+        p.ray = &r;
+    }
 }
 
 } // namespace alpenglow::transport

@@ -1,5 +1,7 @@
 // Ways through media that scatter (world/bound.h, Homogeneous), in closed form.
 #pragma once
+#include "base/numberlanes.h"
+#include "integrator/beside.h"
 #include "integrator/context.h"
 #include "integrator/flight.h"
 
@@ -12,17 +14,23 @@ class Equiangular {
 public:
     /// Nothing where the light has no place that is known, or so far away that all of the way has about the same of its light.
     static std::optional<Equiangular> of(const FreeFlight&, const BoundLight&, MediumSampling);
+    static bool sees(const FreeFlight& f, const BoundLight& l, MediumSampling how) { return Equiangular().look(f, l, how); }
     float at(float u) const;       ///< a point for a number of [0, 1), as a length of the way
     double density(float t) const; ///< a unit of length
 
 private:
+    /// All but the angles. False: there is none.
+    bool look(const FreeFlight&, const BoundLight&, MediumSampling);
     double length_ = 0, nearest_ = 0, away_ = 0, from_ = 0, to_ = 0; ///< angles at the light
 };
 
 class Accumulator;
 class Atmosphere;
+struct BatchContext;
 class BatchPool;
+class BlockVertices;
 class Flights;
+struct KernelRun;
 class LightKernels;
 class LightPathStates;
 class LitSurfaces;
@@ -51,6 +59,10 @@ public:
     /// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one,
     /// all with the same chance: a density for any of them is right. `away`: how far it is.
     Vec3 besideLight(const Medium&, const PathRay&, const Vec3& from, float* away = nullptr) const;
+    /// The same for rays that leave a point of a surface, of lobes that give back most from there.
+    Beside besideSurface(const KernelRun&, size_t point) const;
+    /// Whether rays of surfaces pass lights in some medium, by what the render is.
+    bool surfacesAim() const;
 
 private:
     struct Crossing {
@@ -59,17 +71,24 @@ private:
         Color weight;
         bool stops = false;
     }; ///< weight: of the ray where it begins
-    std::optional<Crossing> cross(Flight&, size_t number, Sched&);
+    bool leaks(const Flight&); ///< what ends nowhere is said
+    std::optional<Crossing> cross(Flight&, size_t flight, Vec2 random, Sched&);
     void pass(Flight&, Sched&);
     void scatter(std::span<Flight>, std::span<const Crossing>, Sched&);
+    void gather(BatchContext&, const Medium&, Sched&);
+    void placePoints(BatchContext&, const Medium&) const;
     void nearLights(std::span<Flight>, std::span<const Crossing>, Sched&);
     void addOpacity(const PathRay&, const Color&); ///< to the sample of a camera ray
     void glow(const Flight&, const Homogeneous&, Sched&);
     class NearLight;
+    std::vector<Crossing> crossings_;
+    render::NumberRows numbers_;
+    std::vector<Vec3> lights_;
     int leaks_ = 0; ///< rays that left the scene inside of such a medium
     Accumulator& accumulator_;
     Atmosphere& atmosphere_;
     BatchPool& batches_;
+    BlockVertices& blocks_;
     Flights& flights_;
     LightKernels& lightKernels_;
     LitSurfaces& litSurfaces_;

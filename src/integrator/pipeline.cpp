@@ -304,6 +304,7 @@ void Pipeline::shadeHits(size_t group, Sched& sched) {
     p.store.keepIndirect(*c);
     if (w.globalMaps_) p.photons.takeGlobalMaps(*c, sched);
     if (c->rays.empty()) return p.batches.giveBack(std::move(c));
+    if (p.shading.vanish(*c, sched)) return p.batches.finish(std::move(c), sched);
     if (p.photons.photonTrace()) p.photons.tilt(*c);
     c->again = p.photons.photonTrace() && p.photons.photonTrace()->job->learns;
     const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });

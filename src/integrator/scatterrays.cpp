@@ -100,7 +100,7 @@ void ScatterRays::draw(int turn) {
         if (!s.goes) continue;
         const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
         Vec2 u = numbers_.pair(number++);
-        const std::optional<Vec3> w = LobeSelection::drawBeside(l, u);
+        const std::optional<Vec3> w = l.beside.draw(u);
         if ((s.drawn = w.has_value())) s.w = *w;
         else rows.ask(l.place, u);
     }
@@ -121,7 +121,7 @@ void ScatterRays::draw(int turn) {
         if (!s.goes) continue;
         const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
         s.value = l.delta ? LobeValue{Color(l.albedo), l.albedo, 0} : rows.value(l.place);
-        s.value.pdf = LobeSelection::densityBeside(l, s.w, s.value.pdf);
+        s.value.pdf = l.beside.density(s.w, s.value.pdf);
         if (s.idle) s.value.colour = Color(0);
     }
 }

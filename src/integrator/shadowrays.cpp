@@ -72,7 +72,7 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
 bool ShadowRays::meetsOpaqueAlone(const ShadowRay& r) const {
     if (r.hemisphere >= 0 && occlusion_.hemispheres[size_t(r.hemisphere)].fade.fades())
         return false; // it matters how far away they are
-    return world_.media_.empty() && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
+    return !world_.mediaOverrule_ && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
 }
 
 /// 0 for rays that a surface blocks which needs no shader for that, 1 for the others.
@@ -125,7 +125,6 @@ public:
 
 private:
     struct Going {
-        accel::Ray ray;
         size_t index;
         int layers;
         const shading::Media* media;
@@ -136,8 +135,10 @@ private:
         return r.hemisphere >= 0 && stage_.occlusion_.hemispheres[size_t(r.hemisphere)].fade.fades();
     }
     void begin();
-    void follow(Going&);
-    bool enters(Going&, const SurfaceBinding&, const accel::Hit&);
+    void meet();
+    void pass(const Going&, const accel::Ray& behind, const accel::Hit&);
+    bool enters(Going&, const SurfaceBinding&, const accel::Hit&, const Vec3& dir);
+    void leaves(const Going&);
     void takes(size_t i, const Color& opacity, double distance);
 
     ShadowRays& stage_;
@@ -145,11 +146,15 @@ private:
     std::span<const ShadowRay> rays_;
     std::span<Color> out_;
     const bool counts_, fading_;
+    bool few_ = false;                ///< ways_ and hits_ have the numbers of WorldImpl::byOpacity_.few
     std::vector<Color> taken_;        ///< what surfaces far away block in part
     std::vector<uint16_t> straights_; ///< ShadowRays::straights_: what runs on the way may send rays, too
     std::vector<MediumPart> parts_;
     std::vector<Going> now_, next_;
-    std::vector<OpacityQuery> met_; ///< of next_
+    std::vector<accel::Ray> ways_, nextWays_; ///< of now_, next_
+    std::vector<accel::Hit> hits_;            ///< of now_
+    std::vector<OpacityQuery> met_;
+    std::vector<size_t> asks_; ///< of met_: places in next_
 };
 
 void ShadowRays::Passing::takes(size_t i, const Color& opacity, double distance) {
@@ -162,67 +167,98 @@ void ShadowRays::Passing::takes(size_t i, const Color& opacity, double distance)
 /// Rays that no opaque surface blocks by itself.
 void ShadowRays::Passing::begin() {
     stage_.blockedByOpaque(rays_, out_);
+    few_ = world_.byOpacity_.few && std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.meetsOpaqueAlone(r); });
     for (size_t i = 0; i < rays_.size(); ++i) {
         const bool alone = stage_.meetsOpaqueAlone(rays_[i]);
-        if (alone && (out_[i] == Color(0) || !passes(world_.byOpacity_.clearBounds, rays_[i]))) continue;
-        now_.push_back({shadowRay(rays_[i]), i, 0, rays_[i].media, rays_[i].origin});
-        if (alone) now_.back().ray.only = world_.byOpacity_.clear.data();
+        if (alone && out_[i] == Color(0)) continue;
+        const Going g{i, 0, rays_[i].media, rays_[i].origin};
+        if (alone && (world_.allOpaque_ || !passes(world_.byOpacity_.clearBounds, rays_[i]))) {
+            leaves(g);
+            continue;
+        }
+        now_.push_back(g);
+        ways_.push_back(shadowRay(rays_[i]));
+        if (alone && !few_) ways_.back().only = world_.byOpacity_.clear.data();
     }
 }
 
+/// To the end of its way, past no surface any more.
+void ShadowRays::Passing::leaves(const Going& g) {
+    const ShadowRay& r = rays_[g.index];
+    if (g.medium() >= 0 && r.distance < 1e30f) parts_.push_back({g.medium(), g.index, g.begin, r.origin + r.dir * r.distance});
+}
+
 /// Through the boundary of a medium. Whether a medium of higher priority makes it nothing.
-bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel::Hit& h) {
-    const geometry::SurfacePoint at = world_.accel_->point(h);
+bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel::Hit& h, const Vec3& dir) {
+    geometry::SurfacePoint at;
+    world_.accel_->point(h, at, 0);
     const Vec3 end = at.displaced ? at.displacedP : at.P;
     if (g.medium() >= 0) parts_.push_back({g.medium(), g.index, g.begin, end});
     const bool overruled = b.overruled(g.media);
-    g.media = stage_.media_.beyond(b, g.media, at.n, g.ray.dir, g.ray.dir);
+    g.media = stage_.media_.beyond(b, g.media, at.n, dir, dir);
     g.begin = end;
     return !overruled;
 }
 
-/// Up to its end, or to a surface whose shader must say Oi.
-void ShadowRays::Passing::follow(Going& g) {
-    Color& t = out_[g.index];
-    for (;; ++g.layers) {
-        accel::Hit h;
-        if (!stage_.intersector_.meet(g.ray, h)) {
-            if (const float end = rays_[g.index].distance; g.medium() >= 0 && end < 1e30f)
-                parts_.push_back({g.medium(), g.index, g.begin, rays_[g.index].origin + g.ray.dir * end});
-            return;
+/// What each ray meets next.
+void ShadowRays::Passing::meet() {
+    hits_.resize(now_.size());
+    if (few_) stage_.intersector_.meetFew(ways_, hits_);
+    else stage_.intersector_.meet(ways_, hits_);
+    for (size_t i = 0; i < now_.size(); ++i) {
+        if (!hits_[i].valid()) {
+            leaves(now_[i]);
+            continue;
         }
-        if (g.layers >= limits::kShadowLayers) {
-            t = Color(0);
-            ++stage_.counters_.depthCap;
-            return;
-        }
-        const int binding = world_.bindingOf_[h.shape];
-        const SurfaceBinding& b = world_.bindings_[size_t(binding)];
-        world_.goOn(g.ray, h);
-        if (!world_.media_.empty() && !enters(g, b, h)) continue;
+        accel::Ray behind = ways_[i];
+        world_.goOn(behind, hits_[i]);
+        if (few_) hits_[i].shape = world_.byOpacity_.numbers[hits_[i].shape];
+        pass(now_[i], behind, hits_[i]);
+    }
+}
+
+/// Past a surface, or to where its shader must say Oi.
+void ShadowRays::Passing::pass(const Going& from, const accel::Ray& behind, const accel::Hit& h) {
+    Color& t = out_[from.index];
+    if (from.layers >= limits::kShadowLayers) {
+        t = Color(0);
+        ++stage_.counters_.depthCap;
+        return;
+    }
+    Going g = from;
+    ++g.layers;
+    const int binding = world_.bindingOf_[h.shape];
+    const SurfaceBinding& b = world_.bindings_[size_t(binding)];
+    if (world_.media_.empty() || enters(g, b, h, behind.dir)) {
         const Opacity& opacity = b.opacityFor(rays_[g.index].kind->set.mode);
         if (opacity.kernel) {
-            ++g.layers;
             met_.push_back({binding, h, &rays_[g.index], &opacity.kernel});
-            next_.push_back(g);
-            return;
+            asks_.push_back(next_.size());
+        } else {
+            takes(g.index, opacity.constant, h.distance);
+            if (!(maxComponent(t) > 0)) return;
         }
-        takes(g.index, opacity.constant, h.distance);
-        if (!(maxComponent(t) > 0)) return;
     }
+    next_.push_back(g);
+    nextWays_.push_back(behind);
 }
 
 void ShadowRays::Passing::run() {
     begin();
     const StopFlag* const stop = stage_.context_.stop;
     while (!now_.empty()) {
-        next_.clear(), met_.clear();
-        for (Going& g : now_) follow(g);
-        if (next_.empty()) break;
+        next_.clear(), nextWays_.clear(), met_.clear(), asks_.clear();
+        meet();
         stage_.opacities_.takeOpacities(
-            met_, [&](size_t k, const Color& opacity) { takes(next_[k].index, opacity, met_[k].hit.distance); });
-        std::erase_if(next_, [&](const Going& g) { return !(maxComponent(out_[g.index]) > 0); });
-        now_.swap(next_);
+            met_, [&](size_t k, const Color& opacity) { takes(next_[asks_[k]].index, opacity, met_[k].hit.distance); });
+        size_t kept = 0;
+        for (size_t i = 0; i < next_.size(); ++i) {
+            if (!(maxComponent(out_[next_[i].index]) > 0)) continue;
+            next_[kept] = next_[i];
+            nextWays_[kept++] = nextWays_[i];
+        }
+        next_.resize(kept), nextWays_.resize(kept);
+        now_.swap(next_), ways_.swap(nextWays_);
         if (stop && *stop) break; // the result is void
     }
     for (size_t i = 0; i < taken_.size(); ++i)

@@ -102,6 +102,28 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
     }
 }
 
+bool SurfaceShading::vanish(BatchContext& c, Sched& sched) {
+    const auto nothing = [&](int b) {
+        const SurfaceBinding& s = world_.bindings_[size_t(b)];
+        return s.vanishes && s.lightOutputs.empty() && s.aside.empty();
+    };
+    if (!std::all_of(c.bindings.begin(), c.bindings.end(), nothing) || photons_.photonTrace() || !gathers_.gathered.empty() ||
+        !accumulator_.traceSums.empty())
+        return false;
+    const bool outputs = world_.settings_.firstSeen || !world_.wanted_.empty();
+    for (const PathRay& r : c.rays) {
+        const bool told = (r.first && !(r.counts && sched.plain())) || (r.counts && (outputs || r.sample->grid));
+        const bool hazy = r.medium() >= 0 && !world_.media_[size_t(r.medium())].homogeneous;
+        if (told || hazy || store_.extraOf(r).fade.fades()) return false;
+    }
+    for (size_t i = 0; i < c.rays.size(); ++i) {
+        const PathRay& r = c.rays[i];
+        if (r.counts) cameraOutputs_.see(r, Color(0), c.depths.empty() ? c.points[i].P.z : c.depths[i], false);
+        transparency_.passThrough(world_.bindings_[size_t(c.bindings[i])], r, c.targets[i], c.points[i], Color(1), 1, 0, sched);
+    }
+    return true;
+}
+
 void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     if (c->binding->displacement) displacement_.take(*c);
     const auto& kernel = *c->bound->kernel;

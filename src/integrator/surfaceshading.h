@@ -28,6 +28,8 @@ class WaitingKernels;
 class SurfaceShading final : Stage {
 public:
     explicit SurfaceShading(const StageSet&);
+    /// Where all of a batch are surfaces that show nothing its rays go on, and no kernel runs. False: it is to be shaded.
+    bool vanish(BatchContext&, Sched&);
     /// Shades a batch whose points, binding and kernel are known.
     void shade(const std::shared_ptr<BatchContext>&, Sched&);
     /// Once the kernel has run at some points. `asked`: by lane, the rays that a waiting kernel has asked for there.

@@ -2,6 +2,7 @@
 // point.
 #pragma once
 #include "answers/kernelrun.h"
+#include "integrator/beside.h"
 #include "integrator/rays.h"
 #include "world/below.h"
 
@@ -74,8 +75,7 @@ struct LobeVertex {
     uint8_t guide = 0;       ///< GuideRays::Aim::trail() of its own ray
     float chosen = 1;        ///< probability that the indirect ray of this lobe is followed
     bool last = false;       ///< its ray would go too deep: light that only rays find is looked for in its place
-    Vec3 beside;             ///< unit, toward a light that its rays may pass in a medium
-    float besideShare = 0;   ///< of its rays that are drawn evenly in the angle to it
+    Beside beside;           ///< a light that its rays may pass in a medium
 };
 
 /// n or -n: the one on the side of the surface at p that a ray in direction dir comes from.

@@ -71,6 +71,8 @@ struct alignas(64) LightBlock {
     Lanes metDiffuse = 0, metSpecular = 0; ///< rays of these kinds could meet the light by chance
     bool emitter = false;                  ///< `end` counts
     bool met = false;                      ///< rays can meet it: multiple importance sampling
+    bool parted = false;                   ///< `part` counts
+    Row part;                              ///< what samples like these have of the light; others have the rest
 };
 
 /// An emitter of a few flat triangles with normals of their own, current space: how Emitter::sample() draws its points.

@@ -7,10 +7,17 @@
 
 namespace alpenglow::shading {
 
-double FreeFlight::density(float at) const {
+Vec3d FreeFlight::leftAt(float at) const {
+    Vec3d l(exact::exp(-double(extinction.x) * at));
+    if (extinction.y != extinction.x) l.y = exact::exp(-double(extinction.y) * at);
+    if (extinction.z != extinction.x) l.z = exact::exp(-double(extinction.z) * at);
+    return l;
+}
+
+double FreeFlight::density(const Vec3d& left) const {
     double sum = 0;
     for (int k = 0; k < 3; ++k)
-        if (chance[k] > 0) sum += chance[k] * exact::exp(-double(extinction[k]) * at);
+        if (chance[k] > 0) sum += chance[k] * left[k];
     return sum;
 }
 

@@ -201,6 +201,7 @@ struct SurfaceBinding {
         return m == shading::HitMode::Primitive || (m == shading::HitMode::Default && (primitiveFor & visibilityBit(t)));
     }
     bool matte = false;
+    bool vanishes = false; ///< its shader shows nothing and lets all light through, wherever it is met
     float shadingRate = 1;
     int maxDiffuse = -1, maxSpecular = -1;
     float bias = 0;                           ///< Attribute "trace" "bias"; 0: the hit's own error bound

@@ -28,8 +28,10 @@ bool sameEverywhere(const rsl::CompiledKernel& k) {
 } // namespace
 
 Color Homogeneous::left(float way) const {
-    Color t;
-    for (int k = 0; k < 3; ++k) t[k] = float(exact::exp(-double(extinction()[k]) * way));
+    const Color sigma = extinction();
+    Color t(float(exact::exp(-double(sigma.x) * way)));
+    if (sigma.y != sigma.x) t.y = float(exact::exp(-double(sigma.y) * way));
+    if (sigma.z != sigma.x) t.z = float(exact::exp(-double(sigma.z) * way));
     return t;
 }
 

@@ -1,9 +1,12 @@
 // What surfaces take from shadow rays: a number where it is known beforehand, else the kernel that tells it.
 #include "world/impl.h"
+#include "world/surfaces.h"
+#include <algorithm>
 
 namespace alpenglow::transport {
 
-void WorldImpl::sortByOpacity() {
+void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
+    mediaOverrule_ = std::any_of(media_.begin(), media_.end(), [&](const Medium& m) { return m.priority != media_[0].priority; });
     if (allOpaque_) return;
     for (size_t i = 0; i < shapes_.size(); ++i) {
         const bool opaque = bindings_[size_t(bindingOf_[i])].opacity.opaque();
@@ -11,6 +14,21 @@ void WorldImpl::sortByOpacity() {
         byOpacity_.clear.push_back(!opaque);
         if (!opaque) byOpacity_.clearBounds.add(shapes_[i]->bounds());
     }
+    constexpr size_t kFew = 24; // triangles: as many as are searched without a tree
+    std::vector<geometry::ShapeRef> shapes;
+    std::vector<uint32_t> seen;
+    size_t triangles = 0;
+    for (size_t i = 0; i < shapes_.size() && triangles <= kFew; ++i) {
+        if (!byOpacity_.clear[i]) continue;
+        triangles += shapes_[i]->exact() || shapes_[i]->placed() ? kFew : shapes_[i]->mesh().triangles();
+        shapes.push_back(shapes_[i]);
+        seen.push_back(visibility[i]);
+        byOpacity_.numbers.push_back(uint32_t(i));
+    }
+    if (triangles > kFew || fades_ || accel_->hasSolids() || unmade_) return;
+    Diagnostics said; // by the whole
+    byOpacity_.few = std::make_unique<accel::Accel>(shapes, seen, said);
+    if (!byOpacity_.few->takesRows()) byOpacity_.few.reset();
 }
 
 void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
@@ -77,6 +95,20 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     evaluator.run(k, nullptr, point, b.surface->view(), [&](const shading::Batch& batch) { o = batch.color(k.plan->Oi, 0); });
     for (int i = 0; i < 3; ++i) result.constant[i] = std::isfinite(o[i]) ? std::clamp(o[i], 0.f, 1.f) : 1;
     return result;
+}
+
+bool SurfaceBinder::vanishes(const SurfaceBinding& b) const {
+    const BoundKernel& k = b.surfaceS;
+    const auto& facts = k.kernel->facts();
+    if (!k.kernel->inputs().empty() || !k.kernel->sites().empty() || facts.suspends || facts.lightLoops || b.displacement ||
+        b.moveS || b.atmosphere.shader || b.areaLight >= 0 || b.matte || k.plan->Ci < 0 || k.plan->Oi < 0)
+        return false;
+    std::vector<ShadePoint> point(1);
+    bool nothing = false;
+    evaluator_.run(k, nullptr, point, b.surface->view(), [&](const shading::Batch& batch) {
+        nothing = batch.color(k.plan->Ci, 0) == Color(0) && batch.color(k.plan->Oi, 0) == Color(0);
+    });
+    return nothing;
 }
 
 } // namespace alpenglow::transport

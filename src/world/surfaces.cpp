@@ -247,8 +247,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     hearDisplacement(b, varying, displacementVarying, left);
     if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, a.lights, asked_.back().varying, diagnostics_);
     bindLights(b, a);
-    // A light without a kernel (its shader is missing, does not compile or is no light) was reported; its geometry is an ordinary
-    // surface.
+    // A light without a kernel (its shader is missing, or is no light) was reported; its geometry is an ordinary surface.
     b.areaLight = a.areaLight >= 0 && world_.lights_[size_t(a.areaLight)].kernel ? a.areaLight : -1;
     b.matte = a.matte;
     b.shadingRate = a.shadingRate;
@@ -272,6 +271,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     b.group = group->second;
     b.opacity = world_.opacityOf(b, *shape, "", asked_.back().varying, evaluator_, diagnostics_);
     world_.allOpaque_ &= b.opacity.opaque();
+    b.vanishes = vanishes(b);
     asked_.back().shape = shape;
     world_.bindings_.push_back(std::move(b));
     return it->second;

@@ -31,6 +31,7 @@ private:
     int bindAnew(const geometry::ShapeRef&);
     static std::string keyOf(const SurfaceBinding&, const geometry::Shape&, bool grid,
                              std::initializer_list<const Names*> varying);
+    bool vanishes(const SurfaceBinding&) const; ///< SurfaceBinding::vanishes, of a shader that reads nothing
     Names outputsOf(const SurfaceBinding&) const;
     /// What gathers of the scene's surfaces ask other surfaces for.
     void findGathers();

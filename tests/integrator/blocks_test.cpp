@@ -257,6 +257,43 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
             }
 }
 
+TEST(Blocks, AreFollowedThroughFog) {
+    // Fog about the eye and all else but a wall, and milk in it; with lamps that are rows, that are none, and more than are
+    // asked.
+    const auto fog = [](const std::string& more) {
+        return "AttributeBegin\nSurface \"null\" Interior \"medium\" \"color scattering\" [.1 .12 .2] "
+               "\"color absorption\" [.02 .01 .03] \"float anisotropy\" .4 " +
+               more + "\nTranslate 0 0 5\nSphere 7.5 -7.5 7.5 360\nAttributeEnd\n";
+    };
+    const std::string milk =
+        "AttributeBegin\nSurface \"null\" Interior \"medium\" \"color scattering\" [5 5 4] \"color emission\" "
+        "[.1 0 0] \"float anisotropy\" -.2 \"float priority\" 1\nTranslate 0 .5 4\nSphere .7 -.7 .7 360\n"
+        "AttributeEnd\n";
+    const std::string biased = "Attribute \"trace\" \"bias\" .01\n";
+    Diagnostics d;
+    Settings paths, local, byDistance;
+    paths.lightPaths = std::make_shared<scene::LightPaths>(
+        std::vector<scene::LightPaths::Source>{{"C<RD>L", {}}, {"CV.*[LO]", {}}, {"C.*<RD>.+L", {}}}, d);
+    ASSERT_EQ(d.all().size(), 0u);
+    local.localRoulette = true;
+    byDistance.mediumSampling = MediumSampling::Distance;
+    for (const Settings& s : {Settings(), paths, local, byDistance})
+        for (const std::string& more :
+             {fog(""), fog("") + milk + "Opacity .5 .6 .7\n", biased + fog(""), fog("") + manyLights(6)})
+            for (const char* shader : {"\"matte\"", "\"plastic\""})
+                for (const int depth : {1, -1}) {
+                    const std::string rib = roomOf(shader, more);
+                    const Traced one = trace(rib, false, 16, depth, s), all = trace(rib, true, 16, depth, s);
+                    EXPECT_GT(sumOf(one), 1) << shader << more;
+                    EXPECT_EQ(one.inBlocks, 0u);
+                    EXPECT_GT(all.inBlocks, all.points / (depth < 0 ? 4 : 8))
+                        << shader << more; // at the end skies are looked for
+                    EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
+                    EXPECT_EQ(differences(one, trace(rib, true, 4, depth, s)), 0u) << shader << more << depth;
+                    EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
+                }
+}
+
 TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {
     for (const char* shader :
          {"\"matte\"", "\"plastic\"", "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1]"})

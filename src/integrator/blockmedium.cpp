@@ -1,0 +1,123 @@
+// Points inside of media that scatter, in blocks: their lobes are those of the medium, and no kernel asks for them (medium.h).
+#include "answers/random.h"
+#include "integrator/blockvertices.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/medium.h"
+#include "integrator/photonstage.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::transport {
+
+/// Whether what the lights of a binding are asked at points inside of media is more than rows hold.
+bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
+    const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
+    return !usable_ || paths_.automaton || !list.chooser.empty() ||
+           !std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) { return inRows_[size_t(l)] != 0; });
+}
+
+bool BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
+    const SurfaceBinding& b = *c.binding;
+    const bool plain = usable_ && plain_[size_t(b.lightList)] && !b.matte && b.maxDiffuse < 0 && b.maxSpecular < 0;
+    if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
+    begin(c, false);
+    loadVertices(c);
+    beginMedium(beside, h.anisotropy);
+    return followLobes(c, sched);
+}
+
+bool BlockVertices::light(const BatchContext& c, const Homogeneous& h, const BoundLight& light, std::vector<BlockLit>& found) {
+    if (!usable_ || !inRows_[size_t(&light - world_.lights_.data())]) return false;
+    begin(c, false);
+    loadVertices(c);
+    beginMedium({}, h.anisotropy);
+    prepare();
+    findLit(&light);
+    askInRows(light, c);
+    const Site& s = sites_[0];
+    for (size_t b = 0; b < blocks_; ++b) {
+        const LightBlock& l = lights_[b];
+        if (l.asked) s.lanes->evaluate(s.lobes[b].lobe[0], l.asked, l.w[0], value_[0]);
+        for (Lanes left = l.asked; left; left &= left - 1) {
+            const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
+            BlockLit& to = found.emplace_back();
+            to.point = point;
+            to.w = {l.w[0][i], l.w[1][i], l.w[2][i]};
+            if (l.emitter) to.end = {l.end[0][i], l.end[1][i], l.end[2][i]};
+            to.Cl = {l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};
+            to.density = l.density[i], to.far = l.far[i], to.kept = l.keptDiffuse[i], to.phase = value_[kRowFcos][i];
+            const int32_t says = queryAt_.empty() ? -1 : queryAt_[point];
+            to.shadowRadius = says < 0 ? 0 : values_[size_t(says)].shadowRadius;
+            if (says >= 0) to.L = values_[size_t(says)].L;
+        }
+    }
+    return true;
+}
+
+/// The points of a block.
+void BlockVertices::loadFlown(size_t b, const BatchContext& c) {
+    VertexBlock& v = vertices_[b];
+    const RayBlock& rays = rays_[b];
+    const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
+    v.points = n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1;
+    v.through = false;
+    for (size_t k = 0; k < size_t(kBlock); ++k) {
+        const float t = c.flown[first + std::min(k, n - 1)].t;
+        for (int q = 0; q < 3; ++q) v.P[q][k] = rays.origin[q][k] + rays.direction[q][k] * t;
+    }
+    for (int q = 0; q < 3; ++q) { // there are no sides, and nobody asks from where it is seen
+        std::fill_n(v.n[q], kBlock, 0.f);
+        std::fill_n(v.I[q], kBlock, 0.f);
+        std::fill_n(v.clear[q], kBlock, 0.f);
+    }
+    std::fill_n(v.error, kBlock, 0.f);
+    std::fill_n(v.bias, kBlock, c.binding->bias);
+}
+
+/// The lobes: of points near a light those that know of it.
+void BlockVertices::beginMedium(std::span<const Vec3> beside, float anisotropy) {
+    static const LobeKind* const kKinds[] = {findLobe("henyey-greenstein"), findLobe("henyey-greenstein-beside")};
+    count_ = std::any_of(beside.begin(), beside.end(), [](const Vec3& l) { return l != Vec3(0); }) ? 2 : 1;
+    sites_.resize(std::max(sites_.size(), count_));
+    for (size_t k = 0; k < count_; ++k) {
+        Site& s = sites_[k];
+        s.number = kFlight;
+        s.info = nullptr;
+        s.kind = kKinds[k];
+        s.lanes = &lanes_.lobes[s.kind->index];
+        s.rays = &kDiffuseKind;
+        s.lighting = s.lights = s.diffuse = true;
+        s.narrow.clear();
+        s.lobes.resize(std::max(s.lobes.size(), blocks_));
+        for (size_t b = 0; b < blocks_; ++b) {
+            LobeBlock& l = s.lobes[b];
+            l.asked = l.lights = 0;
+            for (int q = 0; q < 3; ++q) {
+                std::fill_n(l.weight[q], kBlock, 1.f);
+                std::copy_n(rays_[b].direction[q], kBlock, l.lobe[kRowAxis + q]);
+            }
+            std::fill_n(l.lobe[kRowA], kBlock, anisotropy);
+        }
+    }
+    for (size_t i = 0; i < points_; ++i) {
+        const bool near = !beside.empty() && beside[i] != Vec3(0);
+        LobeBlock& l = sites_[near].lobes[i / kBlock];
+        l.asked |= 1u << i % kBlock;
+        for (int q = 0; q < 3 && near; ++q) l.lobe[kRowWo + q][i % kBlock] = beside[i][q];
+    }
+}
+
+/// What samples of a light for these points have of its light; those that have nothing are not lit by it.
+void BlockVertices::takeParts(const BoundLight& light, const BatchContext& c) {
+    lights_.resize(blocks_);
+    std::erase_if(litBlocks_, [&](size_t b) {
+        for (Lanes left = lit_[b]; left; left &= left - 1) {
+            const size_t i = size_t(std::countr_zero(left));
+            lights_[b].part[i] = mediumFlights_.shareOfDistance(c.flown[b * kBlock + i], light);
+            if (lights_[b].part[i] == 0) lit_[b] &= ~(1u << i);
+        }
+        return lit_[b] == 0;
+    });
+}
+
+} // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// Colours: rsl.md 10.3 (seed 6.4.3). Linear RGB triples; other spaces by explicit conversion.
+// Colours: 3Delight manual, 6.4.3. Linear RGB triples; other spaces by explicit conversion.
 #pragma once
 #include "shadeops/call.h"
 

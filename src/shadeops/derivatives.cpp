@@ -1,5 +1,5 @@
-// Derivatives: rsl.md 10.1 and 10.3. Du and Dv are known to the code generator, or differences (rsl/passes/differences.h); the
-// rest is RSL over them.
+// Derivatives: 3Delight manual, 6.4.1, 6.4.3. Du and Dv are known to the code generator, or differences
+// (rsl/passes/differences.h); the rest is RSL over them.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {

@@ -1,4 +1,4 @@
-// Geometry: rsl.md 10.3 (seed 6.4.3). Code for all lane widths above, descriptors below (host only).
+// Geometry: 3Delight manual, 6.4.3. Code for all lane widths above, descriptors below (host only).
 #pragma once
 #include "shadeops/call.h"
 

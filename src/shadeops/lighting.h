@@ -1,4 +1,4 @@
-// Lighting: rsl.md 10.4 (seed 6.4.4). Code for all lane widths above, descriptors below (host only).
+// Lighting: 3Delight manual, 6.4.4. Code for all lane widths above, descriptors below (host only).
 #pragma once
 #include "shadeops/call.h"
 #include "shadeops/geometry.h"
@@ -155,7 +155,7 @@ color phong(vector n, v; float size) {
                         "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the "
                         "plane of \"horizon\" is 0. The "
                         "hidden shadeops __bsdf_NAME document each distribution.");
-    bsdf.source = "seed; formulas rsl.md 12.4 (k)";
+    bsdf.source = "seed; formulas 3Delight manual, 6.4.5.2 (k)";
     bsdf.derivative = DerivativeRule::Inherent;
     bsdf.optional = distributionParameters();
     bsdf.optional.push_back(

@@ -1,4 +1,4 @@
-// Mathematics: rsl.md 10.1 (seed 6.4.1). Code for all lane widths above, descriptors below (host only).
+// Mathematics: 3Delight manual, 6.4.1. Code for all lane widths above, descriptors below (host only).
 #pragma once
 #include "shadeops/call.h"
 
@@ -6,8 +6,8 @@ namespace alpenglow::rsl::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opRadians(const T& x) { return x * vf(kPi / 180); }
 template <class T> AL_INLINE T opDegrees(const T& x) { return x * vf(180 / kPi); }
-/// Negative numbers give -infinity whatever the base, as the seed says; 0 gives the limit, +infinity for bases below 1. Where
-/// there is no such logarithm, in base 1 and in bases that are not positive, it is 0, as a division by 0 is.
+/// Negative numbers give -infinity whatever the base (3Delight manual, 6.4.1); 0 gives the limit, +infinity for bases below 1.
+/// Where there is no such logarithm, in base 1 and in bases that are not positive, it is 0, as a division by 0 is.
 template <class T> AL_INLINE T opLogBase(const T& x, const T& base) {
     const vf a = value(x), b = value(base), infinite = vf(__builtin_inff());
     const vm none = ((b >= 0x1p-126f) == 0) | (b == 1), zero = (a >= 0x1p-126f) == 0; // what is no normal float counts as 0

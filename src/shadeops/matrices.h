@@ -1,4 +1,4 @@
-// Matrices: rsl.md 10.3 (seed 6.4.3). Row vectors, p' = p M, translation in the last row, as base/matrix.h.
+// Matrices: 3Delight manual, 6.4.3. Row vectors, p' = p M, translation in the last row, as base/matrix.h.
 #pragma once
 #include "shadeops/call.h"
 #include "shadeops/geometry.h"

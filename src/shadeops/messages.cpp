@@ -1,4 +1,4 @@
-// Message passing and information: rsl.md 11.1 (seed 6.4.8). Values live in the renderer; here are the signatures.
+// Message passing and information: 3Delight manual, 6.4.8. Values live in the renderer; here are the signatures.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {

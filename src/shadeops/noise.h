@@ -1,4 +1,4 @@
-// Noise and random: rsl.md 10.2 (seed 6.4.2). Code for all lane widths above, descriptors below (host only).
+// Noise and random: 3Delight manual, 6.4.2. Code for all lane widths above, descriptors below (host only).
 #pragma once
 #include "shadeops/call.h"
 

@@ -1,4 +1,4 @@
-// Ray tracing: rsl.md 12.1 and 12.2 (seed 6.4.5). Answered by rays; here are signatures and optional parameters.
+// Ray tracing: 3Delight manual, 6.4.5. Answered by rays; here are signatures and optional parameters.
 #include "shadeops/describe.h"
 #include "shadeops/distributions.h"
 #include <array>

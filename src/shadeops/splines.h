@@ -1,4 +1,4 @@
-// Splines: rsl.md 10.1 (seed 6.4.1). The code generator chooses the four control points; the code here places and evaluates.
+// Splines: 3Delight manual, 6.4.1. The code generator chooses the four control points; the code here places and evaluates.
 #pragma once
 #include "shadeops/call.h"
 

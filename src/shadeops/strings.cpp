@@ -1,4 +1,4 @@
-// Strings and standard output: rsl.md 11.2 (seed 6.4.7).
+// Strings and standard output: 3Delight manual, 6.4.7.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {

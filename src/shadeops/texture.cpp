@@ -1,4 +1,4 @@
-// Texture mapping: rsl.md 12.3 (seed 6.4.6). The renderer answers; `name` may carry a channel, name[channel].
+// Texture mapping: 3Delight manual, 6.4.6. The renderer answers; `name` may carry a channel, name[channel].
 #include "shadeops/describe.h"
 #include <algorithm>
 

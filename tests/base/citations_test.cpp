@@ -160,6 +160,22 @@ TEST(Citations, FilesInDocuments) {
     });
 }
 
+// `lobe.h`, `base/owen.h`: the end of the name of a file.
+TEST(Citations, SourcesInDocuments) {
+    std::set<std::string> ends;
+    for (const char* folder : kFolders)
+        for (const auto& e : fs::recursive_directory_iterator(kRoot / folder)) {
+            fs::path end;
+            for (fs::path p = fs::relative(e.path(), kRoot); !p.empty(); p = p.parent_path()) {
+                end = end.empty() ? p.filename() : p.filename() / end;
+                ends.insert(end.string());
+            }
+        }
+    each(".", std::regex(R"(`([a-z0-9_/]+\.(?:h|cpp|inc|sl|py))`)"), [&](const Line& l, const std::smatch& m) {
+        if (l.document) { EXPECT_TRUE(ends.count(m[1])) << l << "there is no " << m[1]; }
+    });
+}
+
 TEST(Citations, SectionsOfRISpec) {
     int found = 0;
     each("RISpec 3.2", std::regex(R"(RISpec 3\.2,? (?:sections? |appendix )?([0-9]+(?:\.[0-9]+)*|[A-Z](?:\.[0-9]+)?\b))"),

@@ -1,7 +1,7 @@
 // Rays of a scene by kind, traced by us and by Embree in turns: nanoseconds of CPU a ray, one thread, the least of all turns.
 // ray_bench [--repeats N] [--rays N] [--kind NAME] [--ours] [--builds N] FILE.rib ...
 // --ours: without Embree. --builds: no rays, but what it takes to build shapes and the tree, the least of N.
-// The scenes: ../shared/bench/cycles (README.md there) and examples/muttenzer_box.rib.
+// The scenes: those of ../shared/bench/cycles, where they are, and examples/muttenzer_box.rib.
 #include "bench/box_embree.h"
 #include "bench/ray_set.h"
 #include "geometry/build.h"

@@ -1,7 +1,7 @@
 /* slbackground: the background of SLProject's scenes: a colour, a gradient, four corners or a picture, for all rays that leave the scene.
    bgcolor times what the corners give, between them linearly, times the picture mapname. Equal corners of a side make a gradient. Camera rays see it
    over the picture, the others by direction: corners by height and turn about y of "world", the picture by latitude and longitude about z of
-   mapspace (or as a cube map). A light of "path"; under "hidden" and "raytrace" only rays see it. reference: pathtracer.md section 9.
+   mapspace (or as a cube map). A light of "path"; under "hidden" and "raytrace" only rays see it. docs/design/slproject.md.
    Ball: LightSource "slbackground" 1 "color topleft" [.2 .4 .8] "color topright" [.2 .4 .8] */
 light slbackground(color bgcolor = 1, bottomleft = 1, bottomright = 1, topleft = 1, topright = 1; string mapname = "", mapspace = "world";) {
     solar() {

@@ -1,5 +1,5 @@
 /* slclassic: the material of SLProject's classic ray tracer: Blinn and Phong's light with ambient, and rays that mirror and glass send.
-   For Hider "raytrace" (or "hidden"); slmaterial is for "path". reference: pathtracer.md section 9.
+   For Hider "raytrace" (or "hidden"); slmaterial is for "path". docs/design/slproject.md has the formulas.
      ambientcolor, globalambient   ambient light is their product, and ambientcolor times ambient()
      shininess        exponent of the highlight
      kr, kt, kn       how much is reflected and let through, and the index of refraction

@@ -1,4 +1,4 @@
-/* slfog: the fog of SLProject's camera, as an atmosphere. reference: pathtracer.md section 9.6.
+/* slfog: the fog of SLProject's camera, as an atmosphere. docs/design/slproject.md.
      mode: 0 linear between start and end, 1 exp(-density z), 2 exp(-(density z)^2); z is the way, at most clipfar (0: of Clipping)
    Ci is held between 0 and 1, as there; what rays bring under Hider "path" is not.
    Ball: Atmosphere "slfog" "float mode" 0 "float start" 2 "float end" 9 "color fogcolor" [.6 .65 .7] */

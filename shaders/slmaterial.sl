@@ -1,5 +1,5 @@
 /* slmaterial: the materials of SLProject's path tracer as one RSL surface: diffuse, reflective, transparent, emissive; the first of
-   them that is not black decides, in that order. reference: pathtracer.md section 3.
+   them that is not black decides, in that order. docs/design/slproject.md.
      shininess, translucency: Phong exponents of the reflected and transmitted lobe; 1000 and above are perfect
      kn: index of refraction; fresnel "schlick" or "exact"
      texturename, bumpname: pictures; what bumpname is, height or normals, is told by its name (wood_H.png, wood_N.png), or by bumptype

@@ -1,4 +1,4 @@
-/* slspot: SLProject's spot light: full inside the cut-off cone, times cos^exponent; OpenGL attenuation. pathtracer.md section 4.2
+/* slspot: SLProject's spot light: full inside the cut-off cone, times cos^exponent; OpenGL attenuation. docs/design/slproject.md.
    radius: of a disk about from that faces each point and casts the shadows; samples: rays to it outside of "path" (docs/light.md).
    Lamp: LightSource "slspot" 1 "float cutoff" .17 "float exponent" 20 "float intensity" 4 */
 light slspot(float intensity = 1; color lightcolor = 1; point from = point "shader" (0, 0, 0); point to = point "shader" (0, 0, 1);

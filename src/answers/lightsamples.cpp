@@ -188,7 +188,7 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
         // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
         static const LobeKind* const diffuse = findLobe("diffuse");
         if (usesFootprint(light)) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse->spread(LobeParams{})));
-        // cosLight A / (pi d^2 n), design decision 4
+        // cosLight A / (pi d^2 n) (docs/light.md)
         *factor = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns));
     } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
         // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.

@@ -1,4 +1,4 @@
-// The random numbers of one sample, by path vertex, call site and occurrence (design decision 10).
+// The random numbers of one sample, by path vertex, call site and occurrence (docs/design/sampling.md).
 #pragma once
 #include "base/numberlanes.h"
 

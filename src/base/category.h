@@ -5,7 +5,7 @@
 
 namespace alpenglow {
 
-/// Whether a shader of these categories (words between commas) is meant by the expression (rsl.md 9.1). "" means all. "a" those
+/// Whether a shader of these categories (words between commas) fits the expression (3Delight manual, 6.3). "": all; "a": those
 /// of category a, "-a" all others, "a|b" both, "a&b" those that are of both, with parentheses where needed; "-" binds before "&",
 /// and "&" before "|". A list "a,b,-c" means those of any of its words without "-", and of none with "-". An expression that
 /// cannot be read means all: ask categoryError() first.

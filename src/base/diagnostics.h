@@ -1,4 +1,4 @@
-// The one diagnostic type and the one sink (design decision 12). Nothing aborts: errors are values that reach the user once.
+// The one type of diagnostic and its sink. Errors are values that reach the user once (docs/design/decisions.md, "Diagnostics").
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,7 +13,7 @@ namespace alpenglow {
 
 enum class Severity { Info = 0, Warning = 1, Error = 2, Severe = 3 }; ///< RIE_INFO .. RIE_SEVERE
 
-/// RIE error codes, ri.md section 12.
+/// RIE error codes, RISpec 3.2, 7.2.
 enum class Rie : int {
     NoError = 0,
     NoMem = 1,

@@ -1,5 +1,5 @@
 // Sums that do not depend on the order of their terms: fixed point, 128 bits, so that any order, split, merge or resume gives the
-// same bits (design decision 10). The scheduler adds radiance in units of 2^-64, the film samples in units of 2^-40.
+// same bits (docs/design/sampling.md). The scheduler adds radiance in units of 2^-64, the film samples in units of 2^-40.
 #pragma once
 #include <cmath>
 #include <cstdint>

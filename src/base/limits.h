@@ -1,4 +1,4 @@
-// Every limit that bounds what a stranger's file may cost, by name (reliability.md). Each has a test.
+// Every limit that bounds what a stranger's file may cost, by name. Each has a test (tests/limits).
 #pragma once
 #include <cstddef>
 
@@ -27,7 +27,7 @@ inline constexpr int kImageScans = 200;                      ///< of a progressi
 inline constexpr int kTextureTaps = 32;                      ///< probes of one filtered lookup along the major axis
 inline constexpr float kDisplacementBound = 1e6f;
 inline constexpr int kPathDepth = 10'000;                  ///< hard cap, counted when hit: it is a bias
-inline constexpr size_t kFrameBytesPerThread = 64u << 20;  ///< suspended kernel frames (design decision 2)
+inline constexpr size_t kFrameBytesPerThread = 64u << 20;  ///< suspended kernel frames (docs/design/rsl.md)
 inline constexpr size_t kRequestBytes = size_t(256) << 20; ///< of rays that a kernel that does not wait asks for in a batch
 inline constexpr int kLightsSampled = 8;                   ///< lights sampled at a vertex under path; with more, about this many
 inline constexpr int kLightsSampledDeeper = 3; ///< the same behind the first vertex of a path, where there are more than those

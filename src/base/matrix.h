@@ -1,5 +1,5 @@
 // 4x4 matrices in the RenderMan convention: row vectors, p' = p * M, translation in the last row.
-// Source: reference ri.md section 5. Double, because transforms compose (design decision 8).
+// Source: RISpec 3.2, 4.3. Double, because transforms compose (docs/design/decisions.md, "Current space").
 #pragma once
 #include "base/vec.h"
 

@@ -6,7 +6,7 @@
 // Additions, products with odd numbers and v ^ v * even are such functions (Laine and Karras, "Stratified Sampling for Stochastic
 // Transparency", 2011; Burley, "Practical Hash-based Owen Scrambling", 2020). Elementary intervals are kept exactly, whatever the
 // quality of the hash. Its weakness is the first digits, on which few bits of its seed work: there the flips are coins, one for
-// each node of the tree. That all flips are as good as independent coins is tested (T8).
+// each node of the tree. That all flips are as good as independent coins is tested (docs/proof.md).
 #pragma once
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-// The numbers of a sample (design decision 10): Owen-scrambled (0,2)-sequence pairs, padded by hash.
+// The numbers of a sample (docs/design/sampling.md): Owen-scrambled (0,2)-sequence pairs, padded by hash.
 //
 // Each pair of numbers is the first two dimensions of the Sobol sequence under a nested uniform scramble: the flip of digit k of
 // a coordinate is a random bit that depends on the stream and on the k digits above it, and on nothing else. Such a scramble
@@ -9,7 +9,7 @@
 //
 // A pixel has kReplicas = 2 independently scrambled sequences: sample i is point i / 2 of replica i % 2. So after 2 * 2^m samples
 // each replica holds a complete (0,m,2)-net, and the difference of the two replica means tells the true error of their mean,
-// which the spread of dependent samples does not (testing.md rule 7). Two is the least that tells it, and leaves the most
+// which the spread of dependent samples does not (docs/noise.md). Two is the least that tells it, and leaves the most
 // stratification: noise.h pools what two say too vaguely in one pixel.
 #pragma once
 #include "base/hash.h"

@@ -1,4 +1,4 @@
-// Small vectors. Float for shading, double where transforms compose (design decision 8).
+// Small vectors. Float for shading, double where transforms compose (docs/design/decisions.md, "Current space").
 #pragma once
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// Point clouds: points of surfaces with what shaders wrote there (bake3d), in the order in which they were written. Source:
-// seed 6.4.6, tables 6.17 and 6.18.
+// Point clouds: points of surfaces with what shaders wrote there (bake3d), in the order in which they were written
+// (3Delight manual, 6.4.6, tables 6.17 and 6.18).
 #pragma once
 #include "base/vec.h"
 #include <cstdint>

@@ -14,7 +14,7 @@ constexpr std::pair<const char*, Type> typeNames[] = {
     {"normal", Type::Normal}, {"hpoint", Type::HPoint},   {"matrix", Type::Matrix}};
 constexpr const char* classNames[] = {"constant", "uniform", "varying", "vertex", "facevarying", "facevertex"};
 
-/// Predefined variables of RSL that can be shown (rsl.md 8.1).
+/// Predefined variables of RSL that can be shown (RISpec 3.2, 12.1).
 constexpr std::pair<const char*, Type> predefined[] = {
     {"Ci", Type::Color},    {"Oi", Type::Color},       {"Cs", Type::Color},    {"Os", Type::Color}, {"P", Type::Point},
     {"E", Type::Point},     {"N", Type::Normal},       {"Ng", Type::Normal},   {"I", Type::Vector}, {"dPdu", Type::Vector},

@@ -1,4 +1,4 @@
-// The mode of a Display request: which variables it shows and what its channels are called. Source: ri.md 3.2.
+// The mode of a Display request: which variables it shows and what its channels are called (RISpec 3.2, 4.1.2).
 #pragma once
 #include "base/diagnostics.h"
 #include "scene/param.h"
@@ -9,7 +9,7 @@
 namespace alpenglow::display {
 
 /// One variable of a mode. "rgb" is Ci with channels r g b; "a" is "alpha" with channel a; "z" is "z" with channel z (camera
-/// space). An AOV N has N.x N.y N.z, a colour c c.r c.g c.b, a float f f, others name.000 ... (ri.md 19).
+/// space). An AOV N has N.x N.y N.z, a colour c c.r c.g c.b, a float f f, others name.000 ... (docs/design/ri.md).
 struct ModeVariable {
     std::string name;
     scene::Type type = scene::Type::Float;

@@ -1,4 +1,4 @@
-// Quantisation of floats to integer codes. Source: ri.md 3.2. It happens last, after exposure and imager; gamma is Exposure's,
+// Quantisation of floats to integer codes (RISpec 3.2, 4.1.2). It happens last, after exposure and imager; gamma is Exposure's,
 // nothing here changes the colour space.
 #pragma once
 #include "base/diagnostics.h"

@@ -1,4 +1,4 @@
-// The field of a Blobby (ri.md 8.9; RISpec 3.2 5.6; Pixar's application note 31): leaves, joined by operators.
+// The field of a Blobby (RISpec 3.2, 5.6; Pixar's application note 31): leaves, joined by operators.
 //
 // A field is a tape: a list of operations, each on results of earlier ones, the last being the field. Over a box or along a part
 // of a ray it is bounded by intervals, and what the bounds decide (a leaf that is 0 there, the smaller side of a maximum) is left

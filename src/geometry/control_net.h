@@ -19,9 +19,9 @@ class NetDirection {
 public:
     /// Piecewise linear.
     static NetDirection linear(int n, bool wrap);
-    /// Cubic by a basis matrix (ri.md 8.3) and step.
+    /// Cubic by a basis matrix (RISpec 3.2, 5.2) and step.
     static NetDirection cubic(int n, bool wrap, const scene::Basis&);
-    /// B-spline of any order up to limits::kNurbsOrder over the knots, [lo, hi] mapped to 0..1 (ri.md 8.6).
+    /// B-spline of any order up to limits::kNurbsOrder over the knots, [lo, hi] mapped to 0..1 (RISpec 3.2, 5.2).
     static NetDirection nurbs(int n, int order, std::vector<double> knots, double lo, double hi);
 
     int points() const { return n_; }

@@ -52,7 +52,7 @@ size_t CurveSet::classCount(Class c) const {
 
 void CurveSet::takeWidths(const ShapeSource& s, Diagnostics& diag) {
     const scene::Primitive& p = *s.primitive;
-    static constexpr float kOne = 1; // ri.md 8.4
+    static constexpr float kOne = 1; // RISpec 3.2, 5.5
     width_ = {&kOne, Class::Constant};
     const scene::Param *width = lastParam(p.params, "width"), *all = lastParam(p.params, "constantwidth");
     for (const scene::Param* w : {all, width}) {

@@ -1,4 +1,4 @@
-// Curves (ri.md 8.4): what their shape, its bounds and its two kinds of surface share. Object space, double.
+// Curves (RISpec 3.2, 5.5): what their shape, its bounds and its two kinds of surface share. Object space, double.
 //
 // A ribbon is C(v) + (2u - 1) h(v) B(v) with the half width h and B across the curve: along dC/dv ^ N, N being the variable "N"
 // or what the ribbon faces. A tube is swept by circles of radius h across the curve. v runs along a curve, within a segment it is

@@ -1,4 +1,4 @@
-// Dicing by screen size (design decision 9): how fine, and displacement of what was diced.
+// Dicing by screen size (docs/design/decisions.md, "Geometry"): how fine, and displacement of what was diced.
 #pragma once
 #include "base/stopflag.h"
 #include "geometry/shape.h"
@@ -15,7 +15,7 @@ struct DiceCamera {
     /// Length in pixels of a step d at p (camera space). By distance, not by depth: what is beside or behind the camera is
     /// seen in mirrors and must not degenerate.
     double pixels(const Vec3d& p, const Vec3d& d) const;
-    /// From the frame's options (ri.md 3.1, 6); unknown projections count as orthographic.
+    /// From the frame's options (RISpec 3.2, 4.1.1); unknown projections count as orthographic.
     static DiceCamera from(const scene::Options&);
 };
 
@@ -38,7 +38,7 @@ struct DiceOptions {
     /// Runs what displaces a shape. Must be thread safe: shapes are diced
     /// at the same time, a shape's runs one after the other. Null: nothing is displaced.
     std::function<void(const Shape&, DiceGrid&)> displace;
-    /// How far the shaders of a shape say that they move points (rsl.md section 9), and in which space; added to the attribute.
+    /// How far the shaders of a shape say that they move points (3Delight manual, 6.3), in which space; added to the attribute.
     struct DeclaredBound {
         double radius = 0; ///< 0: they say nothing
         std::string space;

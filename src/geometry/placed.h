@@ -2,7 +2,7 @@
 // the shutter; a Deforming geometry is one at several times. Both are shapes, so the rest of the renderer need not know; rays
 // come into the space of the geometry (accel/).
 //
-// Times are parts of the shutter, 0 to 1. Between keys matrices and points are linear, element by element (ri.md 9.3); ri/ gives
+// Times are parts of the shutter, 0 to 1. Between keys matrices and points are linear (RISpec 3.2, section 6); ri/ gives
 // rotations keys so close that this is exact enough.
 #pragma once
 #include "geometry/affine.h"

@@ -1,4 +1,4 @@
-// Points: discs that face the ray or the eye, or lie across "N"; by "type" spheres and squares as well (ri.md 8.5, PRMan's
+// Points: discs that face the ray or the eye, or lie across "N"; by "type" spheres and squares as well (RISpec 3.2, 5.5, PRMan's
 // names).
 #include "base/exact.h"
 #include "geometry/curves.h"
@@ -337,7 +337,7 @@ SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) co
     p.n = Vec3(q.n);
     p.dNdu = Vec3(q.nu), p.dNdv = Vec3(q.nv);
     p.Ng = l > 0 ? Vec3(across) : p.n;
-    if (kind_ == PointKind::Square) p.u = float(u), p.v = float(v); // of others they are 0 (ri.md 8.5)
+    if (kind_ == PointKind::Square) p.u = float(u), p.v = float(v); // of others they are 0 (RISpec 3.2, 5.5)
     p.orientation = orientation_;
     p.prim = prim;
     p.b1 = u;

@@ -1,6 +1,6 @@
 // What the four polygon requests share: faces of one or more loops over common vertices, cut into triangles.
 //
-// u, v and the default s, t are the object-space x and y of the point (ri.md 7.1). A face that stands edge-on to z (its unit
+// u, v and the default s, t are the object-space x and y of the point (RISpec 3.2, 5.1). A face that is edge-on to z (its unit
 // normal's z below 1e-4) uses an orthonormal frame of its plane instead: u along the horizontal direction in the plane, v up
 // the plane towards +z. dPdu, dPdv are the exact partials in the plane of the triangle.
 #pragma once

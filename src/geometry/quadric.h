@@ -1,5 +1,5 @@
 // What the seven quadrics share. Each is a profile curve (a(v), b(v), z(v)) in object space, turned about z by theta = u thetamax
-// (ri.md 8.1): P = (a cos - b sin, a sin + b cos, z). Only the hyperboloid has b != 0.
+// (RISpec 3.2, 5.4): P = (a cos - b sin, a sin + b cos, z). Only the hyperboloid has b != 0.
 #pragma once
 #include "geometry/parametric.h"
 #include "geometry/quadricform.h"

@@ -1,7 +1,7 @@
 // What every primitive is to the rest of the renderer: a surface in camera space that can be intersected, evaluated with
 // exact derivatives, sampled, and asked for its primitive variables.
 //
-// Space: camera ("current", design decision 8), left-handed, unless a comment says object. Angles are radians.
+// Space: camera ("current", docs/design/decisions.md), left-handed, unless a comment says object. Angles are radians.
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/bounds.h"
@@ -28,7 +28,7 @@ struct SurfacePoint {
     Vec3 n;             ///< Ng normalised; defined at poles and collapsed edges too
     Vec3 N;             ///< shading normal, unit: the primitive variable "N" (or "Np") if given, else n
     Vec3 dNdu, dNdv;    ///< derivatives of N
-    float u = 0, v = 0; ///< 0..1 over the whole primitive; polygons: object x and y (ri.md 7.1)
+    float u = 0, v = 0; ///< 0..1 over the whole primitive; polygons: object x and y (RISpec 3.2, 5.1)
     float s = 0, t = 0, dsdu = 1, dsdv = 0, dtdu = 0, dtdv = 1;
     float pError = 0;            ///< bound on the distance from P to the surface that rays meet: rounding plus facets
     float orientation = 1;       ///< +1 or -1: the sign in Ng above
@@ -104,7 +104,7 @@ struct ShapeSource {
         nullptr; ///< while it is made: the same shape at an earlier time, which is cut into the same triangles
 };
 
-/// Sign of Ng relative to dPdu ^ dPdv (ri.md 4.1). "outside" follows the handedness of the transform, so that what a primitive
+/// Sign of Ng against dPdu ^ dPdv (RISpec 3.2, 4.2). "outside" follows the handedness of the transform, so that what a primitive
 /// defines as its outside stays outside; "lh" is +1 (camera space is left-handed) and "rh" is -1, whatever the transform.
 float orientationSign(const scene::Attributes&, const Matrix& toCamera);
 
@@ -180,7 +180,7 @@ public:
         sampleArea(xi1, xi2, out, needs);
     }
 
-    // ---- area, and sampling as a light (design decision 4) ------------------------------------------------------------------
+    // ---- area, and sampling as a light (docs/design/light-transport.md) ------------------------------------------------------
     virtual double area() const = 0;
     /// A point for two numbers of [0,1): parametric surfaces uniform over (u, v), polygons uniform over area.
     virtual SurfacePoint sampleArea(double xi1, double xi2) const = 0;

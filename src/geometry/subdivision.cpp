@@ -199,7 +199,7 @@ size_t Subdivision::classCount(Class c) const {
     case Class::FaceVertex:
         return input_.requestCorners;
     default: {
-        // One a vertex that a face uses (ri.md 7.1).
+        // One for each vertex that a face uses (RISpec 3.2, 5.3).
         int most = -1;
         for (int v : source_.primitive->ints2) most = std::max(most, v);
         return size_t(std::min(most + 1, input_.cage.vertices));

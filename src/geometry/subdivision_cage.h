@@ -1,4 +1,4 @@
-// What SubdivisionMesh says: faces, tags and their arguments, checked (ri.md 8.8).
+// What SubdivisionMesh says: faces, tags and their arguments, checked (RISpec 3.2, 5.3).
 #pragma once
 #include "geometry/limit_surface.h"
 #include "scene/primitive.h"

@@ -1,4 +1,4 @@
-// Trim curves: which part of a NURBS patch is there (ri.md 8.7).
+// Trim curves: which part of a NURBS patch is there (RISpec 3.2, 5.2).
 //
 // Nothing is made of polygons: a curve is cut into rational Bezier pieces that rise or fall in v, and whether a point lies left
 // or right of a piece is found on the piece itself, in double. Inside is what a line to infinity leaves through an odd number of

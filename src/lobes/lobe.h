@@ -1,5 +1,5 @@
 // Lobes: what a vertex does to light. One file each in lobes/; each is one kind, known to trace() and the lighting shadeops by
-// name. The value of a lobe is f cos (design decision 4): the shadeop's result is the integral of L f cos over directions, so
+// name. The value of a lobe is f cos (docs/light.md): the shadeop's result is the integral of L f cos over directions, so
 // diffuse() of radiance 1 from everywhere is 1 and a light's Cl (irradiance / pi) is scored pi f cos Cl.
 //
 // Their code runs over blocks of 16 lobes of a kind (lobelanes.h). LobeColumns holds those of a batch; OneLobe asks one alone,
@@ -15,7 +15,7 @@
 
 namespace alpenglow::transport {
 
-/// What the distributions that trace() has in common with bsdf() take beside the rest (rsl.md 12.4). Current space.
+/// What the distributions that trace() has in common with bsdf() take beside the rest (3Delight manual, 6.4.5.2). Current space.
 struct DistributionParams {
     float roughness = 0, roughnessv = 0;
     Vec3 udir;
@@ -67,7 +67,7 @@ public:
     bool sample(Vec2 u, Vec3& w) const;
     /// About the integral of fcos; for choosing between lobes and for the energy rule. Exact is not needed, > 0 is.
     float albedo() const { return rows_[kRowAlbedo]; }
-    /// Half angle in radians of the lobe's spread, for the footprint of rays behind it (design decision 7).
+    /// Half angle in radians of the lobe's spread, for the footprint of rays behind it.
     float spread() const { return rows_[kRowSpread]; }
     /// A single direction: fcos and pdf are 0 everywhere, sample returns it with weight albedo().
     bool delta() const { return rows_[kRowDelta] != 0; }

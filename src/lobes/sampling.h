@@ -1,4 +1,4 @@
-// The sampling formulas of pathtracer.md section 5, with their densities. All directions unit length; densities per solid angle.
+// Sampling formulas (docs/design/light-transport.md). All directions unit length; densities per solid angle.
 #pragma once
 #include "base/vec.h"
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace alpenglow::transport {
 
-/// Orthonormal basis about a unit normal, without a branch and without trigonometry (pathtracer.md 5.3).
+/// Orthonormal basis about a unit normal, without a branch and without trigonometry (Duff et al., JCGT 2017).
 struct Basis {
     Vec3 t, u, n;
     explicit Basis(Vec3 n_) : n(n_) {
@@ -44,7 +44,7 @@ inline Vec3 sampleCone(float oneMinusCos, Vec2 e) {
     return {s * d.x, s * d.y, c};
 }
 
-/// Power heuristic, beta 2: the weight of technique a against b (pathtracer.md 5.2). misWeight(a,b) + misWeight(b,a) = 1.
+/// Power heuristic, beta 2 (Veach and Guibas 1995): the weight of technique a against b. misWeight(a,b) + misWeight(b,a) = 1.
 inline float misWeight(float a, float b) {
     if (!(a > 0)) return 0;
     float r = b / a;
@@ -82,8 +82,8 @@ template <class Dice> float rouletteOfPath(const Color& weight, const Dice& dice
     return q >= 1 ? 1 : q > 0 && dice() < q ? q : 0;
 }
 
-/// The seed's local roulette (pathtracer.md 5.1): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the caller
-/// divides.
+/// SLProject's local roulette (docs/design/slproject.md): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the
+/// caller divides.
 inline float rouletteLocal(int depth, const Color& albedo, float random) {
     if (depth <= 3) return 1;
     float q = std::min(maxComponent(albedo), 1.f);

@@ -1,4 +1,4 @@
-// ReadArchive and inline archives (ri.md 10.2).
+// ReadArchive and inline archives (RISpec 3.2, 7.3).
 #include "base/file.h"
 #include "base/folder.h"
 #include "base/limits.h"

@@ -1,4 +1,4 @@
-// The binary tokens of RIB, ri.md 17. Integers and fixed point numbers are signed, as the specification says.
+// The binary tokens of RIB, RISpec 3.2, appendix C.2. Integers and fixed point numbers are signed, as the specification says.
 #include "base/limits.h"
 #include "ri/lexer.h"
 #include <bit>

@@ -6,7 +6,7 @@
 namespace alpenglow::ri {
 namespace {
 
-/// Type by value: numbers are floats, strings are strings (wild.md).
+/// Type by value: numbers are floats, strings are strings (docs/design/ri.md, "Reading").
 void guess(scene::Param& p, const Value& v) {
     p.declared = false;
     bool text = v.kind == Value::Kind::Strings;

@@ -1,4 +1,4 @@
-// The expressions of IfBegin and ElseIf (ri.md 10.3): numbers, 'strings', $variables, defined(), concat(), the usual operators,
+// Expressions of IfBegin and ElseIf (docs/design/ri.md): numbers, 'strings', $variables, defined(), concat(), the operators of C,
 // and =~ for patterns (PRMan).
 #include "base/limits.h"
 #include "base/pattern.h"

@@ -16,7 +16,7 @@ struct Known {
     const char* declaration;
 };
 
-// ri.md 2.3, and the variables and parameters that files use as if they were there.
+// RISpec 3.2, section 3, and the variables and parameters that files use as if they were there.
 constexpr Known kStandard[] = {
     {"P", "vertex point"},
     {"Pz", "vertex float"},

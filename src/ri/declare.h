@@ -1,4 +1,4 @@
-// Declarations of parameters: "class type[n] name", Declare, and what is known without either (ri.md 2.2, 2.3, 15).
+// Declarations of parameters: "class type[n] name", Declare, and what is known without either (RISpec 3.2, section 3).
 #pragma once
 #include "scene/param.h"
 #include <map>

@@ -1,4 +1,4 @@
-// The checks that let everyone downstream trust a primitive's sizes (scene/scene.h, Primitive; ri.md 7.1).
+// The checks that let everyone downstream trust a primitive's sizes (scene/primitive.h; docs/design/ri.md).
 #include "ri/interpreter.h"
 #include "scene/counts.h"
 #include <algorithm>
@@ -27,7 +27,7 @@ bool isArgument(const Primitive& p, const Param& v) {
            (v.name == "intargs" || v.name == "floatargs" || v.name == "stringargs");
 }
 
-/// The last of a name counts (wild.md).
+/// The last of a name counts (docs/design/ri.md, "Reading").
 void dropDuplicates(Primitive& p, Reporter& reporter) {
     if (p.params.size() < 2) return;
     scene::ParamList kept;

@@ -115,7 +115,7 @@ unsigned Interpreter::scope() const {
     return kBase;
 }
 
-/// Out of scope is executed as meant, with one warning for each request (wild.md).
+/// Out of scope is executed as meant, with one warning for each request (docs/design/ri.md).
 void Interpreter::checkScope(const Call& call) {
     const Request& r = *call.request;
     unsigned s = scope();

@@ -341,7 +341,7 @@ private:
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.
 bool fitVariables(scene::Primitive& p, Reporter& reporter);
 
-/// Value of an IfBegin expression, ri.md 10.3. `lookup` gives a variable's numbers or strings, or nothing.
+/// Value of an IfBegin expression, docs/design/ri.md. `lookup` gives a variable's numbers or strings, or nothing.
 struct ConditionValue {
     bool isString = false;
     double number = 0;

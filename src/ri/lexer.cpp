@@ -274,7 +274,7 @@ void Lexer::identifier(std::string& out) {
     }
 }
 
-/// After a backslash; ri.md 16.
+/// After a backslash; RISpec 3.2, appendix C.2.
 void Lexer::escape(std::string& out) {
     if (!at()) return;
     unsigned char c = peek();

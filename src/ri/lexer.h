@@ -1,4 +1,4 @@
-// RIB bytes to tokens: ASCII (ri.md 16) and binary (ri.md 17), freely mixed.
+// RIB bytes to tokens: ASCII and binary, freely mixed (RISpec 3.2, appendix C.2).
 #pragma once
 #include "ri/reporter.h"
 #include "ri/source.h"

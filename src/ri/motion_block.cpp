@@ -1,4 +1,4 @@
-// Motion blocks (ri.md 9.3): the calls are kept until MotionEnd, then done once, with all their samples.
+// Motion blocks (RISpec 3.2, section 6): the calls are kept until MotionEnd, then done once, with all their samples.
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/motion.h"

@@ -7,7 +7,7 @@ namespace alpenglow::ri {
 Parser::Parser(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Lexer::Comments comments)
     : lexer_(std::move(source), std::move(file), reporter, std::move(comments)), reporter_(reporter) {}
 
-/// After '['. A missing ']' ends the array where something comes that cannot be in it (wild.md).
+/// After '['. A missing ']' ends the array where something comes that cannot be in it (docs/design/ri.md).
 void Parser::array(Value& v) {
     v.array = true;
     SourcePlace open = lexer_.place(v.line, v.column);

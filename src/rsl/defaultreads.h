@@ -1,5 +1,5 @@
-// What the default of a shader's parameter depends on (rsl.md 2.1: "any expression using constants, uniform functions and earlier
-// parameters; varying parameters get a default per sample").
+// What the default of a shader's parameter depends on: constants, uniform functions, earlier parameters, and of a varying one
+// the sample (docs/language.md, "Uniform and varying").
 #pragma once
 #include "rsl/front/ast.h"
 #include <set>

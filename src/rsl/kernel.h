@@ -86,7 +86,7 @@ struct ParameterValue {
     std::vector<std::string> strings;
 };
 
-/// A shader that other shaders call (rsl.md 7.3), with the values of its parameters.
+/// A shader that other shaders call (3Delight manual, 6.4.9), with the values of its parameters.
 struct CoShader {
     std::string handle;
     const Program* program = nullptr;

@@ -1,5 +1,5 @@
-// Services that need no renderer: strings and standard output (rsl.md 11.2). `alpenglow eval` and the renderer both answer with
-// these.
+// Services that need no renderer: strings and standard output (3Delight manual, 6.4.7). `alpenglow eval` and the renderer answer
+// with these.
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/kernel.h"

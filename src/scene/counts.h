@@ -1,4 +1,4 @@
-// How many values a primitive variable has, by class (ri.md 7.1).
+// How many values a primitive variable has, by class (docs/design/ri.md).
 #pragma once
 #include "scene/primitive.h"
 #include <cstdint>

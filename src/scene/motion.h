@@ -10,7 +10,7 @@ Matrix at(const Transform& m, double time);
 /// a, then b (row vectors: a * b), with a key wherever either has one.
 Transform compose(const Transform& a, const Transform& b);
 
-/// When the shutter is open, in the units of the motion blocks: Shutter and Option "shutter" "offset" (ri.md 6). One that closes
+/// When the shutter is open, in units of motion blocks: Shutter (RISpec 3.2, 4.1.1), Option "shutter" "offset". One that closes
 /// before it opens never opens for longer than its first instant.
 struct Shutter {
     double open = 0, close = 0;

@@ -21,7 +21,7 @@ struct Param {
     Class cls = Class::Uniform;
     Type type = Type::Float;
     int arrayLength = 0;              ///< 0 = not an array
-    bool declared = true;             ///< false: type guessed from the values; a shader's own declaration decides (wild.md)
+    bool declared = true;             ///< false: type guessed from the values; a shader's own declaration decides
     std::vector<float> numbers;       ///< all numeric types, flattened (integers too)
     std::vector<std::string> strings; ///< Type::String
     SourcePlace place;
@@ -50,7 +50,7 @@ struct ShaderCall {
 };
 using ShaderRef = std::shared_ptr<const ShaderCall>;
 
-/// Rows as in ri.md 8.3: value at t = (t^3 t^2 t 1) * m * (P0 P1 P2 P3). Bezier by default.
+/// Rows as in RISpec 3.2, 5.2: value at t = (t^3 t^2 t 1) * m * (P0 P1 P2 P3). Bezier by default.
 struct Basis {
     double m[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
     int step = 3;

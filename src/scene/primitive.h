@@ -1,6 +1,6 @@
 // Primitives as a file gives them, and the attributes that hold for them.
 // Space conventions: "object" is where a primitive is given; "world" at WorldBegin; "camera" is left-handed, eye at the
-// origin, +z into the scene (ri.md section 5). Matrices are row-vector (base/matrix.h).
+// origin, +z into the scene (RISpec 3.2, 4.3). Matrices are row-vector (base/matrix.h).
 #pragma once
 #include "scene/lightset.h"
 #include "scene/param.h"
@@ -58,7 +58,7 @@ using AttributesRef = std::shared_ptr<const Attributes>;
 ///   Volume: strings[0] = type, numbers = bound, ints = dimensions.
 /// Moving primitives hold one Primitive per key in `motionKeys` after the first, with times in motionTimes.
 ///
-/// What ri/ guarantees, so that nobody need look again (scene/counts.h has the counts, ri.md 7.1):
+/// What ri/ guarantees, so that nobody need look again (scene/counts.h has the counts, docs/design/ri.md):
 /// - The arguments agree with each other: sums of counts match index arrays, indices are not negative, knots do not decrease,
 ///   meshes fit the steps of their bases. Numbers are finite. PatchMesh and Patch types are "bilinear" or "bicubic".
 /// - Polygons, meshes, patches, curves and points have exactly one of "P", "Pw" (HPoint), "Pz" (Float; patches only), class
@@ -80,7 +80,7 @@ struct Primitive {
     std::vector<std::shared_ptr<Primitive>> motionKeys;
     SourcePlace place;
     /// Inside an Object only: attributes were set between ObjectBegin and here, so they hold in every instance.
-    /// Otherwise an instance's own attributes count (ri.md 9.2). Never null either way.
+    /// Otherwise an instance's own attributes count (RISpec 3.2, 5.10). Never null either way.
     bool attributesInside = false;
     AttributesRef attributesBefore; ///< with attributesInside: those at ObjectBegin. What differs from them was set inside
 };

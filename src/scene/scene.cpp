@@ -19,7 +19,7 @@ int componentCount(Type t) {
 }
 
 const Param* find(const ParamList& list, std::string_view name) {
-    // "P" given twice: the last one counts (wild.md).
+    // "P" given twice: the last one counts (docs/design/ri.md, "Reading").
     for (auto i = list.rbegin(); i != list.rend(); ++i)
         if (i->name == name) return &*i;
     return nullptr;

@@ -94,7 +94,7 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
                         "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first "
                         "channel of the texture "
                         "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",
-                        "RISpec 3.0 (bump maps); formula (k)", R"(
+                        "RISpec 3.0 (bump maps); the formula is ours", R"(
 point bump(string name; normal norm; vector dPds; vector dPdt; float ss; float tt; float blur; float width) {
     float d = 1 / 1024;
     float h(float x; float y) {

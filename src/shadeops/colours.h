@@ -1,4 +1,4 @@
-// Colours: rsl.md 10.3 (seed 6.4.3). Linear RGB triples; other spaces by explicit conversion.
+// Colours: 3Delight manual, 6.4.3. Linear RGB triples; other spaces by explicit conversion.
 #pragma once
 #include "shadeops/call.h"
 
@@ -96,7 +96,7 @@ std::vector<Shadeop> colourShadeops() {
     std::vector<Shadeop> list;
     Shadeop op;
     op.section = "Colours";
-    op.source = "seed";
+    op.source = "3Delight manual, 6.4.3";
     op.name = "comp";
     op.signatures = sigs({{"float comp(color c; float i)", "al_comp"},
                           {"float comp(vector c; float i)", "al_comp"},
@@ -116,7 +116,7 @@ std::vector<Shadeop> colourShadeops() {
     op.name = "luminance";
     op.signatures = sigs({{"float luminance(color c)", "al_luminance"}});
     op.doc = "0.2126 r + 0.7152 g + 0.0722 b (Rec. 709).";
-    op.source = "seen in 3Delight shaders, weights (k)";
+    op.source = "shaders of 3Delight; weights of Rec. 709";
     op.examples = {{"luminance(color(1,1,1))", "1"}};
     list.push_back(op);
     op.name = "ctransform";
@@ -129,7 +129,7 @@ std::vector<Shadeop> colourShadeops() {
              "the NTSC coefficients; XYZ of Rec. 709 primaries with D65. Symbols al_rgb_to_hsv, al_hsv_to_rgb, al_rgb_to_hsl, "
              "al_hsl_to_rgb, "
              "al_rgb_to_yiq, al_yiq_to_rgb, al_rgb_to_xyz, al_xyz_to_rgb; the way between two spaces goes through rgb.";
-    op.source = "seed; details (k)";
+    op.source = "3Delight manual, 6.4.3; RISpec 3.2, 15.3";
     op.examples = {{"ctransform(\"hsv\", color(1,0,0))", "0 1 1"}};
     list.push_back(op);
     return list;

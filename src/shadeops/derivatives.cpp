@@ -1,5 +1,5 @@
-// Derivatives: rsl.md 10.1 and 10.3. Du and Dv are known to the code generator, or differences (rsl/passes/differences.h); the
-// rest is RSL over them.
+// Derivatives: 3Delight manual, 6.4.1, 6.4.3. Du and Dv are known to the code generator, or differences
+// (rsl/passes/differences.h); the rest is RSL over them.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
@@ -10,7 +10,7 @@ std::vector<Shadeop> derivativeShadeops() {
                          const char* rsl) -> Shadeop& {
         Shadeop op;
         op.section = "Derivatives";
-        op.source = "seed";
+        op.source = "3Delight manual, 6.4.1 and 6.4.3";
         op.name = name;
         op.signatures = std::move(signatures);
         op.contexts = kSurface | kDisplacement | kVolume | kLight | kImager;
@@ -48,7 +48,7 @@ vector Deriv(point num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den
 vector Deriv(vector num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 vector Deriv(normal num; float den) { return Du(num) / Du(den) + Dv(num) / Dv(den); }
 )")
-        .source = "seed; formula (k)";
+        .source = "3Delight manual, 6.4.1; RISpec 3.2, 15.1";
     list.back().examples = {{"Deriv(u * u, u)", "1"}};
     add("area", sigs({{"float area(point p)"}, {"float area(point p; string strategy)"}}), Lowering::Rsl,
         "Area of one micropolygon of the surface p: length(Du(p) ^ Dv(p)) du dv; of the footprint of a sample that has none. "

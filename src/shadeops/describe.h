@@ -30,7 +30,7 @@ inline constexpr const char* kTuples = "color point vector normal";
 inline constexpr const char* kFloatAndTuples = "float color point vector normal";
 inline constexpr const char* kAllTypes = "float color point vector normal matrix string";
 
-/// Parameters of the distributions of trace() and bsdf() (rsl.md 12.1).
+/// Parameters of the distributions of trace() and bsdf() (3Delight manual, 6.4.5.2).
 std::vector<OptionalParameter> distributionParameters();
 
 std::vector<Shadeop> mathematicsShadeops();

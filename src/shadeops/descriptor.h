@@ -1,5 +1,5 @@
 // What a shadeop is: one object that the checker, the code generator, `alpenglow info --shadeops`, the manual and the tests read.
-// The code of a runtime shadeop stands beside its descriptor, in the file of its section of rsl.md chapter 10.
+// The code of a runtime shadeop stands beside its descriptor, in the file of its section of the 3Delight manual, 6.4.
 #pragma once
 #include "shadeops/types.h"
 #include <span>
@@ -19,7 +19,7 @@ enum class Lowering : uint8_t {
     Unavailable ///< type-checks; reported once with its place as not yet available
 };
 
-/// How derivatives pass through (design decision 7).
+/// How derivatives pass through (docs/design/rsl.md, "Derivatives").
 enum class DerivativeRule : uint8_t {
     Jet,      ///< the runtime template is instantiated on Jet1 and Jet2: exact
     Zero,     ///< mathematically zero almost everywhere (floor, cellnoise, step)
@@ -79,9 +79,9 @@ struct Shadeop {
     int widest = 64;        ///< the most lanes whose runtime has it: large ones take 30 s to compile at 32 lanes
     Bias bias = Bias::Unbiased;
     std::string biasReason;
-    std::string section; ///< "Mathematics", "Noise", ... as in rsl.md chapter 10
+    std::string section; ///< "Mathematics", "Noise", ... as in the 3Delight manual, 6.4
     std::string doc;     ///< semantics and edge cases
-    std::string source;  ///< seed, RISpec, (k)
+    std::string source;  ///< what people can look up: a section, a paper; what is our own
     std::vector<Example> examples;
     std::vector<OptionalParameter> optional;
     std::vector<Base> lastResort; ///< results that are meant only where no other becomes what is wanted: the distance of trace()

@@ -1,4 +1,4 @@
-// The names of the distributions of bsdf() and trace() (rsl.md 12.4). What each is stands beside its formula in bsdf/.
+// The names of the distributions of bsdf() and trace() (docs/design/rsl.md, "Distributions"). Their formulas stand in bsdf/.
 #pragma once
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-// Geometry: rsl.md 10.3 (seed 6.4.3). Code for all lane widths above, descriptors below (host only).
+// Geometry: 3Delight manual, 6.4.3. Code for all lane widths above, descriptors below (host only).
 #pragma once
 #include "shadeops/call.h"
 
@@ -99,7 +99,7 @@ std::vector<Shadeop> geometryShadeops() {
     std::vector<Shadeop> list;
     Shadeop base;
     base.section = "Geometry";
-    base.source = "seed";
+    base.source = "3Delight manual, 6.4.3";
     const auto add = [&](const char* name, std::vector<Signature> signatures, const char* doc,
                          std::vector<Example> examples) -> Shadeop& {
         Shadeop op = base;

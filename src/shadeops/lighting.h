@@ -1,4 +1,4 @@
-// Lighting: rsl.md 10.4 (seed 6.4.4). Code for all lane widths above, descriptors below (host only).
+// Lighting: 3Delight manual, 6.4.4. Code for all lane widths above, descriptors below (host only).
 #pragma once
 #include "shadeops/call.h"
 #include "shadeops/geometry.h"
@@ -42,7 +42,7 @@ std::vector<Shadeop> lightingShadeops() {
     const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
         Shadeop op;
         op.section = "Lighting";
-        op.source = "seed";
+        op.source = "3Delight manual, 6.4.4";
         op.name = name;
         op.signatures = std::move(signatures);
         op.contexts = kSurface | kVolume;
@@ -82,7 +82,7 @@ color diffuse(vector n) {
         add("specular", sigs({{"color specular(vector n, vector v; float roughness)"}}), Lowering::Rsl,
             "Sum over lights of Cl specularbrdf(L, n, v, roughness) (1 - __nonspecular). n and v are unit, v toward the eye.");
     list.back().examples = {{"specular(N, N, 0.1)", "1 1 1", "", kOneLight}};
-    specular.source = "seed; the model of 3Delight is not published, see specularbrdf";
+    specular.source = "3Delight manual, 6.4.4, which does not publish its model; see specularbrdf";
     specular.rsl = R"(
 color specular(vector n, v; float roughness) {
     extern point P;
@@ -102,7 +102,7 @@ color specular(vector n, v; float roughness) {
         Lowering::Runtime,
         "One direction of specular(): pow(max(0, n . h), 8 / roughness), h = normalize(l + v), l, n, v unit. 0 for roughness 0. "
         "1 / roughness, as RISpec prints it, with Option \"shade\" \"specular\" \"rispec\" or --dialect rispec.");
-    brdf.source = "seed; fitted on published pictures, docs/gallery.md";
+    brdf.source = "3Delight manual, 6.4.4; fitted on published pictures, docs/gallery.md";
     brdf.contexts = kAnyContext;
     brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"},
                      {"specularbrdf(vector(1,0,0), vector(0,0,1), vector(0,0,1), 4)", "0.5 0.5 0.5"}};
@@ -155,7 +155,7 @@ color phong(vector n, v; float size) {
                         "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the "
                         "plane of \"horizon\" is 0. The "
                         "hidden shadeops __bsdf_NAME document each distribution.");
-    bsdf.source = "seed; formulas rsl.md 12.4 (k)";
+    bsdf.source = "3Delight manual, 6.4.4 and 6.4.5.2; models: docs/design/rsl.md";
     bsdf.derivative = DerivativeRule::Inherent;
     bsdf.optional = distributionParameters();
     bsdf.optional.push_back(
@@ -174,7 +174,7 @@ color phong(vector n, v; float size) {
     list.back().examples = {
         {"round(kr * 9)", "1", "float kr = 0, kt = 0; fresnel(vector(0, 0, 1), vector(0, 0, -1), 0.5, kr, kt);"}};
     fresnel.contexts = kAnyContext;
-    fresnel.source = "seed; energy form of Kt (k)";
+    fresnel.source = "3Delight manual, 6.4.4; Kt = 1 - Kr is ours";
     return list;
 }
 } // namespace alpenglow::rsl

@@ -1,4 +1,4 @@
-// Matrices: rsl.md 10.3 (seed 6.4.3). Row vectors, p' = p M, translation in the last row, as base/matrix.h.
+// Matrices: 3Delight manual, 6.4.3. Row vectors, p' = p M, translation in the last row, as base/matrix.h.
 #pragma once
 #include "shadeops/call.h"
 #include "shadeops/geometry.h"
@@ -121,7 +121,7 @@ std::vector<Shadeop> matrixShadeops() {
                          std::vector<Example> examples) -> Shadeop& {
         Shadeop op;
         op.section = "Matrices";
-        op.source = "seed";
+        op.source = "3Delight manual, 6.4.3";
         op.name = name;
         op.signatures = std::move(signatures);
         op.doc = doc;
@@ -129,8 +129,7 @@ std::vector<Shadeop> matrixShadeops() {
         list.push_back(std::move(op));
         return list.back();
     };
-    const std::string order =
-        " The new transformation applies first, as in RiTranslate: result = new * m (order (k), as RISpec).";
+    const std::string order = " The new transformation applies first, as in RiTranslate: result = new * m (RISpec 3.2, 4.3).";
     add("translate", sigs({{"matrix translate(matrix m; point t)", "al_translate"}}),
         ("Concatenates a translation by t onto m." + order).c_str(),
         {{"translate(matrix(1), point(1,2,3))", "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1"}});
@@ -161,7 +160,7 @@ std::vector<Shadeop> matrixShadeops() {
             {{"mtransform(matrix(2), matrix(3))", "6 0 0 0 0 6 0 0 0 0 6 0 0 0 0 6"}});
     mtransform.lowering = Lowering::Special;
     mtransform.derivative = DerivativeRule::Inherent;
-    mtransform.source = "RISpec";
+    mtransform.source = "RISpec 3.2, 15.4";
     return list;
 }
 } // namespace alpenglow::rsl

@@ -1,4 +1,4 @@
-// Message passing and information: rsl.md 11.1 (seed 6.4.8). Values live in the renderer; here are the signatures.
+// Message passing and information: 3Delight manual, 6.4.8. Values live in the renderer; here are the signatures.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
@@ -20,8 +20,8 @@ std::vector<Shadeop> messageShadeops() {
                          const char* doc) -> Shadeop& {
         Shadeop op;
         op.section = "Messages";
-        op.source = "seed";
         op.name = name;
+        op.source = op.name.starts_with("get") ? "3Delight manual, 6.4.9" : "3Delight manual, 6.4.8"; // co-shaders
         op.signatures = std::move(signatures);
         op.contexts = contexts;
         op.lowering = lowering;
@@ -166,12 +166,12 @@ std::vector<Shadeop> messageShadeops() {
     list.back().examples = {{"x", "2 2 2", "color x = 0; writeaov(\"glow\", color(2)); readaov(\"glow\", x);"}};
     add("islightcategory", sigs({{"float islightcategory(string category)"}}), Lowering::Special, kSurface | kVolume,
         "1 if the light of this turn of illuminance belongs to the category, as illuminance has them.")
-        .source = "seen in 3Delight shaders";
+        .source = "shaders of 3Delight";
     list.back().examples = {{"n", "1", "float n = 0; illuminance(P) n += islightcategory(\"key\");",
                              "one light of category key and one of another are on"}};
     add("shadername", sigs({{"string shadername()"}, {"string shadername(string type)"}}), Lowering::Service, kAnyContext,
         "Name of the shader attached.")
-        .source = "(k)";
+        .source = "PRMan";
     list.back().examples = {{"shadername()", "eval"}};
     for (Shadeop& op : list) // the same all over a primitive
         for (const char* name : {"attribute", "option", "rendererinfo", "shadername"})
@@ -184,7 +184,7 @@ std::vector<Shadeop> arrayShadeops() {
     const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) {
         Shadeop op;
         op.section = "Arrays";
-        op.source = "seed";
+        op.source = "3Delight manual, 6.4.10";
         op.name = name;
         op.signatures = std::move(signatures);
         op.lowering = lowering;

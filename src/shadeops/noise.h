@@ -1,4 +1,4 @@
-// Noise and random: rsl.md 10.2 (seed 6.4.2). Code for all lane widths above, descriptors below (host only).
+// Noise and random: 3Delight manual, 6.4.2. Code for all lane widths above, descriptors below (host only).
 #pragma once
 #include "shadeops/call.h"
 
@@ -209,7 +209,7 @@ std::vector<Shadeop> noiseShadeops() {
              "period. The components of a color, point or vector result do not correlate. The result is in [0,1] for points and "
              "vectors too. "
              "Beyond 1e9 the argument counts as 1e9. Same bits for any number of lanes.";
-    op.source = "seed; range and smoothness (k)";
+    op.source = "3Delight manual, 6.4.2; RISpec 3.2, 15.1";
     op.examples = {{"noise(3)", "0.5"}, {"noise(point(1,2,3))", "0.5"}, {"noise(2, 5)", "0.5"}};
     list.push_back(op);
 
@@ -240,7 +240,7 @@ std::vector<Shadeop> noiseShadeops() {
              "primitive, call site and seed, so that a value does not depend on how points are batched. al_random_f and "
              "al_random_t turn a "
              "hash into the value.";
-    op.source = "seed";
+    op.source = "3Delight manual, 6.4.2";
     op.examples = {{"x >= 0 && x < 1", "1", "float x = random();"}};
     list.push_back(op);
     return list;

@@ -1,4 +1,4 @@
-// Ray tracing: rsl.md 12.1 and 12.2 (seed 6.4.5). Answered by rays; here are signatures and optional parameters.
+// Ray tracing: 3Delight manual, 6.4.5. Answered by rays; here are signatures and optional parameters.
 #include "shadeops/describe.h"
 #include "shadeops/distributions.h"
 #include <array>
@@ -138,7 +138,7 @@ std::vector<Shadeop> raytracingShadeops() {
     const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
         Shadeop op;
         op.section = "Ray tracing";
-        op.source = "seed";
+        op.source = "3Delight manual, 6.4.5";
         op.name = name;
         op.signatures = std::move(signatures);
         op.contexts = kSurface | kVolume | kLight;

@@ -4,7 +4,7 @@
 namespace alpenglow {
 
 /// The exponent of specular() and specularbrdf() is this number over the roughness: pictures made by BMRT and PRMan follow it
-/// (docs/gallery.md, "Highlights"). A power of two, so that kSpecularExponent / (kSpecularExponent * r) is 1 / r to the bit.
+/// (docs/gallery.md). A power of two, so that kSpecularExponent / (kSpecularExponent * r) is 1 / r to the bit.
 inline constexpr float kSpecularExponent = 8;
 /// As RISpec prints it: Option "shade" "specular" "rispec", or the dialect "rispec". That of specularstd() always.
 inline constexpr float kRispecExponent = 1;

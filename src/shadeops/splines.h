@@ -1,4 +1,4 @@
-// Splines: rsl.md 10.1 (seed 6.4.1). The code generator chooses the four control points; the code here places and evaluates.
+// Splines: 3Delight manual, 6.4.1. The code generator chooses the four control points; the code here places and evaluates.
 #pragma once
 #include "shadeops/call.h"
 
@@ -134,7 +134,7 @@ std::vector<Shadeop> splineShadeops() {
              "contains the value when it lies between the segment's values at t = 0 and t = 1; al_splinesolve_BASIS(value, p0, "
              "p1, p2, p3) then "
              "gives t, and v = (s + t) / segments.";
-    op.source = "seed; point counts (k)";
+    op.source = "3Delight manual, 6.4.1; RISpec 3.2, 15.1";
     op.examples = {{"spline(0.5, 0, 0, 1, 1)", "0.5"}, {"spline(\"linear\", 0.25, 9, 0, 1, 9)", "0.25"}};
     return {op};
 }

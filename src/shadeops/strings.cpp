@@ -1,4 +1,4 @@
-// Strings and standard output: rsl.md 11.2 (seed 6.4.7).
+// Strings and standard output: 3Delight manual, 6.4.7.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
@@ -8,7 +8,7 @@ std::vector<Shadeop> stringShadeops() {
     const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
         Shadeop op;
         op.section = "Strings";
-        op.source = "seed";
+        op.source = "3Delight manual, 6.4.7";
         op.name = name;
         op.signatures = std::move(signatures);
         op.lowering = lowering;

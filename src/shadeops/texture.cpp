@@ -1,4 +1,4 @@
-// Texture mapping: rsl.md 12.3 (seed 6.4.6). The renderer answers; `name` may carry a channel, name[channel].
+// Texture mapping: 3Delight manual, 6.4.6. The renderer answers; `name` may carry a channel, name[channel].
 #include "shadeops/describe.h"
 #include <algorithm>
 
@@ -76,7 +76,7 @@ std::vector<Shadeop> textureShadeops() {
     const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
         Shadeop op;
         op.section = "Texture";
-        op.source = "seed";
+        op.source = "3Delight manual, 6.4.6";
         op.name = name;
         op.signatures = std::move(signatures);
         op.lowering = lowering;

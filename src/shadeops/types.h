@@ -1,4 +1,4 @@
-// The types of the shading language (rsl.md section 2), as descriptors, checker and code generator see them.
+// The types of the shading language (RISpec 3.2, section 11), as descriptors, checker and code generator see them.
 #pragma once
 #include <cstdint>
 #include <string>

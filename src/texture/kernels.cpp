@@ -35,7 +35,7 @@ double besselOf(double x) {
     return sum / n;
 }
 
-/// ri.md 14, at the widths by which these filters are known: disk 1, the cubics, sinc and lanczos 4.
+/// RISpec 3.2, appendix E, at the widths by which these filters are known: disk 1, the cubics, sinc and lanczos 4.
 double shapeAt(Filter f, double r) {
     switch (f) {
     case Filter::CatmullRom:

@@ -1,5 +1,5 @@
 // MakeTexture, MakeBump, MakeLatLongEnvironment, MakeShadow: pictures to maps, as tiled MIP-mapped OpenEXR files whatever their
-// extension. The cache reads their levels as they are. Source: ri.md 11.
+// extension. The cache reads their levels as they are. RISpec 3.2, 7.1.
 #pragma once
 #include "base/file.h"
 #include "texture/texture.h"

@@ -77,7 +77,7 @@ Kernel kernelOf(std::string_view f) {
     return {Kernel::Gaussian, 2};
 }
 
-/// Weight at distance x for full width w (ri.md 14, one-dimensional forms).
+/// Weight at distance x for full width w (RISpec 3.2, appendix E, one-dimensional forms).
 double weightAt(Kernel::Kind kind, double x, double w) {
     x = std::fabs(x);
     if (x > w / 2) return 0;

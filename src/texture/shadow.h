@@ -18,7 +18,7 @@ struct ShadowOptions {
 };
 
 /// The part of the footprint that is in shadow, 0..1, of a point in world space with its changes per pixel. 0 where the map does
-/// not look, behind its camera, and without a map or its matrices. The map's depth is camera-space z (ri.md 3.2). Of a map with
+/// not look, behind its camera, and without a map or its matrices. The map's depth is z in camera space. Of a map with
 /// faces, the face that has the point nearest to its middle. Of a deep map what it has taken of each channel; of others the same
 /// in all.
 Color shadowLookup(Handle, const Vec3d& world, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions&);

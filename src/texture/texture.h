@@ -1,7 +1,7 @@
 // Textures for shaders: texture(), environment() on lat-long maps, textureinfo(). Loaded whole on first need, then only read, so
 // lookups take no lock and do not depend on threads.
 //
-// Coordinates: (s, t) = (0, 0) is the upper left corner of the picture, s to the right, t downward (ri.md 11).
+// Coordinates: (s, t) = (0, 0) is the upper left corner of the picture, s to the right, t downward (RISpec 3.2, 7.1).
 // Wrap modes: those stored in the file ("wrapmodes", written by MakeTexture); a plain picture has none and is clamped, so that no
 // edge bleeds (TextureSettings::plainWrap).
 // Filtering: the footprint is the parallelogram of the derivatives, as a matrix of squared widths; blur adds to it in quadrature
@@ -65,7 +65,7 @@ using Handle = const Texture*;
 /// By RISpec name; nothing when unknown.
 std::optional<Filter> filterByName(std::string_view name);
 
-/// Table 6.16 of rsl.md.
+/// 3Delight manual, table 6.16.
 struct LookupOptions {
     float swidth = 1, twidth = 1; ///< multiply the derivatives
     float sblur = 0, tblur = 0;   ///< as a fraction of the map
@@ -99,7 +99,7 @@ void lookupQuad(Handle, int first, int count, const float s[4], const float t[4]
 void lookup2DLanes(Handle, int first, int count, bool asLight, LookupLanes&);
 
 /// Where a direction lies on a lat-long map: latitude +90 (along pole) at the top, longitude 0 (towards zero) at the left edge,
-/// growing towards `quarter`. Renderers differ in axes and sense (ri.md 11). The default has z up, as RISpec-era maps have it,
+/// growing towards `quarter`. Renderers differ in axes and sense. The default has z up, as old maps have it,
 /// longitude from +x towards +y.
 struct LatLong {
     Vec3 pole{0, 0, 1}, zero{1, 0, 0}, quarter{0, 1, 0};

@@ -10,7 +10,7 @@ using namespace alpenglow;
 
 namespace {
 
-TEST(Matrix, RotateAboutZFollowsTheReference) { // ri.md 5: x' = x cos - y sin, y' = x sin + y cos
+TEST(Matrix, RotateAboutZFollowsTheSpecification) { // RISpec 3.2, 4.3: x' = x cos - y sin, y' = x sin + y cos
     Vec3d p = transformPoint(rotateMatrix(90, 0, 0, 1), {1, 0, 0});
     EXPECT_NEAR(p.x, 0, 1e-15);
     EXPECT_NEAR(p.y, 1, 1e-15);
@@ -44,7 +44,7 @@ TEST(Matrix, NormalsStayPerpendicular) {
     EXPECT_NEAR(dot(transformVector(m, t), transformNormal(m, n)), 0, 1e-14);
 }
 
-TEST(Matrix, SkewTurnsTheFirstAxisTowardTheSecond) { // ri.md 5: d1 ends at angle `deg` less from d2
+TEST(Matrix, SkewTurnsTheFirstAxisTowardTheSecond) { // docs/design/ri.md: d1 ends at angle `deg` less from d2
     Matrix m = skewMatrix(30, {0, 1, 0}, {1, 0, 0});
     Vec3d p = transformPoint(m, {0, 1, 0});
     EXPECT_NEAR(p.y, 1, 1e-15);

@@ -192,7 +192,7 @@ Bytes mutateText(Random& r, const Bytes& seed, const Seeds& seeds, const std::ve
 
 namespace {
 
-/// ri.md 17: codes below 0200 are ASCII.
+/// RISpec 3.2, appendix C.2: codes below 0200 are ASCII.
 void binaryNumber(Random& r, Bytes& out, const std::string& text) {
     const double v = std::atof(text.c_str());
     const auto put = [&](uint64_t bits, int n) {

@@ -46,7 +46,7 @@ struct NamedBasis {
     std::vector<double> m;
     int step;
 };
-const std::vector<NamedBasis>& bases() { // ri.md 8.3
+const std::vector<NamedBasis>& bases() { // RISpec 3.2, 5.2
     static const std::vector<NamedBasis> all = {
         {"bezier", {-1, 3, -3, 1, 3, -6, 3, 0, -3, 3, 0, 0, 1, 0, 0, 0}, 3},
         {"b-spline", {-1. / 6, .5, -.5, 1. / 6, .5, -1, .5, 0, -.5, 0, .5, 0, 1. / 6, 4. / 6, 1. / 6, 0}, 1},

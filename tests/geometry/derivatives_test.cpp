@@ -1,5 +1,5 @@
 // Partials and normals of every primitive against central differences of its own positions (T12, 1e-3), positions against
-// ri.md 8, areas against closed forms, orientation against ri.md 4.1.
+// docs/design/ri.md, areas against closed forms, orientation against RISpec 3.2, 4.2.
 #include "make.h"
 #include <cmath>
 #include <gtest/gtest.h>

@@ -101,7 +101,7 @@ TEST(Instances, ComposeTransforms) {
     EXPECT_NEAR(length(s[0]->evaluate(0, 0, 0.5).P - Vec3(2, 2, 5)), 0, 1e-6);
 }
 
-// ri.md 9.2: an instance's attributes count, but what was set inside the object holds in every instance.
+// RISpec 3.2, 5.10: an instance's attributes count, but what was set inside the object holds in every instance.
 TEST(Instances, AttributesSetInsideTheObjectHold) {
     auto before = std::make_shared<scene::Attributes>();
     before->color = Color(1, 0, 0);

@@ -1,4 +1,4 @@
-// attribute(), option() and rayinfo() in rendered scenes, by every name that the reference has (rsl.md 11, Tables 6.20 and 6.21).
+// attribute(), option() and rayinfo() in rendered scenes, by every name of the 3Delight manual (tables 6.20 and 6.21).
 #include "integrator/floorscene.h"
 #include "world/objectbox.h"
 

@@ -1,4 +1,4 @@
-// The Muttenzer box for tests: its RIB with or without spheres, tiles of its frame, and how two sets of tiles are compared (T6).
+// The Muttenzer box for tests: its RIB with or without spheres, tiles of its frame, and how two sets of tiles are compared.
 #pragma once
 #include "integrator/harness.h"
 #include "oracle/box_oracle.h"
@@ -14,10 +14,10 @@ inline std::string boxRib(bool spheres) {
     return s;
 }
 
-/// Camera space of the box's own camera, from the world space of the reference.
+/// Camera space of the box's own camera, from the world space of docs/design/muttenzer-box.md.
 inline Vec3 boxCamera(double x, double y, double z) { return {float(x), float(y), float(7.2 - z)}; }
 
-/// 64 tiles of the frame; a nightly tile holds 16 x 16 pixels of 256 samples (T6).
+/// 64 tiles of the frame; a nightly tile holds 16 x 16 pixels of 256 samples.
 struct Tiles {
     static constexpr int kX = 8, kY = 8, kCount = kX * kY;
     std::vector<Moments> tile = std::vector<Moments>(kCount);

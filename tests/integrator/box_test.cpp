@@ -90,7 +90,7 @@ TEST_P(BoxAgreement, ScrambledSequences) {
 }
 INSTANTIATE_TEST_SUITE_P(Box, BoxAgreement, ::testing::Bool(), [](const auto& i) { return i.param ? "spheres" : "empty"; });
 
-// Reference muttenzer_box.md. Figures are rounded to four digits and have a standard error below 0.0002.
+// docs/design/muttenzer-box.md. Figures are rounded to four digits and have a standard error below 0.0002.
 struct Place {
     const char* name;
     double p[3];
@@ -113,8 +113,6 @@ void expectFigure(const Moments& m, const double want[3], const std::string& wha
 }
 
 TEST(BoxReference, ListedPlaces) {
-    if (!std::filesystem::exists(ALPENGLOW_SOURCE_DIR "/../shared/reference/muttenzer_box.md"))
-        GTEST_SKIP() << "the reference sheet is not here";
     for (int kind = 0; kind < 3; ++kind) {
         Settings s;
         s.hider = Hider::Path;
@@ -134,8 +132,6 @@ TEST(BoxReference, ListedPlaces) {
 }
 // The caustic's place without spheres: the floor seen from just above it.
 TEST(BoxReference, PlaceOfTheCausticWithoutSpheres) {
-    if (!std::filesystem::exists(ALPENGLOW_SOURCE_DIR "/../shared/reference/muttenzer_box.md"))
-        GTEST_SKIP() << "the reference sheet is not here";
     const double direct[3] = {.1501, .1501, .1501}, all[3] = {.2093, .1912, .2286};
     for (bool indirect : {false, true}) {
         Settings s;
@@ -147,8 +143,6 @@ TEST(BoxReference, PlaceOfTheCausticWithoutSpheres) {
     }
 }
 TEST(BoxReference, FrameMeans) {
-    if (!std::filesystem::exists(ALPENGLOW_SOURCE_DIR "/../shared/reference/muttenzer_box.md"))
-        GTEST_SKIP() << "the reference sheet is not here";
     const double want[3][3] = {{.0989, .0926, .0989}, {.1504, .1235, .1505}, {.1523, .1250, .1535}};
     for (int kind = 0; kind < 3; ++kind) {
         Settings s;

@@ -1,5 +1,5 @@
-// Defaults of parameters that read earlier parameters or the point itself (rsl.md 2.1), and shaders that share a file. Closed
-// forms.
+// Defaults of parameters that read earlier parameters or the point itself (docs/language.md), and shaders that share a file.
+// Closed forms.
 #include "integrator/floorscene.h"
 
 namespace defaults_test {

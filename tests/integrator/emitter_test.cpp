@@ -217,7 +217,7 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
             Cell& cell = counted[grid.cell(w)];
             cell.s += whole * layers, cell.q += whole * layers * whole * layers, ++cell.hits;
         }
-        EXPECT_EQ(blind, 0) << what << ": hits that the sampler cannot make"; // T2, support
+        EXPECT_EQ(blind, 0) << what << ": hits that the sampler cannot make"; // support
         // Welch's z of every cell with enough in it; the rest is one cell.
         double sum = 0, total[2] = {}, variance = 0;
         int used = 0;

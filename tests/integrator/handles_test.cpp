@@ -241,7 +241,7 @@ TEST(OpenParameters, ReadBehindTheirDefaultWhereTheSceneGivesMore) {
     expectColor(seen("Surface \"openread\" \"color[2] c\" [1 1 1 2 3 4]\n").color, {2, 3, 4});
 }
 
-// rsl.md 7.2: rays that only want to know what stops them run opacity() alone.
+// 3Delight manual, 6.1.1.2: rays that only want to know what stops them run opacity() alone.
 TEST(ShadowOpacity, IsWhatTheMethodOpacityGives) {
     writeShader("opacityfirst",
                 "class opacityfirst(float by = 1;) { public void opacity(output color Oi) { Oi = color(.25, .5, .75) * by; }\n"

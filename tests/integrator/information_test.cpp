@@ -63,7 +63,7 @@ TEST(Information, AttributesAsTheyAreWhenUnset) {
         under(Hider::Hidden));
     EXPECT_EQ(given.one(kView), Color(1, 4, 0));
 }
-// 0 at the near plane, 1 at the far one (seed 6.4.3), whatever the hider.
+// 0 at the near plane, 1 at the far one, whatever the hider.
 TEST(Information, DepthBetweenThePlanesOfClipping) {
     writeShader("deep", "surface deep() { Oi = 1; Ci = depth(P); }\n");
     for (Hider h : {Hider::Hidden, Hider::Raytrace}) {

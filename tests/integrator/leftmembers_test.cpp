@@ -1,5 +1,5 @@
-// One class that displaces and shades: what its displacement() writes to members its other methods see (rsl.md 7.2), with
-// derivatives.
+// A class (3Delight manual, 6.1.1.2) that displaces and shades: what its displacement() writes to members its other methods see,
+// with derivatives.
 #include "integrator/floorscene.h"
 
 namespace leftmembers_test {

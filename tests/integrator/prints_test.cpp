@@ -1,4 +1,4 @@
-// What shaders print comes in the order of the samples (T10): surfaces that wait, their reflections, lights.
+// What shaders print comes in the order of the samples: surfaces that wait, their reflections, lights.
 #include "integrator/harness.h"
 #include <algorithm>
 #include <random>

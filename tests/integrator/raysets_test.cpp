@@ -126,7 +126,7 @@ TEST(RaySets, HitModes) {
     EXPECT_NEAR(shows("mode10", "Ci = environment(\"raytrace\", up, \"hitmode\", \"primitive\");", pane(1, shape)).y, .5, 1e-5);
 }
 
-// "this environment() also accepts the same optional parameters as trace" (seed 6.4.6): outputs and arrays, too.
+// "this environment() also accepts the same optional parameters as trace": outputs and arrays, too.
 TEST(RaySets, EnvironmentTakesAllThatTraceTakes) {
     const std::string map = writeMap("rayssky.exr", 8, 4, Color(.25f, .5f, .75f)).substr(1), sky = map.substr(0, map.size() - 1);
     const std::string thin = pane(1, "Color 1 0 0 Opacity .75 .5 .25"),

@@ -1,4 +1,4 @@
-// slclassic.sl: SLProject's classic ray tracer by its formulas (pathtracer.md 9), each at points where they are known.
+// slclassic.sl: SLProject's classic ray tracer by its formulas (docs/design/slproject.md), each at points where they are known.
 #include "integrator/floorscene.h"
 
 namespace slclassic_test {

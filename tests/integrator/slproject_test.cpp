@@ -1,4 +1,4 @@
-// shaders/include/slproject.h against SLProject's rules written out plainly (pathtracer.md 10).
+// shaders/include/slproject.h against SLProject's rules written out plainly (docs/design/slproject.md).
 #include "integrator/floorscene.h"
 #include "integrator/maps.h"
 #include <cmath>
@@ -155,7 +155,7 @@ TEST(SlProject, SixFacesByDirection) {
         int face;
         float uc, vc;
     };
-    // uc, vc of pathtracer.md 10.2 over the greatest component; u = (uc + 1) / 2, and the row from above (1 - vc) / 2.
+    // uc, vc of docs/design/slproject.md over the greatest component; u = (uc + 1) / 2, and the row from above (1 - vc) / 2.
     for (const Case& k : {Case{"2, .4, -.6", 0, .3f, .2f},
                           {"-2, .4, -.6", 1, -.3f, .2f},
                           {".4, 2, .6", 2, .2f, -.3f},

@@ -1,5 +1,5 @@
 // SLProject's four other ray-traced scenes in examples/slproject: their counts, and places whose colour the formulas of its
-// classic ray tracer give (pathtracer.md 9).
+// classic ray tracer give (docs/design/slproject.md).
 #include "integrator/floorscene.h"
 #include <cmath>
 #include <fstream>

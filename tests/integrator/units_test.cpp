@@ -1,4 +1,4 @@
-// Design decision 4, row by row of docs/light.md: each light against its closed form, seen in each way a shader can look at
+// The tables of docs/light.md, row by row: each light against its closed form, seen in each way a shader can look at
 // light. A large white floor y = 0, a point of it at the origin, camera space = world space.
 #include "integrator/harness.h"
 #include <set>

@@ -1,5 +1,5 @@
 // The oracle: a plain path tracer of the Muttenzer box. Planes and spheres met in double, materials and light written out. It
-// shares nothing with the renderer but the arithmetic of C++. World space, right-handed, y up (reference muttenzer_box.md).
+// shares nothing with the renderer but the arithmetic of C++. World space, right-handed, y up (docs/design/muttenzer-box.md).
 // box_oracle_embree.h has a second way to meet the box, for box_bench.
 #pragma once
 #include <array>

@@ -1,5 +1,5 @@
-// The oracle itself against the published figures of the box (reference muttenzer_box.md: standard error below 0.0002, figures to
-// four digits). Two-sided z at alpha 2e-6 is 4.753.
+// The oracle itself against the published figures of the box (docs/design/muttenzer-box.md: standard error below
+// 0.0002, figures to four digits). Two-sided z at alpha 2e-6 is 4.753.
 #include "oracle/box_oracle_embree.h"
 #include <gtest/gtest.h>
 #include <string_view>

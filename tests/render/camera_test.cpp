@@ -1,4 +1,4 @@
-// The camera against the formulas of ri.md 6, worked out by hand in each test.
+// The camera against the formulas of docs/design/ri.md, worked out by hand in each test.
 #include "render/camera.h"
 #include "scene/scene.h"
 #include <cmath>
@@ -228,7 +228,7 @@ TEST(Camera, NonsenseIsReportedAndReplaced) {
 }
 
 TEST(Camera, CirclesOfConfusion) {
-    // ri.md 6: in perspective the blur of a point at depth z has the diameter A |1/z - 1/D| k xres / (right - left) in the
+    // docs/design/ri.md: in perspective the blur of a point at depth z has the width A |1/z - 1/D| k xres / (right - left) in the
     // raster; in orthographic views A |z/D - 1| xres / (right - left).
     Diagnostics d;
     for (bool perspectively : {true, false})

@@ -220,12 +220,12 @@ TEST(Noise, HalvesWhenSamplesAreQuadrupled) {
     EXPECT_NEAR(efficiency(rb, 4) / efficiency(ra, 1), 1, 0.05);
 }
 
-// The threshold table of the reference (640 x 360, 1000 samples). The model that gives its numbers: an ordinary sample is
+// The table of docs/design/slproject.md, "Noise figures" (640 x 360, 1000 samples). Its model: an ordinary sample is
 // normal with mean 1 and deviation 0.1; in a firefly pixel each sample is, with probability 0.002, 3000 instead. So a firefly
 // pixel holds k outliers, k ~ Poisson(2): its RSE is near 3 sqrt(k) / (1 + 3k): 0.75, 0.61, 0.52 ... for k = 1, 2, 3.
 // Moments of the ordinary samples are drawn exactly: mean ~ N, sum of squared deviations ~ sigma^2 chi^2(n - 1), independent.
 // The table is one random draw and so is ours: tolerances are 4.753 deviations of the difference plus the rounding shown.
-TEST(Noise, ThresholdTableOfTheReference) {
+TEST(Noise, ThresholdTableOfSlProject) {
     struct Row {
         double share, rse, rse999, tolerance999;
     };

@@ -14,7 +14,7 @@ double at(FilterKind k, double xw, double yw, double x, double y) { return Pixel
 constexpr double kPiD = 3.14159265358979323846;
 } // namespace
 
-// Values worked out by hand from the formulas of the reference.
+// Values worked out by hand from the formulas of RISpec 3.2, appendix E.
 TEST(PixelFilter, SpotValues) {
     EXPECT_EQ(at(FilterKind::Box, 2, 1, 0.99, -0.5), 1);
     EXPECT_EQ(at(FilterKind::Box, 2, 1, 1.01, 0), 0);

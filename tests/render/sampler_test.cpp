@@ -1,4 +1,4 @@
-// T8 of the test plan: the structure of the samples.
+// T8 (docs/proof.md): the structure of the samples.
 #include "../statistics/chisquare.h"
 #include "base/sampler.h"
 #include <algorithm>

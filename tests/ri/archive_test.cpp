@@ -1,4 +1,4 @@
-// ReadArchive, inline archives, DelayedReadArchive, search paths (ri.md 10.2, reliability).
+// ReadArchive, inline archives, DelayedReadArchive, search paths (RISpec 3.2, 7.3).
 #include "base/limits.h"
 #include "collect.h"
 #include "ri/interpreter.h"

@@ -1,4 +1,4 @@
-// Binary RIB (ri.md 17) from hand-assembled bytes, gzip, and damaged streams.
+// Binary RIB (RISpec 3.2, appendix C.2) from hand-assembled bytes, gzip, and damaged streams.
 #include "base/limits.h"
 #include "collect.h"
 #include "scene/scene.h"

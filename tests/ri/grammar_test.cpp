@@ -1,4 +1,4 @@
-// ASCII RIB: ri.md 16, and what files in the wild do (wild.md).
+// ASCII RIB: RISpec 3.2, appendix C.2, and what files do beyond it (docs/design/ri.md, "Reading").
 #include "base/limits.h"
 #include "collect.h"
 #include "scene/scene.h"

@@ -1,4 +1,4 @@
-// Graphics state: stacks, transformations against closed forms, lights, objects, motion, frames (ri.md 1, 4, 5, 9).
+// Graphics state: stacks, transformations against closed forms, lights, objects, motion, frames (RISpec 3.2, sections 4 to 6).
 #include "base/limits.h"
 #include "collect.h"
 #include "ri/lookahead.h"
@@ -22,7 +22,7 @@ TEST(Transforms, EachAgainstItsClosedForm) {
     // Rotate about +z: x' = x cos - y sin, y' = x sin + y cos; row vectors: rows (cos sin) (-sin cos).
     double c = std::cos(std::numbers::pi / 6), s = .5;
     expectMatrix(ctm("Rotate 30 0 0 2"), {c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
-    // Perspective, ri.md 5: rows (1 0 0 0) (0 1 0 0) (0 0 t t) (0 0 -t 0), t = tan(45 deg) = 1.
+    // Perspective, RISpec 3.2, 4.3: rows (1 0 0 0) (0 1 0 0) (0 0 t t) (0 0 -t 0), t = tan(45 deg) = 1.
     expectMatrix(ctm("Perspective 90"), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, -1, 0});
     // Skew of y toward x by 45 degrees: x' = x + y.
     expectMatrix(ctm("Skew 45 0 1 0 1 0 0"), {1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
@@ -113,7 +113,7 @@ TEST(Attributes, BasisMatrices) {
     auto c = world("Basis \"b-spline\" 1 [1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16] 2 Sphere 1 -1 1 360");
     const auto& a = *c->primitive().attributes;
     EXPECT_EQ(a.ubasis.step, 1);
-    EXPECT_DOUBLE_EQ(a.ubasis.m[3][1], 4.0 / 6); // ri.md 8.3
+    EXPECT_DOUBLE_EQ(a.ubasis.m[3][1], 4.0 / 6); // RISpec 3.2, 5.2
     EXPECT_EQ(a.vbasis.m[1][0], 5);
     EXPECT_EQ(a.vbasis.step, 2);
     // Each row set interpolates a constant: the columns of the last row sum to 1, of the others to 0.

@@ -1,4 +1,4 @@
-// Every request of the table: its sample is read and executed; the table and the reference agree.
+// Every request of the table: its sample is read and executed; the table and RISpec 3.2 agree.
 #include "collect.h"
 #include "ri/parser.h"
 #include "ri/requests/manual.h"
@@ -16,7 +16,7 @@ TEST(Table, NamesAreSortedAndUnique) {
 }
 
 TEST(Table, HoldsEveryRequestOfTheReference) {
-    // ri.md 16.0, the first column.
+    // RISpec 3.2, appendix C.2, the first column.
     const char* names[] = {"version",
                            "Declare",
                            "FrameBegin",
@@ -133,7 +133,7 @@ TEST(Table, HoldsEveryRequestOfTheReference) {
                            "Resource",
                            "System"};
     for (const char* n : names) EXPECT_NE(findRequest(n), nullptr) << n;
-    EXPECT_EQ(findRequest("Options"), nullptr); // ri.md 10.4: no such call
+    EXPECT_EQ(findRequest("Options"), nullptr); // docs/rib.md: no such call
 }
 
 TEST(Table, EveryEntryIsComplete) {

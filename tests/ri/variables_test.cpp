@@ -1,4 +1,4 @@
-// Declarations and the counts of primitive variables (ri.md 2, 7.1).
+// Declarations and the counts of primitive variables (docs/design/ri.md).
 #include "collect.h"
 #include "ri/declare.h"
 #include "scene/counts.h"
@@ -82,7 +82,7 @@ std::string repeat(int64_t n, const char* item) {
     for (int64_t i = 0; i < n; ++i) s += std::string(item) + " ";
     return s + "]";
 }
-// By hand from the table of ri.md 7.1.
+// By hand from the table of docs/design/ri.md.
 const Counts kCounts[] = {
     {"Polygon \"P\" [0 0 0 1 0 0 1 1 0 0 1 0 0 .5 0]", 1, 5, 5, 5},
     {"GeneralPolygon [4 3] \"P\" [0 0 0 9 0 0 9 9 0 0 9 0 1 1 0 2 1 0 1 2 0]", 1, 7, 7, 7},

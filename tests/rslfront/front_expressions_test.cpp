@@ -1,4 +1,4 @@
-// Expressions: precedence (rsl.md 3), conversions (rsl.md 4), overloads. The expected trees follow from those tables.
+// Expressions: precedence (RISpec 3.2, 13.1), conversions (docs/design/rsl.md), overloads. The expected trees follow from these.
 #include "front_helpers.h"
 
 namespace alpenglow::rsl::front_expressions_test {

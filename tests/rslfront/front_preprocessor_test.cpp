@@ -1,4 +1,4 @@
-// The preprocessor: rsl.md section 1.
+// The preprocessor: docs/language.md.
 #include "front_helpers.h"
 #include "rsl/front/preprocessor.h"
 #include <filesystem>

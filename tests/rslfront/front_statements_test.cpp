@@ -1,4 +1,4 @@
-// Statements, declarations, functions and shaders: rsl.md 2, 5, 6, 7 and the habits listed in wild.md.
+// Statements, declarations, functions and shaders (RISpec 3.2, 13.2 and section 14), and what old files do (docs/language.md).
 #include "front_helpers.h"
 
 namespace alpenglow::rsl::front_statements_test {
@@ -43,7 +43,7 @@ const Case kStatements[] = {
      "(illuminance P (cast:vector N) 1 \"send:light:x\"=(add:float f 1) (+= c Cl))"},
     {"illuminance (P) { extern vector L; extern color Cl; c += Cl * (L . v1); }",
      "(illuminance P (block (declare) (declare) (+= c (mul:color Cl (cast:color (dot:float L v1))))))"},
-    // wild.md: keywords of later versions are names.
+    // Keywords of later versions are names.
     {"vector incident = v1;", "(declare (varying vector incident = v1))"},
     {"color light = c; light *= 2;", "(declare (varying color light = c)) (*= light (cast:color 2))"},
     {"float gather = 1; f = gather;", "(declare (varying float gather = 1)) (= f gather)"},
@@ -102,7 +102,7 @@ TEST(FrontShaders, KindsAndLights) {
 }
 
 TEST(FrontShaders, GlobalsByKind) {
-    EXPECT_EQ(globalVariables(ShaderKind::Surface).size(), 24u); // rsl.md 8.1
+    EXPECT_EQ(globalVariables(ShaderKind::Surface).size(), 24u); // RISpec 3.2, 12.1
     const auto has = [](ShaderKind k, const std::string& name) {
         for (const auto& g : globalVariables(k))
             if (g.name == name) return true;

@@ -335,7 +335,7 @@ TEST(Compiler, PatternsAreStraightCode) {
     }
 }
 
-// rsl.md 11.2 and the seed's text on format().
+// 3Delight manual, 6.4.7, format().
 TEST(Services, Format) {
     const FormatValue f{Base::Float, {1.5f}, {}}, s{Base::String, {}, "rose"}, p{Base::Point, {1, 2, 3}, {}};
     FormatValue m{Base::Matrix, {}, {}};

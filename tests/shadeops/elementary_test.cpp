@@ -1,5 +1,5 @@
 // Errors of the elementary functions in ulp against the C library in double, over their ranges; and the edge rules of
-// rsl.md 10.1.
+// 3Delight manual, 6.4.1.
 #include "shadeops/descriptor.h"
 #include <algorithm>
 #include <cmath>
@@ -118,7 +118,7 @@ TEST(Elementary, Atan2Ulp) {
     std::printf("atan2: %.2f ulp\n", worst);
 }
 
-// rsl.md 10.1, edge rules.
+// 3Delight manual, 6.4.1, edge rules.
 TEST(Elementary, EdgeRules) {
     EXPECT_EQ(call("al_sqrt", -1), 0);
     EXPECT_EQ(call("al_inversesqrt", 0), 1e38f);

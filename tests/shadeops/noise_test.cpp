@@ -1,4 +1,4 @@
-// Properties of the noises (rsl.md 10.2): range, mean, lattice, period, smoothness, decorrelated channels, spectrum.
+// Properties of the noises (3Delight manual, 6.4.2): range, mean, lattice, period, smoothness, decorrelated channels, spectrum.
 #include "shadeops/descriptor.h"
 #include "shadeops/host_runtime.h"
 #include <array>

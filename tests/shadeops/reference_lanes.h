@@ -1,5 +1,5 @@
 // Stands in for shadeops/lanes.h in jets_test.cpp: the same templates over double, elementary functions from the C library,
-// written with the edge rules of rsl.md 10.1. An independent reference for values, and smooth enough to difference.
+// written with the edge rules of 3Delight manual, 6.4.1. An independent reference for values, and smooth enough to difference.
 #pragma once
 #include <cmath>
 #include <cstring>

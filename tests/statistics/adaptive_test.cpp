@@ -1,4 +1,4 @@
-// Adaptive sampling (must of T9): which pixels get more samples has no bearing on what their mean is expected to be, and the
+// Adaptive sampling (docs/noise.md): which pixels get more samples has no bearing on what their mean is expected to be, and the
 // errors that are reported stay true. Whole renders of known pictures, whose engine is a function of the sample's numbers.
 #include "../render/plain_world.h"
 #include "render/adaptive.h"

@@ -1,4 +1,4 @@
-// Do two ways of making one picture agree? Four statistics on the tiles of the picture (test plan T6): the image's mean finds a
+// Do two ways of making one picture agree? Four statistics on the tiles of the picture (docs/proof.md): the image's mean finds a
 // small bias everywhere, the sum of z^2 many small local ones, the largest |z| one local one, and Kolmogorov-Smirnov a wrong
 // distribution of the tiles' p-values, which is also what broken standard errors look like.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace alpenglow::teststat {
 
-inline constexpr double kAlphaKs = 1e-4;  ///< of Kolmogorov-Smirnov (T6)
+inline constexpr double kAlphaKs = 1e-4;  ///< of Kolmogorov-Smirnov
 inline constexpr double kPower99 = 2.326; ///< one-sided normal: beyond the threshold by this much, 99 of 100 are rejected
 
 /// P(|normal| >= |z|).

@@ -72,7 +72,7 @@ TEST(Agreement, Power) {
     EXPECT_GE(spread, 96);
     EXPECT_GE(tooSmall, 90);
 }
-// Rule 3 of the test plan: the p-values of many nights, kept by ALPENGLOW_PVALUES, are uniform. Finds broken statistics and small
+// The p-values of many nights (docs/proof.md), kept by ALPENGLOW_PVALUES, are uniform. Finds broken statistics and small
 // common bias.
 TEST(Agreement, KeptPValuesAreUniform) {
     const char* file = std::getenv("ALPENGLOW_PVALUES");

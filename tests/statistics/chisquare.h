@@ -51,7 +51,7 @@ inline double chiSquareP(const std::vector<double>& observed, const std::vector<
     return k < 2 ? 1 : gammaQ((k - 1) / 2.0, x / 2);
 }
 
-inline constexpr double kAlpha = 2e-6; ///< per test (testing.md, rule 1)
+inline constexpr double kAlpha = 2e-6; ///< per test (docs/proof.md)
 inline constexpr double kZ = 4.753;    ///< the same, two-sided normal
 
 } // namespace alpenglow::teststat

@@ -1,4 +1,4 @@
-// T9 of the test plan: the numbers a render reports about its noise are true. A thousand small renders of known pictures.
+// T9 (docs/proof.md): the numbers a render reports about its noise are true. A thousand small renders of known pictures.
 #include "render/filtersampler.h"
 #include "render/noise.h"
 #include <gtest/gtest.h>

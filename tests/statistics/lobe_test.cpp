@@ -1,5 +1,5 @@
-// T1 (sampler against density, chi-square) and T2 (consistency, support) of ../shared testing rules, for every lobe.
-// False alarms: alpha = 2e-6 a test. Power (T1): on 200 cells and 1e5 draws an error of alternating +-5 % is found in 200 of 200
+// Every lobe: its sampler against its density (LobeT1, chi-square), consistency and support (LobeT2); docs/proof.md.
+// False alarms: alpha = 2e-6 a test. Power: on 200 cells and 1e5 draws an error of alternating +-5 % is found in 200 of 200
 // runs; nightly on 5,202 cells and 1e6 draws +-6 % (noncentrality N delta^2 against 7.1 sqrt(2 k), sum of delta^2 e = N delta^2).
 // Distributions have 4e5 draws on 200 cells: finds 2.3 % (root of the mean square over what is drawn) in 99 of 100 runs.
 #include "lobes/lobe.h"
@@ -263,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, DistributionT1, ::testing::ValuesIn(distribution
 });
 
 // A drawn direction is unit, has a finite value and density, and a density above 0 but for rounding on a lobe's edge: what is
-// drawn where pdf says 0 would be lost. Draws: 2,000 a case, nightly 1e5 (T2).
+// drawn where pdf says 0 would be lost. Draws: 2,000 a case, nightly 1e5.
 TEST(LobeT2, SampledDirectionsHaveFiniteDensityAndValue) {
     for (const Case& c : allCases()) {
         const LobeKind& k = *findLobe(c.kind);
@@ -286,7 +286,7 @@ TEST(LobeT2, SampledDirectionsHaveFiniteDensityAndValue) {
     }
 }
 
-// Where a lobe has a value it has a density, without exception (T2): necessary for an unbiased estimate. 3,000 directions a case,
+// Where a lobe has a value it has a density, without exception: necessary for an unbiased estimate. 3,000 directions a case,
 // nightly 1e5.
 TEST(LobeT2, SupportOfTheDensityCoversTheValue) {
     std::mt19937_64 rng(6 + seedBase());
@@ -372,7 +372,7 @@ TEST(Sampling, BasisIsOrthonormalAtThePoles) {
     }
 }
 
-// pathtracer.md 5.1: the infinite series with albedo 0.75 is 4.
+// The infinite series of interreflection with albedo 0.75 is 4.
 TEST(Sampling, RouletteIsUnbiased) {
     std::mt19937_64 rng(9);
     std::uniform_real_distribution<float> u01(0, 1);

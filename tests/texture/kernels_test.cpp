@@ -1,5 +1,5 @@
-// Filters that have a shape: lookups against sums of many points over the footprint, weighed as RISpec's pixel filters are (ri.md
-// 14, written out here anew), and what such filters do exactly.
+// Filters that have a shape: lookups against sums of many points over the footprint, weighed as the pixel filters are (RISpec
+// 3.2, appendix E, written out here anew), and what such filters do exactly.
 #include "pictures.h"
 #include <cmath>
 #include <limits>

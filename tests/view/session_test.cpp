@@ -200,7 +200,7 @@ TEST_F(ViewSession, SavesWhatRenderWouldWrite) {
     s.output = "x.png";
     const auto png = display::readImage("Pathtraced_8_0.png", diags);
     ASSERT_TRUE(png);
-    // The code of a pixel by the seed's formula, from the linear picture; dither is half a code.
+    // The code of a pixel by SLProject's formula, from the linear picture; dither is half a code.
     const double code = std::pow(std::clamp(double(expected.pixel(20, 12)[0]), 0.0, 1.0), 1 / 2.2);
     EXPECT_NEAR(png->pixel(20, 12)[0], code, 1.01 / 255);
     EXPECT_FALSE(std::filesystem::exists("x.exr")); // a view leaves the scene's own pictures alone

@@ -5,7 +5,7 @@
 //     static void prepare(Rows)                                 fills kRowAlbedo, kRowSpread, kRowDelta and its own rows
 //     static Value evaluate(const Given&, const Direction& w)   f cos by channel, and the density of sample() per solid angle
 //     static vm sample(const Given&, const Pair<vf>& u, Direction& w)
-// f cos is the value of design decision 4: the shadeop's result is the integral of L f cos over directions, so diffuse() of
+// f cos is the value of docs/light.md: the shadeop's result is the integral of L f cos over directions, so diffuse() of
 // radiance 1 from everywhere is 1, and a light's Cl (irradiance / pi) is scored pi f cos Cl.
 #pragma once
 #include "lobes/lanes/directions.h"

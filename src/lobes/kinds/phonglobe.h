@@ -1,7 +1,7 @@
-// trace()'s "phong": SLProject's glossy lobe about a perfect direction (pathtracer.md 5.3). axis = perfect reflected or refracted
+// trace()'s "slphong": SLProject's glossy lobe (docs/design/slproject.md, "Glossy lobe"). axis = perfect reflected or refracted
 // direction, a = exponent (1000 and above: perfect), horizon = surface normal. f cos = (n+2)/(2 pi) cos^n |w . horizon|,
 // only on the perfect direction's side of the surface; without a horizon the plain normalised lobe (n+1)/(2 pi) cos^n.
-// What this does not do: conserve energy at grazing angles (the part below the surface is lost, as in the seed).
+// What this does not do: conserve energy at grazing angles (the part below the surface is lost, as there).
 #pragma once
 #include "lobes/kinds/specular.h"
 

@@ -1,4 +1,4 @@
-// Directions in lanes: frames, turns, and the sampling formulas of pathtracer.md section 5 (lobes/sampling.h has them for
+// Directions in lanes: frames, turns, and sampling formulas (docs/design/light-transport.md; lobes/sampling.h has them for
 // one).
 #pragma once
 #include "shadeops/call.h"
@@ -8,7 +8,7 @@ using namespace rsl::AL_NAMESPACE;
 
 using Direction = Triple<vf>;
 
-/// Orthonormal basis about a unit normal, without a branch and without trigonometry (pathtracer.md 5.3).
+/// Orthonormal basis about a unit normal, without a branch and without trigonometry (Duff et al., JCGT 2017).
 struct Basis {
     Direction t, u, n;
 };

@@ -1,4 +1,4 @@
-// Archives and System (ri.md 10).
+// Archives and System (RISpec 3.2, 7.3).
 #include "ri/interpreter.h"
 
 namespace alpenglow::ri {

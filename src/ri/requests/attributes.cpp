@@ -1,4 +1,4 @@
-// Attributes that are not shaders or transformations (ri.md 4).
+// Attributes that are not shaders or transformations (RISpec 3.2, 4.2).
 #include "ri/interpreter.h"
 #include "ri/requests/request.h"
 #include <algorithm>
@@ -57,7 +57,7 @@ struct NamedBasis {
     double m[4][4];
 };
 constexpr double S = 1.0 / 6;
-// ri.md 8.3
+// RISpec 3.2, 5.2
 constexpr NamedBasis kBases[] = {
     {"bezier", 3, {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}}},
     {"b-spline", 1, {{-S, 3 * S, -3 * S, S}, {3 * S, -6 * S, 3 * S, 0}, {-3 * S, 0, 3 * S, 0}, {S, 4 * S, S, 0}}},
@@ -142,7 +142,7 @@ void trimCurve(Interpreter& in, const Call& c) {
     in.attributes().trimCurve = std::move(list);
 }
 
-/// "+a" adds, "-a" removes, anything else replaces; comma separated (ri.md 15.2).
+/// "+a" adds, "-a" removes, anything else replaces; comma separated (docs/options.md).
 std::string membership(const std::string& before, const std::string& change) {
     if (change.empty() || (change[0] != '+' && change[0] != '-')) return change;
     auto split = [](const std::string& s) {

@@ -1,4 +1,4 @@
-// Camera, display and other options (ri.md 3).
+// Camera, display and other options (RISpec 3.2, 4.1).
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/motion.h"
@@ -28,7 +28,7 @@ void format(Interpreter& in, const Call& c) {
                           fmt::format("Format: {} x {} is more than {} pixels a side", x, y, limits::kImageSide));
         return;
     }
-    // Zero and negative numbers mean the default (wild.md).
+    // Zero and negative numbers mean the default (docs/design/ri.md, "Reading").
     in.options.xres = x > 0 ? x : standard.xres;
     in.options.yres = y > 0 ? y : standard.yres;
     constexpr double kMost = 1e6; // OpenEXR writes no others

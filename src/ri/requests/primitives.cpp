@@ -1,4 +1,4 @@
-// Polygons, patches, meshes, points, curves and the rest (ri.md 7).
+// Polygons, patches, meshes, points, curves and the rest (RISpec 3.2, section 5).
 #include "ri/interpreter.h"
 #include "ri/models/model.h"
 #include "ri/teapot.h"

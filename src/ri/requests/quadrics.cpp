@@ -1,4 +1,4 @@
-// The seven quadrics (ri.md 8.1): numbers in RIB order and primitive variables.
+// The seven quadrics (RISpec 3.2, 5.4): numbers in RIB order and primitive variables.
 #include "ri/interpreter.h"
 
 namespace alpenglow::ri {

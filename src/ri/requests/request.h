@@ -39,7 +39,7 @@ struct Request {
     std::string_view signature;
     Kind kind;
     unsigned scopes;
-    bool motion; ///< legal in a motion block (ri.md 9.3)
+    bool motion; ///< legal in a motion block (RISpec 3.2, section 6)
     std::string_view doc;
     std::string_view sample; ///< arguments that are correct; the tests read every one
     Handler handler;

@@ -1,4 +1,4 @@
-// Shader calls and lights (ri.md 4).
+// Shader calls and lights (RISpec 3.2, 4.2).
 #include "ri/interpreter.h"
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// Blocks, motion, conditions, version, declarations, error handling (ri.md 1.1, 10.3, 12).
+// Blocks, motion, conditions, version, declarations, error handling (RISpec 3.2, section 4 and 7.2).
 #include "ri/interpreter.h"
 #include <algorithm>
 #include <fmt/format.h>

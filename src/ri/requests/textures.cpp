@@ -1,4 +1,4 @@
-// Texture making (ri.md 11): handed to the consumer in stream order, between frames.
+// Texture making (RISpec 3.2, 7.1): handed to the consumer in stream order, between frames.
 #include "ri/interpreter.h"
 
 namespace alpenglow::ri {

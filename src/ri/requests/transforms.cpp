@@ -1,4 +1,4 @@
-// Transformations and coordinate systems (ri.md 5).
+// Transformations and coordinate systems (RISpec 3.2, 4.3).
 #include "ri/interpreter.h"
 #include "ri/motion.h"
 #include <cmath>

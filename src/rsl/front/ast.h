@@ -47,7 +47,7 @@ struct Symbol {
     Storage storage = Storage::Unspecified; ///< after checking: parameters of shaders default to Uniform, locals to Varying
     Origin origin = Origin::Local;
     bool output = false;     ///< shader: AOV; function: by reference
-    bool writable = true;    ///< globals: by shader kind (rsl.md section 8)
+    bool writable = true;    ///< globals: by kind of shader
     bool isConstant = false; ///< `constant`: written where the shader begins, then never again
     bool handle = false;     ///< of type `shader`: its value (of base String) is the name of a shader, no text
     bool open =
@@ -252,7 +252,7 @@ struct FrontOptions {
 std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions&, Diagnostics&);
 std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions&, Diagnostics&);
 
-/// A predefined variable (rsl.md section 8) in one kind of shader.
+/// A predefined variable (RISpec 3.2, section 12) in one kind of shader.
 struct GlobalVariable {
     const char* name;
     Type type;

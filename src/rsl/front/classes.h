@@ -1,5 +1,5 @@
-// Shader objects: a class becomes one ordinary shader for each kind of shader that its methods make it (rsl.md 7.2). Members are
-// variables of that shader's body, methods functions nested in it.
+// Shader objects (3Delight manual, 6.1.1.2): a class becomes one ordinary shader for each kind that its methods make it. Members
+// are variables of that shader's body, methods functions nested in it.
 #pragma once
 #include "rsl/front/parser.h"
 

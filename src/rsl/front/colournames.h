@@ -5,8 +5,8 @@
 
 namespace alpenglow::rsl::front {
 
-/// Warns where ctransform() or `color "name" (...)` names an unknown space (rsl.md 10.6: the colour stays as it is), each name
-/// once. Names that are known only when the shader is bound or runs are the builder's and the renderer's.
+/// Warns where ctransform() or `color "name" (...)` names an unknown space, each name once: the colour stays
+/// as it is (3Delight manual, 6.4.3). Names that are known only later are the builder's and the renderer's.
 void checkColourNames(const Program&, SourceSet&);
 
 } // namespace alpenglow::rsl::front

@@ -1,5 +1,5 @@
-// Which types turn into which, and what operators do with them: rsl.md sections 3 and 4. Costs order the ways a program can be
-// read.
+// Which types turn into which, and what operators do with them (docs/design/rsl.md, "Conversions"). Costs order the ways a
+// program can be read.
 #pragma once
 #include "shadeops/types.h"
 #include <optional>

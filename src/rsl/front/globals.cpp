@@ -1,4 +1,4 @@
-// Predefined variables by kind of shader: rsl.md section 8.
+// Predefined variables by kind of shader: RISpec 3.2, section 12.
 #include "rsl/front/ast.h"
 #include <array>
 

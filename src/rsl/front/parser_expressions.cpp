@@ -1,4 +1,4 @@
-// Expressions, by the precedence table of rsl.md section 3.
+// Expressions, by the precedence table of RISpec 3.2, 13.1.
 #include "base/limits.h"
 #include "rsl/front/parser.h"
 #include <charconv>

@@ -8,7 +8,7 @@ namespace alpenglow::rsl::ir {
 
 namespace {
 
-constexpr int kHairLobes = 4, kHairParameters = 4; // seed: "up to 4 lobes", 4 numbers each
+constexpr int kHairLobes = 4, kHairParameters = 4; // 3Delight manual, 6.4.5.2
 
 } // namespace
 

@@ -321,7 +321,7 @@ bool Builder::isWanted(const std::string& name) const {
     return known && wanted;
 }
 
-/// A hit is a grid of one point (design decision 6): the value, and half of what it changes over the footprint below or above it.
+/// A hit is a grid of one point (docs/design/decisions.md): the value, and half of its change over the footprint less or more.
 /// As a statement it is the variable that becomes that.
 Inst* Builder::gridBound(const Expr& e, float half) {
     Inst* v = expr(*e.args[0], Kind::Float);

@@ -1,4 +1,4 @@
-// occlusion() and indirectdiffuse() (rsl.md 12.2). The first asks the renderer how much of a hemisphere is open, a number, so
+// occlusion() and indirectdiffuse() (3Delight manual, 6.4.5.3). The first asks how much of a hemisphere is open, a number, so
 // that shaders stay affine in it; the second is trace() with the cosine distribution.
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"

@@ -345,7 +345,7 @@ void Builder::lightBlock(const Stmt& s) {
     set(b.lit, get(litSlot));
     for (int n = 0; n < 3; ++n) set(slots[n], before[n]);
     set(blockRan_, boolean(true));
-    if (lightBlocks_.size() == 1 && region_ == &k_.body && frames_.size() == 1) { // black outside of the cone (rsl.md 9)
+    if (lightBlocks_.size() == 1 && region_ == &k_.body && frames_.size() == 1) { // black outside of the cone
         lightBlocks_[0].only = true;
         set(slots[1], get(b.Cl));
         set(slots[2], get(b.Ol));

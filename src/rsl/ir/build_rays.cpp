@@ -1,4 +1,4 @@
-// The map "raytrace" of environment() and shadow(): rays are sent instead of a lookup (rsl.md 12.3), by the requests of trace()
+// The map "raytrace" of environment() and shadow() (3Delight manual, 6.4.6): rays, not a lookup, by the requests of trace()
 // and transmission(), with their optional parameters.
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"

@@ -1,4 +1,4 @@
-// The affine proof (design decision 2): Ci = a + sum of w_i x_i in the results x_i of rays and lights. Where it holds the kernel
+// The affine proof (docs/design/rsl.md): Ci = a + sum of w_i x_i in the results x_i of rays and lights. Where it holds the kernel
 // does not wait: it returns a and emits the pairs (w_i, request).
 #pragma once
 #include "rsl/ir/ir.h"

@@ -1,4 +1,4 @@
-// Which values must carry d/du, d/dv, and how often: backwards from Du and Dv (design decision 7).
+// Which values must carry d/du, d/dv, and how often: backwards from Du and Dv (docs/design/rsl.md, "Derivatives").
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/ir/ir.h"

@@ -9,7 +9,7 @@ namespace alpenglow::rsl::ir {
 /// gives: a neighbour has the inputs that they lead to. Sums of inputs keep their exact derivative, which is the same number. A
 /// derivative of a derivative looks two steps on. Within a branch or a loop of its own the neighbour follows the point; what
 /// comes out of one is worked out on the neighbour's own branch. Results of rays and lights are those of the point. Long form.
-/// Source: Cook, Carpenter, Catmull 1987 (derivatives on the grid); RISpec 3.2, 15.5.
+/// Source: Cook, Carpenter, Catmull 1987 (derivatives on the grid); RISpec 3.2, 15.1.
 void takeDifferences(Kernel&);
 
 } // namespace alpenglow::rsl::ir

@@ -1,4 +1,4 @@
-// The distributions of bsdf() (rsl.md 12.4), one file each, and their descriptors.
+// The distributions of bsdf() (docs/design/rsl.md, "Distributions"), one file each, and their descriptors.
 #pragma once
 #include "shadeops/bsdf/ashikhmin_shirley.h"
 #include "shadeops/bsdf/beckmann.h"

@@ -37,7 +37,7 @@ inline Shadeop bsdfAshikhminShirley() {
         "\"ashikhmin-shirley\": n . l sqrt((eu + 1)(ev + 1)) / (8 PI) (n . h)^(eu cos^2 ph + ev sin^2 ph) F / (h . l max(n . l, "
         "n . wo)), exponents as "
         "for blinn, ph the angle between h and udir on the surface.",
-        "seed (exponents); formula (k)",
+        "3Delight manual, 6.4.5.2 (exponents); Ashikhmin and Shirley 2000",
         {"__bsdf_ashikhminshirley(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 1, 1, color(1,1,1), color(0,0,0))",
          "0 0 0"});
 }

@@ -31,7 +31,7 @@ inline Shadeop bsdfBlinn() {
     return bsdfOp("color __bsdf_blinn(vector l, vector n, vector wo; float roughness; color eta, color k)", "al_bsdf_blinn",
                   "\"blinn\": D G F / (4 n . wo), e = roughness^-3.5 - 1, D = (e + 2) / (2 PI) (n . h)^e, G of V-shaped grooves, "
                   "F by eta and k (eta 0: 1).",
-                  "seed (exponent); formula (k)",
+                  "3Delight manual, 6.4.5.2 (exponent); Blinn 1977",
                   {"__bsdf_blinn(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))",
                    "0.07957747 0.07957747 0.07957747"});
 }

@@ -1,4 +1,4 @@
-// What the distributions of bsdf() share: the frame of a surface, Fresnel's equations, half vectors. Formulas: rsl.md 12.4.
+// What the distributions of bsdf() share: the frame of a surface, Fresnel's equations, half vectors. Models: docs/design/rsl.md.
 //
 // Every distribution takes l (toward the light), n (the surface's normal) and, most of them, wo (toward the viewer), of any
 // length, and gives the reflection function times the cosine n . l, per steradian: over all l its integral is the part of the

@@ -31,7 +31,7 @@ inline Shadeop bsdfCookTorrance() {
                   "al_bsdf_cooktorrance",
                   "\"cook-torrance\": D G F / (4 n . wo), D = exp(-tan^2 th / m^2) / (PI m^2 cos^4 th) with m = roughness, G and "
                   "F as for blinn.",
-                  "seed; formula (k)",
+                  "3Delight manual, 6.4.5.2; Cook and Torrance 1982",
                   {"__bsdf_cooktorrance(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))",
                    "0.07957747 0.07957747 0.07957747"});
 }

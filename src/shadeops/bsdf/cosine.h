@@ -19,7 +19,7 @@ inline Shadeop bsdfCosine() {
     return bsdfOp(
         "float __bsdf_cosine(vector l, vector n; float cone)", "al_bsdf_cosine",
         "\"cosine\": n . l / (PI sin^2 cone) within the cone of half angle cone about n (at most PI/2), else 0; 0 for cone 0.",
-        "seed", {"__bsdf_cosine(vector(0,0,1), vector(0,0,1), 2)", "0.3183099"});
+        "3Delight manual, 6.4.5.2", {"__bsdf_cosine(vector(0,0,1), vector(0,0,1), 2)", "0.3183099"});
 }
 } // namespace alpenglow::rsl
 #endif

@@ -90,7 +90,7 @@ inline Shadeop bsdfGlass() {
                "l . h)^2) for light on the other, no and nl the indices on the two sides. D of Trowbridge and Reitz with "
                "roughness as its width, G of Smith. "
                "Refracted light is counted as energy, as Kt of fresnel() is: it has no factor for the change of solid angle.",
-               "seed; formula (k)", {"", ""});
+               "3Delight manual, 6.4.5.2; Walter et al. 2007", {"", ""});
     op.examples.clear();
     return op;
 }

@@ -215,7 +215,7 @@ inline Shadeop bsdfHair() {
                         "the long axis of an elliptic section, its length the eccentricity (below 1, 0 is round). Without tilt "
                         "the lobes are reciprocal; together "
                         "they keep at most all light.",
-                        "seed; Marschner et al. 2003, d'Eon et al. 2011, roughness as Chiang et al. 2016", {"", ""});
+                        "3Delight manual, 6.4.5.2; Marschner et al. 2003, d'Eon et al. 2011, Chiang et al. 2016", {"", ""});
     op.examples.clear();
     return op;
 }

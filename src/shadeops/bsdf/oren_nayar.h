@@ -27,7 +27,8 @@ inline Shadeop bsdfOrenNayar() {
                   "\"oren-nayar\": n . l (A + B max(0, cos(dphi)) sin(a) tan(b)) / PI, s = roughness (radians, no upper limit), "
                   "A = 1 - 0.5 s^2 / (s^2 + 0.33), B = 0.45 s^2 / (s^2 + 0.09), a and b the larger and the smaller angle. "
                   "Roughness 0 is n . l / PI.",
-                  "seed; formula (k)", {"__bsdf_orennayar(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0)", "0.3183099"});
+                  "3Delight manual, 6.4.5.2; Oren and Nayar 1994",
+                  {"__bsdf_orennayar(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0)", "0.3183099"});
 }
 } // namespace alpenglow::rsl
 #endif

@@ -19,7 +19,7 @@ inline Shadeop bsdfUniform() {
     return bsdfOp("float __bsdf_uniform(vector l, vector n; float cone)", "al_bsdf_uniform",
                   "\"uniform\": 1 / (2 PI (1 - cos cone)) within the cone of half angle cone about n, else 0; 0 for cone 0, "
                   "which is one direction.",
-                  "seed", {"__bsdf_uniform(vector(0,0,1), vector(0,0,1), 1.6)", "0.1546395"});
+                  "3Delight manual, 6.4.5.2", {"__bsdf_uniform(vector(0,0,1), vector(0,0,1), 1.6)", "0.1546395"});
 }
 } // namespace alpenglow::rsl
 #endif

@@ -33,7 +33,7 @@ std::shared_ptr<BatchContext> Displacement::displace(const BatchContext& c) {
     return d;
 }
 
-/// Displacement again at the hit, for P, N (design decision 9). All points of a group with displacement share its binding.
+/// Displacement again at the hit, for P, N (docs/design/decisions.md). All points of a group with displacement share its binding.
 void Displacement::take(BatchContext& c) {
     const auto d = displace(c);
     if (!d) return;

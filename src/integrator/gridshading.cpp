@@ -299,7 +299,7 @@ bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult
     const float clampAt = world_.settings_.sampleClamp;
     for (SampleResult& r : out) {
         const float m = maxComponent(r.color);
-        if (clampAt > 0 && m > clampAt) r.color *= clampAt / m; // pathtracer.md 6
+        if (clampAt > 0 && m > clampAt) r.color *= clampAt / m; // docs/design/slproject.md, "Sample clamp"
         r.opacity = {std::min(r.opacity.x, 1.f), std::min(r.opacity.y, 1.f), std::min(r.opacity.z, 1.f)};
     }
     return true;

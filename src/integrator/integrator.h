@@ -1,5 +1,5 @@
 // The light transport engine: one frame made ready (World), and what arrives along camera rays (Integrator). Under "hidden" and
-// "raytrace" shaders mean what they meant; under "path" their lobes are estimated with all light (design decisions 1 to 4).
+// "raytrace" shaders keep their classic meaning; under "path" their lobes get all light (docs/design/light-transport.md).
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/plane.h"

@@ -1,4 +1,4 @@
-// Stage choose: how much a lobe gives back, the energy rule, and the chance with which its ray is followed (design decision 4).
+// Stage choose: how much a lobe gives back, the energy rule, and the chance of its ray (docs/design/light-transport.md).
 #include "integrator/lobeselection.h"
 #include "integrator/accumulator.h"
 #include "integrator/medium.h"

@@ -1,4 +1,4 @@
-// Requests of kernels: what a call asks for at a point (design decisions 2 and 3). What becomes of lobes is in gather.h.
+// Requests of kernels: what a call asks for at a point (docs/design/rsl.md). What becomes of lobes is in gather.h.
 #include "integrator/requests.h"
 #include "base/direction.h"
 #include "integrator/accumulator.h"
@@ -30,7 +30,7 @@ Requests::Requests(const StageSet& s)
       shadows_(s.shadows), subsurface_(s.subsurface) {}
 
 namespace {
-/// Parameters of the distributions of bsdf(), as given or as they are when not (rsl.md 12.4).
+/// Parameters of the distributions of bsdf(), as given or as they are when not (3Delight manual, 6.4.5.2).
 template <class Row> DistributionParams distributionOf(const SiteInfo& s, const LobeKind& kind, const Row& f) {
     const TraceSite& t = *s.trace;
     DistributionParams m;

@@ -1,4 +1,4 @@
-// From the raster to rays, and from the world to the raster. Source: reference ri.md 3.1 and 6.
+// From the raster to rays, and from the world to the raster. Formulas: docs/design/ri.md, "Camera".
 //
 // Camera space is left-handed: eye at the origin, +z into the scene, +x right, +y up. Raster y grows downward; pixel (i, j)
 // covers [i, i+1) x [j, j+1).
@@ -104,7 +104,7 @@ private:
 };
 
 /// Sides of the picture in pixels: Format's, or what FrameAspectRatio makes of them when it differs from the format's own aspect:
-/// a >= 1 keeps the width, a < 1 the height (ri.md 6).
+/// a >= 1 keeps the width, a < 1 the height (docs/design/ri.md).
 void imageSize(const scene::Options&, int* width, int* height);
 
 } // namespace alpenglow::render

@@ -1,4 +1,4 @@
-// The film of `path`: exact sums per pixel (design decision 10). Everything an image or a noise figure needs derives from them.
+// The film of `path`: exact sums per pixel (docs/design/sampling.md). Images and noise figures derive from them.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/sampler.h"

@@ -1,4 +1,4 @@
-// Sample positions drawn from a pixel filter (design decision 10): under `path` a sample belongs to one pixel only.
+// Sample positions drawn from a pixel filter (docs/design/sampling.md): under `path` a sample belongs to one pixel only.
 //
 // The density is |f| / A, A = integral of |f|. A sample's weight is its sign times A / T, T = integral of f, so that
 // E[weight * g(offset)] = integral f g / T: the filtered value, negative lobes included. The sign is decided by the first number

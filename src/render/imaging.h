@@ -1,5 +1,5 @@
-// The imaging pipeline after filtering (reference ri.md sections 3.2 and 6): exposure, then quantise and dither. The imager
-// shader runs between the two and is the caller's. Also the sample clamp (pathtracer.md section 6).
+// The imaging pipeline after filtering (RISpec 3.2, 4.1.2): exposure, then quantise and dither. The imager
+// shader runs between the two and is the caller's. Also the sample clamp (docs/design/slproject.md).
 #pragma once
 #include "base/vec.h"
 #include <cstdint>

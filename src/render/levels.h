@@ -1,4 +1,4 @@
-// Levels of detail: which of the representations between DetailRange requests are drawn. Source: ri.md 7.4 (Detail, DetailRange).
+// Levels of detail: which of the representations between DetailRange requests are drawn (RISpec 3.2, 4.2).
 #pragma once
 #include "base/diagnostics.h"
 #include "render/camera.h"

@@ -1,4 +1,4 @@
-// What a render knows about its own noise (reference pathtracer.md section 7; design decision 10).
+// What a render knows about its own noise (docs/noise.md, docs/design/sampling.md).
 #pragma once
 #include "render/film.h"
 

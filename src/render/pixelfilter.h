@@ -1,4 +1,4 @@
-// The pixel filters of RISpec, by the formulas of reference ri.md section 14.
+// The pixel filters of RISpec, by its formulas and others (RISpec 3.2, appendix E; docs/design/sampling.md).
 #pragma once
 #include "base/diagnostics.h"
 #include <optional>

@@ -82,7 +82,7 @@ void Renderer::override(scene::Options& o) const {
     }
     if (s.crop) std::copy(s.crop->begin(), s.crop->end(), o.crop);
     if (!s.hider.empty()) o.hider = s.hider;
-    if (s.localRoulette) o.filter = {"box", 1, 1}; // the preset: the seed has no other filter
+    if (s.localRoulette) o.filter = {"box", 1, 1}; // the preset: SLProject has no other filter
 }
 
 std::vector<std::string> Renderer::searchPaths(const scene::Options& o, const char* kind, const std::vector<std::string>& own,

@@ -13,7 +13,7 @@ constexpr int16_t kLitNormal = -4; // Ng of ShadePoint::lit, Ns where it is not 
 constexpr int16_t kAlongNg = -5;   // surface.Ng where that is known, else n
 constexpr float kConstants[3] = {0, 1, 3};
 
-// One line per predefined variable (rsl.md section 8): where its parts {v, du, dv, duu, duv, dvv} lie in a ShadePoint. Second
+// One line per predefined variable (RISpec 3.2, 12): where its parts {v, du, dv, duu, duv, dvv} lie in a ShadePoint. Second
 // derivatives that the geometry does not know are zero.
 struct Variable {
     const char* name;

@@ -61,7 +61,7 @@ inline constexpr RayKind kCameraKind{};
 struct GridPoint; // shading/gridpoint.h
 /// What all rays of one camera sample have in common.
 struct PathSample {
-    int px = 0, py = 0; ///< pixel and number of the sample: the key of its random numbers (design decision 10)
+    int px = 0, py = 0; ///< pixel and number of the sample: the key of its random numbers
     uint32_t sample = 0;
     int path = -1;        ///< index in the call of Integrator::trace()
     float time = 0;       ///< as the shader sees it
@@ -72,7 +72,7 @@ struct PathSample {
     const GridPoint* grid = nullptr; ///< not of the picture: this point is shaded, whatever lies before it (CameraRay::grid)
 };
 
-/// How much of a surface counts that a ray meets far away ("falloff", rsl.md table 6.11).
+/// How much of a surface counts that a ray meets far away ("falloff": 3Delight manual, table 6.11).
 struct Fade {
     float strength = 0, reach = 1e38f; ///< per unit of distance, or an exponent; the "maxdist" of that
     bool polynomial = false;
@@ -113,7 +113,7 @@ struct RayExtra {
     bool operator==(const RayExtra&) const = default;
 };
 
-/// How wide a ray is, as a cone (design decision 7).
+/// How wide a ray is, as a cone.
 struct Footprint {
     float width = 0, spread = 0; ///< half width, and its growth with distance
     float at(float way) const { return width + spread * way; }
@@ -153,7 +153,7 @@ struct PathRay {
     bool passed : 1 = false; ///< no camera ray, and went through a surface: it began at lobeOrigin
     uint8_t trail = 0;       ///< Trail, as bits
     /// Density per steradian with which this direction was drawn, times the probability of drawing it at all; < 0: light sampling
-    /// cannot have produced this direction, so emission counts with the weight -lobePdf (pathtracer.md 3).
+    /// cannot have produced this direction, so emission counts with the weight -lobePdf (docs/design/light-transport.md).
     float lobePdf = -1;
     Vec3 lobeOrigin;      ///< the point whose lobe drew dir: lobePdf and the lights' densities are seen from there
     int lobeBinding = -1; ///< binding of that point, whose list says which lights may light it; -1: every emitter counts
@@ -202,7 +202,7 @@ struct ShadePoint {
     geometry::SurfacePoint surface;
     Vec3 P, N;                 ///< after displacement; N unit only if the surface's is
     Vec3 I, E;                 ///< incident vector with its length, and the ray's origin
-    float du = 1, dv = 1;      ///< largest footprint over x and y (design decision 7)
+    float du = 1, dv = 1;      ///< largest footprint over x and y
     float time = 0, dtime = 0; ///< and the time covered from there on
     float shutter = 0;         ///< 0 to 1: where all that moves stands
     Vec3 dPdtime{0.f};

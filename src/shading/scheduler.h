@@ -1,4 +1,4 @@
-// The scheduler: coroutine shaders and rays without recursion (design decision 2).
+// The scheduler: coroutine shaders and rays without recursion (docs/design/rsl.md).
 //
 // A unit of work is a Task (a ray to follow) or a Strip (a suspended kernel). A task adds what it finds to its Target. A strip
 // that suspends makes one target a lane, spawns tasks for them, and waits; when the last of them is complete the strip is ready.
@@ -34,7 +34,7 @@ inline constexpr TargetId kNoTarget = -1;
 struct TargetValue {
     Color radiance{0};
     Color transmission{1};
-    float distance = 1e38f; ///< to the nearest hit; > 1e30 on a miss (rsl.md 12.1)
+    float distance = 1e38f; ///< to the nearest hit; > 1e30 on a miss (3Delight manual, 6.4.5.2)
     Vec3 normal;            ///< shading normal of that hit
 };
 

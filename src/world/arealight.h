@@ -1,4 +1,4 @@
-// Where on an emitter a light sample lies, and with which density a given hit would have been chosen (design decision 4).
+// Where on an emitter a light sample lies, and the density of a given hit (docs/design/light-transport.md).
 #pragma once
 #include "world/emitterfacets.h"
 #include "world/trianglelamp.h"

@@ -98,7 +98,7 @@ struct LightValue {
     float nonDiffuse = 0, nonSpecular = 0; ///< weights of __nondiffuse and __nonspecular
     float shadowRadius = 0; ///< of the disk about a point light, facing the lit point, that casts its shadows; 0: the point does
     int shadowSamples = 1;  ///< rays to that disk, outside of path
-    /// What a lobe of a lighting shadeop keeps of this light (rsl.md 9).
+    /// What a lobe of a lighting shadeop keeps of this light (3Delight manual, 6.3).
     float kept(RayType t) const { return std::max(0.f, 1 - (t == RayType::Diffuse ? nonDiffuse : nonSpecular)); }
 };
 

@@ -24,7 +24,7 @@ Information matrixOf(const Matrix& m) {
     return i;
 }
 
-/// What attributes are that no request has set (ri.md 15.2).
+/// What attributes are that no request has set (docs/options.md).
 std::optional<Information> unset(const std::string& name, bool path) {
     static const std::map<std::string, float> numbers = {{"GeometricApproximation:motionfactor", 1.f},
                                                          {"displacementbound:sphere", 0.f},

@@ -1,4 +1,4 @@
-// Names that shaders ask for: attribute() and option() (rsl.md 11.4), and the values they have when the scene does not say.
+// Names of attribute() and option() (3Delight manual, 6.4.8), and the values they have when the scene does not say.
 #pragma once
 #include "world/impl.h"
 #include <optional>

@@ -1,5 +1,5 @@
 // Whom rays may meet: "subset", "excludesubset", "hitsides" and "hitmode" of the shadeops that trace, and the groups of objects
-// that Attribute "grouping" "membership" makes (rsl.md, table 6.10; ri.md 15.2).
+// that Attribute "grouping" "membership" makes (3Delight manual, table 6.10; docs/options.md).
 #include "world/raysets.h"
 #include <bit>
 #include <set>
@@ -121,7 +121,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     r->excludeText = text("excludesubset");
     r->subsetId = rsl::internString(r->subsetText);
     r->excludeId = rsl::internString(r->excludeText);
-    const bool distance = i.kind == SiteKind::Trace && i.site->resultType.base == rsl::Base::Float; // float trace(): rsl.md 12.1
+    const bool distance = i.kind == SiteKind::Trace && i.site->resultType.base == rsl::Base::Float; // float trace()
     const std::string type = !text("type").empty() ? text("type") : text("raytype");
     if (!type.empty() && type != "specular" && type != "diffuse" && type != "transmission")
         unknown("type", type, "specular, diffuse, transmission");

@@ -25,10 +25,10 @@ struct Settings {
     uint64_t seed = 0;
     int lanes = 16;                      ///< 4, 8, 16
     int maxDepth = -1;                   ///< bounces; -1: Option "trace" "maxdepth", else 32 under path and 4 otherwise
-    float sampleClamp = 0;               ///< 0 = off (pathtracer.md 6)
+    float sampleClamp = 0;               ///< 0 = off (docs/design/slproject.md)
     bool direct = true, indirect = true; ///< --no-direct, --no-indirect: the latter stops diffuse continuation only
     bool unbiased = false;               ///< no scaling of indirect weights above 1
-    bool localRoulette = false;          ///< the seed's rule (--preset slproject) instead of throughput
+    bool localRoulette = false;          ///< SLProject's rule (--preset slproject) instead of throughput
     bool roulette = true;
     bool suspend = false;   ///< force suspending kernels where affine ones exist (tests)
     bool mixedOnly = false; ///< build V everywhere (tests: it has the same bits as S)

@@ -30,7 +30,7 @@ inline uint32_t visibilityBit(RayType t) {
     }
 }
 
-/// What a call that sends rays says of them (rsl.md, table 6.10). Rows of arguments, or -1.
+/// What a call that sends rays says of them (3Delight manual, table 6.10). Rows of arguments, or -1.
 struct RaySite {
     int bias = -1, maxDistance = -1, maxHit = -1, cone = -1, samples = -1, base = -1;
     int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1,

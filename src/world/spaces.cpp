@@ -9,7 +9,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-// Screen window: ri.md 3.1; frame aspect from FrameAspectRatio or the format.
+// Screen window: docs/design/ri.md; frame aspect from FrameAspectRatio or the format.
 void screenWindow(const scene::Options& o, double w[4]) {
     if (o.screenWindow && o.screenWindow->size() == 4) {
         for (int i = 0; i < 4; ++i) w[i] = (*o.screenWindow)[size_t(i)];

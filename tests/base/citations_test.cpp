@@ -23,9 +23,7 @@ const fs::path kRoot = ALPENGLOW_SOURCE_DIR;
 /// Folders whose texts are read. What stands in CHANGES.md and bench/RESULTS.md is history.
 constexpr const char* kFolders[] = {"src", "tests", "include", "shaders", "examples", "bench", "docs", "scripts", "cmake"};
 constexpr const char* kDocuments[] = {"README.md", "CONTRIBUTING.md", "SECURITY.md"};
-constexpr const char* kUnread[] = {
-    "bench/RESULTS.md", "tests/base/citations_test.cpp", "tests/fuzz/corpus", "src/integrator", "src/render", "src/shading",
-    "src/world"};
+constexpr const char* kUnread[] = {"bench/RESULTS.md", "tests/base/citations_test.cpp", "tests/fuzz/corpus"};
 
 /// Sections of "The RenderMan Interface", version 3.2 (July 2000).
 const std::set<std::string> kRISpec = {

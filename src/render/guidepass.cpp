@@ -10,6 +10,7 @@ namespace alpenglow::render {
 namespace {
 
 constexpr uint32_t kPilot = 0xfffffffeu, kLearned = 0xfffffffdu; ///< passes of photons: others have other numbers
+constexpr uint32_t kMostTurns = 4;
 constexpr uint64_t kOtherSeed = 0x6775696465ull; ///< so that what is learned knows nothing of the picture's own samples
 
 bool refused(const scene::Options& o) {
@@ -61,9 +62,16 @@ bool learnCaustics(Job& job) {
     if (found.empty()) return true;
     passes.emission().learn(found, kPilot, pilot);
     const auto photons = uint32_t(std::clamp(2 * pixels, double(1u << 13), double(1u << 17)));
-    if (!passes.emit(kLearned, 1, photons, limits::kPhotonsAtRest, take)) return false;
+    // Lamps that are no flat ones aim badly: then more are sent.
+    std::vector<transport::StoredPhoton> all;
+    uint32_t turns = 0;
+    do {
+        if (!passes.emit(kLearned - turns, 1, photons, limits::kPhotonsAtRest, take)) return false;
+        all.insert(all.end(), found.begin(), found.end());
+    } while (++turns < kMostTurns && double(all.size()) < pixels / 8);
+    for (transport::StoredPhoton& s : all) s.photon.power /= float(turns);
     const float brightness = brightnessOf(job);
-    job.guide = transport::guideCaustics(*job.world, found, passes.emission().power(), brightness);
+    job.guide = transport::guideCaustics(*job.world, all, passes.emission().power(), brightness);
     job.world->flushPrints(false);
     return !job.pollStop();
 }

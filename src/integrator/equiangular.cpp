@@ -14,20 +14,25 @@
 
 namespace alpenglow::transport {
 
-std::optional<Equiangular> Equiangular::of(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
-    if (!l.placed || how == MediumSampling::Distance) return {};
-    Equiangular q;
+bool Equiangular::look(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
+    if (!l.placed || how == MediumSampling::Distance) return false;
     const Vec3d to = Vec3d(l.place) - Vec3d(f.origin), dir(f.dir);
-    q.length_ = f.length;
-    q.nearest_ = dot(to, dir);
-    const Vec3d beside = to - dir * q.nearest_;
-    q.away_ = std::max({std::sqrt(dot(beside, beside)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
+    length_ = f.length;
+    nearest_ = dot(to, dir);
+    const Vec3d beside = to - dir * nearest_;
+    away_ = std::max({std::sqrt(dot(beside, beside)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
     const double sigma = (double(f.extinction.x) + f.extinction.y + f.extinction.z) / 3;
     const double reach = sigma * f.length > 4 ? 4 / sigma : double(f.length); // beyond it little is left
-    if (!(q.away_ > 0) || (how == MediumSampling::Both && !(q.away_ < 2 * reach))) return {};
+    if (!(away_ > 0) || (how == MediumSampling::Both && !(away_ < 2 * reach))) return false;
+    const double behind = length_ - nearest_, square = away_ * away_;
+    return away_ * length_ > 1e-9 * std::sqrt((square + nearest_ * nearest_) * (square + behind * behind)); // sine of the angle
+}
+
+std::optional<Equiangular> Equiangular::of(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
+    Equiangular q;
+    if (!q.look(f, l, how)) return {};
     q.from_ = exact::atan2(-q.nearest_, q.away_);
     q.to_ = exact::atan2(q.length_ - q.nearest_, q.away_);
-    if (!(q.to_ - q.from_ > 1e-9)) return {};
     return q;
 }
 
@@ -41,15 +46,21 @@ double Equiangular::density(float t) const {
     return away_ / ((to_ - from_) * (away_ * away_ + d * d));
 }
 
+/// Whether points that are chosen for a light bring all of its light. Where ways are thin those by distance are no better, and
+/// cost a shadow ray; of lights that shine into a cone they still are.
+static bool alone(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
+    return how == MediumSampling::Equiangular || (f.thin && l.kind == LightKind::Area);
+}
+
 /// Where lights are chosen for a way as a whole.
 static Vec3 middle(const FreeFlight& f) { return f.origin + f.dir * (0.5f * f.length); }
 
 float MediumFlights::shareOfDistance(const FreeFlight& f, const BoundLight& l) const {
     const WorldImpl& w = world_;
     const MediumSampling how = w.settings_.mediumSampling;
+    if (!rules_.lightsAtRequests || !Equiangular::sees(f, l, how)) return 1;
+    if (alone(f, l, how)) return 0;
     const auto q = Equiangular::of(f, l, how);
-    if (!q || !rules_.lightsAtRequests) return 1;
-    if (how == MediumSampling::Equiangular) return 0;
     const float chance = lightKernels_.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f), 0);
     return misWeight(float(f.density(f.t)), float(q->density(f.t) * chance));
 }
@@ -205,9 +216,16 @@ void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossi
     const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
     const LightChooser& chooser = w.chooserOf(list);
     const std::vector<int>& on = w.sampledOf(list);
-    std::map<int, std::vector<Near>> near; // by light
     LightChooser::Chosen chosen;
     for (size_t k = 0; k < on.size() && chooser.empty(); ++k) chosen.emplace_back(int(k), 1.f);
+    struct Asked {
+        const Crossing* crossing;
+        int light;
+        float chance;
+        Equiangular points;
+    };
+    std::vector<Asked> asked;
+    numbers_.clear();
     for (const Crossing& x : crossings) {
         const Flight& f = flights[x.flight];
         const uint32_t vertex = childVertex(f.ray->vertex, kFlight, 2);
@@ -217,11 +235,20 @@ void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossi
             if (list.ofAll && !list.lights.contains(light)) continue;
             const auto q = Equiangular::of(x.way, w.lights_[size_t(light)], how);
             if (!q) continue;
-            const float t = q->at(store_.random(*f.ray).one(vertex, kLightPoint + uint32_t(light), 0));
-            const double density = q->density(t) * chance;
-            const float share = how == MediumSampling::Equiangular ? 1 : misWeight(float(density), float(x.way.density(t)));
-            if (density > 0 && share > 0) near[light].push_back({&x.way, &f, &x.weight, t, float(share / density)});
+            asked.push_back({&x, light, chance, *q});
+            numbers_.askOne(store_.random(*f.ray).numbers(), vertex, kLightPoint + uint32_t(light), 0);
         }
+    }
+    numbers_.draw();
+    std::map<int, std::vector<Near>> near; // by light
+    for (size_t i = 0; i < asked.size(); ++i) {
+        const auto& [x, light, chance, points] = asked[i];
+        const float t = points.at(numbers_.one(i));
+        const double density = points.density(t) * chance;
+        const float share =
+            alone(x->way, w.lights_[size_t(light)], how) ? 1 : misWeight(float(density), float(x->way.density(t)));
+        if (density > 0 && share > 0)
+            near[light].push_back({&x->way, &flights[x->flight], &x->weight, t, float(share / density)});
     }
     for (const auto& [light, points] : near) {
         NearLight(*this, m, w.lights_[size_t(light)], points).run();

@@ -73,6 +73,13 @@ void Intersector::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> f
     for (const accel::Hit& h : found) counters_.hits += h.valid();
 }
 
+void Intersector::meetFew(std::span<const accel::Ray> rays, std::span<accel::Hit> found) {
+    std::fill(found.begin(), found.end(), accel::Hit{});
+    world_.byOpacity_.few->intersect(rays, found, context_.stop);
+    counters_.tests += rays.size();
+    for (const accel::Hit& h : found) counters_.hits += h.valid();
+}
+
 void Intersector::block(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
     std::fill(blocked.begin(), blocked.end(), uint8_t(0));
     inParts(rays.size(), context_.stop,

@@ -14,6 +14,8 @@ public:
     /// together: neighbours go the same way.
     void meet(std::span<const accel::Ray>, std::span<accel::Hit>, bool together = false);
     bool meet(const accel::Ray&, accel::Hit&);
+    /// The same of shapes that do not block all light alone, WorldImpl::byOpacity_.few. Rays and hits have its numbers.
+    void meetFew(std::span<const accel::Ray>, std::span<accel::Hit>);
     void block(std::span<const accel::Ray>, std::span<uint8_t>);
     /// What shadow rays meet, where rows hold all that the rays need: 1 where nothing is in the way, else 0. False: they do not,
     /// and nothing was done.

@@ -29,6 +29,7 @@ namespace {
 
 /// Mean free paths of what is scattered (similarity: (1 - g) of it turns aside) from which hardly any path comes out again.
 constexpr double kDeepInside = 300;
+constexpr float kThin = 2; ///< mean free paths of ways that are FreeFlight::thin
 /// As often a path is scattered so deep inside for certain; at twice the depth half as often.
 constexpr double kScatteredForCertain = 64;
 constexpr int kLeaksSaid = 16; ///< ways out of a medium that has no end there: rounding at an edge makes a few
@@ -64,23 +65,25 @@ void MediumFlights::glow(const Flight& f, const Homogeneous& h, Sched& sched) {
     accumulator_.deposit(sched, {f.target, f.ray->weight * c, LightEvent::Surface, f.ray, store_.extraOf(*f.ray).share});
 }
 
+bool MediumFlights::leaks(const Flight& f) {
+    if (f.point) return false;
+    const Medium& m = world_.media_[size_t(f.ray->medium())];
+    if (++leaks_ == kLeaksSaid)
+        diagnostics_.reportOnce("leak:" + m.shader->name,
+                                {Severity::Warning,
+                                 Rie::Consistency,
+                                 m.shape ? m.shape->place() : m.shader->place,
+                                 "rays leave the scene inside of the medium \"" + m.shader->name +
+                                     "\": the primitive whose Interior it is does not enclose it; such ways are empty",
+                                 "a medium fills what lies behind a surface until the next one: close it",
+                                 {}});
+    return true;
+}
+
 /// What happens on a way through a medium up to a surface; a point on it where light is scattered, if it is.
-std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t number, Sched& sched) {
+std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t flight, Vec2 u, Sched& sched) {
     const PathRay& ray = *f.ray;
-    const Medium& m = world_.media_[size_t(ray.medium())];
-    const Homogeneous& h = *m.homogeneous;
-    if (!f.point) {
-        if (++leaks_ == kLeaksSaid)
-            diagnostics_.reportOnce("leak:" + m.shader->name,
-                                    {Severity::Warning,
-                                     Rie::Consistency,
-                                     m.shape ? m.shape->place() : m.shader->place,
-                                     "rays leave the scene inside of the medium \"" + m.shader->name +
-                                         "\": the primitive whose Interior it is does not enclose it; such ways are empty",
-                                     "a medium fills what lies behind a surface until the next one: close it",
-                                     {}});
-        return {};
-    }
+    const Homogeneous& h = *world_.media_[size_t(ray.medium())].homogeneous;
     const Color before = ray.weight, left = h.left(f.length);
     glow(f, h, sched);
     const bool both = ray.counts; // what the camera sees, opacity and depth stay exact
@@ -90,14 +93,14 @@ std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t nu
     f.left = left;
     if (!(maxComponent(h.scattering) > 0) || !(sum > 0) || !std::isfinite(sum) || !(f.length > 0)) return {};
     part = part / sum;
-    Crossing c{number, {}, before * store_.extraOf(ray).indirect};
+    Crossing c{flight, {}, before * store_.extraOf(ray).indirect};
     c.way.origin = ray.origin;
     c.way.dir = ray.dir;
     c.way.length = f.length;
     c.way.medium = ray.medium();
     c.way.extinction = h.extinction();
+    c.way.thin = mean(c.way.extinction) * f.length < kThin;
     double survives = 0, drawn = 0;
-    const Vec2 u = store_.random(ray).pair(childVertex(ray.vertex, kFlight, 6), kFlight, 0); // others than its lobe's
     double at = u.x;
     int channel = 2;
     for (int k = 0; k < 2 && channel == 2; ++k)
@@ -163,17 +166,28 @@ void MediumFlights::pass(Flight& f, Sched& sched) {
 
 void MediumFlights::happen(std::span<Flight> flights, Sched& sched) {
     const WorldImpl& w = world_;
-    std::vector<Crossing> crossings;
+    const auto crosses = [&](const Flight& f) {
+        const int medium = f.over ? -1 : f.ray->medium();
+        return medium >= 0 && w.media_[size_t(medium)].homogeneous;
+    };
+    numbers_.clear();
+    for (const Flight& f : flights) // others than those of its lobe
+        if (crosses(f)) numbers_.askPair(store_.random(*f.ray).numbers(), childVertex(f.ray->vertex, kFlight, 6), kFlight, 0);
+    numbers_.draw();
+    std::vector<Crossing>& crossings = crossings_;
+    crossings.clear();
+    size_t number = 0;
     for (size_t i = 0; i < flights.size(); ++i) {
         Flight& f = flights[i];
-        if (f.over) continue;
-        const int medium = f.ray->medium();
-        if (medium >= 0 && w.media_[size_t(medium)].homogeneous)
-            if (auto c = cross(f, i, sched)) crossings.push_back(*c);
+        if (crosses(f)) {
+            const Vec2 u = numbers_.pair(number++);
+            if (!leaks(f))
+                if (const auto c = cross(f, i, u, sched)) crossings.push_back(*c);
+        }
         if (!f.over && f.point && w.bindings_[size_t(f.binding)].overruled(f.ray->media)) pass(f, sched);
     }
-    std::stable_sort(crossings.begin(), crossings.end(),
-                     [](const Crossing& a, const Crossing& b) { return a.way.medium < b.way.medium; });
+    const auto before = [](const Crossing& a, const Crossing& b) { return a.way.medium < b.way.medium; };
+    if (!std::is_sorted(crossings.begin(), crossings.end(), before)) std::stable_sort(crossings.begin(), crossings.end(), before);
     for (size_t first = 0, end; first < crossings.size(); first = end) { // of one medium, whose lights are one list
         for (end = first; end < crossings.size() && crossings[end].way.medium == crossings[first].way.medium;) ++end;
         const auto of = std::span<const Crossing>(crossings).subspan(first, end - first);

@@ -1,5 +1,6 @@
 // Ways through media that scatter (world/bound.h, Homogeneous), in closed form.
 #pragma once
+#include "base/numberlanes.h"
 #include "integrator/beside.h"
 #include "integrator/context.h"
 #include "integrator/flight.h"
@@ -13,10 +14,13 @@ class Equiangular {
 public:
     /// Nothing where the light has no place that is known, or so far away that all of the way has about the same of its light.
     static std::optional<Equiangular> of(const FreeFlight&, const BoundLight&, MediumSampling);
+    static bool sees(const FreeFlight& f, const BoundLight& l, MediumSampling how) { return Equiangular().look(f, l, how); }
     float at(float u) const;       ///< a point for a number of [0, 1), as a length of the way
     double density(float t) const; ///< a unit of length
 
 private:
+    /// All but the angles. False: there is none.
+    bool look(const FreeFlight&, const BoundLight&, MediumSampling);
     double length_ = 0, nearest_ = 0, away_ = 0, from_ = 0, to_ = 0; ///< angles at the light
 };
 
@@ -67,7 +71,8 @@ private:
         Color weight;
         bool stops = false;
     }; ///< weight: of the ray where it begins
-    std::optional<Crossing> cross(Flight&, size_t number, Sched&);
+    bool leaks(const Flight&); ///< what ends nowhere is said
+    std::optional<Crossing> cross(Flight&, size_t flight, Vec2 random, Sched&);
     void pass(Flight&, Sched&);
     void scatter(std::span<Flight>, std::span<const Crossing>, Sched&);
     void gather(BatchContext&, const Medium&, Sched&);
@@ -76,6 +81,8 @@ private:
     void addOpacity(const PathRay&, const Color&); ///< to the sample of a camera ray
     void glow(const Flight&, const Homogeneous&, Sched&);
     class NearLight;
+    std::vector<Crossing> crossings_;
+    render::NumberRows numbers_;
     std::vector<Vec3> lights_;
     int leaks_ = 0; ///< rays that left the scene inside of such a medium
     Accumulator& accumulator_;

@@ -136,8 +136,8 @@ private:
     }
     void begin();
     void meet();
-    void pass(const Going&, const accel::Ray&, const accel::Hit&);
-    bool enters(Going&, const SurfaceBinding&, const accel::Hit&, const accel::Ray&);
+    void pass(const Going&, const accel::Ray& behind, const accel::Hit&);
+    bool enters(Going&, const SurfaceBinding&, const accel::Hit&, const Vec3& dir);
     void leaves(const Going&);
     void takes(size_t i, const Color& opacity, double distance);
 
@@ -146,6 +146,7 @@ private:
     std::span<const ShadowRay> rays_;
     std::span<Color> out_;
     const bool counts_, fading_;
+    bool few_ = false;                ///< ways_ and hits_ have the numbers of WorldImpl::byOpacity_.few
     std::vector<Color> taken_;        ///< what surfaces far away block in part
     std::vector<uint16_t> straights_; ///< ShadowRays::straights_: what runs on the way may send rays, too
     std::vector<MediumPart> parts_;
@@ -166,6 +167,7 @@ void ShadowRays::Passing::takes(size_t i, const Color& opacity, double distance)
 /// Rays that no opaque surface blocks by itself.
 void ShadowRays::Passing::begin() {
     stage_.blockedByOpaque(rays_, out_);
+    few_ = world_.byOpacity_.few && std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.meetsOpaqueAlone(r); });
     for (size_t i = 0; i < rays_.size(); ++i) {
         const bool alone = stage_.meetsOpaqueAlone(rays_[i]);
         if (alone && out_[i] == Color(0)) continue;
@@ -176,7 +178,7 @@ void ShadowRays::Passing::begin() {
         }
         now_.push_back(g);
         ways_.push_back(shadowRay(rays_[i]));
-        if (alone) ways_.back().only = world_.byOpacity_.clear.data();
+        if (alone && !few_) ways_.back().only = world_.byOpacity_.clear.data();
     }
 }
 
@@ -187,13 +189,13 @@ void ShadowRays::Passing::leaves(const Going& g) {
 }
 
 /// Through the boundary of a medium. Whether a medium of higher priority makes it nothing.
-bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel::Hit& h, const accel::Ray& ray) {
+bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel::Hit& h, const Vec3& dir) {
     geometry::SurfacePoint at;
     world_.accel_->point(h, at, 0);
     const Vec3 end = at.displaced ? at.displacedP : at.P;
     if (g.medium() >= 0) parts_.push_back({g.medium(), g.index, g.begin, end});
     const bool overruled = b.overruled(g.media);
-    g.media = stage_.media_.beyond(b, g.media, at.n, ray.dir, ray.dir);
+    g.media = stage_.media_.beyond(b, g.media, at.n, dir, dir);
     g.begin = end;
     return !overruled;
 }
@@ -201,15 +203,22 @@ bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel:
 /// What each ray meets next.
 void ShadowRays::Passing::meet() {
     hits_.resize(now_.size());
-    stage_.intersector_.meet(ways_, hits_);
+    if (few_) stage_.intersector_.meetFew(ways_, hits_);
+    else stage_.intersector_.meet(ways_, hits_);
     for (size_t i = 0; i < now_.size(); ++i) {
-        if (!hits_[i].valid()) leaves(now_[i]);
-        else pass(now_[i], ways_[i], hits_[i]);
+        if (!hits_[i].valid()) {
+            leaves(now_[i]);
+            continue;
+        }
+        accel::Ray behind = ways_[i];
+        world_.goOn(behind, hits_[i]);
+        if (few_) hits_[i].shape = world_.byOpacity_.numbers[hits_[i].shape];
+        pass(now_[i], behind, hits_[i]);
     }
 }
 
 /// Past a surface, or to where its shader must say Oi.
-void ShadowRays::Passing::pass(const Going& from, const accel::Ray& way, const accel::Hit& h) {
+void ShadowRays::Passing::pass(const Going& from, const accel::Ray& behind, const accel::Hit& h) {
     Color& t = out_[from.index];
     if (from.layers >= limits::kShadowLayers) {
         t = Color(0);
@@ -220,7 +229,7 @@ void ShadowRays::Passing::pass(const Going& from, const accel::Ray& way, const a
     ++g.layers;
     const int binding = world_.bindingOf_[h.shape];
     const SurfaceBinding& b = world_.bindings_[size_t(binding)];
-    if (world_.media_.empty() || enters(g, b, h, way)) {
+    if (world_.media_.empty() || enters(g, b, h, behind.dir)) {
         const Opacity& opacity = b.opacityFor(rays_[g.index].kind->set.mode);
         if (opacity.kernel) {
             met_.push_back({binding, h, &rays_[g.index], &opacity.kernel});
@@ -231,8 +240,7 @@ void ShadowRays::Passing::pass(const Going& from, const accel::Ray& way, const a
         }
     }
     next_.push_back(g);
-    nextWays_.push_back(way);
-    world_.goOn(nextWays_.back(), h);
+    nextWays_.push_back(behind);
 }
 
 void ShadowRays::Passing::run() {

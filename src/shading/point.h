@@ -86,7 +86,8 @@ struct Fade {
 struct FreeFlight {
     Vec3 origin, dir;
     float length = 0, t = 0;
-    int medium = -1; ///< of the world; -1: there is no such way
+    int medium = -1;   ///< of the world; -1: there is no such way
+    bool thin = false; ///< so little is lost along it that how far light comes matters less than how near lights are
     Color extinction{0};
     double chance[3] = {}; ///< of the densities of the channels, with what makes them densities
     /// What is left of light after so long a way, channel by channel.

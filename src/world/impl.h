@@ -228,9 +228,12 @@ public:
     struct ByOpacity {
         std::vector<uint8_t> opaque, clear;
         geometry::Bounds clearBounds;
+        /// Of the others where they are few: these alone, and the numbers that its shapes have here; else null.
+        std::unique_ptr<accel::Accel> few;
+        std::vector<uint32_t> numbers;
     } byOpacity_;
     bool mediaOverrule_ = false; ///< media differ in priority: some surfaces bound nothing, and stop no ray, inside of others
-    void sortByOpacity();
+    void sortByOpacity(std::span<const uint32_t> visibility);
     /// What surfaces are to photons that are visible to rays as `visibility` says, by shape. photonattributes.cpp
     void bindPhotons(std::span<const uint32_t> visibility);
     bool fades_ = false;       ///< some shape is between levels of detail

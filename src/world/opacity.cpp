@@ -5,7 +5,7 @@
 
 namespace alpenglow::transport {
 
-void WorldImpl::sortByOpacity() {
+void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
     mediaOverrule_ = std::any_of(media_.begin(), media_.end(), [&](const Medium& m) { return m.priority != media_[0].priority; });
     if (allOpaque_) return;
     for (size_t i = 0; i < shapes_.size(); ++i) {
@@ -14,6 +14,21 @@ void WorldImpl::sortByOpacity() {
         byOpacity_.clear.push_back(!opaque);
         if (!opaque) byOpacity_.clearBounds.add(shapes_[i]->bounds());
     }
+    constexpr size_t kFew = 24; // triangles: as many as are searched without a tree
+    std::vector<geometry::ShapeRef> shapes;
+    std::vector<uint32_t> seen;
+    size_t triangles = 0;
+    for (size_t i = 0; i < shapes_.size() && triangles <= kFew; ++i) {
+        if (!byOpacity_.clear[i]) continue;
+        triangles += shapes_[i]->exact() || shapes_[i]->placed() ? kFew : shapes_[i]->mesh().triangles();
+        shapes.push_back(shapes_[i]);
+        seen.push_back(visibility[i]);
+        byOpacity_.numbers.push_back(uint32_t(i));
+    }
+    if (triangles > kFew || fades_ || accel_->hasSolids() || unmade_) return;
+    Diagnostics said; // by the whole
+    byOpacity_.few = std::make_unique<accel::Accel>(shapes, seen, said);
+    if (!byOpacity_.few->takesRows()) byOpacity_.few.reset();
 }
 
 void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {

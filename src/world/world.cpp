@@ -251,7 +251,7 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     if (!w->accel_->sound()) return nullptr;
     w->accel_->makeSolids(d);
     findLevels(*w);
-    w->sortByOpacity();
+    w->sortByOpacity(visibility);
     w->findEye();
     w->bindSentStrings(d);
     w->countLightTraces();

@@ -57,11 +57,11 @@ bool learnCaustics(Job& job) {
     const auto take = [&](uint32_t, std::vector<transport::StoredPhoton> stored) { found = std::move(stored); };
     // So few for small pictures that nobody waits for them; of the whole picture: a crop shows what the picture shows.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
-    const auto pilot = uint32_t(std::clamp(pixels / 2, double(1u << 12), double(1u << 15)));
+    const auto pilot = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 14)));
     if (!passes.emit(kPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
     if (found.empty()) return true;
     passes.emission().learn(found, kPilot, pilot);
-    const auto photons = uint32_t(std::clamp(2 * pixels, double(1u << 13), double(1u << 17)));
+    const auto photons = uint32_t(std::clamp(pixels, double(1u << 13), double(1u << 17)));
     // Lamps that are no flat ones aim badly: then more are sent.
     std::vector<transport::StoredPhoton> all;
     uint32_t turns = 0;

@@ -127,6 +127,7 @@ int32_t CausticGuide::Builder::cellOf(Ids ids, int level, Parent& around) {
     const bool own = ids.size() >= kEnough || around.ids.empty();
     if (!own && around.lobes < 0) around.lobes = fit(around.ids);
     guide.cells_.push_back({own ? fit(ids) : around.lobes, std::max(power, least) / (size * size)});
+    guide.mostIrradiance_ = std::max(guide.mostIrradiance_, guide.cells_.back().irradiance);
     return int32_t(guide.cells_.size()) - 1;
 }
 

@@ -48,6 +48,8 @@ public:
         if (wanted >= 1) return 1;
         return std::min(128 - int(std::bit_cast<uint32_t>(wanted) >> 23), kMostCode); // 1 more than halvings of 1
     }
+    /// Whether codeFor() may be other than 0 in some cell.
+    bool maySend(float brings) const { return kGain * perBrightness_ * brings * mostIrradiance_ > kLeastWanted; }
     static float chanceOf(int code) { return 1.f / float(1 << (code - 1)); }
     /// Of directions that draw() gives, per steradian. w: unit, from P.
     float density(const Cell&, const Vec3& P, const Vec3& w) const;
@@ -58,9 +60,9 @@ public:
     size_t lobes() const { return lobeCount_; }
 
 private:
-    /// Rays of the guide at a vertex, for one that brings as much as the picture shows in the mean. From 2 to 20 the error is the
-    /// same within a tenth (docs/noise.md).
-    static constexpr float kGain = 5;
+    /// Rays of the guide at a vertex, for one that brings as much as the picture shows in the mean. From 2 to 20 error squared
+    /// times time is about the same (docs/noise.md).
+    static constexpr float kGain = 2;
     static constexpr float kLeastWanted = 1.f / 256;
     static constexpr int kLevels = 16; ///< of halvings of the cube about all photons
     /// Lobes toward points, so that they are right from everywhere in their cell; by lobe, in rows. About its axis a lobe's
@@ -77,6 +79,7 @@ private:
     struct Builder;
     Vec3 corner_;                ///< of the cube
     float perSize_ = 0;          ///< 2^kLevels over its side
+    float mostIrradiance_ = 0;   ///< of all cells
     float perBrightness_;        ///< one over the mean luminance of the picture
     std::vector<int32_t> nodes_; ///< eight children each: a node, or -1 - cell
     int32_t roots_[kSides + 1];  ///< by side; kNone

@@ -2,13 +2,14 @@
 #include "integrator/flights.h"
 #include "integrator/context.h"
 #include "integrator/flight.h"
+#include "integrator/guiderays.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
 
 namespace alpenglow::transport {
 
-Flights::Flights(const StageSet& s) : Stage(s.context), photons_(s.photons), store_(s.store) {}
+Flights::Flights(const StageSet& s) : Stage(s.context), guide_(s.guide), photons_(s.photons), store_(s.store) {}
 
 void Flights::fly(BatchContext& c, Sched& sched) {
     if (events.empty()) return;
@@ -48,8 +49,10 @@ void Flights::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {
 }
 
 void Flights::divert(Flight& f, PathRay next, Sched& sched, float way) {
-    next.trail = photons_.photonTrace() ? shading::kTrailSpread : 0; // photons do not come this way
-    RayExtra extra = store_.extraOf(*f.ray);                         // each ray has its own
+    if (photons_.photonTrace()) next.trail = shading::kTrailSpread;
+    else if (!guide_.on()) next.trail = 0; // photons do not come this way
+    guide_.passThrough(next, f.binding);
+    RayExtra extra = store_.extraOf(*f.ray); // each ray has its own
     if (extra.fade.fades()) extra.way += way;
     next.extra = store_.newExtra(extra);
     sched.spawn(next.bounces + next.layers, f.target, next);

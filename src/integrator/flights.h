@@ -6,6 +6,7 @@
 
 namespace alpenglow::transport {
 
+class GuideRays;
 class PhotonStage;
 class RayStore;
 struct StageSet;
@@ -26,6 +27,7 @@ public:
 
 private:
     std::vector<Flight> list_;
+    const GuideRays& guide_;
     PhotonStage& photons_;
     RayStore& store_;
 };

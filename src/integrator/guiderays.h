@@ -65,9 +65,12 @@ public:
     bool ends(int binding) const { return ends_[size_t(binding)] != 0; }
     /// Whether a guided ray that has met a surface of the binding brings nothing.
     bool bringsNothing(const PathRay& r, int binding) const;
-    /// Of a ray that goes on behind a surface of the binding.
+    /// Of a ray that goes on behind a surface of the binding. The guide's rays end at surfaces that are no mirrors, so what their
+    /// lobes' own rays find behind these counts in full.
     void passThrough(PathRay& r, int binding) const {
-        if (r.guideCode() && ends(binding)) r.trail &= shading::kTrailGuide - 1;
+        if (binding < 0 || !ends(binding)) return;
+        if (r.guideCode()) r.trail &= shading::kTrailGuide - 1;
+        if (r.lobePdf < 0) r.lobePdf = -1;
     }
 
 private:

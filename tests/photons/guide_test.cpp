@@ -99,6 +99,18 @@ std::vector<Case> cases() {
             {"mirror that spreads, too", mirrored("Surface \"half\" ", kMatte), up, .04},
             {"several lobes", mirrored(kMirror, "Surface \"two\" "), up, .04},
             {"behind a sheet", mirrored(kMirror, kMatte, sheet), up, .05},
+            {"a pane before the lamp",
+             mirrored(kMirror, kMatte,
+                      "AttributeBegin Surface \"sheet\" Polygon \"P\" [-1 .5 -1  -1 .5 1  1 .5 1  1 .5 -1] AttributeEnd\n"),
+             up, .05},
+            {"a ball that is overruled before the lamp",
+             "AttributeBegin Surface \"null\" Interior \"medium\" \"color absorption\" [.1 .1 .1] \"color scattering\" [0 0 0] "
+             "\"float "
+             "priority\" 2 Translate 0 1 0 Sphere 1.6 -1.6 1.6 360 AttributeEnd\n" +
+                 mirrored(kMirror, kMatte,
+                          "AttributeBegin " + kMatte +
+                              "Interior \"medium\" \"float priority\" 1 Translate 0 .5 0 Sphere .3 -.3 .3 360 AttributeEnd\n"),
+             up, .05},
             {"mirror that waits", mirrored("Surface \"waits\" ", kMatte), up, .05},
             {"water",
              lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" +

@@ -87,6 +87,7 @@ float GuideRays::pdfBehindMirror(const PathRay& from) const {
     const int code = from.guideCode();
     if (!code) return -1;
     const CausticGuide::Cell* cell = guide()->find(from.lobeOrigin, from.trail / shading::kTrailSide);
+    if (!cell) return -1;
     const float density = CausticGuide::chanceOf(code) * guide()->density(*cell, from.lobeOrigin, from.dir);
     return -std::max(misWeight(from.lobePdf, density), 1e-30f); // below 0: no light is sampled at a mirror
 }

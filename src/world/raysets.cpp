@@ -8,7 +8,6 @@
 namespace alpenglow::transport {
 
 using shading::HitMode;
-using shading::RaySet;
 
 namespace {
 

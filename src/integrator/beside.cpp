@@ -70,7 +70,7 @@ void LobeSelection::besideLight(size_t point) {
     if (!(beside.share > 0)) return;
     for (int i : lobesOf(point)) {
         LobeVertex& l = requests_.lobes[size_t(i)];
-        // What a kernel is told of its rays is by their lobe alone.
+        // A waiting kernel reads distances and directions of its rays, which must follow the density of the lobe alone.
         if (l.delta || !l.followed || !(l.chosen > 0) || l.ownsTarget || l.elsewhere || l.below >= 0 ||
             (l.trace && l.trace->onlyLights))
             continue;

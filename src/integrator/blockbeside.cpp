@@ -8,7 +8,7 @@ namespace alpenglow::transport {
 /// LobeSelection::besideLights().
 void BlockVertices::besideLights(const BatchContext& c) {
     for (size_t k = 0; k < count_; ++k) sites_[k].beside.clear();
-    if (waits_ || c.between || !mediumFlights_.surfacesAim()) return; // what a kernel is told of its rays is by their lobe alone
+    if (waits_ || c.between || !mediumFlights_.surfacesAim()) return; // rays of waiting kernels follow their lobe alone
     for (size_t b = 0; b < blocks_; ++b) {
         Lanes some = 0;
         for (size_t k = 0; k < count_; ++k) some |= sites_[k].spreads(b);

@@ -2,7 +2,7 @@
 // (world/causticguide.h). It goes on by single directions alone and counts only where it meets a light behind one.
 // The lobe's own ray finds the same light by chance: both are weighed by the power heuristic (Veach and Guibas 1995), the own ray
 // where it meets its first mirror, so that a ray that meets none pays nothing.
-// Reads points, lobes and PathRay::trail; writes rays. Costs some 30 ns a point and a density at each mirror behind one.
+// Reads points, lobes and PathRay::trail; writes rays. Costs some 60 ns a point and a density at each mirror behind one.
 #pragma once
 #include "integrator/context.h"
 #include "lobes/lobe.h"
@@ -10,7 +10,6 @@
 
 namespace alpenglow::transport {
 
-class LightPathStates;
 class RayStore;
 struct StageSet;
 
@@ -36,12 +35,12 @@ public:
     /// A lobe that has a ray of its own with density `pdf`, drawn with the chance `chosen`.
     struct Lobe {
         const PathRay& from; ///< that came to the point
-        TargetId target;
-        Vec3 P;
-        Color weight; ///< of the request alone
-        float indirect;
-        float chosen;
-        float spread;
+        TargetId target;     ///< gets what the ray brings
+        Vec3 P;              ///< the point, camera space
+        Color weight;        ///< of the request alone, without the throughput of `from`
+        float indirect;      ///< LobeVertex::indirect and the energy rule, 0 to 1
+        float chosen;        ///< probability that the lobe's own ray is drawn
+        float spread;        ///< half angle of the lobe, radians
         const RayKind* kind;
         int32_t share;
         float importance;

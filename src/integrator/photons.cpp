@@ -129,6 +129,9 @@ bool savePhotonMap(const World& world, const std::string& name, std::span<const 
 bool mayHaveCaustics(const World& world) {
     const auto& w = static_cast<const WorldImpl&>(world);
     if (hasUnmade(world)) return false; // worlds change while rays are followed
+    const auto bakes = [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; };
+    for (const SurfaceBinding& b : w.bindings_) // the samples that measure the picture's brightness would be baked, too
+        if (b.surfaceS && std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(), bakes)) return false;
     return std::any_of(w.bindings_.begin(), w.bindings_.end(), [](const SurfaceBinding& b) {
         return b.surfaceS && !b.surfaceS.kernel->facts().suspends &&
                std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(),

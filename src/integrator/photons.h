@@ -20,7 +20,7 @@ struct PhotonUse {
     bool sky = true;       ///< environments, too
     bool caustics = false; ///< only what mirrors and glass send is wanted
     float width = 0;       ///< and lobes whose spread is below, in radians
-    bool learns = false;   ///< nobody sees these photons: shaders print and bake nothing, and nothing is said of them
+    bool learns = false;   ///< for the caustic guide: shaders print and bake nothing, and no message is reported
 };
 
 /// How photons of one world are emitted. The world must have been made for the hider path.

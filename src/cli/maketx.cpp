@@ -5,6 +5,8 @@
 #include "texture/maketexture.h"
 #include "texture/volume.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace alpenglow::cli {
@@ -18,13 +20,36 @@ struct MaketxArguments {
     std::vector<float> width;
     float fov = 90;
     int side = 8, radius = 1, smooth = 0;
-    bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false;
+    bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false,
+         newer = false;
 };
 
 void checkFiles(const MaketxArguments& a) {
     if (a.files.size() != (a.cube ? 7u : 2u))
         throw CLI::ValidationError("files", a.cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
     refuseOwnInput(a.files);
+}
+
+/// Whether the map is there and younger than all that it is made of.
+bool upToDate(const std::vector<std::string>& files) {
+    std::error_code ec;
+    const auto made = std::filesystem::last_write_time(files.back(), ec);
+    if (ec) return false;
+    return std::none_of(files.begin(), files.end() - 1, [&](const std::string& f) {
+        const auto t = std::filesystem::last_write_time(f, ec);
+        return ec || t > made;
+    });
+}
+
+bool make(const MaketxArguments& a, const PtexOptions& faces, Diagnostics& diags) {
+    const std::vector<std::string> in(a.files.begin(), a.files.end() - 1);
+    const std::string& out = a.files.back();
+    const texture::MakeOptions& o = a.options;
+    if (a.faces) return makePtex(in[0], out, faces, diags);
+    if (a.cube) return texture::makeCubeFaceEnvironment(in, out, a.fov, o, diags);
+    if (a.latlong) return texture::makeLatLongEnvironment(in[0], out, o, diags);
+    if (a.gradients) return texture::makeGradients(in[0], out, a.radius, a.smooth, o, diags);
+    return a.shadow ? texture::makeShadow(in[0], out, o, diags) : texture::makeTexture(in[0], out, o, diags);
 }
 
 } // namespace
@@ -61,6 +86,7 @@ void addMaketx(CLI::App& app, int* status) {
         ->check(positive())
         ->type_name("S [T]")
         ->allow_extra_args(false);
+    c->add_flag("--newer", a->newer, "Make nothing where the map is younger than its pictures");
     auto* srgb = c->add_flag("--srgb", a->srgb, "The pictures are sRGB, whatever they declare: the map holds their light");
     c->add_flag("--linear", a->linear, "The pictures are light or data, whatever they declare: the map is read as it is")
         ->excludes(srgb);
@@ -72,12 +98,13 @@ void addMaketx(CLI::App& app, int* status) {
         ->check(between(0, 64))
         ->type_name("N");
     c->footer("The options of old tools are taken as well: -envlatl, -envcube, -shadow, -ptex, -mode, -smode, -tmode, -filter, "
-              "-gradients.");
+              "-gradients; -resize, -format, -compression, -byte and their like are said to have no effect (docs/options.md).");
     c->callback([a, status] {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
         if (!a->output.empty()) a->files.push_back(a->output);
         checkFiles(*a);
+        if (a->newer && upToDate(a->files)) return;
         std::string s = !a->smode.empty() ? a->smode : a->mode, t = !a->tmode.empty() ? a->tmode : a->mode;
         if (!s.empty()) o.swrap = s;
         if (!t.empty()) o.twrap = t;
@@ -88,8 +115,6 @@ void addMaketx(CLI::App& app, int* status) {
         using Colours = texture::MakeOptions::Colours;
         o.colours = a->srgb ? Colours::Srgb : a->linear ? Colours::Light : Colours::Auto;
         o.policy.allowWrite = true;
-        std::vector<std::string> in(a->files.begin(), a->files.end() - 1);
-        const std::string& out = a->files.back();
         PtexOptions faces;
         faces.number = ptex::Number::Byte;
         while (1 << faces.log < a->side) ++faces.log;
@@ -98,12 +123,7 @@ void addMaketx(CLI::App& app, int* status) {
             if (a->number == name) break;
             faces.number = ptex::Number(int(faces.number) + 1);
         }
-        bool ok = a->faces       ? makePtex(in[0], out, faces, diags)
-                  : a->cube      ? texture::makeCubeFaceEnvironment(in, out, a->fov, o, diags)
-                  : a->latlong   ? texture::makeLatLongEnvironment(in[0], out, o, diags)
-                  : a->gradients ? texture::makeGradients(in[0], out, a->radius, a->smooth, o, diags)
-                  : a->shadow    ? texture::makeShadow(in[0], out, o, diags)
-                                 : texture::makeTexture(in[0], out, o, diags);
+        const bool ok = make(*a, faces, diags);
         *status = ok ? (diags.errors() ? kDoneWithErrors : kDone) : kOutputFailed;
         if (ok) return;
         for (const Diagnostic& d : diags.all())

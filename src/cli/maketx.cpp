@@ -41,7 +41,7 @@ bool upToDate(const std::vector<std::string>& files) {
     });
 }
 
-bool make(const MaketxArguments& a, const PtexOptions& faces, Diagnostics& diags) {
+bool makeMap(const MaketxArguments& a, const PtexOptions& faces, Diagnostics& diags) {
     const std::vector<std::string> in(a.files.begin(), a.files.end() - 1);
     const std::string& out = a.files.back();
     const texture::MakeOptions& o = a.options;
@@ -123,7 +123,7 @@ void addMaketx(CLI::App& app, int* status) {
             if (a->number == name) break;
             faces.number = ptex::Number(int(faces.number) + 1);
         }
-        const bool ok = make(*a, faces, diags);
+        const bool ok = makeMap(*a, faces, diags);
         *status = ok ? (diags.errors() ? kDoneWithErrors : kDone) : kOutputFailed;
         if (ok) return;
         for (const Diagnostic& d : diags.all())

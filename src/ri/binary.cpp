@@ -139,11 +139,23 @@ bool Lexer::binaryPlain(Token& t) {
         pos_ = size_t(end - buffer_.data());
         return true;
     }
-    const unsigned code = static_cast<unsigned char>(p[1]);
-    if (peek() == 0246 && requests_[code]) {
+    const unsigned code = static_cast<unsigned char>(p[1]), first = peek();
+    const size_t length = first - 0220; // of a short string
+    if (length < 16 && length < end_ - pos_) {
+        t.kind = Token::Kind::String;
+        t.text.assign(p + 1, length);
+        pos_ += 1 + length;
+        return true;
+    }
+    if (first == 0310 && 2 + 4 * size_t(code) <= end_ - pos_) {
+        t.kind = Token::Kind::Floats;
+        pos_ += 2;
+        return binaryFloats(t, code);
+    }
+    if (first == 0246 && requests_[code]) {
         t.kind = Token::Kind::Identifier;
         t.request = requests_[code];
-    } else if (peek() == 0317 && code < stringCodes_.size() && stringCodes_[code]) {
+    } else if (first == 0317 && code < stringCodes_.size() && stringCodes_[code]) {
         t.kind = Token::Kind::String;
         t.text = *stringCodes_[code];
     } else return false;

@@ -44,6 +44,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
       "display"}},
     {"cli", {"base",   "scene",   "geometry", "accel", "rsl",     "shadeops",   "texture", "shading", "lobes", "lanes",
              "clouds", "photons", "ptex",     "world", "answers", "integrator", "display", "render",  "ri",    "view"}},
+    {"capi", {"base", "scene", "display", "integrator", "render", "ri", "cli"}},
     {"view",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "integrator", "display",
       "render", "ri"}},

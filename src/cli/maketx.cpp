@@ -32,8 +32,7 @@ void checkFiles(const MaketxArguments& a) {
 void addMaketx(CLI::App& app, int* status) {
     auto a = std::make_shared<MaketxArguments>();
     CLI::App* c = app.add_subcommand("maketx", "Make textures, environment and shadow maps of pictures");
-    c->add_option("files", a->files,
-                  "Picture and output map; with --envcube: six pictures (px nx py ny pz nz) and the output map")
+    c->add_option("files", a->files, "Picture and output map; --envcube: six pictures (px nx py ny pz nz) and the output map")
         ->type_name("FILE")
         ->required();
     c->add_option("-o", a->output, "Output map, instead of the last file")->type_name("FILE");
@@ -56,8 +55,7 @@ void addMaketx(CLI::App& app, int* status) {
     c->add_option("--mode", a->mode, "Wrap mode: black, clamp, periodic or mirror")->check(wraps)->type_name("MODE");
     c->add_option("--smode", a->smode, "Wrap mode in s")->check(wraps)->type_name("MODE");
     c->add_option("--tmode", a->tmode, "Wrap mode in t")->check(wraps)->type_name("MODE");
-    c->add_option("--filter", a->options.filter, "Filter for the reduced levels, for example box, gaussian, sinc")
-        ->type_name("NAME");
+    c->add_option("--filter", a->options.filter, "Filter of the reduced levels, for example box or sinc")->type_name("NAME");
     c->add_option("--width", a->width, "Factors of the filter width in s and t")
         ->expected(1, 2)
         ->check(positive())

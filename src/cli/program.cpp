@@ -149,6 +149,7 @@ int runProgram(int argc, char** argv) {
     addPtc(app, &status);
     addDiff(app, &status);
     addMerge(app, &status);
+    addRib(app, &status);
     addLsp(app, &status);
     CommandLine line = normalise(argc, argv, app);
     if (!line.error.empty()) return wrongUse(line.error, "alpenglow --help");

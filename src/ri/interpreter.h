@@ -262,7 +262,16 @@ private:
     /// name says that it is of this kind, others are read from the scene's own folders only.
     std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
     void run(class Parser& parser);
+    /// What execute() does, once it is to be done.
+    void perform(const Call& call);
     void dispatch(const Call& call);
+    // executed.cpp: ReaderOptions::executed
+    /// Performs a request and passes it on, or what is in it.
+    void tell(const Call& call);
+    void tellProcedural(const Call& call, const std::string& kind);
+    void tellName(std::string_view request, const SourcePlace& place);
+    /// Options of an archive in the world, held back until it is known that it has no world of its own.
+    void tellHeld();
     bool conditional(const Call& call);
     bool record(const Call& call);
     void checkScope(const Call& call);
@@ -338,8 +347,10 @@ private:
     int partsWithin_ = 0;                                 ///< procedurals in it that wait
     bool making_ = false;                                 ///< what is in procedurals that waited is being made
     bool replaying_ = false;                              ///< inside an archive that was read before
-    Lasting base_;                                        ///< what a scene begins with
-    size_t baseWorld_ = 0;                                ///< worldSerial_ at that time
+    bool telling_ = false;   ///< a request that was passed on is executed: what it makes of itself is not
+    std::vector<Call> held_; ///< tellHeld()
+    Lasting base_;           ///< what a scene begins with
+    size_t baseWorld_ = 0;   ///< worldSerial_ at that time
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

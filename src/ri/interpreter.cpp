@@ -31,6 +31,8 @@ void Interpreter::nextScene() {
     archivesRead_.clear();
     shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
+    ris_ = false;
+    integratorSurface_ = nullptr;
 }
 
 scene::Attributes& Interpreter::attributes() {

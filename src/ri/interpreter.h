@@ -13,6 +13,7 @@
 #include "ri/sharedarchives.h"
 #include "ri/shelf.h"
 #include "ri/source.h"
+#include "scene/network.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
 #include <functional>
@@ -108,6 +109,14 @@ public:
     void nameSystem(const std::string& name, bool scoped);
     /// Null when unknown. "world", "camera", "object", "current" and "shader" are known too.
     std::optional<scene::Transform> namedSystem(const std::string& name) const;
+
+    /// RIS: what a Bxdf or its like says, with the patterns that its connections mean now (scene/network.h).
+    scene::ShaderRef network(const Call& call, scene::Keeper);
+    void pattern(const Call& call);
+    void risLight(const Call& call);
+    void isRis() { ris_ = true; }
+    /// The shader that an Integrator sees instead of all surfaces; null: none.
+    void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
 
     void light(const Call& call, bool area);
     void illuminate(const Call& call);
@@ -230,6 +239,10 @@ private:
     /// Reads a DelayedReadArchive; from the second time under the same attributes on as an object.
     void readDelayed(const std::string& name, const Call& call);
     void learn(SharedArchive& of, const std::string& file);
+    // ris.cpp
+    std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
+    void overrideAttributes(scene::Frame&) const;
+    void risOptions(scene::Options&) const;
     // unlit.cpp
     void noteEnded(const Block&);
     void sayUnlit(const scene::Frame&);
@@ -321,6 +334,9 @@ private:
     std::map<size_t, int> objectIndex_;                   ///< serial -> index in this frame
     std::map<std::string, SharedArchive> sharedArchives_; ///< of the open world, by ArchiveShelf::Found::key
     std::set<int> ended_;                                 ///< lights of this world that an AttributeEnd has ended
+    std::set<int> globalLights_;                          ///< lights of this world that are on everywhere
+    scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
+    bool ris_ = false;                                    ///< the scene has requests of RIS
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

@@ -1,5 +1,6 @@
 """The render engine: writes the scene, runs the program, shows what it makes."""
 import os
+import re
 import shlex
 import shutil
 import tempfile
@@ -9,6 +10,9 @@ import bpy
 import numpy as np
 
 from . import exr, passes, program, properties, scene
+
+
+MESSAGE = re.compile(r"\b(error|warning): ")
 
 
 class Stopped(Exception):
@@ -56,8 +60,9 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
             rib.request("Display", "+passes.exr", "openexr", ",".join(mode))
         aspect = render.pixel_aspect_x / render.pixel_aspect_y
         rib.request("Format", width, height, aspect)
-        filter_size = getattr(render, "filter_size", 1.5)
-        rib.request("PixelFilter", "blackman-harris" if KNOWS_BLACKMAN else "gaussian", filter_size * 2, filter_size * 2)
+        # RISpec's gaussian spreads by a quarter of its width, Blender's Blackman-Harris by a seventh
+        wide = render.filter_size if settings.filter == "box" else render.filter_size * .64
+        rib.request("PixelFilter", settings.filter, wide, wide)
         side = max(1, round((samples or settings.samples) ** .5))
         rib.request("PixelSamples", side, side)
         if settings.hider == "path":
@@ -68,9 +73,6 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
             rib.file.write((line + "\n").encode())
     report = writer.write(os.path.join(folder, "scene.rib"), head)
     return report
-
-
-KNOWS_BLACKMAN = False
 
 
 def arguments(binary, settings, frame, samples=None, crop=None):
@@ -198,11 +200,11 @@ class AlpenglowEngine(bpy.types.RenderEngine):
                     print("Alpenglow: not exported: " + line, flush=True)
 
     def _messages(self, run, status, stopped):
-        important = [m for m in run.messages if "error" in m or "warning" in m]
+        important = [m for m in run.messages if MESSAGE.search(m)]
         for line in important[:20]:
             print("Alpenglow: " + line, flush=True)
         if status not in (0, 1) and not stopped:
-            said = next((m for m in run.messages if "error" in m), run.messages[-1] if run.messages else "")
+            said = next((m for m in run.messages if "error:" in m), run.messages[-1] if run.messages else "")
             self.report({"ERROR"}, "alpenglow ended with status %d: %s" % (status, said))
         elif important:
             self.report({"WARNING"}, "alpenglow: %s%s" % (important[0], " (and %d more, on the terminal)" % (len(important) - 1)

@@ -33,6 +33,8 @@ class AlpenglowScene(bpy.types.PropertyGroup):
     threads: IntProperty(name="Threads", default=0, min=0, max=1024, description="0: as many as there are processors")
     seed: IntProperty(name="Seed", default=0, min=0)
     seed_by_frame: BoolProperty(name="Seed by Frame", description="The noise of an animation changes")
+    filter: EnumProperty(name="Filter", default="gaussian", items=(
+        ("gaussian", "Gaussian", "As wide as Blender's own of the same size"), ("box", "Box", "The mean over a square")))
     max_depth: IntProperty(name="Bounces", default=32, min=0, max=1000)
     clamp: FloatProperty(name="Clamp", default=0, min=0, description="Scale brighter samples down to this: less noise, but a bias; 0: not at all")
     guide: BoolProperty(name="Guide Caustics", default=True, description="Aim rays at mirrors and glass that light comes from")

@@ -56,6 +56,7 @@ class ALPENGLOW_PT_film(Panel, bpy.types.Panel):
 
     def draw(self, context):
         rows(self, context.scene.render, "film_transparent", "filter_size")
+        rows(self, context.scene.alpenglow, "filter")
 
 
 class ALPENGLOW_PT_passes(Panel, bpy.types.Panel):

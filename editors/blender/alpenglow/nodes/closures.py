@@ -29,31 +29,35 @@ def rough(c, n):
     return "0" if getattr(n, "distribution", "") == "SHARP" else "clamp(%s, 0, 1)" % c.input(n, "Roughness", "float")
 
 
-def facets(c, n):
-    """1 where light lost between facets is given back."""
+def facets(n):
+    """1 where light lost between facets is given back, and the distribution of trace()."""
     kind = getattr(n, "distribution", "GGX")
-    if kind in ("BECKMANN", "ASHIKHMIN_SHIRLEY"):
-        c.lost("Distribution %s (GGX is taken)" % kind.replace("_", "-").title())
-    return "1" if kind == "MULTI_GGX" else "0"
+    names = {"BECKMANN": "beckmann", "ASHIKHMIN_SHIRLEY": "ashikhmin-shirley"}
+    return '%d, "%s"' % (kind == "MULTI_GGX", names.get(kind, "ggx"))
+
+
+def ggx_alone(c, n):
+    if getattr(n, "distribution", "") == "BECKMANN" and c.fixed(n, "Roughness") != 0:
+        c.lost("Distribution Beckmann of glass (GGX is taken)")
 
 
 @node("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic")
 def glossy(c, n, out):
     return closure(c, "%s * blGlossy(%s, %s, %s, %s, %s, %s)" % (
         c.input(n, "Color", "color"), normal_of(c, n), tangent_of(c, n), rough(c, n), c.input(n, "Anisotropy", "float", 0.0),
-        c.input(n, "Rotation", "float", 0.0), facets(c, n)))
+        c.input(n, "Rotation", "float", 0.0), facets(n)))
 
 
 @node("ShaderNodeBsdfGlass")
 def glass(c, n, out):
-    facets(c, n)
+    ggx_alone(c, n)
     mirrored, through = c.call("blGlass", ("color", "color"), normal_of(c, n), "blSide", rough(c, n), c.input(n, "IOR", "float", 1.45))
     return closure(c, "%s * (%s + %s)" % (c.input(n, "Color", "color"), mirrored, through))
 
 
 @node("ShaderNodeBsdfRefraction")
 def refraction(c, n, out):
-    facets(c, n)
+    ggx_alone(c, n)
     return closure(c, "%s * blRefraction(%s, blSide, %s, %s)" % (c.input(n, "Color", "color"), normal_of(c, n), rough(c, n),
                                                                 c.input(n, "IOR", "float", 1.45)))
 
@@ -79,7 +83,7 @@ def toon(c, n, out):
     c.lost("Toon BSDF (Diffuse or Glossy BSDF is taken)")
     if n.component == "DIFFUSE":
         return closure(c, "%s * diffuse(%s)" % (c.input(n, "Color", "color"), normal_of(c, n)))
-    return closure(c, "%s * blGlossy(%s, dPdu, %s, 0, 0, 0)" % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, "Size", "float")))
+    return closure(c, "%s * blGlossy(%s, dPdu, %s, 0, 0, 0, \"ggx\")" % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, "Size", "float")))
 
 
 @node("ShaderNodeSubsurfaceScattering")
@@ -104,7 +108,7 @@ def emission(c, n, out):
 @node("ShaderNodeEeveeSpecular")
 def specular_bsdf(c, n, out):
     light = "%s * diffuse(%s)" % (c.input(n, "Base Color", "color"), normal_of(c, n))
-    light += " + %s * blGlossy(%s, dPdu, %s, 0, 0, 0)" % (c.input(n, "Specular", "color"), normal_of(c, n), c.input(n, "Roughness", "float"))
+    light += " + %s * blGlossy(%s, dPdu, %s, 0, 0, 0, \"ggx\")" % (c.input(n, "Specular", "color"), normal_of(c, n), c.input(n, "Roughness", "float"))
     return closure(c, light + " + %s" % emitted(c, n, "Emissive Color", "-"))
 
 
@@ -154,7 +158,7 @@ def hair_principled(c, n, out):
 @node("ShaderNodeBsdfHair")
 def hair(c, n, out):
     c.lost("Hair BSDF (Diffuse and Glossy BSDF are taken)")
-    return closure(c, "%s * (.7 * diffuse(blN) + .3 * blGlossy(blN, dPdv, clamp(%s, 0, 1), 0, 0, 0))" % (
+    return closure(c, "%s * (.7 * diffuse(blN) + .3 * blGlossy(blN, dPdv, clamp(%s, 0, 1), 0, 0, 0, \"ggx\"))" % (
         c.input(n, "Color", "color"), c.input(n, "RoughnessU", "float", .1)))
 
 

@@ -54,12 +54,10 @@ def image(c, n, out):
     if n.image.source in ("SEQUENCE", "MOVIE", "TILED"):
         c.lost({"SEQUENCE": "Image sequences", "MOVIE": "Movies as textures", "TILED": "UDIM tiles"}[n.image.source])
     if n.projection == "BOX":
-        q = c.name_of("vector", 'abs(xcomp(%s)) * vector(1, 0, 0)' % "normalize(vector(ntransform(\"object\", N)))")
         w = c.name_of("vector", 'normalize(vector(ntransform("object", N)))')
         c.lost("Blending of Box projection (the nearest side is taken)")
         s = "((abs(xcomp({w})) > max(abs(ycomp({w})), abs(zcomp({w})))) ? ycomp({p}) : xcomp({p}))".format(w=w, p=p)
         t = "((abs(zcomp({w})) >= max(abs(xcomp({w})), abs(ycomp({w})))) ? ycomp({p}) : zcomp({p}))".format(w=w, p=p)
-        del q
     elif n.projection in ("SPHERE", "TUBE"):
         q = c.name_of("vector", "2 * %s - vector(1, 1, 1)" % p)
         s = "(.5 - atan(xcomp(%s), ycomp(%s)) / (2 * PI))" % (q, q)
@@ -68,6 +66,8 @@ def image(c, n, out):
         s, t = "xcomp(%s)" % p, "ycomp(%s)" % p
     s, t = c.name_of("float", s), c.name_of("float", t)
     outside = None
+    if n.extension == "REPEAT":
+        s, t = c.name_of("float", "mod(%s, 1)" % s), c.name_of("float", "mod(%s, 1)" % t)
     if n.extension == "EXTEND":
         s, t = c.name_of("float", "clamp(%s, 0, 1)" % s), c.name_of("float", "clamp(%s, 0, 1)" % t)
     elif n.extension == "CLIP":

@@ -76,17 +76,18 @@ color blDiffuse(normal n; float roughness)
 }
 color blTranslucent(normal n) { return diffuse(-n); }
 
-/* Facets that reflect all. */
-color blFacets(normal n; vector udir; float along, across)
+/* Facets that reflect all. kind: a distribution of trace(). */
+color blFacetsOf(string kind; normal n; vector udir; float along, across)
 {
     extern point P;
     extern vector I;
     vector V = -normalize(I);
     color light = 0;
     if (max(along, across) < BL_MIRROR) light = trace(P, 2 * (n . V) * n - V, BL_LIGHTS);
-    else light = trace(P, n, "distribution", "ggx", "wo", V, "udir", udir, "roughness", along, "roughnessv", across, BL_LIGHTS);
+    else light = trace(P, n, "distribution", kind, "wo", V, "udir", udir, "roughness", along, "roughnessv", across, BL_LIGHTS);
     return light;
 }
+color blFacets(normal n; vector udir; float along, across) { return blFacetsOf("ggx", n, udir, along, across); }
 /* Facets of a dielectric. */
 color blCoated(normal n; vector udir; float along, across, eta)
 {
@@ -99,13 +100,13 @@ color blCoated(normal n; vector udir; float along, across, eta)
     return light;
 }
 /* Glossy BSDF. whole 1: light that facets lose to each other is given back ("Multiscatter GGX"). */
-color blGlossy(normal n; vector udir; float roughness, anisotropy, turn, whole)
+color blGlossy(normal n; vector udir; float roughness, anisotropy, turn, whole; string kind)
 {
     extern vector I;
     float along, across, all = 1;
     blWidths(roughness, anisotropy, along, across);
     if (whole == 1) all = blAlbedo(-(n . normalize(I)), sqrt(along * across));
-    return blFacets(n, blTurned(n, udir, turn), along, across) / all;
+    return blFacetsOf(kind, n, blTurned(n, udir, turn), along, across) / all;
 }
 /* Glass BSDF: what is mirrored and what comes through. front 1: from outside. */
 void blGlass(normal n; float front, roughness, ior; output color mirrored, through)
@@ -191,7 +192,8 @@ color blPrincipled3(normal n, nc; vector tangent; float front; color base; float
         light += transmission * (1 - metallic) * (mix(color 1, tint, color spectint) * mirrored + base * through);
     }
     if (coat > 0) {
-        float a = coatroughness * coatroughness;
+        /* GTR1 has long tails: it is GGX of widths spread evenly, by their logarithm, from a to 1 */
+        float a = pow(max(coatroughness * coatroughness, .0001), random());
         light += .25 * coat * blCoated(nc, u, a, a, 1.5);
     }
     return light;

@@ -48,6 +48,16 @@ float blAlbedo(float c, a)
     float k4 = (((44.9327 * t - 135.1520) * t + 150.2501) * t - 70.3952) * t + 11.1808;
     return (a < BL_MIRROR) ? 1 : clamp(1 - ((((k4 * a + k3) * a + k2) * a + k1) * a + k0), .2, 1);
 }
+/* The cosine at which a smooth surface has the mean Fresnel reflectance of these facets (a fit, within .007). */
+float blCosine(float c, a)
+{
+    float t = a / (a + c + 1e-6);
+    float k0 = ((.1826 * t - .1126) * t + .0496) * t + .001;
+    float k1 = ((2.3175 * t - 5.8572) * t + 4.9185) * t - .4423;
+    float k2 = ((1.5042 * t - 6.4730) * t + 8.5158) * t - 4.4716;
+    float k3 = ((-3.3747 * t + 9.0918) * t - 8.3390) * t + 2.9769;
+    return (a < BL_MIRROR) ? c : clamp(c + ((k3 * a + k2) * a + k1) * a + k0, 0, 1);
+}
 /* Widths of slopes along and across; anisotropy -1 to 1 (below 0: across). */
 void blWidths(float roughness, anisotropy; output float along, across)
 {
@@ -88,17 +98,8 @@ color blFacetsOf(string kind; normal n; vector udir; float along, across)
     return light;
 }
 color blFacets(normal n; vector udir; float along, across) { return blFacetsOf("ggx", n, udir, along, across); }
-/* Facets of a dielectric. */
-color blCoated(normal n; vector udir; float along, across, eta)
-{
-    extern point P;
-    extern vector I;
-    vector V = -normalize(I);
-    color light = 0;
-    if (max(along, across) < BL_MIRROR) light = blDielectric(n . V, eta) * trace(P, 2 * (n . V) * n - V, BL_LIGHTS);
-    else light = trace(P, n, "distribution", "ggx", "wo", V, "udir", udir, "roughness", along, "roughnessv", across, "eta", eta, BL_LIGHTS);
-    return light;
-}
+/* The Fresnel reflectance of a dielectric's facets as a whole. As a weight it tells which lobe of a surface is worth a ray. */
+float blMirrored(float c, a, eta) { return blDielectric(blCosine(c, a), eta); }
 /* Glossy BSDF. whole 1: light that facets lose to each other is given back ("Multiscatter GGX"). */
 color blGlossy(normal n; vector udir; float roughness, anisotropy, turn, whole; string kind)
 {
@@ -183,8 +184,8 @@ color blPrincipled3(normal n, nc; vector tangent; float front; color base; float
     if (transmission < 1 && (specular > 0 || metallic > 0)) {
         float f0 = .08 * max(specular, 1e-4), eta = 2 / (1 - sqrt(f0)) - 1;
         color facing = metallic * base + (1 - metallic) * f0 * mix(color 1, tint, color spectint);
-        light += (1 - transmission * (1 - metallic)) * (((facing - f0) / (1 - f0)) * blFacets(n, u, along, across)
-            + ((1 - facing) / (1 - f0)) * blCoated(n, u, along, across, eta));
+        float rim = (blMirrored(c, sqrt(along * across), eta) - f0) / (1 - f0);
+        light += (1 - transmission * (1 - metallic)) * (facing + (1 - facing) * rim) * blFacets(n, u, along, across);
     }
     if (transmission > 0 && metallic < 1) {
         color mirrored, through;
@@ -194,7 +195,7 @@ color blPrincipled3(normal n, nc; vector tangent; float front; color base; float
     if (coat > 0) {
         /* GTR1 has long tails: it is GGX of widths spread evenly, by their logarithm, from a to 1 */
         float a = pow(max(coatroughness * coatroughness, .0001), random());
-        light += .25 * coat * blCoated(nc, u, a, a, 1.5);
+        light += .25 * coat * blMirrored(nc . V, a, 1.5) * blFacets(nc, u, a, a);
     }
     return light;
 }
@@ -216,7 +217,7 @@ color blPrincipled4(normal n, nc; vector tangent; float front; color base; float
     }
     if (coat > 0) {
         float ca = coatroughness * coatroughness, reflected = coat * blDielectric(nc . V, coatior);
-        light += over * coat * blCoated(nc, u, ca, ca, coatior);
+        light += over * coat * blMirrored(nc . V, ca, coatior) * blFacets(nc, u, ca, ca);
         over *= (1 - reflected) * mix(color 1, coattint, color coat);
     }
     if (metallic > 0) {
@@ -235,7 +236,7 @@ color blPrincipled4(normal n, nc; vector tangent; float front; color base; float
             r = clamp(r, 0, .99);
             eta = (1 + sqrt(r)) / (1 - sqrt(r));
         }
-        light += over * below * spectint * blCoated(n, u, along, across, eta);
+        light += over * below * spectint * blMirrored(c, a, eta) * blFacets(n, u, along, across);
         below *= 1 - spectint * blDielectric(c, eta) * whole;
         if (subsurface < 1) light += over * below * (1 - subsurface) * base * blDiffuse(n, diffuseroughness);
         if (subsurface > 0) light += over * below * subsurface * blSubsurface(base, radius, 0);

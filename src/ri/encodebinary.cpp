@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <unordered_map>
 
 namespace alpenglow::ri {
@@ -22,8 +23,10 @@ public:
     explicit Binary(std::unique_ptr<ByteSink> to) : RibEncoder(std::move(to)) {}
 
     void begin(std::string_view request) override {
-        auto [slot, fresh] = requests_.try_emplace(request, requests_.size());
-        if (slot->second >= 256) { // there are no more codes
+        auto slot = requests_.find(request);
+        const bool fresh = slot == requests_.end() && requests_.size() < 256;
+        if (fresh) slot = requests_.emplace(request, requests_.size()).first;
+        if (slot == requests_.end()) { // there are no more codes
             buffer_ += request;
             buffer_ += ' ';
             return;
@@ -130,8 +133,8 @@ private:
         }
     }
 
-    std::unordered_map<std::string_view, size_t> requests_; ///< names of the request table, which lives for ever
-    std::unordered_map<std::string, size_t> strings_;       ///< kNone: seen once
+    std::map<std::string, size_t, std::less<>> requests_;
+    std::unordered_map<std::string, size_t> strings_; ///< kNone: seen once
     size_t codes_ = 0;
 };
 

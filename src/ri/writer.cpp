@@ -68,21 +68,28 @@ void RibWriter::write(const Call& call) {
         if (call.arguments[i].given) argument(to, call.request->args[i], call.arguments[i]);
     for (const RawParam& p : call.params) {
         to.text(p.token);
-        value(p.value);
+        value(p.value, false);
     }
     to.end();
     if (call.request->name == "ColorSamples") to.parameters = Precision::Exact; // colours are multiplied in double
 }
 
-void RibWriter::value(const Value& v) {
+void RibWriter::write(const std::string& name, const std::vector<Value>& values) {
+    encoder_->begin(name);
+    for (const Value& v : values) value(v, true);
+    encoder_->end();
+}
+
+void RibWriter::value(const Value& v, bool exact) {
     RibEncoder& to = *encoder_;
+    const Precision precision = exact ? Precision::Exact : to.parameters;
     if (v.kind == Value::Kind::Strings) {
         if (!v.array && v.strings.size() == 1) to.text(v.strings[0]);
         else to.texts(v.strings);
     } else if (v.array || v.numbers.empty()) {
-        to.array(v.numbers, to.parameters);
+        to.array(v.numbers, precision);
     } else {
-        to.bare(v.numbers, to.parameters);
+        to.bare(v.numbers, precision);
     }
 }
 

@@ -30,6 +30,8 @@ public:
     ~RibWriter();
     /// call: of requestTable(), its arguments as matchArguments() leaves them. The place is not written.
     void write(const Call& call);
+    /// A request that is not in the table, as it was read.
+    void write(const std::string& name, const std::vector<Value>& values);
     /// A comment, without the '#'; each line of it becomes one.
     void comment(std::string_view text);
     /// A structure comment, without the "##" (RISpec 3.2, appendix D).
@@ -45,7 +47,7 @@ public:
     uint64_t bytes() const;
 
 private:
-    void value(const Value&);
+    void value(const Value&, bool exact);
     void comments(std::string_view mark, std::string_view text);
     std::unique_ptr<RibEncoder> encoder_;
 };

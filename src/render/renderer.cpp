@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "base/realpath.h"
+#include "base/zipname.h"
 #include "display/driver.h"
 #include "render/curve.h"
 #include "render/digest.h"
@@ -51,7 +52,8 @@ Renderer::~Renderer() = default;
 void Renderer::setScene(const std::string& path, const std::set<std::string>& read) {
     read_.clear();
     for (const std::string& name : read) read_.insert(fileIdentity(name));
-    settings_.scenePath = path == "-" ? "." : folderOf(path);
+    const auto inside = zipName(path);
+    settings_.scenePath = path == "-" ? "." : folderOf(inside ? inside->zip : path);
     settings_.sceneFile = path;
     parseMark_ = clockSeconds();
 }

@@ -34,8 +34,8 @@ if(ALPENGLOW_PYTHON AND PYBIND11_HEADERS AND ALPENGLOW_PYTHON_PROGRAM AND NOT in
   # the C binding.
   target_link_options(_alpenglow PRIVATE LINKER:--version-script=${CMAKE_SOURCE_DIR}/src/python/exported.map LINKER:-Bsymbolic)
   set_property(TARGET _alpenglow APPEND PROPERTY LINK_DEPENDS ${CMAKE_SOURCE_DIR}/src/python/exported.map)
-  file(GLOB python_files RELATIVE ${CMAKE_SOURCE_DIR}/python CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/python/*.py
-    ${CMAKE_SOURCE_DIR}/python/*.pyi ${CMAKE_SOURCE_DIR}/python/alpenglow/*.py ${CMAKE_SOURCE_DIR}/python/alpenglow/*.pyi
+  file(GLOB python_files RELATIVE ${CMAKE_SOURCE_DIR}/python CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/python/prman.py
+    ${CMAKE_SOURCE_DIR}/python/alpenglow/*.py ${CMAKE_SOURCE_DIR}/python/alpenglow/*.pyi
     ${CMAKE_SOURCE_DIR}/python/alpenglow/py.typed)
   file(MAKE_DIRECTORY ${python_folder}/alpenglow)
   foreach(f ${python_files})

@@ -50,8 +50,8 @@ def _is_rib(text: str) -> bool:
 
 
 def _scenes(scene: Union[Scene, Sequence[Scene]]) -> List[Tuple[str, Optional[bytes]]]:
-    if isinstance(scene, (str, bytes, os.PathLike)):
-        scene = [scene]
+    if not isinstance(scene, (list, tuple)):
+        scene = [scene]  # type: ignore[list-item]
     made: List[Tuple[str, Optional[bytes]]] = []
     for s in scene:
         if isinstance(s, bytes):

@@ -53,7 +53,7 @@ class Picture:
 
     @property
     def variables(self) -> List[str]:
-        """Names that [] takes, beside those of channels: "rgb", "a", "z", "N" ..."""
+        """Names that [] takes, beside those of channels: "Ci", "a", "z", "N" ..."""
         return list(self._variables)
 
     def __contains__(self, name: str) -> bool:

@@ -26,7 +26,7 @@ _OTHERS = {
     "ERRORPRINT": "print", "ERRORIGNORE": "ignore", "ERRORABORT": "abort",
     "HANDLEID": "__handleid", "RENDER": "__render",
     "PROCDELAYEDREADARCHIVE": "DelayedReadArchive", "PROCRUNPROGRAM": "RunProgram", "PROCDYNAMICLOAD": "DynamicLoad",
-    "PROC2DELAYEDREADARCHIVE": "DelayedReadArchive", "PROC2DYNAMICLOAD": "DynamicLoad",
+    "PROC2DELAYEDREADARCHIVE": "DelayedReadArchive2", "PROC2RUNPROGRAM": "RunProgram2", "PROC2DYNAMICLOAD": "DynamicLoad2",
 }
 
 #: Name without RI_: value.

@@ -60,8 +60,9 @@ class Ri:
     ProcDelayedReadArchive = _BuiltIn("DelayedReadArchive")
     ProcRunProgram = _BuiltIn("RunProgram")
     ProcDynamicLoad = _BuiltIn("DynamicLoad")
-    Proc2DelayedReadArchive = _BuiltIn("DelayedReadArchive")
-    Proc2DynamicLoad = _BuiltIn("DynamicLoad")
+    Proc2DelayedReadArchive = _BuiltIn("DelayedReadArchive2")
+    Proc2RunProgram = _BuiltIn("RunProgram2")
+    Proc2DynamicLoad = _BuiltIn("DynamicLoad2")
     ProcFree = None
     SimpleBound = "SimpleBound"
     DSOBound = "DSOBound"
@@ -130,7 +131,7 @@ class Ri:
         """A handle for ObjectInstance, a str."""
         handle = self._context.new_handle("object")
         parameters = next((n for n in name if isinstance(n, dict)), {})
-        for n in list(name) + [v for k, v in parameters.items() if k.split()[-1] == TOKENS["HANDLEID"]]:
+        for n in list(name) + [v for k, v in parameters.items() if k.split()[-1:] == [TOKENS["HANDLEID"]]]:
             if isinstance(n, (list, tuple)) and n:
                 n = n[0]
             if isinstance(n, (str, int)):
@@ -192,18 +193,14 @@ class Ri:
         for m in more:
             parameters.update(m)
         parameters.update(keywords)
-        plain = {k.split()[-1]: v for k, v in parameters.items()}
-        box = bound(parameters) if callable(bound) else plain.get("__bound", plain.get("bound"))
-        if box is None:
-            box = [-1e30, 1e30, -1e30, 1e30, -1e30, 1e30]
         if isinstance(subdivide, str):
-            name = plain.get("filename", plain.get("dsoname", ""))
-            arguments = [name] if isinstance(name, str) else list(name)
-            if subdivide == Ri.Proc2DynamicLoad:
-                arguments.append(str(plain.get("__data", plain.get("data", ""))))
-            self._context.call("Procedural", (str(subdivide), arguments, box))
-        else:
-            self._context.procedural(lambda detail: subdivide(self, detail, parameters), box)
+            known = {"__bound": "bound", "__data": "data"}
+            named = {" ".join(k.split()[:-1] + [known.get(k.split()[-1], k.split()[-1])]) if k.split() else k: v
+                     for k, v in parameters.items()}
+            return self._context.call("Procedural2", (str(subdivide), str(bound)), named)
+        plain = {k.split()[-1]: v for k, v in parameters.items() if k.split()}
+        box = bound(parameters) if callable(bound) else plain.get("__bound", plain.get("bound"))
+        self._context.procedural(lambda detail: subdivide(self, detail, parameters), [-1e30, 1e30] * 3 if box is None else box)
 
     def __getattr__(self, name: str) -> Any:
         raise AttributeError(f"there is no request and no constant {name}" + near(name, list(REQUESTS) + list(TOKENS)))

@@ -32,7 +32,7 @@ void MemoryWatcher::finished(std::unique_ptr<render::Film> film) {
     imager_ = {};
 }
 
-void MemoryWatcher::keep(const std::function<display::Image(const render::OutputSpec&)>& pixels, const render::OutputPlan& own) {
+void MemoryWatcher::keep(const std::function<render::Image(const render::OutputSpec&)>& pixels, const render::OutputPlan& own) {
     for (size_t i = 0; i < plan_->pictures.size(); ++i) {
         const render::OutputSpec& s = plan_->pictures[i];
         if (s.deep) continue;

@@ -46,7 +46,7 @@ public:
     std::optional<Told> told();
 
 private:
-    void keep(const std::function<display::Image(const render::OutputSpec&)>& pixels, const render::OutputPlan& own);
+    void keep(const std::function<render::Image(const render::OutputSpec&)>& pixels, const render::OutputPlan& own);
     const bool writes_, keeps_;
     const render::OutputPlan* own_ = nullptr;
     std::optional<render::OutputPlan> plan_; ///< as `own_`, with the curves that are kept

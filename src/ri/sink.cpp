@@ -9,9 +9,9 @@
 namespace alpenglow::ri {
 namespace {
 
-class Text : public ByteSink {
+class TextSink : public ByteSink {
 public:
-    explicit Text(std::string& to) : to_(to) {}
+    explicit TextSink(std::string& to) : to_(to) {}
     bool write(std::string_view bytes) override {
         to_ += bytes;
         return true;
@@ -22,9 +22,9 @@ private:
     std::string& to_;
 };
 
-class Stream : public ByteSink {
+class StreamSink : public ByteSink {
 public:
-    explicit Stream(std::ostream& to) : to_(to) {}
+    explicit StreamSink(std::ostream& to) : to_(to) {}
     bool write(std::string_view bytes) override { return good(bool(to_.write(bytes.data(), std::streamsize(bytes.size())))); }
     bool flush() override { return good(bool(to_.flush())); }
 
@@ -129,8 +129,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<ByteSink> stringSink(std::string& to) { return std::make_unique<Text>(to); }
-std::unique_ptr<ByteSink> streamSink(std::ostream& to) { return std::make_unique<Stream>(to); }
+std::unique_ptr<ByteSink> stringSink(std::string& to) { return std::make_unique<TextSink>(to); }
+std::unique_ptr<ByteSink> streamSink(std::ostream& to) { return std::make_unique<StreamSink>(to); }
 std::unique_ptr<ByteSink> descriptorSink(int fd) { return std::make_unique<Descriptor>(fd, false); }
 
 std::unique_ptr<ByteSink> fileSink(const std::string& path, std::string* why) {

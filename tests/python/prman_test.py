@@ -63,8 +63,10 @@ class Rendering(InFolder):
         ri.End()
         pathlib.Path("scene.rib").write_text('Display "rib.exr" "openexr" "rgba"\n' + BALLS)
         self.assertEqual(run(PROGRAM, "render", "-q", "scene.rib")[0], 0)
-        self.assertEqual(pathlib.Path("python.exr").read_bytes(), pathlib.Path("rib.exr").read_bytes())
-        self.assertGreater(read_exr("rib.exr")["R"].max(), 0.1)
+        python, rib = read_exr("python.exr"), read_exr("rib.exr")
+        for channel in "RGBA":
+            numpy.testing.assert_array_equal(python[channel], rib[channel])
+        self.assertGreater(rib["R"].max(), 0.1)
 
     def test_and_of_the_rib_that_it_writes(self):
         direct = prman.Ri(keep_pictures=True)
@@ -211,10 +213,9 @@ class Writing(InFolder):
 
     def test_every_request_and_its_sample(self):
         """The table has correct arguments for each request: the method takes them, and the reader says nothing."""
-        words = {"true": True}
         for request in alpenglow.requests():
             name = request["name"]
-            if name in ("ArchiveRecord", "ErrorHandler", "Procedural", "ReadArchive"):
+            if name in ("ArchiveRecord", "ErrorHandler", "Procedural", "Procedural2", "ReadArchive"):
                 continue
             arguments, parameters = sample_of(request)
 
@@ -227,7 +228,6 @@ class Writing(InFolder):
             ri.End()
             self.assertEqual([str(m) for m in ri.messages], [], name)
             self.assertIn(name, pathlib.Path("made.rib").read_text(), name)
-        self.assertTrue(words)
 
     def test_a_file_that_cannot_be_written(self):
         ri = prman.Ri()
@@ -267,6 +267,7 @@ class Procedurals(InFolder):
         ri.Begin("__render")
         ri.Display("p", "null", "rgba")
         ri.Format(16, 16, 1)
+        ri.PixelFilter("box", 1, 1)
         ri.Projection("orthographic")
         ri.WorldBegin()
         ri.Surface("constant")
@@ -360,8 +361,10 @@ class Procedurals(InFolder):
             ri.Procedural(["a.rib"], [-1, 1, -1, 1, -1, 1], ri.ProcDelayedReadArchive, ri.ProcFree)
             ri.Procedural(["prog", "data"], [-1, 1, -1, 1, -1, 1], ri.ProcRunProgram)
 
-        self.assertEqual(lines_of(draw), ['Procedural "DelayedReadArchive" ["a.rib"] [-1 1 -1 1 -1 1]'] * 2 +
-                         ['Procedural "RunProgram" ["prog" "data"] [-1 1 -1 1 -1 1]'])
+        self.assertEqual(lines_of(draw), ['Procedural2 "DelayedReadArchive2" "SimpleBound" "string filename" ["a.rib"] '
+                                          '"float[6] bound" [-1 1 -1 1 -1 1]',
+                                          'Procedural "DelayedReadArchive" ["a.rib"] -1 1 -1 1 -1 1',
+                                          'Procedural "RunProgram" ["prog" "data"] -1 1 -1 1 -1 1'])
 
 
 class Archives(InFolder):

@@ -35,7 +35,7 @@ class Pictures(InFolder):
 
     def test_displays_of_the_scene_are_the_pictures(self):
         result = alpenglow.render('Display "a.exr" "openexr" "rgb"\nDisplay "+b.exr" "openexr" "z"\n' + WALL)
-        self.assertEqual([(p.name, p.variables) for p in result], [("a.exr", ["rgb"]), ("b.exr", ["z"])])
+        self.assertEqual([(p.name, p.variables) for p in result], [("a.exr", ["Ci"]), ("b.exr", ["z"])])
         self.assertEqual(os.listdir("."), [])
 
     def test_write_writes_them_with_the_same_numbers(self):

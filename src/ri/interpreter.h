@@ -53,6 +53,10 @@ public:
     /// Reads a whole stream at the outermost level and closes what it leaves open.
     void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
     void execute(const Call& call);
+    /// The end of a stream, or of a program's calls: closes what is open, with an error for each, and draws a world that is open.
+    void finish(const SourcePlace& end);
+    /// What is executed now is kept for an archive, or passed over by a condition.
+    bool holdsBack() const { return recording_ || (!conditions_.empty() && !conditions_.back().active); }
     /// By the user. What is not closed then is no error.
     bool interrupted() const { return settings.stop && *settings.stop; }
     bool stopped() const { return aborted() || interrupted(); }
@@ -123,7 +127,7 @@ public:
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                     const Call& call);
     /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the
-    /// graphics state saved before and restored after. name: of who makes it, for messages.
+    /// graphics state saved before and restored after. name: of the library, for messages; "" for a function of a program's own.
     void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound,
                    const Call& call);
     /// Numbers for lights and objects that libraries make: never the same twice.

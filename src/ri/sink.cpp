@@ -9,9 +9,9 @@
 namespace alpenglow::ri {
 namespace {
 
-class TextSink : public ByteSink {
+class Text : public ByteSink {
 public:
-    explicit TextSink(std::string& to) : to_(to) {}
+    explicit Text(std::string& to) : to_(to) {}
     bool write(std::string_view bytes) override {
         to_ += bytes;
         return true;
@@ -129,7 +129,7 @@ private:
 
 } // namespace
 
-std::unique_ptr<ByteSink> stringSink(std::string& to) { return std::make_unique<TextSink>(to); }
+std::unique_ptr<ByteSink> stringSink(std::string& to) { return std::make_unique<Text>(to); }
 std::unique_ptr<ByteSink> streamSink(std::ostream& to) { return std::make_unique<StreamSink>(to); }
 std::unique_ptr<ByteSink> descriptorSink(int fd) { return std::make_unique<Descriptor>(fd, false); }
 

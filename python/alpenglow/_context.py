@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import difflib
 import os
+import shlex
 import sys
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
@@ -15,7 +16,7 @@ _RENDER = ("__render", "alpenglow", "prman", "renderdl", "aqsis", "rendrib", "re
 
 REQUESTS: Dict[str, Dict[str, Any]] = {r["name"]: r for r in _alpenglow.requests()}
 
-#: Flags of `alpenglow render` for contexts that begin from here on (prman.Init()).
+#: Flags of `alpenglow render` for contexts that begin from here on (prman.Init()), behind those of the environment.
 default_flags: List[str] = []
 
 
@@ -87,7 +88,8 @@ class Context:
             return self.fault(24, "Begin within Begin")
         self._rib_kept = dict(self._rib)
         if name is None or os.path.basename(str(name)) in _RENDER and not os.path.splitext(str(name))[1]:
-            flags = list(default_flags if self._flags is None else self._flags)
+            flags = shlex.split(os.environ.get("ALPENGLOW_OPTIONS", ""))
+            flags += default_flags if self._flags is None else self._flags
             self._session = _alpenglow.Session(flags, place()[0], self._keep, self._receiver, self._progress)
             self._replay()
         elif str(name).startswith("|"):

@@ -249,7 +249,8 @@ void Session::end(const std::string& file, int line) {
         return;
     }
     perform(true, [&] {
-        interpreter().readStream(ri::memorySource(""), script_); // closes what is open
+        interpreter().finish({file, line, 0}); // closes what is open
+        interpreter().endPrograms();
         rendering_->renderer->settle();
         rendering_->renderer->finish();
         rendering_->renderer->writeStats();

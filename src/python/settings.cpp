@@ -1,10 +1,12 @@
 #include "python/settings.h"
+#include "base/installation.h"
 #include "cli/command.h"
 #include "cli/oldflags.h"
 #include "cli/version.h"
 #include "python/python.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <dlfcn.h>
 
 namespace alpenglow::python {
 namespace {
@@ -17,6 +19,11 @@ constexpr std::pair<const char*, const char*> kRefused[] = {
     {"--frames-at-once", "processes are yours: multiprocessing"},
     {"--pixel", "take it from the picture"},
 };
+
+/// Python keeps the names of a module to itself. Libraries of procedurals (DynamicLoad) are to find the C binding in it.
+void showBinding() {
+    if (void* self = dlopen(codeFile().c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL)) dlclose(self);
+}
 
 std::string unknownFlag(const CLI::App& app) {
     std::vector<std::string> names;
@@ -54,6 +61,8 @@ cli::RenderArguments renderArguments(std::vector<std::string> flags) {
     } catch (const CLI::Error& e) { throw Error(e.what()); }
     if (!a.tev.empty()) throw Error("--display tev is not for use in Python");
     a.scenes.clear();
+    if (a.memory.empty()) a.settings.memoryLimit = 0; // the process is not ours
+    if (a.settings.allowExec) showBinding();
     a.settings.progress = render::ProgressMode::None;
     return a;
 }

@@ -25,8 +25,7 @@ void MemoryWatcher::progress(const render::ProgressState& s, const std::string& 
 }
 
 void MemoryWatcher::finished(std::unique_ptr<render::Film> film) {
-    if (film && plan_)
-        keep([&](const render::OutputSpec& s) { return render::filmImage(*film, *plan_, s.depth); }, *plan_);
+    if (film && plan_) keep([&](const render::OutputSpec& s) { return render::filmImage(*film, *plan_, s.depth); }, *plan_);
     own_ = nullptr;
     plan_.reset();
     imager_ = {};

@@ -103,7 +103,8 @@ py::dict renderScenes(std::vector<std::string> flags, const py::list& given, boo
 } // namespace
 
 void addRendering(py::module_& m) {
-    m.def("render", &renderScenes, py::arg("flags"), py::arg("scenes"), py::arg("write"), py::arg("message"), py::arg("progress"));
+    m.def("render", &renderScenes, py::arg("flags"), py::arg("scenes"), py::arg("write"), py::arg("message"),
+          py::arg("progress"));
 }
 
 } // namespace alpenglow::python

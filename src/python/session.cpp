@@ -36,7 +36,8 @@ public:
     explicit Use(Session& s) : session_(s) {
         const auto me = std::this_thread::get_id();
         if (s.away_) throw Error("a request came while this context renders; it waits for that to end");
-        if (s.depth_ > 0 && s.user_ != me) throw Error("another thread makes requests in this context; each needs one of its own");
+        if (s.depth_ > 0 && s.user_ != me)
+            throw Error("another thread makes requests in this context; each needs one of its own");
         s.user_ = me;
         ++s.depth_;
     }
@@ -67,7 +68,8 @@ Session::Session(std::vector<std::string> flags, const std::string& script, bool
     deliver();
 }
 
-Session::Session(const std::string& file, ri::RibFormat format, py::object message) : message_(std::move(message)), progress_(py::none()), script_(file) {
+Session::Session(const std::string& file, ri::RibFormat format, py::object message)
+    : message_(std::move(message)), progress_(py::none()), script_(file) {
     std::string why;
     auto sink = file == "-" ? ri::descriptorSink(1) : ri::fileSink(file, &why);
     if (!sink) throw Error(fmt::format("{} cannot be written: {}", file, why));
@@ -89,7 +91,8 @@ void Session::deliver() {
     if (!rendering_) return;
     const auto told = rendering_->watcher.told();
     if (!told || progress_.is_none()) return;
-    if (const py::object answer = progress_(progressDict(*told)); py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) stop_ = 1;
+    if (const py::object answer = progress_(progressDict(*told)); py::isinstance<py::bool_>(answer) && !answer.cast<bool>())
+        stop_ = 1;
 }
 
 void Session::perform(bool isLong, const std::function<void()>& work) {

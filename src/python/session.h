@@ -13,8 +13,8 @@ namespace alpenglow::python {
 /// From RiBegin to RiEnd. One thread at a time; requests of another one, or while a frame is rendered, are an Error.
 class Session {
 public:
-    /// Renders. flags: of `alpenglow render`. script: the file that calls; archives, shaders and maps are looked for beside it, too.
-    /// keep: pictures are kept for pictures(). progress: called with progressDict(), or None.
+    /// Renders. flags: of `alpenglow render`. script: the file that calls; archives, shaders and maps are looked for beside it,
+    /// too. keep: pictures are kept for pictures(). progress: called with progressDict(), or None.
     Session(std::vector<std::string> flags, const std::string& script, bool keep, py::object message, py::object progress);
     /// Writes RIB to a file, or to standard output ("-").
     Session(const std::string& file, ri::RibFormat, py::object message);
@@ -24,7 +24,8 @@ public:
 
     /// One request. arguments: those of its RIB form in order; parameters: a dictionary, or None. Faults are reported as the
     /// reader reports them, at file:line. Renders when it is a WorldEnd.
-    void call(const std::string& request, const py::args& arguments, const py::object& parameters, const std::string& file, int line);
+    void call(const std::string& request, const py::args& arguments, const py::object& parameters, const std::string& file,
+              int line);
     /// Procedural by a function of Python, at once: make(detail), with the graphics state saved before and restored after.
     void procedural(const py::object& make, const py::object& bound, const std::string& file, int line);
     /// ReadArchive, whose comments go to heard(kind, text).

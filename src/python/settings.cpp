@@ -56,9 +56,9 @@ cli::RenderArguments renderArguments(std::vector<std::string> flags) {
     try {
         app.parse(flags);
         cli::checkRenderArguments(a, app);
-    } catch (const CLI::ExtrasError&) {
-        throw Error(unknownFlag(app));
-    } catch (const CLI::Error& e) { throw Error(e.what()); }
+    } catch (const CLI::ExtrasError&) { throw Error(unknownFlag(app)); } catch (const CLI::Error& e) {
+        throw Error(e.what());
+    }
     if (!a.tev.empty()) throw Error("--display tev is not for use in Python");
     a.scenes.clear();
     if (a.memory.empty()) a.settings.memoryLimit = 0; // the process is not ours

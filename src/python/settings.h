@@ -6,8 +6,8 @@
 
 namespace alpenglow::python {
 
-/// The arguments of a command line without its scenes, flags of other renderers too. Throws Error with what is wrong; options that
-/// would take hold of the whole process (--watch, --cwd, --preview, --frames-at-once ...) are.
+/// The arguments of a command line without its scenes, flags of other renderers too. Throws Error with what is wrong; options
+/// that would take hold of the whole process (--watch, --cwd, --preview, --frames-at-once ...) are.
 cli::RenderArguments renderArguments(std::vector<std::string> flags);
 /// For a reader; defers: procedurals may wait until rays come to them.
 ri::ReaderOptions readerOptions(const cli::RenderArguments&, bool defers);

@@ -32,12 +32,29 @@ struct Standard {
     float value[3], du[3], dv[3];
 };
 constexpr Standard kStandard[] = {
-    {"u", {0.5f}, {1}, {0}},       {"v", {0.5f}, {0}, {1}},    {"s", {0.5f}, {1}, {0}},      {"t", {0.5f}, {0}, {1}},
-    {"du", {1}, {}, {}},           {"dv", {1}, {}, {}},        {"time", {0}, {}, {}},        {"dtime", {0}, {}, {}},
-    {"ncomps", {3}, {}, {}},       {"alpha", {1}, {}, {}},     {"P", {}, {1}, {0, 1}},       {"dPdu", {1}, {}, {}},
-    {"dPdv", {0, 1}, {}, {}},      {"dPdtime", {}, {}, {}},    {"N", {0, 0, 1}, {}, {}},     {"Ng", {0, 0, 1}, {}, {}},
-    {rsl::kSideNormal, {0, 0, 1}}, {"I", {0, 0, 0}, {1}, {0, 1}}, {"E", {0.5f, 0.5f, 1}, {}, {}}, {"Cs", {1, 1, 1}, {}, {}},
-    {"Os", {1, 1, 1}, {}, {}},     {"Ci", {}, {}, {}},         {"Oi", {1, 1, 1}, {}, {}},
+    {"u", {0.5f}, {1}, {0}},
+    {"v", {0.5f}, {0}, {1}},
+    {"s", {0.5f}, {1}, {0}},
+    {"t", {0.5f}, {0}, {1}},
+    {"du", {1}, {}, {}},
+    {"dv", {1}, {}, {}},
+    {"time", {0}, {}, {}},
+    {"dtime", {0}, {}, {}},
+    {"ncomps", {3}, {}, {}},
+    {"alpha", {1}, {}, {}},
+    {"P", {}, {1}, {0, 1}},
+    {"dPdu", {1}, {}, {}},
+    {"dPdv", {0, 1}, {}, {}},
+    {"dPdtime", {}, {}, {}},
+    {"N", {0, 0, 1}, {}, {}},
+    {"Ng", {0, 0, 1}, {}, {}},
+    {rsl::kSideNormal, {0, 0, 1}},
+    {"I", {0, 0, 0}, {1}, {0, 1}},
+    {"E", {0.5f, 0.5f, 1}, {}, {}},
+    {"Cs", {1, 1, 1}, {}, {}},
+    {"Os", {1, 1, 1}, {}, {}},
+    {"Ci", {}, {}, {}},
+    {"Oi", {1, 1, 1}, {}, {}},
 };
 
 const Standard* standardOf(const std::string& name) {
@@ -246,7 +263,8 @@ std::optional<std::vector<rsl::ParameterValue>> constants(const rsl::CompiledSha
         if (!v) return {};
         const size_t want = v->numbers.size();
         if (v->type.base == rsl::Base::String || (size_t(rows.width) != want && !(rows.width == 1 && want == 3)))
-            return refuse(d, shader, fmt::format("parameter \"{}\" takes {} numbers, not {}", name, want, rows.width)), std::nullopt;
+            return refuse(d, shader, fmt::format("parameter \"{}\" takes {} numbers, not {}", name, want, rows.width)),
+                   std::nullopt;
         if (rows.each) {
             varying.push_back(name);
             continue;
@@ -263,7 +281,8 @@ std::optional<std::vector<rsl::ParameterValue>> constants(const rsl::CompiledSha
 std::vector<ShadeOutput> shadeArrays(rsl::ShaderCompiler& compiler, std::shared_ptr<const rsl::CompiledShader> shader,
                                      const ShadeRequest& r, Diagnostics& d) {
     for (const auto& [name, rows] : r.variables)
-        if (!standardOf(name)) return refuse(d, *shader, "there is no predefined variable \"" + name + "\""), std::vector<ShadeOutput>{};
+        if (!standardOf(name))
+            return refuse(d, *shader, "there is no predefined variable \"" + name + "\""), std::vector<ShadeOutput>{};
     auto values = compiler.parameterValues(shader, d);
     rsl::KernelOptions options;
     options.lanes = r.lanes;
@@ -283,7 +302,8 @@ std::vector<ShadeOutput> shadeArrays(rsl::ShaderCompiler& compiler, std::shared_
         d.report(Severity::Error, Rie::IllState, {shader->path()}, "it waits for rays, and there is no scene here");
         return {};
     }
-    if (kernel->outputs().empty()) return refuse(d, *shader, "it writes nothing that could be given back"), std::vector<ShadeOutput>{};
+    if (kernel->outputs().empty())
+        return refuse(d, *shader, "it writes nothing that could be given back"), std::vector<ShadeOutput>{};
     return Job(*kernel, values, r, d).run();
 }
 

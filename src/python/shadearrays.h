@@ -17,11 +17,11 @@ struct PointRows {
 
 struct ShadeRequest {
     size_t points = 0;
-    std::map<std::string, PointRows> variables;        ///< predefined ones: "P", "N", "u", "dPdu" ...
-    std::map<std::string, PointRows> parameters;       ///< of the shader, numbers
-    std::map<std::string, std::string> strings;        ///< parameters that are strings
-    std::vector<std::string> outputs;                  ///< empty: what the kind of shader gives
-    std::vector<std::string> searchPaths;              ///< for maps
+    std::map<std::string, PointRows> variables;  ///< predefined ones: "P", "N", "u", "dPdu" ...
+    std::map<std::string, PointRows> parameters; ///< of the shader, numbers
+    std::map<std::string, std::string> strings;  ///< parameters that are strings
+    std::vector<std::string> outputs;            ///< empty: what the kind of shader gives
+    std::vector<std::string> searchPaths;        ///< for maps
     int lanes = 16;
     bool allowExec = false;
 };

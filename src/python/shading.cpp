@@ -23,7 +23,8 @@ std::vector<std::string> shaderFolders(const std::vector<std::string>& own) {
     return paths;
 }
 
-rsl::ShaderCompiler::Settings compilerSettings(const std::string& dialect, bool allowExec, const std::vector<std::string>& paths) {
+rsl::ShaderCompiler::Settings compilerSettings(const std::string& dialect, bool allowExec,
+                                               const std::vector<std::string>& paths) {
     rsl::ShaderCompiler::Settings s;
     s.allowExec = allowExec;
     s.dialect = dialect;
@@ -31,8 +32,8 @@ rsl::ShaderCompiler::Settings compilerSettings(const std::string& dialect, bool 
     return s;
 }
 
-py::dict evaluateOne(const std::string& expression, const std::string& setup, int lanes, const std::string& dialect, bool allowExec,
-                     const py::object& message) {
+py::dict evaluateOne(const std::string& expression, const std::string& setup, int lanes, const std::string& dialect,
+                     bool allowExec, const py::object& message) {
     Messages messages;
     rsl::Evaluation e;
     {
@@ -86,11 +87,11 @@ py::dict arraysOf(std::vector<ShadeOutput> outputs, size_t points) {
     return d;
 }
 
-py::dict shade(const std::string& name, const std::string& text, const std::string& kind, size_t points, const py::dict& variables,
-               const py::dict& parameters, std::map<std::string, std::string> strings, std::vector<std::string> outputs,
-               const std::vector<std::string>& searchPaths, int lanes, const std::string& dialect, bool allowExec,
-               const py::object& message) {
-    ShadeRequest r{points, rowsByName(variables), rowsByName(parameters), std::move(strings), std::move(outputs), {"."}, lanes,
+py::dict shade(const std::string& name, const std::string& text, const std::string& kind, size_t points,
+               const py::dict& variables, const py::dict& parameters, std::map<std::string, std::string> strings,
+               std::vector<std::string> outputs, const std::vector<std::string>& searchPaths, int lanes,
+               const std::string& dialect, bool allowExec, const py::object& message) {
+    ShadeRequest r{points,   rowsByName(variables), rowsByName(parameters), std::move(strings), std::move(outputs), {"."}, lanes,
                    allowExec};
     r.searchPaths.insert(r.searchPaths.end(), searchPaths.begin(), searchPaths.end());
     Messages messages;
@@ -99,15 +100,14 @@ py::dict shade(const std::string& name, const std::string& text, const std::stri
         const py::gil_scoped_release released;
         const std::vector<std::string> paths = shaderFolders(searchPaths);
         rsl::ShaderCompiler compiler(compilerSettings(dialect, allowExec, paths));
-        auto shader = text.empty() ? compiler.load(name, paths, messages.diagnostics)
-                                   : compiler.loadText(text, name, messages.diagnostics);
+        auto shader =
+            text.empty() ? compiler.load(name, paths, messages.diagnostics) : compiler.loadText(text, name, messages.diagnostics);
         if (shader && !kind.empty()) {
             std::shared_ptr<const rsl::CompiledShader> wanted;
             for (const auto& s : shader->program().shaders)
                 if (s->name == shader->name() && kind == rsl::toString(s->kind))
                     wanted = rsl::ShaderCompiler::variant(shader, s->kind);
-            if (!wanted)
-                messages.diagnostics.report(Severity::Error, Rie::BadToken, {name}, "it is no " + kind + " shader");
+            if (!wanted) messages.diagnostics.report(Severity::Error, Rie::BadToken, {name}, "it is no " + kind + " shader");
             shader = wanted;
         }
         if (shader) made = shadeArrays(compiler, shader, r, messages.diagnostics);

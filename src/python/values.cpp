@@ -86,7 +86,8 @@ void flatten(const py::handle& h, const std::string& what, ri::Value& to, int de
             PyErr_Clear();
             wrongType(h, what);
         }
-        while (const auto item = py::reinterpret_steal<py::object>(PyIter_Next(iterator.ptr()))) flatten(item, what, to, depth + 1);
+        while (const auto item = py::reinterpret_steal<py::object>(PyIter_Next(iterator.ptr())))
+            flatten(item, what, to, depth + 1);
         if (PyErr_Occurred()) throw py::error_already_set();
     } else wrongType(h, what);
     if (!to.numbers.empty() && !to.strings.empty()) throw Error(what + ": a list has numbers or strings, not both");

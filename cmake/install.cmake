@@ -22,7 +22,7 @@ if(TARGET _alpenglow)
   set(python_place ${CMAKE_INSTALL_LIBDIR}/alpenglow/python)
   install(TARGETS _alpenglow LIBRARY DESTINATION ${python_place}/alpenglow)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/python/ DESTINATION ${python_place} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi"
-    PATTERN py.typed PATTERN make_stubs.py EXCLUDE PATTERN __pycache__ EXCLUDE)
+    PATTERN py.typed PATTERN __pycache__ EXCLUDE)
 endif()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/shaders)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/editors/vscode DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/editors)

@@ -191,6 +191,8 @@ class Ri:
         __bound" with Ri.SimpleBound, or what bound(parameters) gives."""
         parameters: Dict[str, Any] = {}
         for m in more:
+            if not isinstance(m, dict):
+                raise Error("Procedural2: takes a function, a bound and parameters")
             parameters.update(m)
         parameters.update(keywords)
         if isinstance(subdivide, str):

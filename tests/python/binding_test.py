@@ -1,7 +1,6 @@
 """The same scene by the C binding (libalpenglow.so, by ctypes), by Python and as RIB, in one process: the same bits."""
 import ctypes
 import os
-import pathlib
 import unittest
 
 import numpy
@@ -54,11 +53,8 @@ class Binding(InFolder):
         c.RiEnd()
 
     def test_all_three_agree(self):
-        # C has floats where RIB has doubles: every number of the scene goes through one
-        rounded = BALLS
-        for number in ("0.3", "0.1", "0.6", "0.7", "0.2"):
-            rounded = rounded.replace(number, repr(float(numpy.float32(number))))
-        rib = alpenglow.render(rounded).image
+        rib = alpenglow.render(BALLS).image
+        self.assertGreater(rib[:, :, :3].max(), 0.1)
         self.draw(ctypes.CDLL(LIBRARY))
         c = read_exr("c.exr")
         numpy.testing.assert_array_equal(numpy.stack([c[k] for k in "RGBA"], 2), rib)
@@ -67,9 +63,7 @@ class Binding(InFolder):
         ri.Display("x", "null", "rgba")
         draw_balls(ri)
         ri.End()
-        numpy.testing.assert_array_equal(ri.pictures[0].data, alpenglow.render(BALLS).image)
-        numpy.testing.assert_allclose(ri.pictures[0].data, rib, atol=2e-3)
-        self.assertTrue(pathlib.Path("c.exr").exists())
+        numpy.testing.assert_array_equal(ri.pictures[0].data, rib)
 
 
 if __name__ == "__main__":

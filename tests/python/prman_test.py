@@ -51,7 +51,7 @@ def rib_of(draw, **options):
 
 
 def lines_of(draw):
-    return [l.strip() for l in rib_of(draw).decode().splitlines() if l and not l.startswith("##")]
+    return [l.strip() for l in rib_of(draw, **{"string asciistyle": "wide"}).decode().splitlines() if l and not l.startswith("##")]
 
 
 class Rendering(InFolder):
@@ -516,7 +516,7 @@ class Order(InFolder):
             ri.Display("x", "null", "rgb")
             for _ in range(400):
                 name = dice.choice(names)
-                if name in ("Display", "System", "ReadArchive"):
+                if name in ("Display", "System", "ReadArchive", "ErrorHandler"):
                     continue
                 try:
                     getattr(ri, name)(*[dice.choice(things) for _ in range(dice.randrange(5))])

@@ -3,6 +3,7 @@ import gzip
 import os
 import pathlib
 import random
+import signal
 import subprocess
 import sys
 import threading
@@ -523,6 +524,47 @@ class Order(InFolder):
                 except (alpenglow.Error, TypeError, OverflowError, AttributeError):
                     pass
             ri.End()
+
+
+class Foreign(InFolder):
+    def test_a_library_of_procedurals(self):
+        library = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "procedurals", "facets.so")
+        if not os.path.exists(library):
+            self.skipTest("the libraries of the tests are not built")
+
+        def draw(ri):
+            ri.ErrorHandler(ri.ERRORIGNORE)
+            ri.Begin("__render")
+            ri.Display("x", "null", "rgba")
+            ri.Format(16, 16, 1)
+            ri.Projection("orthographic")
+            ri.Translate(0, 0, 3)
+            ri.WorldBegin()
+            ri.Surface("constant")
+            ri.Procedural([library, "halves 0.5"], [-1, 1, -1, 1, -1, 1], ri.ProcDynamicLoad)
+            ri.WorldEnd()
+            ri.End()
+
+        asked = prman.Ri(keep_pictures=True)
+        draw(asked)
+        self.assertTrue(any("--allow-exec" in m.message for m in asked.messages))
+        self.assertEqual(asked.pictures[0].data.max(), 0)
+        allowed = prman.Ri(keep_pictures=True, flags=["--allow-exec"])
+        draw(allowed)
+        self.assertEqual([str(m) for m in allowed.messages], [])
+        self.assertGreater(allowed.pictures[0].data.max(), 0)
+
+    def test_control_c_while_a_world_is_drawn(self):
+        timer = threading.Timer(1, lambda: os.kill(os.getpid(), signal.SIGINT))
+        ri = prman.Ri(flags=["--spp", "10000000"])
+        ri.ErrorHandler(ri.ERRORIGNORE)
+        ri.Begin("__render")
+        ri.Display("x", "null", "rgb")
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            draw_balls(ri)
+        ri.End()
+        self.assertEqual(ri.stats["width"], 48)
 
 
 class Course(InFolder):

@@ -17,6 +17,13 @@ add_custom_target(installable ALL DEPENDS ${help_folder}/help-files alpenglow ${
 
 install(TARGETS alpenglow RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS ${installed_targets} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/alpenglow)
+if(TARGET _alpenglow)
+  add_dependencies(installable _alpenglow)
+  set(python_place ${CMAKE_INSTALL_LIBDIR}/alpenglow/python)
+  install(TARGETS _alpenglow LIBRARY DESTINATION ${python_place}/alpenglow)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/python/ DESTINATION ${python_place} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi"
+    PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+endif()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/shaders)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/editors/vscode DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/editors)
 install(DIRECTORY ${help_folder}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR})

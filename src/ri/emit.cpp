@@ -141,6 +141,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
 }
 
 void Interpreter::store(std::shared_ptr<scene::Primitive> p) {
+    if (settings.executed) return;
     if (scene::Object* o = openObject()) {
         o->primitives.push_back(std::move(p));
         return;
@@ -217,6 +218,7 @@ void Interpreter::instance(const Call& call) {
 }
 
 void Interpreter::place(const StoredObject& object, const SourcePlace& where) {
+    if (settings.executed) return;
     auto [slot, fresh] = objectIndex_.try_emplace(object.serial, int(frame_->objects.size()));
     if (fresh) frame_->objects.push_back(forThisWorld(object));
     scene::Instance n;

@@ -54,6 +54,10 @@ public:
     /// Reads a whole stream at the outermost level and closes what it leaves open.
     void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
     void execute(const Call& call);
+    /// The end of a stream, or of a program's calls: closes what is open, with an error for each, and draws a world that is open.
+    void finish(const SourcePlace& end);
+    /// What is executed now is kept for an archive, or passed over by a condition.
+    bool holdsBack() const { return recording_ || (!conditions_.empty() && !conditions_.back().active); }
     /// By the user. What is not closed then is no error.
     bool interrupted() const { return settings.stop && *settings.stop; }
     bool stopped() const { return aborted() || interrupted(); }
@@ -134,7 +138,7 @@ public:
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                     const Call& call);
     /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the
-    /// graphics state saved before and restored after. name: of who makes it, for messages.
+    /// graphics state saved before and restored after. name: of the library, for messages; "" for a function of a program's own.
     void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound,
                    const Call& call);
     /// Numbers for lights and objects that libraries make: never the same twice.
@@ -274,7 +278,16 @@ private:
     /// name says that it is of this kind, others are read from the scene's own folders only.
     std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
     void run(class Parser& parser);
+    /// What execute() does, once it is to be done.
+    void perform(const Call& call);
     void dispatch(const Call& call);
+    // executed.cpp: ReaderOptions::executed
+    /// Performs a request and passes it on, or what is in it.
+    void tell(const Call& call);
+    void tellProcedural(const Call& call, const std::string& kind);
+    void tellName(std::string_view request, const SourcePlace& place);
+    /// Options of an archive in the world, held back until it is known that it has no world of its own.
+    void tellHeld();
     bool conditional(const Call& call);
     bool record(const Call& call);
     void checkScope(const Call& call);
@@ -354,8 +367,10 @@ private:
     int partsWithin_ = 0;                                 ///< procedurals in it that wait
     bool making_ = false;                                 ///< what is in procedurals that waited is being made
     bool replaying_ = false;                              ///< inside an archive that was read before
-    Lasting base_;                                        ///< what a scene begins with
-    size_t baseWorld_ = 0;                                ///< worldSerial_ at that time
+    bool telling_ = false;   ///< a request that was passed on is executed: what it makes of itself is not
+    std::vector<Call> held_; ///< tellHeld()
+    Lasting base_;           ///< what a scene begins with
+    size_t baseWorld_ = 0;   ///< worldSerial_ at that time
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

@@ -32,6 +32,7 @@ void Interpreter::nextScene() {
     shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
     ris_ = false;
+    headlight_ = true;
     integratorSurface_ = nullptr;
 }
 

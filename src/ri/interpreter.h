@@ -117,6 +117,8 @@ public:
     void isRis() { ris_ = true; }
     /// The shader that an Integrator sees instead of all surfaces; null: none.
     void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
+    /// Whether the integrator lights a scene without lights from the eye.
+    void headlight(bool on) { headlight_ = on; }
 
     void light(const Call& call, bool area);
     void illuminate(const Call& call);
@@ -242,6 +244,7 @@ private:
     // ris.cpp
     std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
     void overrideAttributes(scene::Frame&) const;
+    void addHeadlight(scene::Frame&);
     void risOptions(scene::Options&) const;
     // unlit.cpp
     void noteEnded(const Block&);
@@ -336,6 +339,7 @@ private:
     std::set<int> ended_;                                 ///< lights of this world that an AttributeEnd has ended
     std::set<int> globalLights_;                          ///< lights of this world that are on everywhere
     scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
+    bool headlight_ = true;                               ///< no integrator, or PxrDefault: what has no light is lit from the eye
     bool ris_ = false;                                    ///< the scene has requests of RIS
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;

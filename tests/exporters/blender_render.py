@@ -23,7 +23,7 @@ def settings(s, samples, out, name):
     r.image_settings.file_format, r.image_settings.color_depth = "OPEN_EXR", "32"
     c = s.cycles
     c.samples, c.use_adaptive_sampling, c.use_denoising, c.device = samples, False, False, "CPU"
-    c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = c.transparent_max_bounces = 32
+    c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = c.transparent_max_bounces = c.volume_bounces = 32
     c.blur_glossy = c.sample_clamp_indirect = c.sample_clamp_direct = c.light_sampling_threshold = 0.0
     c.pixel_filter_type = "BOX"
     own = s.alpenglow

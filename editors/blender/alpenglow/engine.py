@@ -40,10 +40,12 @@ def border_of(render):
     return render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y
 
 
-def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None):
-    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture."""
+def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None,
+           view=None):
+    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture. view: as view_camera()
+    gives it, in place of the scene's camera."""
     lights = "samplelights" if program.knows(binary_of_program, "trace", "samplelights") else "samplearealights"
-    writer = scene.Scene(depsgraph, folder, settings, lights, frame_set, progress)
+    writer = scene.Scene(depsgraph, folder, settings, lights, frame_set, progress, view)
     if lights != "samplelights":
         writer.report.lost("Highlights of lights without a size: this version of the program does not find them in trace()")
     writer.read()
@@ -71,8 +73,7 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
         rib.request("Option", "trace", {"int maxdepth": settings.max_depth})
         for line in filter(None, [settings.requests.strip()]):
             rib.file.write((line + "\n").encode())
-    report = writer.write(os.path.join(folder, "scene.rib"), head)
-    return report
+    return writer.write(os.path.join(folder, "scene.rib"), head)
 
 
 def arguments(binary, settings, frame, samples=None, crop=None):

@@ -13,7 +13,7 @@ set(help_folder ${CMAKE_BINARY_DIR}/share)
 add_custom_command(OUTPUT ${help_folder}/help-files DEPENDS alpenglow ${CMAKE_SOURCE_DIR}/cmake/helpfiles.cmake
   COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alpenglow> -DOUT=${help_folder} -P ${CMAKE_SOURCE_DIR}/cmake/helpfiles.cmake
   COMMENT "Manual pages and completions" VERBATIM)
-add_custom_target(installable ALL DEPENDS ${help_folder}/help-files alpenglow ${installed_targets})
+add_custom_target(installable ALL DEPENDS ${help_folder}/help-files alpenglow blender_addon ${installed_targets})
 
 install(TARGETS alpenglow RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS ${installed_targets} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/alpenglow)

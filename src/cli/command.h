@@ -50,6 +50,7 @@ void addPtc(CLI::App&, int* status);
 void addDiff(CLI::App&, int* status);
 void addMerge(CLI::App&, int* status);
 void addLsp(CLI::App&, int* status);
+void addFrom(CLI::App&, int* status);
 
 /// Prints diagnostics of at least this severity to standard error, taking a progress bar off the line first.
 Diagnostics::Handler printer(Severity least = Severity::Warning);

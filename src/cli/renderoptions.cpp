@@ -135,9 +135,12 @@ void takeScenes(RenderArguments& a) {
 void addScenes(CLI::App& c, RenderArguments& a) {
     c.add_option("scenes", a.scenes,
                  "RIB files, ASCII, binary or gzipped; - is standard input, which is also read where no file is named. A model "
-                 "(.ply, .obj) is shown whole under a sky. Each file starts from the default state; a file of options without "
+                 "(.ply, .obj, .glb and others: docs/models.md) is shown whole under a sky. Each file starts from the default "
+                 "state; a file of options without "
                  "a world holds for all that follow")
         ->type_name("FILE");
+    c.add_option("--time", a.modelTime, "Seconds of its animation at which a model (.glb, .fbx, ...) is shown")
+        ->type_name("SECONDS");
 }
 
 void addPictures(CLI::App& c, RenderArguments& a) {

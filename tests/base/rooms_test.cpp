@@ -30,6 +30,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"photons", {"base"}},
     {"ptex", {"base"}},
     {"clouds", {"base"}},
+    {"models", {"base"}},
     {"world",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "lanes", "clouds", "photons",
       "ptex"}},
@@ -42,8 +43,9 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"render",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "integrator",
       "display"}},
-    {"cli", {"base",   "scene",   "geometry", "accel", "rsl",     "shadeops",   "texture", "shading", "lobes", "lanes",
-             "clouds", "photons", "ptex",     "world", "answers", "integrator", "display", "render",  "ri",    "view"}},
+    {"cli",
+     {"base",    "scene", "geometry", "accel",   "rsl",        "shadeops", "texture", "shading", "lobes", "lanes", "clouds",
+      "photons", "ptex",  "world",    "answers", "integrator", "display",  "render",  "ri",      "view",  "models"}},
     {"view",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "integrator", "display",
       "render", "ri"}},
@@ -54,7 +56,7 @@ const std::map<std::string, std::set<std::string>> kForeign = {
     {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},  {"embree3", {}},        {"OpenImageIO", {"texture"}},
     {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
     {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},         {"boost", {"view"}},    {"xxhash.h", {"base"}},
-    {"Imath", {"base"}},
+    {"Imath", {"base"}},          {"assimp", {"models"}},   {"draco", {}},          {"tiny_gltf.h", {"models"}},
 };
 
 TEST(Rooms, IncludeTable) {

@@ -49,6 +49,7 @@ void addMaketx(CLI::App&, int* status);
 void addPtc(CLI::App&, int* status);
 void addDiff(CLI::App&, int* status);
 void addMerge(CLI::App&, int* status);
+void addRib(CLI::App&, int* status);
 void addLsp(CLI::App&, int* status);
 void addFrom(CLI::App&, int* status);
 

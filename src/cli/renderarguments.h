@@ -28,5 +28,8 @@ struct RenderArguments {
 void addRenderOptions(CLI::App&, RenderArguments&);
 /// To be called when the command line was read: checks what the parser cannot. Throws CLI::ValidationError.
 void checkRenderArguments(RenderArguments&, const CLI::App&);
+/// The same for a program without a command line that draws (libalpenglow): options as a shell would split this text, no scenes.
+/// What is wrong with them, or "".
+std::string readRenderOptions(const std::string& text, RenderArguments&);
 
 } // namespace alpenglow::cli

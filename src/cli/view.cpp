@@ -143,38 +143,36 @@ void addView(CLI::App& app, int* status) {
     c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj, .glb, ...)")
         ->type_name("FILE")
         ->required();
-    c->add_option("--port", a->port, "Port of 127.0.0.1; a free one when not given")
-        ->check(wholeBetween(1, 65535))
-        ->type_name("N");
-    c->add_flag("--open", a->open, "Open the page in the desktop's browser (xdg-open)");
-    c->add_flag("--watch", a->watch, "Read the scene again whenever a file changes that it uses; the camera stays");
+    c->add_option("--port", a->port, "Port on 127.0.0.1; default: a free port")->check(wholeBetween(1, 65535))->type_name("N");
+    c->add_flag("--open", a->open, "Open the page in the default browser (xdg-open)");
+    c->add_flag("--watch", a->watch, "Reload the scene when one of its files changes; keep the camera");
     CLI::Option* frame =
-        c->add_option("--frame", a->frame, "Number of the frame; the first with a picture when not given")->type_name("N");
+        c->add_option("--frame", a->frame, "Frame number; default: the first frame with a picture")->type_name("N");
     c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH");
     c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")
         ->check(between(1e-4, 1e4))
         ->type_name("F");
-    c->add_option("--hider", s.hider, "hidden, raytrace or path, instead of the scene's Hider")
+    c->add_option("--hider", s.hider, "Override the scene's Hider")
         ->check(CLI::IsMember({"hidden", "raytrace", "path"}))
         ->type_name("NAME");
-    c->add_option("--gamma", a->gamma, "Curve that the page begins with: a display gamma, or srgb")->type_name("G|srgb");
+    c->add_option("--gamma", a->gamma, "Initial transfer curve of the page: a display gamma, or srgb")->type_name("G|srgb");
     c->add_option("--seed", s.seed, "Seed of all random numbers")->type_name("N");
-    c->add_option("--threads", s.threads, "Threads; when not given as many processors as the process may use")
+    c->add_option("--threads", s.threads, "Number of threads; default: all processors available to the process")
         ->check(wholeBetween(1, 1024))
         ->type_name("N");
-    c->add_option("--memory-limit", a->memory, "Take no more memory than SIZE, for example 800M or 4G")->type_name("SIZE");
+    c->add_option("--memory-limit", a->memory, "Use no more memory than SIZE, for example 800M or 4G")->type_name("SIZE");
     addDialect(*c, s.dialect);
-    c->add_option("--cwd", a->folder, "Work in this folder; pictures are saved there")->type_name("DIR");
+    c->add_option("--cwd", a->folder, "Working folder; pictures are saved here")->type_name("DIR");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
-    c->add_option("--rib", a->rib, "Requests that are read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false);
-    c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins");
+    c->add_option("--rib", a->rib, "RIB requests to read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false);
+    c->add_flag("--allow-exec", s.allowExec, "Allow the scene to run programs and load plug-ins");
     c->add_flag("--allow-read", s.allowRead,
-                "Let the scene read maps and archives anywhere, not only below its folders and --searchpath");
-    c->add_flag("-q,--quiet", a->quiet, "Errors only");
-    c->add_flag("-v,--verbose", a->verbose, "Notes too");
-    c->footer("Prints the address of the page, with a token that nobody else knows, and serves it on 127.0.0.1 until Ctrl-C.");
+                "Allow the scene to read maps and archives anywhere, not only below its own folders and --searchpath");
+    c->add_flag("-q,--quiet", a->quiet, "Print errors only");
+    c->add_flag("-v,--verbose", a->verbose, "Print notes too");
+    c->footer("Prints the address of the page, which contains a secret token, and serves the page on 127.0.0.1 until Ctrl-C.");
     c->callback([a, frame, status] {
         a->framed = frame->count() > 0;
         checkLate(*a);

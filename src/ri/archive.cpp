@@ -277,6 +277,7 @@ void Interpreter::inPart(const std::string& key, const std::function<SourcePlace
     unwind(barriers_.back(), end, true);
     barriers_.pop_back();
     endInnerOptions();
+    tellHeld();
     openArchives_.pop_back();
     replaying_ = wasReplaying;
 }

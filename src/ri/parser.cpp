@@ -5,7 +5,16 @@
 namespace alpenglow::ri {
 
 Parser::Parser(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Lexer::Comments comments)
-    : lexer_(std::move(source), std::move(file), reporter, std::move(comments)), reporter_(reporter) {}
+    : comments_(std::move(comments)),
+      lexer_(std::move(source), std::move(file), reporter,
+             comments_ ? [this](const std::string& kind, const std::string& text) { held_.push_back({kind, text}); }
+                       : Lexer::Comments()),
+      reporter_(reporter) {}
+
+void Parser::passComments() {
+    for (const Comment& c : held_) comments_(c.kind, c.text);
+    held_.clear();
+}
 
 /// After '['. A missing ']' ends the array where something comes that cannot be in it (docs/design/ri.md).
 void Parser::array(Value& v) {
@@ -88,6 +97,7 @@ bool Parser::next(Call& call) {
     for (;;) {
         values.clear();
         if (!pending_) lexer_.next(token_);
+        passComments();
         pending_ = false;
         if (token_.kind == Token::Kind::End) {
             pending_ = true;
@@ -110,7 +120,9 @@ bool Parser::next(Call& call) {
             if (unknown_.size() >= size_t(limits::kUnknownNames) || unknown_.insert(shown).second) // each name once
                 reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'",
                                 near.empty() ? "" : "did you mean " + near + "?");
+            const std::string name = std::move(token_.text);
             collect(values);
+            if (unknown) unknown(name, values);
             continue;
         }
         // Without arguments it is done at once: a pipe's WorldEnd renders before the next request is written.

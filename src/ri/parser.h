@@ -14,11 +14,20 @@ public:
     bool next(Call& out);
     SourcePlace here() const { return lexer_.here(); }
     std::string lineText(const SourcePlace& p) const { return lexer_.lineText(p); }
+    /// Gets requests that are not in the table, as ReaderOptions::unknown.
+    std::function<void(const std::string& name, const std::vector<Value>& values)> unknown;
 
 private:
+    struct Comment {
+        std::string kind, text;
+    };
+    /// Those that were met behind the name of the last request.
+    void passComments();
     void collect(std::vector<Value>& out);
     void array(Value& out);
 
+    const Lexer::Comments comments_;
+    std::vector<Comment> held_; ///< comments that the next call of next() passes on
     Lexer lexer_;
     Reporter& reporter_;
     Token token_;

@@ -1,0 +1,13 @@
+// Strings that C passes by their addresses, as far as a program that passes something else can be survived.
+#pragma once
+#include <optional>
+#include <string>
+
+namespace alpenglow::ri {
+
+/// Programs pass "on" where the address of an RtString that is "on" is due. What stands at `value` is then no address: nothing
+/// can be read there. In that case the text at `value`; nothing where `value` holds an address that can be read, or cannot be
+/// read itself. Asks the system and touches neither.
+std::optional<std::string> textInsteadOfAddress(const void* value);
+
+} // namespace alpenglow::ri

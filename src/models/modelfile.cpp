@@ -25,7 +25,10 @@ std::string ending(const std::string& path) {
     return e;
 }
 
-bool isGltf(const std::string& e) { return e == ".gltf" || e == ".glb"; }
+const Module& moduleFor(const std::string& path) {
+    const std::string e = ending(path);
+    return e == ".gltf" || e == ".glb" ? kGltf : kOthers;
+}
 
 void refuse(Diagnostics& d, const std::string& path, const std::string& why, Rie code = Rie::BadFile) {
     d.report(Severity::Error, code, {path, 0, 0}, fmt::format("the model cannot be read: {}", why));
@@ -64,6 +67,11 @@ bool namedAsForeignModel(const std::string& path) {
     return std::find(all.begin(), all.end(), ending(path)) != all.end();
 }
 
+std::string moduleOf(const std::string& path) {
+    const Module& of = moduleFor(path);
+    return moduleFile(of.file, of.variable);
+}
+
 std::optional<Model> readForeignModel(const std::string& path, Diagnostics& d) {
     std::error_code e;
     const auto bytes = std::filesystem::file_size(path, e);
@@ -75,8 +83,8 @@ std::optional<Model> readForeignModel(const std::string& path, Diagnostics& d) {
         refuse(d, path, fmt::format("it is larger than {} GiB", limits::kModelBytes >> 30), Rie::Limit);
         return {};
     }
-    const Module& of = isGltf(ending(path)) ? kGltf : kOthers;
-    const std::string module = moduleFile(of.file, of.variable);
+    const Module& of = moduleFor(path);
+    const std::string module = moduleOf(path);
     if (module.empty()) {
         d.report(Severity::Error, Rie::Incapable, {path, 0, 0},
                  fmt::format("the module that reads such models, {}, is not there", of.file),

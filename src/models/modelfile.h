@@ -12,6 +12,9 @@ bool namedAsForeignModel(const std::string& path);
 /// The endings, with dots, for messages and documents.
 const std::vector<std::string>& foreignEndings();
 
+/// The file of the module that reads models of such a name (base/installation.h); "" when it is not there.
+std::string moduleOf(const std::string& path);
+
 /// The file, checked (check.h). Its notes are reported. Nothing: an error was reported, which says so when it is the module that
 /// is missing.
 std::optional<Model> readForeignModel(const std::string& path, Diagnostics&);

@@ -71,7 +71,8 @@ const double kPi = 3.14159265358979;
 
 TEST_F(ForeignModels, EmissionIsRadiance) {
     const auto c = draw(seen(R"({"emissiveFactor":[1,0.5,0.25],"extensions":{"KHR_materials_specular":{"specularFactor":0},
-        "KHR_materials_emissive_strength":{"emissiveStrength":2}},"pbrMetallicRoughness":{"baseColorFactor":[0,0,0,1],"metallicFactor":0}})"));
+        "KHR_materials_emissive_strength":{"emissiveStrength":2}},
+        "pbrMetallicRoughness":{"baseColorFactor":[0,0,0,1],"metallicFactor":0}})"));
     EXPECT_NEAR(c[0], 2, 1e-3);
     EXPECT_NEAR(c[1], 1, 1e-3);
     EXPECT_NEAR(c[2], .5, 1e-3);

@@ -48,15 +48,20 @@ const char* const kCollada =
 <asset><up_axis>Y_UP</up_axis></asset>
 <library_cameras><camera id="c"><optics><technique_common><perspective><xfov>90</xfov><aspect_ratio>2</aspect_ratio>
 <znear>0.1</znear><zfar>100</zfar></perspective></technique_common></optics></camera></library_cameras>
-<library_lights><light id="l"><technique_common><point><color>2 1 0</color><quadratic_attenuation>1</quadratic_attenuation></point>
+<library_lights><light id="l"><technique_common><point><color>2 1 0</color>
+<quadratic_attenuation>1</quadratic_attenuation></point>
 </technique_common></light></library_lights>
 <library_effects><effect id="e"><profile_COMMON><technique sid="t"><phong><diffuse><color>0.8 0.4 0.2 1</color></diffuse>
 <shininess><float>30</float></shininess></phong></technique></profile_COMMON></effect></library_effects>
 <library_materials><material id="m" name="paint"><instance_effect url="#e"/></material></library_materials>
-<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>
-<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="1" material="s"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_geometries><geometry id="g"><mesh><source id="p">
+<float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1" material="s"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>0 1 2</p></triangles></mesh></geometry></library_geometries>
 <library_visual_scenes><visual_scene id="vs">
 <node id="n" name="n"><translate>5 0 0</translate><instance_geometry url="#g"><bind_material><technique_common>
 <instance_material symbol="s" target="#m"/></technique_common></bind_material></instance_geometry></node>

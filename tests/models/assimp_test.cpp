@@ -94,8 +94,10 @@ TEST_F(Others, ReadsColladaWithCameraLightAndMaterial) {
     for (const int n : drawnNodes(*m)) {
         const Node& x = m->nodes[size_t(n)];
         const Vec3d at = transformPoint(pose.world[size_t(n)], Vec3d(0.0));
-        if (!x.meshes.empty()) ++meshes, EXPECT_NEAR(at.x, 5, 1e-6);
-        if (x.light != kNone) ++lights, EXPECT_NEAR(at.y, 3, 1e-6);
+        meshes += !x.meshes.empty();
+        lights += x.light != kNone;
+        EXPECT_TRUE(x.meshes.empty() || std::abs(at.x - 5) < 1e-6) << at.x;
+        EXPECT_TRUE(x.light == kNone || std::abs(at.y - 3) < 1e-6) << at.y;
         if (x.camera == kNone) continue;
         ++cameras;
         EXPECT_NEAR(at.z, 9, 1e-6);

@@ -20,7 +20,7 @@ std::string fault(const std::string& text) {
     return d.all().empty() ? "" : std::to_string(d.all()[0].place.line) + ": " + d.all()[0].message;
 }
 
-const char* const kStandard = R"(/* a comment with surface standard( in it */
+const char* const kStandard = R"sl(/* a comment with surface standard( in it */
 #include "layers.h"
 surface standard(varying float base = 1; varying color base_color = .8; varying float metalness = 0, specular_roughness = .2;
                  varying float emission = 0; varying color emission_color = 1; varying normal bump_normal = 0;
@@ -29,7 +29,7 @@ float map_scale[2] = {1, 1}, samples = 16;)
 {
     Ci = base * base_color; /* gone */
 }
-)";
+)sl";
 
 class Materialx : public ::testing::Test {
 protected:

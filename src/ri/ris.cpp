@@ -95,7 +95,7 @@ private:
 struct LightShape {
     std::string_view name, requests;
 };
-constexpr LightShape kShapes[] = {
+constexpr LightShape kGeometryShapes[] = {
     {"PxrRectLight", "Polygon \"P\" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0] \"st\" [0 0 1 0 1 1 0 1]"},
     {"PxrPortalLight", "Polygon \"P\" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0] \"st\" [0 0 1 0 1 1 0 1]"},
     {"PxrDiskLight", "Disk 0 .5 360"},
@@ -116,7 +116,8 @@ std::optional<std::string_view> lightGeometry(std::string_view name) {
                                                                                {"cylinderlight", "PxrCylinderLight"}};
     for (const auto& [geometry, light] : kNames)
         if (geometry == name)
-            return std::find_if(std::begin(kShapes), std::end(kShapes), [&](auto& s) { return s.name == light; })->requests;
+            return std::find_if(std::begin(kGeometryShapes), std::end(kGeometryShapes), [&](auto& s) { return s.name == light; })
+                ->requests;
     if (std::find(std::begin(kNoShapes), std::end(kNoShapes), name) != std::end(kNoShapes)) return "";
     return {};
 }
@@ -169,9 +170,10 @@ void Interpreter::risLight(const Call& call) {
         incapable(call, "connections of lights and light filters are not done by this version: they keep their own values");
     Call plain = call;
     std::erase_if(plain.params, [](const RawParam& p) { return !connectedName(p.token).empty(); });
-    const auto shape = std::find_if(std::begin(kShapes), std::end(kShapes), [&](const LightShape& s) { return s.name == name; });
+    const auto shape =
+        std::find_if(std::begin(kGeometryShapes), std::end(kGeometryShapes), [&](const LightShape& s) { return s.name == name; });
     const bool far = std::find(std::begin(kFar), std::end(kFar), name) != std::end(kFar);
-    if (shape == std::end(kShapes)) { // far away, or the primitives that follow
+    if (shape == std::end(kGeometryShapes)) { // far away, or the primitives that follow
         light(plain, !far);
         globalLights_.insert(int(lights().size()) - 1);
         return;

@@ -2,7 +2,7 @@
 # (cmake/layout.cmake), so P may be moved as a whole. Target `installable` builds what is installed.
 include(CMakePackageConfigHelpers)
 set(installed_targets alpenglow_jit)
-foreach(module alpenglow_pictures alpenglow_grids) # where their libraries were found
+foreach(module alpenglow_pictures alpenglow_grids alpenglow_gltf alpenglow_models) # where their libraries were found
   if(TARGET ${module})
     list(APPEND installed_targets ${module})
   endif()

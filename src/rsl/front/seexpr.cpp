@@ -17,13 +17,13 @@ struct Part {
 };
 
 /// How a function is called. Result: 'f' a number, 'v' three, 'a' as its widest argument. Arguments: so each, 'p' a place.
-struct Function {
+struct SeFunction {
     std::string_view name, rsl;
     char result;
     std::string_view arguments;
     std::string_view defaults; ///< of those that may be missing at the end, separated by commas
 };
-constexpr Function kFunctions[] = {
+constexpr SeFunction kFunctions[] = {
     {"noise", "se_noise", 'f', "p", ""},
     {"cnoise", "se_cnoise", 'v', "p", ""},
     {"snoise", "se_snoise", 'f', "p", ""},
@@ -331,7 +331,7 @@ private:
         if (n == "smoothstep" && a.size() == 3) // the number comes first
             return {"smoothstep(" + number(a[1]) + ", " + number(a[2]) + ", " + number(a[0]) + ")", false};
         if (n == "boxstep" && a.size() == 2) return {"step(" + number(a[1]) + ", " + number(a[0]) + ")", false};
-        for (const Function& f : kFunctions) {
+        for (const SeFunction& f : kFunctions) {
             if (f.name != n) continue;
             std::string_view rest = f.defaults;
             const size_t optional = rest.empty() ? 0 : size_t(std::count(rest.begin(), rest.end(), ',')) + 1;

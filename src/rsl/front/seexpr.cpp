@@ -7,7 +7,7 @@
 namespace alpenglow::rsl::front {
 namespace {
 
-constexpr int kDepth = 200;       // of brackets, conditions and signs
+constexpr int kSeDepth = 200;     // of brackets, conditions and signs
 constexpr size_t kText = 1 << 20; // of what comes out
 
 /// A part of an expression in RSL; `vec`: three numbers, a color there.
@@ -17,13 +17,13 @@ struct Part {
 };
 
 /// How a function is called. Result: 'f' a number, 'v' three, 'a' as its widest argument. Arguments: so each, 'p' a place.
-struct Function {
+struct SeFunction {
     std::string_view name, rsl;
     char result;
     std::string_view arguments;
     std::string_view defaults; ///< of those that may be missing at the end, separated by commas
 };
-constexpr Function kFunctions[] = {
+constexpr SeFunction kFunctions[] = {
     {"noise", "se_noise", 'f', "p", ""},
     {"cnoise", "se_cnoise", 'v', "p", ""},
     {"snoise", "se_snoise", 'f', "p", ""},
@@ -55,9 +55,9 @@ constexpr Function kFunctions[] = {
 constexpr std::string_view kOfOne[] = {"abs",  "floor", "ceil", "sqrt", "sin", "cos",  "tan",
                                        "asin", "acos",  "atan", "exp",  "log", "sign", "round"};
 
-class Translator {
+class SeTranslator {
 public:
-    Translator(const std::string& text, const std::vector<SeExprVariable>& given, SourcePlace place, Diagnostics& d)
+    SeTranslator(const std::string& text, const std::vector<SeExprVariable>& given, SourcePlace place, Diagnostics& d)
         : text_(text), given_(given), place_(std::move(place)), diagnostics_(d) {}
 
     std::optional<std::string> run() {
@@ -163,7 +163,7 @@ private:
     }
 
     std::string branch(int depth) {
-        if (depth > kDepth) return fail("it is nested too deeply"), "";
+        if (depth > kSeDepth) return fail("it is nested too deeply"), "";
         want("(");
         std::string out = "if (" + number(condition(depth)) + " != 0) {\n";
         want(")");
@@ -184,7 +184,7 @@ private:
     }
 
     Part condition(int depth) {
-        if (depth > kDepth) return fail("it is nested too deeply"), Part{"0"};
+        if (depth > kSeDepth) return fail("it is nested too deeply"), Part{"0"};
         Part c = binary(0, depth);
         if (failed_ || !take("?")) return c;
         const Part yes = condition(depth + 1);
@@ -225,7 +225,7 @@ private:
     }
 
     Part power(int depth) {
-        if (depth > kDepth) return fail("it is nested too deeply"), Part{"0"};
+        if (depth > kSeDepth) return fail("it is nested too deeply"), Part{"0"};
         if (take("-")) {
             const Part p = power(depth + 1);
             return bracketed("-" + p.text, p.vec);
@@ -331,7 +331,7 @@ private:
         if (n == "smoothstep" && a.size() == 3) // the number comes first
             return {"smoothstep(" + number(a[1]) + ", " + number(a[2]) + ", " + number(a[0]) + ")", false};
         if (n == "boxstep" && a.size() == 2) return {"step(" + number(a[1]) + ", " + number(a[0]) + ")", false};
-        for (const Function& f : kFunctions) {
+        for (const SeFunction& f : kFunctions) {
             if (f.name != n) continue;
             std::string_view rest = f.defaults;
             const size_t optional = rest.empty() ? 0 : size_t(std::count(rest.begin(), rest.end(), ',')) + 1;
@@ -375,7 +375,7 @@ private:
 
 std::optional<std::string> rslFromSeExpr(const std::string& expression, const std::vector<SeExprVariable>& variables,
                                          const SourcePlace& place, Diagnostics& d) {
-    return Translator(expression, variables, place, d).run();
+    return SeTranslator(expression, variables, place, d).run();
 }
 
 } // namespace alpenglow::rsl::front

@@ -391,6 +391,8 @@ using MayRead = std::function<bool(const std::string& path)>;
 /// The path of an archive along folders: as given, then with '/' for '\', its base name, other case. "" = not found.
 /// *fallback says which liberty was taken, or is "".
 std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback, const MayRead& may);
+/// The folder that a RIB file lies in, or the zip archive that holds it; "" for the current one.
+std::string folderOf(const std::string& file);
 /// "a:b;c" to folders; a single letter before ":/" or ":\" is a drive, "&" and "@" are left to the caller.
 std::vector<std::string> splitSearchPath(const std::string& text);
 

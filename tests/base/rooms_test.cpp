@@ -30,6 +30,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"photons", {"base"}},
     {"ptex", {"base"}},
     {"clouds", {"base"}},
+    {"models", {"base"}},
     {"world",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "lobes", "lanes", "clouds", "photons",
       "ptex"}},
@@ -45,6 +46,10 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"cli", {"base",   "scene",   "geometry", "accel", "rsl",     "shadeops",   "texture", "shading", "lobes", "lanes",
              "clouds", "photons", "ptex",     "world", "answers", "integrator", "display", "render",  "ri",    "view"}},
     {"capi", {"base", "scene", "display", "integrator", "render", "ri", "cli"}},
+    {"python", {"base", "scene", "rsl", "world", "answers", "display", "render", "ri", "cli"}},
+    {"cli",
+     {"base",    "scene", "geometry", "accel",   "rsl",        "shadeops", "texture", "shading", "lobes", "lanes", "clouds",
+      "photons", "ptex",  "world",    "answers", "integrator", "display",  "render",  "ri",      "view",  "models"}},
     {"view",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "integrator", "display",
       "render", "ri"}},
@@ -52,10 +57,14 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
 
 // Header prefix -> the only folders that may include it.
 const std::map<std::string, std::set<std::string>> kForeign = {
+    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},    {"embree3", {}},          {"OpenImageIO", {"texture"}},
+    {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}},   {"png.h", {"display"}},   {"tiffio.h", {"display"}},
+    {"jpeglib.h", {"display"}},   {"CLI", {"cli", "python"}}, {"pybind11", {"python"}}, {"boost", {"view"}},
+    {"xxhash.h", {"base"}},       {"Imath", {"base"}},
     {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},  {"embree3", {}},        {"OpenImageIO", {"texture"}},
     {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
     {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},         {"boost", {"view"}},    {"xxhash.h", {"base"}},
-    {"Imath", {"base"}},
+    {"Imath", {"base"}},          {"assimp", {"models"}},   {"draco", {}},          {"tiny_gltf.h", {"models"}},
 };
 
 TEST(Rooms, IncludeTable) {

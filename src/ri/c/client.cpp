@@ -175,7 +175,10 @@ void Building::stringValues(const char* token, const void* values, int64_t n) {
 
 void Building::parameter(const char* token, const void* values, const scene::VariableCounts& counts,
                          const std::string& category) {
-    const Resolved r = client_->to.declarations().resolve(token, category);
+    // A connection of RIS: its values are texts whatever the type behind the word.
+    const std::string_view whole = token;
+    const bool connects = whole.starts_with("reference ");
+    const Resolved r = client_->to.declarations().resolve(connects ? whole.substr(10) : whole, category);
     if (!r.declaration) {
         client_->to.reporter().error(Rie::BadToken, client_->place,
                                      fmt::format("Ri{}{}: \"{}\" is not declared and left out", request_->name, client_->by,
@@ -186,10 +189,10 @@ void Building::parameter(const char* token, const void* values, const scene::Var
     const Declaration& d = *r.declaration;
     int64_t n = counts.of(d.cls) * std::max(1, d.arrayLength);
     const int samples = client_->to.colorSamples();
-    n *= d.type == scene::Type::Color ? samples : scene::componentCount(d.type);
+    if (!connects) n *= d.type == scene::Type::Color ? samples : scene::componentCount(d.type);
     text(token);
     if (!may(n, {values})) return;
-    if (d.type == scene::Type::String) stringValues(token, values, n);
+    if (connects || d.type == scene::Type::String) stringValues(token, values, n);
     else if (d.type == scene::Type::Integer) ints(static_cast<const RtInt*>(values), n);
     else addNumbers<RtFloat>(static_cast<const RtFloat*>(values), n, [](RtFloat f) { return double(f); }); // kept as floats
 }

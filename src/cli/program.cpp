@@ -165,10 +165,9 @@ int runProgram(int argc, char** argv) {
     app.set_version_flag("--version", versionReport);
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
-    app.footer(
-        "alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow help COMMAND tells more.\n"
-        "Flags of prman, renderdl and aqsis (-t:4, -res 640 480, -progress) are taken, too: docs/options.md lists them.\n\n" +
-        exitStatuses());
+    app.footer("alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow help COMMAND tells more.\n"
+               "Flags of prman, renderdl and aqsis (-t:4, -res 640 480, -progress) work too: docs/options.md lists them.\n\n" +
+               exitStatuses());
     addRender(app, &status, commandText(argc, argv));
     addView(app, &status);
     addEval(app, &status);
@@ -182,6 +181,7 @@ int runProgram(int argc, char** argv) {
     addMerge(app, &status);
     addRib(app, &status);
     addLsp(app, &status);
+    addFrom(app, &status);
     CommandLine line = normalise(argc, argv, app);
     if (!line.error.empty()) return wrongUse(line.error, "alpenglow --help");
     if (!line.text.empty()) return std::fputs(line.text.c_str(), stdout) < 0 ? kOutputFailed : kDone;

@@ -232,11 +232,13 @@ RenderStats Renderer::stats() const {
     return s;
 }
 
+std::string Renderer::statsText() const { return statsJson(stats(), frames_, settings_); }
+
 bool Renderer::writeStats() {
     if (settings_.statsFile.empty()) return true;
     auto out = OutputFile::open(settings_.statsFile, {".", true}, diagnostics_);
     if (!out) return !(outcome_.outputFailed = true);
-    std::string json = statsJson(stats(), frames_, settings_);
+    const std::string json = statsText();
     out->write(json.data(), json.size());
     if (out->commit(diagnostics_)) return true;
     outcome_.outputFailed = true;

@@ -60,10 +60,14 @@ void Interpreter::light(const Call& call, bool area) {
     own->lights.clear();
     l.attributes = std::move(own);
     int index = int(lights().size());
+    const bool standard = l.shader->name.starts_with("PxrStd"); // of PRMan 19: on everywhere as those of 21
     lights().push_back(std::move(l));
     if (!call.text(1).empty()) handles_[call.text(1)] = index;
     attributes().lights.insert(index);
     if (area) attributes().areaLight = index;
+    if (!standard) return;
+    ris_ = true;
+    globalLights_.insert(index);
 }
 
 void Interpreter::illuminate(const Call& call) {

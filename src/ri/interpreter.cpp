@@ -31,6 +31,9 @@ void Interpreter::nextScene() {
     archivesRead_.clear();
     shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
+    ris_ = false;
+    headlight_ = true;
+    integratorSurface_ = nullptr;
 }
 
 scene::Attributes& Interpreter::attributes() {
@@ -78,6 +81,10 @@ void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string&
         reporter.lineText = outer;
     }
     if (aborted()) reporter.report(Severity::Warning, Rie::IllState, end, "ErrorHandler \"abort\": the rest is not read");
+    finish(end);
+}
+
+void Interpreter::finish(const SourcePlace& end) {
     closeOpenEnds(0, end);
     unwind(0, end, false);
     overflow_ = 0;

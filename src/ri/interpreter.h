@@ -13,6 +13,7 @@
 #include "ri/sharedarchives.h"
 #include "ri/shelf.h"
 #include "ri/source.h"
+#include "scene/network.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
 #include <functional>
@@ -53,6 +54,10 @@ public:
     /// Reads a whole stream at the outermost level and closes what it leaves open.
     void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
     void execute(const Call& call);
+    /// The end of a stream, or of a program's calls: closes what is open, with an error for each, and draws a world that is open.
+    void finish(const SourcePlace& end);
+    /// What is executed now is kept for an archive, or passed over by a condition.
+    bool holdsBack() const { return recording_ || (!conditions_.empty() && !conditions_.back().active); }
     /// By the user. What is not closed then is no error.
     bool interrupted() const { return settings.stop && *settings.stop; }
     bool stopped() const { return aborted() || interrupted(); }
@@ -105,6 +110,16 @@ public:
     /// Null when unknown. "world", "camera", "object", "current" and "shader" are known too.
     std::optional<scene::Transform> namedSystem(const std::string& name) const;
 
+    /// RIS: what a Bxdf or its like says, with the patterns that its connections mean now (scene/network.h).
+    scene::ShaderRef network(const Call& call, scene::Keeper);
+    void pattern(const Call& call);
+    void risLight(const Call& call);
+    void isRis() { ris_ = true; }
+    /// The shader that an Integrator sees instead of all surfaces; null: none.
+    void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
+    /// Whether the integrator lights a scene without lights from the eye.
+    void headlight(bool on) { headlight_ = on; }
+
     void light(const Call& call, bool area);
     void illuminate(const Call& call);
     void emit(scene::Primitive primitive, const Call& call);
@@ -123,7 +138,7 @@ public:
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                     const Call& call);
     /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the
-    /// graphics state saved before and restored after. name: of who makes it, for messages.
+    /// graphics state saved before and restored after. name: of the library, for messages; "" for a function of a program's own.
     void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound,
                    const Call& call);
     /// Numbers for lights and objects that libraries make: never the same twice.
@@ -226,6 +241,11 @@ private:
     /// Reads a DelayedReadArchive; from the second time under the same attributes on as an object.
     void readDelayed(const std::string& name, const Call& call);
     void learn(SharedArchive& of, const std::string& file);
+    // ris.cpp
+    std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
+    void overrideAttributes(scene::Frame&) const;
+    void addHeadlight(scene::Frame&);
+    void risOptions(scene::Options&) const;
     // unlit.cpp
     void noteEnded(const Block&);
     void sayUnlit(const scene::Frame&);
@@ -317,6 +337,10 @@ private:
     std::map<size_t, int> objectIndex_;                   ///< serial -> index in this frame
     std::map<std::string, SharedArchive> sharedArchives_; ///< of the open world, by ArchiveShelf::Found::key
     std::set<int> ended_;                                 ///< lights of this world that an AttributeEnd has ended
+    std::set<int> globalLights_;                          ///< lights of this world that are on everywhere
+    scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
+    bool headlight_ = true;                               ///< no integrator, or PxrDefault: what has no light is lit from the eye
+    bool ris_ = false;                                    ///< the scene has requests of RIS
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

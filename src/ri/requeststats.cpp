@@ -8,7 +8,7 @@ namespace alpenglow::ri {
 
 namespace {
 
-constexpr size_t kNames = 100'000; // that are kept of hostile files
+constexpr size_t kMostNames = 100'000; // that are kept of hostile files
 
 constexpr uint64_t kCode = 2, kNumber = 4; // bytes in binary
 
@@ -19,7 +19,7 @@ void hold(RequestStats::Count& c, const std::vector<double>& numbers, const std:
 }
 
 void keep(std::set<std::string>& names, const std::string& name) {
-    if (!name.empty() && names.size() < kNames) names.insert(name);
+    if (!name.empty() && names.size() < kMostNames) names.insert(name);
 }
 
 std::string listed(const char* what, const std::set<std::string>& names) {
@@ -64,7 +64,7 @@ void RequestStats::add(const Call& call) {
 }
 
 void RequestStats::addUnknown(const std::string& name, const std::vector<Value>& values) {
-    if (requests.size() >= kNames && !requests.count(name)) return;
+    if (requests.size() >= kMostNames && !requests.count(name)) return;
     for (Count* c : {&requests[name], &all}) {
         ++c->times;
         c->bytes += kCode;

@@ -9,7 +9,8 @@ import time
 import bpy
 import numpy as np
 
-from . import exr, passes, program, properties, scene
+from . import exr, growing, passes, program, properties, scene
+from .report import Report
 
 
 MESSAGE = re.compile(r"\b(error|warning): ")
@@ -76,8 +77,8 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
     return writer.write(os.path.join(folder, "scene.rib"), head)
 
 
-def arguments(binary, settings, frame, samples=None, crop=None):
-    """The command line of a render."""
+def arguments(binary, settings, frame, samples=None, crop=None, port=None):
+    """The command line of a render. port: where the growing picture goes."""
     out = [binary, "render", "--progress", "plain", "--allow-read"]
     if settings.use_noise and settings.hider == "path" and samples is None:
         out += ["--noise", "%g" % settings.noise]
@@ -93,7 +94,29 @@ def arguments(binary, settings, frame, samples=None, crop=None):
     if crop:
         left, right, bottom, top = crop
         out += ["--crop", "%.9g,%.9g,%.9g,%.9g" % (left, right, 1 - top, 1 - bottom)]
+    if port:
+        out += ["--display", "tev:127.0.0.1:%d" % port]
     return out + shlex.split(settings.options) + ["scene.rib"]
+
+
+def arguments_of(binary, settings, frame, samples, border):
+    """arguments() but for the port."""
+    return lambda port: arguments(binary, settings, frame, samples, border, port)
+
+
+def box_of(render):
+    """What is rendered of the picture: x, y from above, width, height; rounded as Blender rounds a border."""
+    width, height = size_of(render)
+    left, right, bottom, top = border_of(render)
+    x0, x1, y0, y1 = (int(a * b) for a, b in ((left, width), (right, width), (bottom, height), (top, height)))
+    return x0, height - y1, x1 - x0, y1 - y0
+
+
+def covered(rgba, transparent):
+    """The sky covers what nothing else does, unless the film is transparent."""
+    if not transparent:
+        rgba[:, 3] = 1
+    return rgba
 
 
 def flat(picture, names, window, box):
@@ -161,7 +184,6 @@ class AlpenglowEngine(bpy.types.RenderEngine):
             self.update_progress(.1 * part)
             if self.test_break():
                 raise Stopped
-        from .report import Report
         complaints = Report()
         listed = passes.listed(depsgraph.scene, depsgraph.scene.view_layers[layer.name], complaints)
         if depsgraph.scene_eval.camera is None:
@@ -170,24 +192,48 @@ class AlpenglowEngine(bpy.types.RenderEngine):
         report = export(depsgraph, folder, settings, binary, listed, self.frame_set, size_of(render), samples, progress)
         for line in complaints.texts():
             report.lost(line)
+        for name in ("picture.exr", "passes.exr"):  # of an earlier render into a folder that is kept
+            if os.path.exists(os.path.join(folder, name)):
+                os.remove(os.path.join(folder, name))
         self._tell(report, folder)
-        border = border_of(render) if render.use_border else None
-        run = program.Run(arguments(binary, settings, frame, samples, border), folder)
-        stopped = False
-        while not run.done():
-            if self.test_break():
-                stopped = True
-                self.update_stats("Alpenglow", "stopping")
-                run.stop()
-                break
-            self.update_progress(.1 + .9 * run.part)
-            self.update_stats("Alpenglow", run.status_line)
-            time.sleep(.1)
-        status = run.finish()
-        self._messages(run, status, stopped)
+        box, border = box_of(render), border_of(render) if render.use_border else None
+        result = self.begin_result(0, 0, box[2], box[3], layer=layer.name)  # Blender's picture is the border alone
+        if result is None:
+            self.report({"ERROR"}, "Blender takes no picture of %d x %d pixels" % box[2:])
+            return
+        self._follow(folder, arguments_of(binary, settings, frame, samples, border), result, box, render.film_transparent)
         path = os.path.join(folder, "picture.exr")
         if os.path.isfile(path):
-            self._show(depsgraph, layer, render, folder, path, listed)
+            self._show(depsgraph, result, box, folder, path, listed)
+        self.end_result(result)
+
+    def _follow(self, folder, command, result, box, transparent):
+        """Runs the program until it ends or the user stops it, and shows the picture as it grows."""
+        grows = None if bpy.app.background else growing.Growing("picture.exr")
+        run = program.Run(command(grows.port if grows else None), folder)
+        stopped, shown = False, time.time()
+        try:
+            while not run.done():
+                if self.test_break():
+                    stopped = True
+                    self.update_stats("Alpenglow", "stopping")
+                    run.stop()
+                    break
+                self.update_progress(.1 + .9 * run.part)
+                self.update_stats("Alpenglow", run.status_line)
+                if grows is not None and time.time() - shown > .5:
+                    pixels = grows.take()
+                    if pixels is not None:
+                        whole = dict(zip("RGBA", np.moveaxis(pixels, 2, 0)))
+                        result.layers[0].passes["Combined"].rect = covered(flat(whole, list("RGBA"), (0, 0), box), transparent)
+                        self.update_result(result)
+                        shown = time.time()
+                time.sleep(.1)
+            self._messages(run, run.finish(), stopped)
+        finally:
+            run.stop()
+            if grows is not None:
+                grows.close()
 
     def _tell(self, report, folder):
         """What is not exported, each feature once, in Blender's reports, on the terminal and beside the RIB."""
@@ -209,21 +255,11 @@ class AlpenglowEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, "alpenglow: %s%s" % (important[0], " (and %d more, on the terminal)" % (len(important) - 1)
                                                          if len(important) > 1 else ""))
 
-    def _show(self, depsgraph, layer, render, folder, path, listed):
-        picture, window, size = exr.read(path)
-        width, height = size
-        left, right, bottom, top = border_of(render)
-        x0, x1, y0, y1 = (int(a * b) for a, b in ((left, width), (right, width), (bottom, height), (top, height)))
-        box = (x0, height - y1, x1 - x0, y1 - y0)
-        result = self.begin_result(0, 0, box[2], box[3], layer=layer.name)  # Blender's picture is the border alone
-        if result is None:
-            self.report({"ERROR"}, "Blender takes no picture of %d x %d pixels" % box[2:])
-            return
+    def _show(self, depsgraph, result, box, folder, path, listed):
+        picture, window, _ = exr.read(path)
         shown = result.layers[0].passes
         rgba = flat(picture, ["R", "G", "B", "A"], window, box)
-        if not depsgraph.scene_eval.render.film_transparent:
-            rgba[:, 3] = 1
-        shown["Combined"].rect = rgba
+        shown["Combined"].rect = covered(rgba, depsgraph.scene_eval.render.film_transparent)
         extra = os.path.join(folder, "passes.exr")
         if listed and os.path.isfile(extra):
             others, window, _ = exr.read(extra)
@@ -236,7 +272,6 @@ class AlpenglowEngine(bpy.types.RenderEngine):
                     pixels = one.turn(pixels)
                 if one.name in shown:
                     shown[one.name].rect = pixels.astype(np.float32)
-        self.end_result(result)
 
     # The viewport: a still of few samples, made anew when something has changed.
     def view_update(self, context, depsgraph):

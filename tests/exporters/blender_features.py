@@ -1,5 +1,7 @@
-"""blender -b --factory-startup --python blender_features.py -- OUT: what the add-on does besides pictures, each held to Cycles, to Blender's own
-numbers or to a closed form: passes, a border, a transparent film, an RSL shader as a material, the report, instances that share a shape."""
+"""blender -b --factory-startup --python blender_features.py -- OUT: what the add-on does besides pictures, each held to
+Cycles, to Blender's own
+numbers or to a closed form: passes, a border, a transparent film, an RSL shader as a material, the report, instances that
+share a shape."""
 import os
 import re
 import sys
@@ -50,19 +52,25 @@ def passes():
     ours, cycles = render("ALPENGLOW", "passes.ours", 64, True), render("CYCLES", "passes.cycles", 64, True)
     z = layer(ours, "Depth", "Z"), layer(cycles, "Depth", "Z")
     inside = (z[0] < 50) & (z[1] < 50)
-    check("the cube is where Cycles sees it", abs(inside.mean() - (z[1] < 50).mean()) < .005)
+    check("the cube is where Cycles sees it", abs(inside.mean() - (z[1] < 50).mean()) < 0.005)
     d = np.abs(z[0] - z[1])[inside]  # ours is the nearest of a pixel's samples, Cycles' that of one
-    check("depths agree within what a pixel spans", np.median(d) < .05, np.median(d))
+    check("depths agree within what a pixel spans", np.median(d) < 0.05, np.median(d))
     for letter in "XYZ":
         n = layer(ours, "Normal", letter), layer(cycles, "Normal", letter)
-        check("normals agree in " + letter, np.abs(n[0] - n[1])[inside].mean() < .02, np.abs(n[0] - n[1])[inside].mean())
+        check("normals agree in " + letter, np.abs(n[0] - n[1])[inside].mean() < 0.02, np.abs(n[0] - n[1])[inside].mean())
     parts = sum(layer(ours, p, "R") for p in ("Direct", "Indirect"))
     check("direct and indirect light add up to the picture", np.abs(parts - layer(ours, "Combined", "R")).max() < 1e-4)
     own, sky = layer(ours, "Light Light", "R"), layer(ours, "Combined", "R")
-    check("the light's own pass is part of it", own[inside].mean() > .1 and (own <= sky + 1e-4).all() and own[z[0] > 50].max() == 0,
-          (own[inside].mean(), (own - sky).max(), own[z[0] > 50].max()))
-    check("albedo is between Principled's base and what it reflects besides", .75 < layer(ours, "Albedo", "R")[inside].mean() < .95,
-          layer(ours, "Albedo", "R")[inside].mean())
+    check(
+        "the light's own pass is part of it",
+        own[inside].mean() > 0.1 and (own <= sky + 1e-4).all() and own[z[0] > 50].max() == 0,
+        (own[inside].mean(), (own - sky).max(), own[z[0] > 50].max()),
+    )
+    check(
+        "albedo is between Principled's base and what it reflects besides",
+        0.75 < layer(ours, "Albedo", "R")[inside].mean() < 0.95,
+        layer(ours, "Albedo", "R")[inside].mean(),
+    )
     view.use_pass_z = view.use_pass_normal = view.alpenglow.use_direct = view.alpenglow.use_indirect = False
     view.alpenglow.use_albedo = view.alpenglow.lights = False
 
@@ -70,9 +78,12 @@ def passes():
 def border():
     whole = pictures.three(render("ALPENGLOW", "whole"))
     r = S.render
-    r.use_border, r.border_min_x, r.border_max_x, r.border_min_y, r.border_max_y = True, .25, .75, .5, 1.0
+    r.use_border, r.border_min_x, r.border_max_x, r.border_min_y, r.border_max_y = True, 0.25, 0.75, 0.5, 1.0
     part = pictures.three(render("ALPENGLOW", "border"))
-    check("a border is that part of the picture, to the bit", np.array_equal(part[:72, 64:192], whole[:72, 64:192]) and part[72:].max() == 0)
+    check(
+        "a border is that part of the picture, to the bit",
+        np.array_equal(part[:72, 64:192], whole[:72, 64:192]) and part[72:].max() == 0,
+    )
     r.use_crop_to_border = True
     part = pictures.three(render("ALPENGLOW", "cropped"))
     check("cropped to it, too", np.array_equal(part, whole[:72, 64:192]), part.shape)
@@ -88,25 +99,37 @@ def shader():
     cube = bpy.data.objects["Cube"]
     path = os.path.join(OUT, "stripes.sl")
     with open(path, "w", encoding="utf-8") as f:
-        f.write("surface stripes(color first = 1; float number = 3; string unused = \"\"; varying color tint = 1;)\n"
-                "{\n    Oi = 1;\n    Ci = first * tint * number / 10;\n}\n")
+        f.write(
+            'surface stripes(color first = 1; float number = 3; string unused = ""; varying color tint = 1;)\n'
+            "{\n    Oi = 1;\n    Ci = first * tint * number / 10;\n}\n"
+        )
     material = cube.data.materials[0]
     own = material.alpenglow
     own.use_shader, own.shader = True, path
     with bpy.context.temp_override(material=material):
         bpy.ops.alpenglow.read_parameters()
     names = [(p.name, p.kind) for p in own.parameters]
-    check("parameters are read", names == [("first", "color"), ("number", "float"), ("unused", "string"), ("tint", "color")], names)
+    check(
+        "parameters are read",
+        names == [("first", "color"), ("number", "float"), ("unused", "string"), ("tint", "color")],
+        names,
+    )
     number, first, tint = own.parameters["number"], own.parameters["first"], own.parameters["tint"]
     check("with their defaults", number.number == 3 and tuple(first.color) == (1, 1, 1))
-    number.use, number.number, first.use, first.color = True, 5.0, True, (.2, .4, .6)
+    number.use, number.number, first.use, first.color = True, 5.0, True, (0.2, 0.4, 0.6)
     found = pictures.three(render("ALPENGLOW", "shader"))
-    check("values that are set arrive: a half of .2 .4 .6", np.allclose(found[90, 128], (.1, .2, .3), atol=1e-5), found[90, 128])
+    check(
+        "values that are set arrive: a half of .2 .4 .6",
+        np.allclose(found[90, 128], (0.1, 0.2, 0.3), atol=1e-5),
+        found[90, 128],
+    )
     data = cube.data.attributes.new("paint", "FLOAT_COLOR", "POINT")
-    data.data.foreach_set("color", [.5, .5, .5, 1] * 8)
+    data.data.foreach_set("color", [0.5, 0.5, 0.5, 1] * 8)
     tint.attribute = "paint"
     found = pictures.three(render("ALPENGLOW", "painted"))
-    check("a parameter from an attribute of the mesh", np.allclose(found[90, 128], (.05, .1, .15), atol=1e-5), found[90, 128])
+    check(
+        "a parameter from an attribute of the mesh", np.allclose(found[90, 128], (0.05, 0.1, 0.15), atol=1e-5), found[90, 128]
+    )
     own.use_shader = False
 
 

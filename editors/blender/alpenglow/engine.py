@@ -41,9 +41,11 @@ def border_of(render):
     return render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y
 
 
-def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None,
-           view=None):
-    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture. view: as view_camera()
+def export(
+    depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None, view=None
+):
+    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture.
+    view: as view_camera()
     gives it, in place of the scene's camera."""
     lights = "samplelights" if program.knows(binary_of_program, "trace", "samplelights") else "samplearealights"
     writer = scene.Scene(depsgraph, folder, settings, lights, frame_set, progress, view)
@@ -64,9 +66,9 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
         aspect = render.pixel_aspect_x / render.pixel_aspect_y
         rib.request("Format", width, height, aspect)
         # RISpec's gaussian spreads by a quarter of its width, Blender's Blackman-Harris by a seventh
-        wide = render.filter_size if settings.filter == "box" else render.filter_size * .64
+        wide = render.filter_size if settings.filter == "box" else render.filter_size * 0.64
         rib.request("PixelFilter", settings.filter, wide, wide)
-        side = max(1, round((samples or settings.samples) ** .5))
+        side = max(1, round((samples or settings.samples) ** 0.5))
         rib.request("PixelSamples", side, side)
         if settings.hider == "path":
             hider = dict(hider, **{"int guide": int(settings.guide), "int caustics": int(settings.caustics)})
@@ -74,6 +76,7 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
         rib.request("Option", "trace", {"int maxdepth": settings.max_depth})
         for line in filter(None, [settings.requests.strip()]):
             rib.file.write((line + "\n").encode())
+
     return writer.write(os.path.join(folder, "scene.rib"), head)
 
 
@@ -129,7 +132,7 @@ def flat(picture, names, window, box):
         a = picture[name]
         x0, y0 = window[0] - x, window[1] - y
         rows, columns = min(height - y0, a.shape[0]), min(width - x0, a.shape[1])
-        out[max(y0, 0):y0 + rows, max(x0, 0):x0 + columns, i] = a[max(-y0, 0):rows, max(-x0, 0):columns]
+        out[max(y0, 0) : y0 + rows, max(x0, 0) : x0 + columns, i] = a[max(-y0, 0) : rows, max(-x0, 0) : columns]
     return out[::-1].reshape(-1, len(names))
 
 
@@ -181,9 +184,10 @@ class AlpenglowEngine(bpy.types.RenderEngine):
 
         def progress(part, text):
             self.update_stats("Alpenglow", "writing " + text)
-            self.update_progress(.1 * part)
+            self.update_progress(0.1 * part)
             if self.test_break():
                 raise Stopped
+
         complaints = Report()
         listed = passes.listed(depsgraph.scene, depsgraph.scene.view_layers[layer.name], complaints)
         if depsgraph.scene_eval.camera is None:
@@ -219,16 +223,16 @@ class AlpenglowEngine(bpy.types.RenderEngine):
                     self.update_stats("Alpenglow", "stopping")
                     run.stop()
                     break
-                self.update_progress(.1 + .9 * run.part)
+                self.update_progress(0.1 + 0.9 * run.part)
                 self.update_stats("Alpenglow", run.status_line)
-                if grows is not None and time.time() - shown > .5:
+                if grows is not None and time.time() - shown > 0.5:
                     pixels = grows.take()
                     if pixels is not None:
                         whole = dict(zip("RGBA", np.moveaxis(pixels, 2, 0)))
                         result.layers[0].passes["Combined"].rect = covered(flat(whole, list("RGBA"), (0, 0), box), transparent)
                         self.update_result(result)
                         shown = time.time()
-                time.sleep(.1)
+                time.sleep(0.1)
             self._messages(run, run.finish(), stopped)
         finally:
             run.stop()
@@ -252,8 +256,11 @@ class AlpenglowEngine(bpy.types.RenderEngine):
             said = next((m for m in run.messages if "error:" in m), run.messages[-1] if run.messages else "")
             self.report({"ERROR"}, "alpenglow ended with status %d: %s" % (status, said))
         elif important:
-            self.report({"WARNING"}, "alpenglow: %s%s" % (important[0], " (and %d more, on the terminal)" % (len(important) - 1)
-                                                         if len(important) > 1 else ""))
+            self.report(
+                {"WARNING"},
+                "alpenglow: %s%s"
+                % (important[0], " (and %d more, on the terminal)" % (len(important) - 1) if len(important) > 1 else ""),
+            )
 
     def _show(self, depsgraph, result, box, folder, path, listed):
         picture, window, _ = exr.read(path)
@@ -276,6 +283,7 @@ class AlpenglowEngine(bpy.types.RenderEngine):
     # The viewport: a still of few samples, made anew when something has changed.
     def view_update(self, context, depsgraph):
         from .viewport import View
+
         if self.view is None:
             self.view = View(self)
         self.view.update(context, depsgraph)

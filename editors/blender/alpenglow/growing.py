@@ -1,4 +1,5 @@
-"""The picture while it grows: the program sends it as it sends pictures to the viewer tev, to a socket of ours on this machine."""
+"""The picture while it grows: the program sends it as it sends pictures to the viewer tev, to a socket of ours on this
+machine."""
 import socket
 import struct
 import threading
@@ -55,7 +56,7 @@ class Growing:
         head = self._bytes(connection, 4)
         if head is None:
             return False
-        length, = struct.unpack("<I", head)
+        (length,) = struct.unpack("<I", head)
         if not 6 <= length <= MOST:
             raise ValueError("a packet of %d bytes" % length)
         data = self._bytes(connection, length - 4)
@@ -68,7 +69,7 @@ class Growing:
 
     @staticmethod
     def _names(data, p):
-        count, = struct.unpack_from("<i", data, p)
+        (count,) = struct.unpack_from("<i", data, p)
         names, p = [], p + 4
         for _ in range(count):
             end = data.index(b"\0", p)
@@ -92,5 +93,5 @@ class Growing:
                 return
             for i, name in enumerate(names):
                 if name in "RGBA":
-                    self.pixels[y:y + h, x:x + w, "RGBA".index(name)] = values[..., i]
+                    self.pixels[y : y + h, x : x + w, "RGBA".index(name)] = values[..., i]
             self.fresh = True

@@ -30,7 +30,8 @@ class Instance:
 
 
 class Scene:
-    """Everything that is written of a depsgraph. frame_set(frame, subframe): evaluates another time (for motion); None: no motion.
+    """Everything that is written of a depsgraph. frame_set(frame, subframe): evaluates another time (for motion); None: no
+    motion.
     view: an eye in place of the scene's camera."""
 
     def __init__(self, depsgraph, folder, settings, lights_word, frame_set=None, progress=None, view=None):
@@ -49,8 +50,10 @@ class Scene:
         motion = scene.render.use_motion_blur and self.frame_set is not None
         if motion:
             shutter = scene.render.motion_blur_shutter
-            where = getattr(scene.render, "motion_blur_position", None) or getattr(getattr(scene, "cycles", None), "motion_blur_position", "CENTER")
-            start = {"START": 0.0, "CENTER": -.5, "END": -1.0}.get(where, -.5) * shutter
+            where = getattr(scene.render, "motion_blur_position", None) or getattr(
+                getattr(scene, "cycles", None), "motion_blur_position", "CENTER"
+            )
+            start = {"START": 0.0, "CENTER": -0.5, "END": -1.0}.get(where, -0.5) * shutter
             keys = max(2, self.settings.motion_keys)
             self.times = [i / (keys - 1) for i in range(keys)]
             offsets = [start + shutter * t for t in self.times]
@@ -123,15 +126,21 @@ class Scene:
         if kind in IGNORED:
             return
         if kind not in MESHES | {"CURVES", "POINTCLOUD"}:
-            self.report.lost({"VOLUME": "Volume objects", "GPENCIL": "Grease pencil", "GREASEPENCIL": "Grease pencil"}.get(kind, "Objects of type " + kind), obj.name)
+            self.report.lost(
+                {"VOLUME": "Volume objects", "GPENCIL": "Grease pencil", "GREASEPENCIL": "Grease pencil"}.get(
+                    kind, "Objects of type " + kind
+                ),
+                obj.name,
+            )
             return
         shape_key = self._shape_key(inst, obj)
         if first:
             shape = self.shapes.get(shape_key)
             if shape is None:
                 shape = self.shapes[shape_key] = self._shape(inst, obj)
-            self.instances[key] = Instance(shape, inst.matrix_world.copy(), visibility(obj, self.report),
-                                           user(inst, obj) if shape.asks else {})
+            self.instances[key] = Instance(
+                shape, inst.matrix_world.copy(), visibility(obj, self.report), user(inst, obj) if shape.asks else {}
+            )
         elif key in self.instances:
             one = self.instances[key]
             one.matrices.append(inst.matrix_world.copy())
@@ -180,7 +189,9 @@ class Scene:
         if me is None or len(me.polygons) == 0:
             self._clear(obj)
             return
-        smooth = subdivided(obj, len(set(geometry.taken(me.polygons, "material_index", 1, np.int32).tolist())), self.settings, self.report)
+        smooth = subdivided(
+            obj, len(set(geometry.taken(me.polygons, "material_index", 1, np.int32).tolist())), self.settings, self.report
+        )
         if smooth:
             base = obj.original.data
             shape.mesh = geometry.read(obj, base, needs, obj.name, self.report, polygons=True)
@@ -190,7 +201,9 @@ class Scene:
         else:
             shape.mesh = geometry.read(obj, me, needs, obj.name, self.report)
         shape.count = len(me.vertices)
-        shape.deforms = not smooth and (len(obj.modifiers) > 0 or getattr(obj.data, "shape_keys", None) is not None or obj.type != "MESH")
+        shape.deforms = not smooth and (
+            len(obj.modifiers) > 0 or getattr(obj.data, "shape_keys", None) is not None or obj.type != "MESH"
+        )
         self._clear(obj)
 
     def _read_hair(self, shape, obj):
@@ -330,8 +343,12 @@ class Lamp:
 def visibility(obj, report):
     """Attributes of an object's ray visibility that differ from the default."""
     out = {}
-    for field, name in (("visible_camera", "int camera"), ("visible_diffuse", "int diffuse"), ("visible_glossy", "int specular"),
-                        ("visible_shadow", "int transmission")):
+    for field, name in (
+        ("visible_camera", "int camera"),
+        ("visible_diffuse", "int diffuse"),
+        ("visible_glossy", "int specular"),
+        ("visible_shadow", "int transmission"),
+    ):
         if not getattr(obj, field, True):
             out[name] = 0
     if not getattr(obj, "visible_transmission", True) and "int specular" not in out:
@@ -346,8 +363,13 @@ def visibility(obj, report):
 def user(inst, obj):
     """What Object Info asks for."""
     place = inst.matrix_world.translation
-    return {"float blrandom": (inst.random_id & 0xffffffff) / 0xffffffff, "float blobject": obj.pass_index,
-            "color bllocation": list(place), "color blcolor": list(obj.color)[:3], "float blalpha": obj.color[3]}
+    return {
+        "float blrandom": (inst.random_id & 0xFFFFFFFF) / 0xFFFFFFFF,
+        "float blobject": obj.pass_index,
+        "color bllocation": list(place),
+        "color blcolor": list(obj.color)[:3],
+        "float blalpha": obj.color[3],
+    }
 
 
 def subdivided(obj, materials, settings, report):

@@ -4,6 +4,8 @@ numbers or to a closed form: passes, a border, a transparent film, an RSL shader
 share a shape."""
 import os
 import re
+import shutil
+import subprocess
 import sys
 
 import bpy
@@ -158,6 +160,60 @@ def instances():
     check("hair is curves", text.count("\nCurves ") == 1)
 
 
+def variants(n):
+    """Settings of a node that its translation looks at: each value of its enumerations in turn."""
+    yield None
+    for prop in n.bl_rna.properties:
+        if prop.type == "ENUM" and not prop.is_readonly and prop.identifier not in n.bl_rna.base.bl_rna.properties:
+            for item in prop.enum_items:
+                yield prop.identifier, item.identifier
+
+
+def nodes():
+    """Every shader node of this Blender, with each of its settings and outputs: the shader compiles, whatever is linked to it."""
+    from alpenglow.compiler import Compiler, NODES
+    from alpenglow.materials import HEAD, Images
+    from alpenglow.report import Report
+
+    folder = os.path.join(OUT, "nodes")
+    os.makedirs(folder, exist_ok=True)
+    shutil.copytree(os.path.join(os.path.dirname(alpenglow.__file__), "shaders"), folder, dirs_exist_ok=True)
+    text, count, report = HEAD % "samplearealights", 0, Report()
+    for kind in sorted(NODES):
+        m = scenes.Nodes("all")
+        n = m.tree.nodes.new(kind) if hasattr(bpy.types, kind) else None
+        if n is None:  # of another version of Blender
+            continue
+        for setting in variants(n):
+            if setting:
+                try:
+                    setattr(n, *setting)
+                except TypeError:
+                    continue
+            for out in n.outputs:
+                if not out.enabled:
+                    continue
+                m.tree.links.clear()
+                for s in n.inputs:  # something that varies, so that nothing is folded
+                    if s.enabled and s.type in ("VALUE", "RGBA", "VECTOR"):
+                        m.tree.links.new(m.add("TexCoord").outputs["Object"], s)
+                m.tree.links.new(out, m.end.inputs["Surface"])
+                if not m.end.inputs["Surface"].links:
+                    continue
+                text += Compiler("n%d" % count, kind, "surface", report, Images(folder, report)).surface(m.tree)
+                count += 1
+        bpy.data.materials.remove(m.material)
+    path = os.path.join(folder, "all.sl")
+    with open(path, "w", encoding="utf-8") as f:
+        f.write(text)
+    done = subprocess.run([os.environ["ALPENGLOW_PROGRAM"], "compile", path], capture_output=True, text=True, check=False)
+    check(
+        "%d shaders of %d kinds of nodes compile" % (count, len(NODES)),
+        done.returncode == 0 and count > 200,
+        done.stderr[:3000],
+    )
+
+
 def main():
     alpenglow.register()
     r = S.render
@@ -165,7 +221,7 @@ def main():
     S.cycles.use_denoising = S.cycles.use_adaptive_sampling = False
     S.cycles.pixel_filter_type = "BOX"
     S.alpenglow.filter, S.alpenglow.folder = "box", os.path.join(OUT, "features")
-    for part in (passes, border, shader, report, instances):
+    for part in (nodes, passes, border, shader, report, instances):
         part()
 
 

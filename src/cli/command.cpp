@@ -145,8 +145,8 @@ std::vector<std::string> environmentShaders() {
 
 void addDialect(CLI::App& app, std::string& name) {
     app.add_option("--dialect", name,
-                   "Predefine the macros of this renderer's compiler (3delight if none is named); rispec: specular() has the "
-                   "exponent 1/roughness")
+                   "Predefine the macros of this renderer's shader compiler (default 3delight); rispec: exponent 1/roughness in "
+                   "specular()")
         ->check(CLI::IsMember({"prman", "3delight", "aqsis", "bmrt", "pixie", "entropy", "air", "rispec"}, CLI::ignore_case))
         ->type_name("NAME");
 }

@@ -73,16 +73,16 @@ void addCompile(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
     addDialect(*c, a->dialect);
-    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
-    c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
-    c->add_flag("--path", a->path, "As under Hider \"path\": diffuse, specular and phong are requests to the light transport");
-    c->add_flag("--mixed", a->mixed, "Build V: uniform values in lanes, for batches of several instances");
-    c->add_flag("--suspend", a->suspend, "The suspending form even where the affine one is possible");
-    c->add_flag("--dump-ir", a->ir, "Print our intermediate code after all passes");
-    c->add_flag("--dump-llvm", a->llvm, "Print LLVM's too");
-    c->add_flag("-W,--warnings", a->warn, "Warn also about unused, uninitialised and non-linear use under path");
-    c->add_flag("--json", a->json, "Diagnostics as JSON on standard output, for editors");
-    c->add_flag("-q,--quiet", a->quiet, "Errors only");
+    c->add_flag("--allow-exec", a->allowExec, "Allow the shader to load plug-ins");
+    c->add_option("--lanes", a->lanes, "SIMD width of the code, in points")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
+    c->add_flag("--path", a->path, "As for Hider \"path\": diffuse, specular and phong become requests");
+    c->add_flag("--mixed", a->mixed, "Compile the varying build: uniform values in lanes, for batches of several instances");
+    c->add_flag("--suspend", a->suspend, "Compile the suspending form even if the shader is affine");
+    c->add_flag("--dump-ir", a->ir, "Print the intermediate code after all passes");
+    c->add_flag("--dump-llvm", a->llvm, "Print the LLVM code too");
+    c->add_flag("-W,--warnings", a->warn, "Warn about unused, uninitialised and (under path) non-linear use, too");
+    c->add_flag("--json", a->json, "Print diagnostics as JSON on standard output, for editors");
+    c->add_flag("-q,--quiet", a->quiet, "Print errors only");
     c->footer("All shaders of a file are compiled. Errors are shown with file:line:column, the line and a caret. Exit status 0 "
               "when all shaders compile, else 1.");
     c->callback([a, status] {

@@ -48,10 +48,10 @@ void addDiff(CLI::App& app, int* status) {
         ->required();
     c->add_option("b", a->b, "Picture of the same size")->type_name("FILE")->required();
     c->add_option("-o", a->output, "Write the absolute difference as a picture")->type_name("FILE");
-    c->add_option("--tolerance", a->tolerance, "Largest error that is still equal; 0 when not given")
+    c->add_option("--tolerance", a->tolerance, "Largest error that counts as equal; default 0")
         ->check(notNegative())
         ->type_name("X");
-    c->add_flag("--json", a->json, "As JSON, with messages under \"diagnostics\"");
+    c->add_flag("--json", a->json, "Print JSON, with messages under \"diagnostics\"");
     c->footer("Exit status 0 when the largest error is within the tolerance, 1 when it is not, 3 when the pictures cannot be "
               "compared,\n"
               "5 when the difference cannot be written.");

@@ -19,15 +19,17 @@ void addEval(CLI::App& app, int* status) {
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("eval", "Run RSL at one point and print the value");
     c->add_option("expression", a->expression, "An expression, or statements that print")->type_name("RSL")->required();
-    c->add_option("--setup", a->setup, "Statements that run first, for example 'float x = 2;'")->type_name("'STATEMENTS'");
-    c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
+    c->add_option("--setup", a->setup, "Statements to run first, for example 'float x = 2;'")->type_name("'STATEMENTS'");
+    c->add_option("--lanes", a->lanes, "SIMD width of the machine code, in points")
+        ->check(CLI::IsMember({4, 8, 16}))
+        ->type_name("N");
     addDialect(*c, a->dialect);
-    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
-    c->add_flag("--json", a->json, "As JSON, with messages under \"diagnostics\"");
+    c->add_flag("--allow-exec", a->allowExec, "Allow the shader to load plug-ins");
+    c->add_flag("--json", a->json, "Print JSON, with messages under \"diagnostics\"");
     c->footer(
         "The point: u=v=s=t=0.5, P=(0,0,0), N=(0,0,1), I=(0,0,1), Cs=Os=1, du=dv=1. Numbers are printed as %.7g, separated by\n"
-        "spaces, a string as it is. Maps are looked for in the current folder; there are no lights and nothing for rays to "
-        "meet.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
+        "spaces, a string as it is. Maps are searched for in the current folder. There are no lights and no "
+        "geometry.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
         "  alpenglow eval --setup 'color c = (1, .5, 0);' 'ctransform(\"hsv\", c)'");
     c->callback([a, status] {
         nlohmann::ordered_json said;

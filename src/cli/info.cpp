@@ -137,32 +137,32 @@ void addInfo(CLI::App& app, int* status) {
     auto a = std::make_shared<InfoArguments>();
     CLI::App* c = app.add_subcommand(
         "info", "Tell what is in a file or what a shader is, or how shadeops, requests, options and displays work");
-    c->add_option(
-         "file", a->file,
-         "RSL file (all of its shaders), the name of a shader on the search path, or a picture, map, point cloud, photon "
-         "map, part, model or scene")
+    c->add_option("file", a->file,
+                  "RSL file (all its shaders), name of a shader on the search path, or a picture, map, point cloud, photon map, "
+                  "part file, model or scene")
         ->type_name("FILE");
     CLI::Option* ops = c->add_option("--shadeops", a->shadeop, "List the shadeops, or print the manual of one")
                            ->expected(0, 1)
                            ->type_name("[NAME]");
-    c->add_flag("--shaders", a->shaders, "List the shaders that scenes find: here, along the search path, and those that ship");
-    const std::pair<const char*, const char*> topics[] = {
-        {"--options", "List what Option sets, or print one name or category of it"},
-        {"--attributes", "List what Attribute sets, or print one name or category of it"},
-        {"--hiders", "List the hiders and their parameters"},
-        {"--displays", "List the types of Display and their parameters"},
-        {"--requests", "List the RIB requests, or print the manual of one"}};
+    c->add_flag("--shaders", a->shaders,
+                "List the shaders that scenes find: in this folder, on the search path, and the shipped ones");
+    const std::pair<const char*, const char*> topics[] = {{"--options", "List the options, or print one name or category"},
+                                                          {"--attributes", "List the attributes, or print one name or category"},
+                                                          {"--hiders", "List the hiders and their parameters"},
+                                                          {"--displays", "List the types of Display and their parameters"},
+                                                          {"--requests", "List the RIB requests, or print the manual of one"}};
     std::vector<CLI::Option*> listed;
     for (const auto& [name, help] : topics)
         listed.push_back(c->add_option(name, a->names[listed.size()], help)->expected(0, 1)->type_name("[NAME]"));
     c->add_flag("--json", a->json, "As JSON");
-    c->add_flag("--markdown", a->markdown,
-                "The whole page: with --shadeops docs/shadeops.md, with --requests docs/rib.md, with the others docs/options.md");
+    c->add_flag(
+        "--markdown", a->markdown,
+        "Print the whole page: docs/shadeops.md with --shadeops, docs/rib.md with --requests, docs/options.md with the others");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
     addDialect(*c, a->dialect);
-    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
+    c->add_flag("--allow-exec", a->allowExec, "Allow the shader to load plug-ins");
     c->callback([a, ops, listed, status] {
         for (size_t t = 0; t < listed.size(); ++t)
             if (listed[t]->count()) {

@@ -141,8 +141,8 @@ void addLsp(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
     addDialect(*c, a->dialect);
-    c->add_flag("--allow-exec", a->allowExec, "Let shaders load plug-ins");
-    c->add_flag("--stdio", a->stdio, "Standard input and output, as always; some editors insist on saying so");
+    c->add_flag("--allow-exec", a->allowExec, "Allow shaders to load plug-ins");
+    c->add_flag("--stdio", a->stdio, "Use standard input and output (always the case; accepted for editors that pass it)");
     c->footer("docs/editors.md shows it in VS Code and Vim. Exit status 0 when the editor asked it to shut down, else 1.");
     c->callback([a, status] {
         rsl::FrontOptions options;

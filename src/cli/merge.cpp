@@ -17,22 +17,22 @@ void addMerge(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("merge", "Add parts rendered with --samples; the same bits as one render");
-    c->add_option("parts", a->parts, "Pictures with their .part files beside them, or .part files, in any order")
+    c->add_option("parts", a->parts, "Pictures with their .part files in the same folder, or .part files, in any order")
         ->type_name("FILE")
         ->required();
     c->add_option(
          "-o", a->output,
-         "The picture, beside which further displays of other outputs stay as the scene says; without it, those that the scene's "
-         "displays name")
+         "Write the picture to FILE, and displays of other outputs as the scene says; default: all displays of the scene")
         ->type_name("FILE");
-    c->add_option("--expect", a->expect, "Samples that the parts must hold together: missing or further ones are errors")
+    c->add_option("--expect", a->expect, "Samples that the parts must contain together; missing or additional ones are errors")
         ->type_name("A:B");
-    c->add_flag("--allow-write", a->settings.allowWrite, "Let display names lead outside the current folder");
-    c->add_flag("--allow-exec", a->settings.allowExec, "Let the imager load plug-ins");
-    c->add_option("--searchpath", a->searchPaths, "Folders for the imager's shaders before those of the render, separated by :")
+    c->add_flag("--allow-write", a->settings.allowWrite, "Allow display names outside the current folder");
+    c->add_flag("--allow-exec", a->settings.allowExec, "Allow the imager to load plug-ins");
+    c->add_option("--searchpath", a->searchPaths,
+                  "Folders for imager shaders, searched before those of the render, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
-    c->add_flag("--json", a->json, "The messages as JSON, under \"diagnostics\"");
+    c->add_flag("--json", a->json, "Print messages as JSON, under \"diagnostics\"");
     c->footer(
         "Parts fit when scene, options, seed and crop window are the same and no sample is in two of them. Samples that are\n"
         "missing between them are warned about; the picture is written all the same, with a part file beside it, so that\n"

@@ -223,25 +223,25 @@ void addProbe(CLI::App& app, int* status) {
     c->add_option("normal", a->normal, "NX,NY,NZ: the side that is lit")->type_name("NX,NY,NZ")->required();
     c->add_option("--spp", a->spp, "Samples")->check(wholeBetween(2, 1u << 26))->type_name("N")->capture_default_str();
     c->add_option("--seed", a->seed, "Seed of all random numbers")->type_name("N");
-    c->add_option("--threads", a->threads, "Threads; as many as the process may use when not given")
+    c->add_option("--threads", a->threads, "Number of threads; default: all processors available to the process")
         ->check(wholeBetween(1, 1024))
         ->type_name("N");
-    c->add_option("--lanes", a->lanes, "Points a shader works on at once")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
-    c->add_option("--max-depth", a->maxDepth, "Greatest number of bounces")->check(wholeBetween(0, 10000))->type_name("N");
+    c->add_option("--lanes", a->lanes, "SIMD width of shaders, in points")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
+    c->add_option("--max-depth", a->maxDepth, "Maximum number of bounces")->check(wholeBetween(0, 10000))->type_name("N");
     c->add_option("--radius", a->radius,
-                  "Outer radius of the ring around the point that is looked at; a 400th of the scene when not given")
+                  "Outer radius of the sampled ring around the point; default: a 400th of the scene's size")
         ->check(positive())
         ->type_name("R");
     addDialect(*c, a->dialect);
-    c->add_flag("--allow-exec", a->allowExec, "Let shaders load plug-ins");
-    c->add_flag("--allow-read", a->allowRead, "Let the scene read maps and archives anywhere");
-    c->add_flag("--unbiased", a->unbiased, "Do not tame shaders that reflect more than they receive");
+    c->add_flag("--allow-exec", a->allowExec, "Allow shaders to load plug-ins");
+    c->add_flag("--allow-read", a->allowRead, "Allow the scene to read maps and archives anywhere");
+    c->add_flag("--unbiased", a->unbiased, "Disable energy clamping of shaders that reflect more light than they receive");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
-    c->footer("Prints R G B and the standard errors of the three. Path tracing, whatever the scene's hider.\n\n"
+    c->footer("Prints R G B and their standard errors. Always path-traces, whatever the scene's hider.\n\n"
               "Example: alpenglow probe examples/muttenzer_box.rib 0,-1.25,0 0,1,0 --spp 65536");
-    c->add_flag("--json", a->json, "As JSON, with messages under \"diagnostics\"");
+    c->add_flag("--json", a->json, "Print JSON, with messages under \"diagnostics\"");
     c->callback([a, status] {
         nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
         Diagnostics diags(printerOr(a->json, said));

@@ -138,7 +138,7 @@ int tell(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
 int runPtc(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
     if (a.action == "info") return tell(a, d, found);
     if (a.action == "brick") {
-        if (clouds::brickMapOfFiles(std::span(&a.files[0], 1), a.files[1], kAnywhere, d)) return kDone;
+        if (clouds::brickMapOfFiles(std::span(a.files).first(a.files.size() - 1), a.files.back(), kAnywhere, d)) return kDone;
         const auto unwritten = [](const Diagnostic& m) { return m.code == Rie::System || m.code == Rie::DiskFull; };
         const std::vector<Diagnostic> said = d.all();
         return std::any_of(said.begin(), said.end(), unwritten) ? kOutputFailed : kNothingRendered;
@@ -180,53 +180,47 @@ void addPtc(CLI::App& app, int* status) {
     auto a = std::make_shared<PtcArguments>();
     CLI::App* c = app.add_subcommand("ptc", "Tell, merge, filter, convert and draw point clouds; make brick maps");
     c->add_option("action", a->action,
-                  "info: what is in files; merge: several as one; filter: parts of one; toply, fromply: to and from PLY; brick: "
-                  "a brick map; bounce: light that points send to each other; picture: how it looks")
+                  "info: describe files; merge: combine several; filter: extract parts; toply, fromply: convert to and from PLY; "
+                  "brick: make a brick map; bounce: add light exchanged between points; picture: draw the points")
         ->required()
         ->check(CLI::IsMember({"info", "merge", "filter", "toply", "fromply", "brick", "bounce", "picture"}));
-    c->add_option("files", a->files, "What is read, and last what is written; info only reads")->type_name("FILE")->required();
+    c->add_option("files", a->files, "Files to read, then the file to write (none for info)")->type_name("FILE")->required();
     auto* filter = c->add_option_group("Of filter");
-    filter->add_option("--channels", a->channels, "Channels that are kept, separated by commas")
-        ->delimiter(',')
-        ->type_name("NAMES");
-    filter->add_option("--box", a->box, "Corners of a box; points outside are left out")->type_name("X,Y,Z,X,Y,Z");
+    filter->add_option("--channels", a->channels, "Channels to keep, separated by commas")->delimiter(',')->type_name("NAMES");
+    filter->add_option("--box", a->box, "Corners of a box; points outside are removed")->type_name("X,Y,Z,X,Y,Z");
     filter
         ->add_option(
             "--depth", a->depth,
-            "One point for each cell of a cube that is cut 2^DEPTH times along each side, and for each side of the surface")
+            "Keep one point for each cell of a cube with 2^DEPTH cells along each side, and for each side of the surface")
         ->check(between(0, 16))
         ->type_name("DEPTH");
-    filter->add_option("--smooth", a->smooth, "Each value becomes the mean within this radius, as texture3d() finds it")
+    filter->add_option("--smooth", a->smooth, "Replace each value by the mean within this radius, as texture3d() computes it")
         ->check(positive())
         ->type_name("RADIUS");
     auto* bounce = c->add_option_group("Of bounce");
-    bounce
-        ->add_option("--albedo", a->albedo,
-                     "What points send of light that arrives: a number, three of them with commas, or a channel")
+    bounce->add_option("--albedo", a->albedo, "Albedo of the points: a number, three numbers separated by commas, or a channel")
         ->type_name("NUMBER|R,G,B|NAME");
-    bounce->add_option("--bounces", a->bounces, "How many times light goes from point to point")
-        ->check(between(1, 100))
-        ->type_name("N");
-    bounce->add_option("--solid-angle", a->solidAngle, "Clusters of points that look larger are taken apart")
+    bounce->add_option("--bounces", a->bounces, "Number of bounces between points")->check(between(1, 100))->type_name("N");
+    bounce->add_option("--solid-angle", a->solidAngle, "Largest solid angle of a cluster; larger ones are split")
         ->check(positive())
         ->type_name("STERADIANS");
     auto* picture = c->add_option_group("Of picture");
-    picture->add_option("--channel", a->channel, "What is drawn; normals when none is given")->type_name("NAME");
+    picture->add_option("--channel", a->channel, "Channel to draw; default: the normals")->type_name("NAME");
     picture->add_option("--view", a->view, "Direction of the view: x, y, z, -x, -y, -z")
         ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
         ->type_name("AXIS");
-    picture->add_option("--size", a->size, "Pixels of a side")->check(between(1, 8192))->type_name("PIXELS");
+    picture->add_option("--size", a->size, "Size of the picture, in pixels")->check(between(1, 8192))->type_name("PIXELS");
     c->add_flag("--json", a->json, "As JSON: what info tells under \"files\", messages under \"diagnostics\"");
     c->footer("alpenglow ptc brick room.ptc room.bkm. docs/pointclouds.md describes the files.");
     c->callback([a, status] {
         nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
         Diagnostics diags(printerOr(a->json, said));
         const size_t least = a->action == "info" ? 1 : 2;
-        if (a->files.size() < least || (least == 2 && a->action != "merge" && a->files.size() != 2))
-            throw CLI::ValidationError("files",
-                                       a->action + (a->action == "merge" ? " takes clouds and the name of what they become"
-                                                    : least == 1         ? " takes files"
-                                                                         : " takes a file and the name of what is written"));
+        const bool several = a->action == "merge" || a->action == "brick";
+        if (a->files.size() < least || (least == 2 && !several && a->files.size() != 2))
+            throw CLI::ValidationError("files", a->action + (several      ? " takes clouds and the name of what they become"
+                                                             : least == 1 ? " takes files"
+                                                                          : " takes a file and the name of what is written"));
         if (least == 2) refuseOwnInput(a->files);
         if (!a->box.empty()) {
             const auto corners = parseNumbers(a->box, 6);

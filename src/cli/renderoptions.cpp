@@ -134,32 +134,34 @@ void takeScenes(RenderArguments& a) {
 
 void addScenes(CLI::App& c, RenderArguments& a) {
     c.add_option("scenes", a.scenes,
-                 "RIB files, ASCII, binary or gzipped; - is standard input, which is also read where no file is named. A model "
-                 "(.ply, .obj) is shown whole under a sky. Each file starts from the default state; a file of options without "
-                 "a world holds for all that follow")
+                 "RIB files (ASCII, binary, gzipped) or models (.ply, .obj, .glb, .fbx and others: shown under a sky by a camera "
+                 "that sees all of it). - or no file: standard input. Each file starts from the default state; options of a file "
+                 "without a world apply to all later files")
         ->type_name("FILE");
+    c.add_option("--time", a.modelTime, "Seconds of its animation at which a model (.glb, .fbx, ...) is shown")
+        ->type_name("SECONDS");
 }
 
 void addPictures(CLI::App& c, RenderArguments& a) {
     render::RenderSettings& s = a.settings;
     c.add_option(
          "-o", s.output,
-         std::string("Write the picture to FILE instead of the scene's displays; the extension chooses the format (") +
+         std::string("Write the picture to FILE instead of the scene's displays; the extension selects the format (") +
              display::kPictureExtensions +
-             "). Depth and shadow maps stay, and further displays of other outputs. # or %04d in the name becomes the number of "
-             "the frame; in a scene of several frames a name without it gets the number before the extension. - is standard "
-             "output: PNG, or the format of the scene's first display (openexr, tiff, jpeg), frames one after the other")
+             "). Depth maps, shadow maps and displays of other outputs are still written. # or %04d stands for the frame number; "
+             "without it, the number is inserted before the extension if the scene has several frames. -: write to standard "
+             "output, as PNG or in the format of the scene's first display (openexr, tiff, jpeg), one frame after the other")
         ->type_name("FILE")
         ->group("Pictures");
     c.add_option("--display", a.displays,
-                 "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z; tev:HOST:PORT shows the growing pictures "
-                 "in that viewer")
+                 "Add a display, for example png:view.png or openexr:all.exr:rgba,N,z; tev:HOST:PORT shows the picture in the "
+                 "viewer tev while it renders")
         ->type_name("TYPE:NAME[:MODE]")
         ->allow_extra_args(false)
         ->group("Pictures");
     c.add_flag("--preview{auto}", a.preview,
-               "Show the picture in the terminal as it grows, by the graphics of kitty or sixels where it has them, else in half "
-               "blocks; --preview=kitty, sixel or blocks chooses")
+               "Show the picture in the terminal while it renders: by kitty or sixel graphics if the terminal has them, else by "
+               "half blocks; --preview=kitty, sixel or blocks selects one")
         ->check(CLI::IsMember({"auto", "kitty", "sixel", "blocks"}))
         ->group("Pictures");
     c.add_option("--format", a.format, "Size of the picture in pixels")->type_name("WxH")->group("Pictures");
@@ -167,59 +169,63 @@ void addPictures(CLI::App& c, RenderArguments& a) {
         ->check(between(1e-4, 1e4))
         ->type_name("F")
         ->group("Pictures");
-    c.add_option("--crop", a.crop, "Render only this part, in fractions of the picture from its upper left")
+    c.add_option("--crop", a.crop, "Render only this window, in fractions of the picture from its upper left corner")
         ->type_name("X0,X1,Y0,Y1")
         ->group("Pictures");
     c.add_option("--gamma", a.gamma,
-                 "Curve of the pictures instead of Exposure's, or that of path: a display gamma, 1 for none, or srgb (PNG, JPEG "
-                 "and TIFF of 8 bits; docs/colour.md)")
+                 "Transfer curve of the pictures, instead of that of Exposure or of path: a display gamma, 1 for linear, or srgb "
+                 "(8-bit PNG, JPEG and TIFF; docs/colour.md)")
         ->type_name("G|srgb")
         ->group("Pictures");
-    c.add_option("--frames", a.frames, "Only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");
+    c.add_option("--frames", a.frames, "Render only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");
 }
 
 void addQuality(CLI::App& c, RenderArguments& a) {
     render::RenderSettings& s = a.settings;
-    c.add_option("--hider", s.hider, "hidden, raytrace, path or photon, instead of the scene's Hider")
+    c.add_option("--hider", s.hider, "Override the scene's Hider")
         ->check(CLI::IsMember({"hidden", "raytrace", "path", "photon"}))
         ->type_name("NAME")
         ->group("Quality");
-    c.add_option("--spp", s.spp, "Samples per pixel instead of PixelSamples (path without either: 64)")
+    c.add_option("--spp", s.spp, "Samples per pixel, overrides PixelSamples (default of path: 64)")
         ->check(wholeBetween(1, limits::kSamplesPerPixel))
         ->type_name("N")
         ->group("Quality");
     c.add_option(
          "--noise", s.noise,
-         "path: go on until the noise that is printed at the end is at most E, for example 0.01: the mean relative error of "
-         "the light on surfaces")
+         "path: render until the printed noise, the mean relative error of the light on surfaces, is at most E, for example 0.01")
         ->check(positive("0.02 for 2 %"))
         ->type_name("E")
         ->group("Quality");
-    c.add_option("--time", s.seconds, "path: go on for about so long")->check(positive())->type_name("SECONDS")->group("Quality");
-    c.add_option("--samples", a.samples,
-                 "path: only samples A to B-1 of every pixel; a part file is written beside the picture, for merge")
+    c.add_option("--time", s.seconds, "path: stop after approximately this many seconds")
+        ->check(positive())
+        ->type_name("SECONDS")
+        ->group("Quality");
+    c.add_option(
+         "--samples", a.samples,
+         "path: render only samples A to B-1 of every pixel, and write a part file next to the picture for alpenglow merge")
         ->type_name("A:B")
         ->group("Quality");
-    c.add_option("--part", a.part, "path: only part K of N of the samples, which are shared evenly; else as --samples")
+    c.add_option("--part", a.part, "path: render the K-th of N equal sample ranges; otherwise like --samples")
         ->type_name("K/N")
         ->excludes("--samples")
         ->group("Quality");
     c.add_option("--seed", a.seed,
-                 "Seed of all random numbers; same seed, same bits. frame: the number of each frame, so that the noise of an "
-                 "animation changes")
+                 "Seed of all random numbers; equal seeds give equal bits. frame: use the number of each frame, so that noise "
+                 "changes from frame to frame")
         ->type_name("N|frame")
         ->group("Quality");
-    c.add_option("--max-depth", s.maxDepth, "Greatest number of bounces")
+    c.add_option("--max-depth", s.maxDepth, "Maximum number of bounces")
         ->check(wholeBetween(0, limits::kPathDepth))
         ->type_name("N")
         ->group("Quality");
-    c.add_option("--sample-clamp", s.sampleClamp, "Scale samples brighter than X down to it: less noise, but a bias")
+    c.add_option("--sample-clamp", s.sampleClamp, "Scale samples brighter than X down to X: less noise, but biased")
         ->check(notNegative())
         ->type_name("X")
         ->group("Quality");
-    c.add_flag("--no-direct", a.noDirect, "Leave direct light out")->group("Quality");
-    c.add_flag("--no-indirect", a.noIndirect, "Leave diffuse interreflection out")->group("Quality");
-    c.add_flag("--unbiased", s.unbiased, "Do not tame shaders that reflect more than they receive")->group("Quality");
+    c.add_flag("--no-direct", a.noDirect, "Omit direct light")->group("Quality");
+    c.add_flag("--no-indirect", a.noIndirect, "Omit diffuse interreflection")->group("Quality");
+    c.add_flag("--unbiased", s.unbiased, "Disable energy clamping of shaders that reflect more light than they receive")
+        ->group("Quality");
     c.add_option("--preset", a.preset,
                  "slproject: path, gamma 2.2, sample clamp 3, local roulette, box filter, Pathtraced_<spp>_<no>.png")
         ->check(CLI::IsMember({"slproject"}))
@@ -230,67 +236,66 @@ void addQuality(CLI::App& c, RenderArguments& a) {
 void addMachine(CLI::App& c, RenderArguments& a) {
     render::RenderSettings& s = a.settings;
     c.add_option("--threads", s.threads,
-                 "Threads; when not given as many processors as the process may use (affinity, control groups, Slurm). The "
-                 "picture does not depend on it")
+                 "Number of threads; default: all processors available to the process (affinity, control groups, Slurm). Does "
+                 "not affect the picture")
         ->check(wholeBetween(1, 1024))
         ->type_name("N")
         ->group("Machine");
     c.add_option("--frames-at-once", a.framesAtOnce,
-                 "Draw N frames of an animation at a time, each by its part of --threads and --memory-limit. Pictures and "
-                 "messages are the same, in the order of the frames; a frame that needs files of an earlier one waits")
+                 "Render N frames of an animation at a time and share --threads and --memory-limit among them. Pictures, "
+                 "messages and their order do not change; a frame that reads a file of an earlier frame waits for it")
         ->check(wholeBetween(1, limits::kFramesAtOnce))
         ->type_name("N")
         ->group("Machine");
-    c.add_option("--lanes", s.lanes, "Points a shader works on at once; the picture does not depend on it")
+    c.add_option("--lanes", s.lanes, "SIMD width of shaders, in points; does not affect the picture")
         ->check(CLI::IsMember({4, 8, 16}))
         ->type_name("N")
         ->group("Machine");
-    c.add_option(
-         "--memory-limit", a.memory,
-         "End with status 4 rather than take more memory than SIZE, for example 800M or 4G; nine tenths of the machine's when "
-         "not given")
+    c.add_option("--memory-limit", a.memory,
+                 "Stop with status 4 before memory use exceeds SIZE, for example 800M or 4G; default: nine tenths of the "
+                 "machine's memory")
         ->type_name("SIZE")
         ->group("Machine");
-    c.add_option("--checkpoint", s.checkpoint, "path: keep the samples so far in FILE, every half minute and at the end")
+    c.add_option("--checkpoint", s.checkpoint, "path: save the samples to FILE every half minute and at the end")
         ->type_name("FILE")
         ->group("Machine");
     CLI::Option* resume =
-        c.add_flag("--resume", s.resume, "Begin with the samples in the checkpoint; without one, begin anew")->group("Machine");
-    c.add_flag("--restart", s.restart, "Begin anew and replace the checkpoint that is there")->excludes(resume)->group("Machine");
-    c.add_option("--stats", s.statsFile, "Write figures of the render and of each frame as JSON (docs/statistics.md)")
+        c.add_flag("--resume", s.resume, "Continue from the checkpoint; start anew if there is none")->group("Machine");
+    c.add_flag("--restart", s.restart, "Start anew and replace an existing checkpoint")->excludes(resume)->group("Machine");
+    c.add_option("--stats", s.statsFile, "Write statistics of the render and of each frame as JSON (docs/statistics.md)")
         ->type_name("FILE.json")
         ->group("Machine");
     c.add_flag("--stamp", s.stamp,
-               "Write command, host, date and seconds into the pictures; without it equal pictures are equal files")
+               "Store command, host, date and render time in the pictures; without it, equal pictures are equal files")
         ->group("Machine");
     c.add_option("--pixel", a.pixel,
-                 "Print red, green, blue and coverage of one pixel, or of one of its samples, and write no picture")
+                 "Print red, green, blue and coverage of one pixel or of one of its samples; write no picture")
         ->type_name("X,Y[,SAMPLE]")
         ->group("Machine");
-    c.add_flag("--watch", a.watch, "Render again whenever a file changes that the scene uses: shaders, includes, maps, archives")
+    c.add_flag("--watch", a.watch, "Render again when a file of the scene changes: shaders, includes, maps, archives")
         ->group("Machine");
 }
 
 void addInput(CLI::App& c, RenderArguments& a) {
     render::RenderSettings& s = a.settings;
     addDialect(c, a.settings.dialect);
-    c.add_option("--cwd", a.folder, "Work in this folder: names on the command line and in the scene begin there")
+    c.add_option("--cwd", a.folder, "Working folder: relative names on the command line and in the scene start here")
         ->type_name("DIR")
         ->group("Input");
     c.add_option("--searchpath", a.searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false)
         ->group("Input");
-    c.add_option("--rib", a.rib, "Requests that are read before the scene")
+    c.add_option("--rib", a.rib, "RIB requests to read before the scene")
         ->type_name("'REQUESTS'")
         ->allow_extra_args(false)
         ->group("Input");
-    c.add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins")->group("Input");
+    c.add_flag("--allow-exec", s.allowExec, "Allow the scene to run programs and load plug-ins")->group("Input");
     c.add_flag("--allow-read", s.allowRead,
-               "Let the scene read maps and archives anywhere, not only below its folders and --searchpath")
+               "Allow the scene to read maps and archives anywhere, not only below its own folders and --searchpath")
         ->group("Input");
     c.add_flag("--allow-write", s.allowWrite,
-               "Let the scene write outside the current folder, hidden files, and over what is no picture")
+               "Allow the scene to write outside the current folder, to hidden files, and over files that are not pictures")
         ->group("Input");
 }
 
@@ -299,8 +304,8 @@ void addMessages(CLI::App& c, RenderArguments& a) {
         ->check(CLI::IsMember({"auto", "bar", "plain", "none"}))
         ->type_name("MODE")
         ->group("Messages");
-    c.add_flag("-q,--quiet", a.quiet, "Errors only: no progress, no warnings, no table at the end")->group("Messages");
-    c.add_flag("-v,--verbose", a.verbose, "Notes too")->group("Messages");
+    c.add_flag("-q,--quiet", a.quiet, "Print errors only: no progress, no warnings, no table at the end")->group("Messages");
+    c.add_flag("-v,--verbose", a.verbose, "Print notes too")->group("Messages");
 }
 
 } // namespace
@@ -321,7 +326,7 @@ void addRenderOptions(CLI::App& c, RenderArguments& a) {
              "  alpenglow render --hider path --noise 0.02 -o out.exr scene.rib\n"
              "  alpenglow render --samples 0:32 -o a.exr scene.rib    and 32:64 to b.exr elsewhere; then merge a.exr b.exr -o "
              "whole.exr\n"
-             "Ctrl-C keeps the passes that are whole and writes the picture; a second Ctrl-C ends at once.");
+             "Ctrl-C keeps the complete passes and writes the picture; a second Ctrl-C stops at once.");
     for (CLI::Option* o : c.get_options())
         if (o->get_items_expected_max() == 1) o->take_last(); // a script's option gives way to the user's behind it
 }

@@ -347,14 +347,14 @@ void addShade(CLI::App& app, int* status) {
     CLI::App* c = app.add_subcommand("shade", "Show a shader on a lit ball, or over a unit patch");
     c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->type_name("FILE")->required();
     c->add_option("-o", a->output,
-                  std::string("The picture (") + display::kPictureExtensions +
-                      "; - is standard output); of a patch Ci, Oi, or what --output names")
+                  std::string("Picture to write (") + display::kPictureExtensions +
+                      "; - is standard output); for a patch: Ci and Oi, or the variables of --output")
         ->type_name("FILE")
         ->capture_default_str();
-    c->add_flag("--patch", a->patch, "The unit patch instead of the ball; also what --output, --iterations and --vectors mean");
+    c->add_flag("--patch", a->patch, "Shade the unit patch instead of the ball; implied by --output, --iterations and --vectors");
     c->add_option(
          "--kind", a->kind,
-         "Of a class that is shaders of several kinds: which; else the first of surface, displacement, light, volume, imager")
+         "Kind of shader to use of a class that has several; default: the first of surface, displacement, light, volume, imager")
         ->check(CLI::IsMember({"surface", "displacement", "light", "volume", "imager"}))
         ->type_name("KIND");
     c->add_option("--param", a->params, "Set a parameter: Kd=0.5, color=1,0,0, name=text")
@@ -362,26 +362,27 @@ void addShade(CLI::App& app, int* status) {
         ->allow_extra_args(false);
     c->add_option("--output", a->outputs, "Variables to write instead of Ci and Oi")->type_name("NAME")->allow_extra_args(false);
     c->add_option("--format", a->format, "Size of the picture")->type_name("WxH")->capture_default_str();
-    c->add_option(
-         "--spp", a->spp,
-         "Samples a pixel of the ball, 64 when not given; points a pixel of the patch, rounded to a square, averaged, 1 when not "
-         "given")
+    c->add_option("--spp", a->spp,
+                  "Samples per pixel of the ball (default 64), or points per pixel of the patch, rounded to a square number and "
+                  "averaged (default 1)")
         ->check(wholeBetween(1, 4096))
         ->type_name("N");
     c->add_option("--gamma", a->gamma, "Display gamma of the picture")->check(between(0.01, 100))->type_name("G");
     c->add_option("--iterations", a->iterations,
-                  "Time this many runs over 4096 points and print ns a point (one thread, processor time)")
+                  "Time this many runs over 4096 points and print nanoseconds per point (one thread, processor time)")
         ->check(wholeBetween(1, 100000000))
         ->type_name("N");
-    c->add_option("--lanes", a->lanes, "Width of the machine code")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
-    c->add_option("--vectors", a->vectors, "Vectors in flight; 0 lets the compiler choose")
+    c->add_option("--lanes", a->lanes, "SIMD width of the machine code, in points")
+        ->check(CLI::IsMember({4, 8, 16}))
+        ->type_name("N");
+    c->add_option("--vectors", a->vectors, "Vectors in flight; 0: chosen by the compiler")
         ->check(wholeBetween(0, 4))
         ->type_name("K");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, #include and maps, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
     addDialect(*c, a->dialect);
-    c->add_flag("--allow-exec", a->allowExec, "Let the shader load plug-ins");
+    c->add_flag("--allow-exec", a->allowExec, "Allow the shader to load plug-ins");
     c->footer(
         "The ball lies on a floor under a lamp and a sky, and is path-traced: a surface is on the ball, a displacement pushes "
         "it, a\n"

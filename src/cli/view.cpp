@@ -5,10 +5,12 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/foreignmodel.h"
 #include "cli/modelscene.h"
 #include "cli/ranges.h"
 #include "cli/shaderdescription.h"
 #include "cli/version.h"
+#include "models/modelfile.h"
 #include "ri/models/model.h"
 #include "rsl/compiler.h"
 #include <CLI/CLI.hpp>
@@ -84,6 +86,7 @@ std::string openInBrowser(std::string address) {
 int runView(const ViewArguments& a) {
     const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
+    const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     view::ViewOptions o;
     o.settings = a.settings;
     o.scene = a.scene;
@@ -93,16 +96,21 @@ int runView(const ViewArguments& a) {
     o.reader.regularFiles = true;
     o.reader.allowExec = a.settings.allowExec;
     o.reader.allowRead = a.settings.allowRead;
-    o.read = [&a](ri::RibReader& reader) {
+    ModelFolder folder; // of the maps of a model
+    if (const std::string& f = folder.pathFor({a.scene}); !f.empty()) o.settings.texturePaths.push_back(f);
+    Diagnostics said(print);
+    o.read = [&a, &folder, &said](ri::RibReader& reader) {
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         reader.nextScene();
-        if (ri::namedAsModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0) reader.readMemory(modelScene(a.scene), a.scene);
+        if (models::namedAsForeignModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0) {
+            if (const std::string text = folder.scene(a.scene, 0, said); !text.empty()) reader.readMemory(text, a.scene);
+        } else if (ri::namedAsModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0)
+            reader.readMemory(modelScene(a.scene), a.scene);
         else reader.readFile(a.scene);
     };
     o.describe = [dialect = a.settings.dialect](const std::string& name, const std::vector<std::string>& paths) {
         return aboutShader(name, paths, dialect);
     };
-    const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     o.print = print;
     std::string fault;
     const view::ViewEnd end = view::view(
@@ -132,41 +140,39 @@ void addView(CLI::App& app, int* status) {
     render::RenderSettings& s = a->settings;
     s.software = softwareName();
     CLI::App* c = app.add_subcommand("view", "Show a scene in the browser while it renders (docs/view.md)");
-    c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj)")
+    c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj, .glb, ...)")
         ->type_name("FILE")
         ->required();
-    c->add_option("--port", a->port, "Port of 127.0.0.1; a free one when not given")
-        ->check(wholeBetween(1, 65535))
-        ->type_name("N");
-    c->add_flag("--open", a->open, "Open the page in the desktop's browser (xdg-open)");
-    c->add_flag("--watch", a->watch, "Read the scene again whenever a file changes that it uses; the camera stays");
+    c->add_option("--port", a->port, "Port on 127.0.0.1; default: a free port")->check(wholeBetween(1, 65535))->type_name("N");
+    c->add_flag("--open", a->open, "Open the page in the default browser (xdg-open)");
+    c->add_flag("--watch", a->watch, "Reload the scene when one of its files changes; keep the camera");
     CLI::Option* frame =
-        c->add_option("--frame", a->frame, "Number of the frame; the first with a picture when not given")->type_name("N");
+        c->add_option("--frame", a->frame, "Frame number; default: the first frame with a picture")->type_name("N");
     c->add_option("--format", a->format, "Size of the picture in pixels")->type_name("WxH");
     c->add_option("--resolution-factor", s.resolutionFactor, "Scale both sides of the picture")
         ->check(between(1e-4, 1e4))
         ->type_name("F");
-    c->add_option("--hider", s.hider, "hidden, raytrace or path, instead of the scene's Hider")
+    c->add_option("--hider", s.hider, "Override the scene's Hider")
         ->check(CLI::IsMember({"hidden", "raytrace", "path"}))
         ->type_name("NAME");
-    c->add_option("--gamma", a->gamma, "Curve that the page begins with: a display gamma, or srgb")->type_name("G|srgb");
+    c->add_option("--gamma", a->gamma, "Initial transfer curve of the page: a display gamma, or srgb")->type_name("G|srgb");
     c->add_option("--seed", s.seed, "Seed of all random numbers")->type_name("N");
-    c->add_option("--threads", s.threads, "Threads; when not given as many processors as the process may use")
+    c->add_option("--threads", s.threads, "Number of threads; default: all processors available to the process")
         ->check(wholeBetween(1, 1024))
         ->type_name("N");
-    c->add_option("--memory-limit", a->memory, "Take no more memory than SIZE, for example 800M or 4G")->type_name("SIZE");
+    c->add_option("--memory-limit", a->memory, "Use no more memory than SIZE, for example 800M or 4G")->type_name("SIZE");
     addDialect(*c, s.dialect);
-    c->add_option("--cwd", a->folder, "Work in this folder; pictures are saved there")->type_name("DIR");
+    c->add_option("--cwd", a->folder, "Working folder; pictures are saved here")->type_name("DIR");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders, textures and archives, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);
-    c->add_option("--rib", a->rib, "Requests that are read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false);
-    c->add_flag("--allow-exec", s.allowExec, "Let the scene run programs and load plug-ins");
+    c->add_option("--rib", a->rib, "RIB requests to read before the scene")->type_name("'REQUESTS'")->allow_extra_args(false);
+    c->add_flag("--allow-exec", s.allowExec, "Allow the scene to run programs and load plug-ins");
     c->add_flag("--allow-read", s.allowRead,
-                "Let the scene read maps and archives anywhere, not only below its folders and --searchpath");
-    c->add_flag("-q,--quiet", a->quiet, "Errors only");
-    c->add_flag("-v,--verbose", a->verbose, "Notes too");
-    c->footer("Prints the address of the page, with a token that nobody else knows, and serves it on 127.0.0.1 until Ctrl-C.");
+                "Allow the scene to read maps and archives anywhere, not only below its own folders and --searchpath");
+    c->add_flag("-q,--quiet", a->quiet, "Print errors only");
+    c->add_flag("-v,--verbose", a->verbose, "Print notes too");
+    c->footer("Prints the address of the page, which contains a secret token, and serves the page on 127.0.0.1 until Ctrl-C.");
     c->callback([a, frame, status] {
         a->framed = frame->count() > 0;
         checkLate(*a);

@@ -275,6 +275,12 @@ def crowd():
     grid.instance_type, grid.show_instancer_for_render = "VERTS", False
     ball.location = (0, 0, 0)
     ball.parent = grid
+    text = bpy.data.curves.new("text", "FONT")
+    text.body, text.size, text.extrude = "RIB", 0.5, 0.05
+    text.materials.append(principled("letters", Base_Color=(0.1, 0.2, 0.6), Roughness=0.5))
+    shown("text", text, (-0.6, -3, 0.02), (1.2, 0, 0))
+    if bpy.app.version < (4, 0, 0):  # whose groups of nodes are made in another way
+        boxes()
     head = sphere("head", (-2.4, -0.6, 0.9), 0.7, principled("skin", Base_Color=(0.5, 0.3, 0.2), Roughness=0.8), 32)
     head.data.materials.append(
         principled("hair", Base_Color=(0.45, 0.22, 0.08), Roughness=0.6, **{name_of("Specular", "Specular_IOR_Level"): 0.0})
@@ -291,6 +297,31 @@ def crowd():
     o.modifiers.new("smooth", "SUBSURF").render_levels = 3
     for p in o.data.polygons:
         p.use_smooth = True
+
+
+def boxes():
+    """Cubes that geometry nodes put on the points of a grid."""
+    group = bpy.data.node_groups.new("boxes", "GeometryNodeTree")
+    group.inputs.new("NodeSocketGeometry", "Geometry")
+    group.outputs.new("NodeSocketGeometry", "Geometry")
+    first, last, on, cube, paint = (
+        group.nodes.new(k)
+        for k in (
+            "NodeGroupInput",
+            "NodeGroupOutput",
+            "GeometryNodeInstanceOnPoints",
+            "GeometryNodeMeshCube",
+            "GeometryNodeSetMaterial",
+        )
+    )
+    cube.inputs[0].default_value = (0.2, 0.2, 0.2)
+    paint.inputs["Material"].default_value = principled("boxes", Base_Color=(0.8, 0.7, 0.2), Roughness=0.6)
+    group.links.new(cube.outputs[0], paint.inputs[0])
+    group.links.new(paint.outputs[0], on.inputs["Instance"])
+    group.links.new(first.outputs[0], on.inputs[0])
+    group.links.new(on.outputs[0], last.inputs[0])
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=5, y_subdivisions=3, size=1.6, location=(-3.6, -3, 0.1))
+    bpy.context.object.modifiers.new("boxes", "NODES").node_group = group
 
 
 def motion_of(o, path, first, last):

@@ -74,8 +74,11 @@ def stopped(program, out):
         os.remove(picture)
     script = os.path.join(HERE, "blender_stop.py")
     with subprocess.Popen(
-        ["blender", "-b", "--factory-startup", "--python", script, "--", picture], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        text=True, env=environment
+        ["blender", "-b", "--factory-startup", "--python", script, "--", picture],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env=environment,
     ) as run:
         seen = next((line for line in run.stdout if "/1000000 samples" in line), None)  # of the program's own progress
         run.send_signal(signal.SIGINT)

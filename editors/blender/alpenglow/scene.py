@@ -2,6 +2,7 @@
 import os
 import shutil
 
+import bpy
 import numpy as np
 
 from . import camera, geometry, hair, world
@@ -11,7 +12,8 @@ from .materials import Images, Materials
 from .report import Report
 from .rib import Block, Rib
 
-MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+MESHES = {"MESH"}
+MESH_BESIDE = {"CURVE", "SURFACE", "FONT", "META"}  # Blender lists what they evaluate to as an object of type MESH besides
 IGNORED = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 SHADERS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "shaders")
 
@@ -107,7 +109,7 @@ class Scene:
                 if inst.show_self:
                     lamps[key] = (obj, inst.matrix_world.copy())
                 continue
-            if inst.show_self or inst.show_particles:
+            if (inst.show_self or inst.show_particles) and obj.type not in MESH_BESIDE:
                 self._object(inst, obj, key, first)
         for key, (obj, place) in lamps.items():
             if first:
@@ -115,11 +117,21 @@ class Scene:
             elif key in self.lamps:
                 self.lamps[key].matrices.append(place)
 
+    @staticmethod
+    def _own(obj):
+        """Whether an object shows its own data: instances of geometry nodes show another mesh under the name of what makes them."""
+        original = obj.original.data
+        return (
+            original is None
+            or obj.data is None
+            or type(original) is not type(obj.data)
+            or obj.data.name_full == original.name_full
+        )
+
     def _shape_key(self, inst, obj):
-        """What instances share: an object, and data that geometry nodes put in its place."""
-        data = obj.data.name_full if obj.data is not None else ""
-        own = obj.original.data is not None and data == obj.original.data.name_full
-        return (obj.name_full, data if own or not inst.is_instance else (data, obj.data.as_pointer()), inst.show_self)
+        """What instances share."""
+        own = self._own(obj) or not inst.is_instance
+        return (obj.name_full, obj.type, "" if own else obj.data.as_pointer(), inst.show_self)
 
     def _object(self, inst, obj, key, first):
         kind = obj.type
@@ -153,6 +165,9 @@ class Scene:
                 self._clear(obj)
 
     def _mesh_of(self, obj):
+        """The evaluated mesh. Of instances of geometry nodes to_mesh() would give the object that makes them."""
+        if isinstance(obj.data, bpy.types.Mesh):
+            return obj.data
         try:
             return obj.to_mesh(preserve_all_data_layers=True, depsgraph=self.depsgraph)
         except RuntimeError:
@@ -160,14 +175,16 @@ class Scene:
 
     @staticmethod
     def _clear(obj):
-        obj.to_mesh_clear()
+        if not isinstance(obj.data, bpy.types.Mesh):
+            obj.to_mesh_clear()
 
     @staticmethod
     def _base(obj, me):
         return obj.original.data
 
     def _shape(self, inst, obj):
-        slots = [s.material for s in obj.material_slots] or list(getattr(obj.data, "materials", None) or []) or [None]
+        own = self._own(obj) or not inst.is_instance
+        slots = [s.material for s in obj.material_slots if own] or list(getattr(obj.data, "materials", None) or []) or [None]
         shape = Shape(obj.name, slots)
         written = [self.materials.get(m) for m in slots]
         needs = set().union(*(w.needs for w in written))
@@ -180,7 +197,7 @@ class Scene:
             return shape
         if inst.show_self:
             self._read_mesh(shape, obj, needs)
-        if getattr(inst, "show_particles", True) and obj.type == "MESH":
+        if own and getattr(inst, "show_particles", True) and obj.original.type == "MESH":
             self._read_hair(shape, obj)
         return shape
 
@@ -202,7 +219,7 @@ class Scene:
             shape.mesh = geometry.read(obj, me, needs, obj.name, self.report)
         shape.count = len(me.vertices)
         shape.deforms = not smooth and (
-            len(obj.modifiers) > 0 or getattr(obj.data, "shape_keys", None) is not None or obj.type != "MESH"
+            len(obj.modifiers) > 0 or getattr(obj.data, "shape_keys", None) is not None or obj.original.type != "MESH"
         )
         self._clear(obj)
 
@@ -375,7 +392,7 @@ def user(inst, obj):
 def subdivided(obj, materials, settings, report):
     """Whether an object is written as a SubdivisionMesh: its one modifier that renders is Catmull and Clark's."""
     active = [m for m in obj.modifiers if m.show_render and m.type != "PARTICLE_SYSTEM"]
-    if not settings.subdivision or obj.type != "MESH" or not active or active[-1].type != "SUBSURF":
+    if not settings.subdivision or obj.original.type != "MESH" or not active or active[-1].type != "SUBSURF":
         return False
     last = active[-1]
     if last.subdivision_type != "CATMULL_CLARK" or last.render_levels == 0:

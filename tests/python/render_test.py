@@ -171,6 +171,20 @@ class Progress(InFolder):
         with self.assertRaisesRegex(ZeroDivisionError, "of the test"):
             alpenglow.render(BALLS, progress=bad, **ENDLESS)
 
+    def test_what_grows_can_be_seen(self):
+        for hider in ("path", "hidden"):
+            seen = []
+            result = alpenglow.render(BALLS, hider=hider, spp=2000 if hider == "path" else 400, preview=seen.append, threads=1)
+            self.assertGreater(len(seen), 0, hider)
+            self.assertTrue(all(p.data.shape == (32, 48, 4) for p in seen))
+            self.assertLess(numpy.abs(seen[-1].data - result.image).mean(), 0.5)
+
+    def test_an_interrupted_picture_keeps_what_is_there(self):
+        result = alpenglow.render(BALLS, hider="hidden", spp=4000000, format=(64, 64), threads=1,
+                                  progress=lambda t: t["fraction"] < 0.02)
+        self.assertTrue(result.interrupted)
+        self.assertEqual(result.image.shape, (64, 64, 4))
+
     def test_other_threads_run_meanwhile(self):
         turns, over = [0], threading.Event()
 

@@ -54,6 +54,11 @@ class Pictures(InFolder):
             self.assertGreater(result.image[:, :, :3].max(), 0.1)
             numpy.testing.assert_array_equal(result.image, numpy.stack([file[c] for c in "RGBA"], 2))
 
+    def test_output_writes_one_file(self):
+        result = alpenglow.render('Display "a.exr" "openexr" "rgb"\n' + WALL, output="x.png")
+        self.assertEqual(os.listdir("."), ["x.png"])
+        numpy.testing.assert_array_equal(result.image[2, 2, :3], numpy.float32([0.25, 0.5, 1]))  # light, whatever PNG has
+
     def test_crop_window(self):
         result = alpenglow.render(WALL, crop=(0.25, 0.75, 0, 0.5))
         self.assertEqual(result.picture.window, (2, 0, 6, 3))

@@ -98,6 +98,14 @@ vector layerTangent(normal n; vector along; float turn)
     vector u = normalize(along - (along . n) * n), v = n ^ u;
     return (turn == 0) ? u : cos(2 * PI * turn) * u + sin(2 * PI * turn) * v;
 }
+/* Along u where the surface is not the same in all directions; else none, which is as good. */
+vector layerAlong(float anisotropy; normal n)
+{
+    extern vector dPdu;
+    vector u = 0;
+    if (anisotropy != 0) u = layerTangent(n, dPdu, 0);
+    return u;
+}
 /* The direction in which s grows. */
 vector layerDpds()
 {
@@ -110,7 +118,7 @@ vector layerDpds()
 float layerSamples(float samples)
 {
     float depth = 0, n = samples;
-    if (rayinfo("depth", depth) == 1 && depth > 0) n = 1;
+    if (samples > 1 && rayinfo("depth", depth) == 1 && depth > 0) n = 1;
     return max(1, n);
 }
 

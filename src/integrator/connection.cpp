@@ -119,6 +119,8 @@ void Connection::send(const Reached& r) {
     // The light's own surface must not occlude: stop before it by both error bounds.
     const Vec3 end = area ? leavesFrom(lightSampling_.queries.at[k].surface, -r.w) : Vec3();
     if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
+    const float away = light.kind == LightKind::Distant ? 1e38f : length(lightSampling_.queries.value[k].L);
+    if (l.trace && !area && !light.sky && light.kind != LightKind::Distant && away > l.maxDistance) return;
     const Color given = contribution(r);
     const int32_t share = shareOf(l);
     const uint16_t path = paths_.atLobe(l, c_->points[size_t(l.point)], ray, r.w);
@@ -136,9 +138,7 @@ void Connection::send(const Reached& r) {
             {from, normalizeOr(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
         // A ray of trace() sees the sky also behind geometry beyond its distance.
-        const float away = length(lightSampling_.queries.value[k].L);
-        if (l.trace && !light.sky && light.kind != LightKind::Distant && away > l.maxDistance) return;
-        const float far = light.sky ? l.maxDistance : light.kind == LightKind::Distant ? 1e38f : away;
+        const float far = light.sky ? l.maxDistance : away;
         shadows_.queue.push_back(
             {from, r.w, far < 1e30f && !light.sky ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
         if (const float radius = lightSampling_.queries.value[k].shadowRadius; radius > 0) {

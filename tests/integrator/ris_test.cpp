@@ -95,6 +95,60 @@ TEST(RisNetwork, MaterialsWithPatternsDoNotWait) {
     EXPECT_EQ(s.world->facts().suspending, 0);
 }
 
+TEST(RisNetwork, OslAndSeExprGiveWhatTheyCompute) {
+    std::ofstream(shaderFolder() + "/oslcount.osl")
+        << "float twice(float x, output float half) { half = x / 2; return 2 * x; }\n"
+           "surface oslcount(int n = 3, float s = 0 [[int lockgeom = 0]], output color Cout = 0, output float resultF = 0)\n{\n"
+           "  for (int i = 0; i < n; i++) resultF += i / 2;\n  float h;\n  Cout = color(twice(s, h), h, (int)(s * 10.5) + "
+           "fmod(-5, 3));\n}\n";
+    // 0 / 2 + 1 / 2 + 2 / 2 + 3 / 2 of whole numbers are 0, 0, 1, 1.
+    EXPECT_EQ(
+        shown("Pattern \"oslcount\" \"o\" \"int n\" 4\nBxdf \"shownumber\" \"b\" \"reference float x\" [\"o:resultF\"]\n").x, 2);
+    const Color c =
+        shown("Pattern \"oslcount\" \"o\" \"float s\" .4\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"o:Cout\"]\n");
+    EXPECT_NEAR(c.x, .8f, 1e-6);
+    EXPECT_NEAR(c.y, .2f, 1e-6);
+    EXPECT_NEAR(c.z, 4 - 2, 1e-5);
+    const Color e =
+        shown("Pattern \"PxrSeExpr\" \"e\" \"color c1\" [.1 .2 .3] \"float k\" 3 \"string expression\" [\"$a = c1 * k; if (k "
+              "> 2) { $a += [0, 0, 1]; } $a ^ 2 / (a[0] > 5 ? 1 : 2)\"]\nBxdf \"showcolor\" \"b\" \"reference color "
+              "c\" [\"e:resultRGB\"]\n");
+    EXPECT_NEAR(e.x, .3 * .3 / 2, 1e-6);
+    EXPECT_NEAR(e.y, .6 * .6 / 2, 1e-6);
+    EXPECT_NEAR(e.z, 1.9 * 1.9 / 2, 1e-5);
+}
+
+TEST(RisNetwork, VariablesOfThePrimitiveAndAttributesAreRead) {
+    const Color c =
+        shown("Attribute \"user\" \"float gain\" .5\nPattern \"PxrAttribute\" \"a\" \"string varname\" [\"user:gain\"]\n"
+              "Pattern \"PxrPrimvar\" \"p\" \"string varname\" [\"nobody\"] \"string type\" [\"color\"] \"color "
+              "defaultColor\" [.2 .4 .6]\nPattern \"PxrMix\" \"m\" \"reference color color2\" [\"p:resultRGB\"] \"color "
+              "color1\" [0 0 0] \"reference float mix\" [\"a:resultF\"]\nBxdf \"showcolor\" \"b\" \"reference color "
+              "c\" [\"m:resultRGB\"]\n");
+    EXPECT_NEAR(c.x, .1f, 1e-6);
+    EXPECT_NEAR(c.z, .3f, 1e-6);
+    writeShaders();
+    Scene s(
+        "WorldBegin\nPattern \"PxrPrimvar\" \"p\" \"string varname\" [\"tint\"] \"string type\" [\"color\"]\nBxdf \"showcolor\" "
+        "\"b\" \"reference color c\" [\"p:resultRGB\"]\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2] \"vertex color tint\" [0 "
+        "0 0  1 "
+        "0 0  1 0 0  0 0 0]\nWorldEnd\n",
+        path());
+    EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {.5f, .25f, 2})).x, .75f, 1e-5);
+}
+
+TEST(RisNetwork, DisplacementTakesPatternsToo) {
+    writeShaders();
+    writeShader("showdepth", "surface showdepth() { Oi = 1; Ci = color(zcomp(transform(\"world\", P)), 0, 0); }\n");
+    Scene s(std::string("WorldBegin\nAttribute \"displacementbound\" \"float sphere\" [2]\nPattern \"fixed\" \"f\"\nDisplace "
+                        "\"PxrDisplace\" \"d\" \"float dispAmount\" [.1] \"reference float dispScalar\" [\"f:resultF\"]\nBxdf "
+                        "\"showdepth\" \"b\"\n") +
+                kSquare + "WorldEnd\n",
+            path());
+    const double z = s.one(rayTo({0, 0, 0}, {.1f, .1f, 2})).x;
+    EXPECT_NEAR(std::fabs(z - 2), .7, 1e-4);
+}
+
 /// diffuse() of white paint at the middle of the square, which faces a light behind the eye.
 void expectPaint(const std::string& light, double want, const std::string& what, double precision = .01) {
     writeShaders();

@@ -1,5 +1,5 @@
 // Requests of RIS: networks of patterns by handle, lights that are on everywhere, the hider that follows (docs/ris.md).
-#include "ri/collect.h"
+#include "collect.h"
 #include "ri/ris.h"
 #include "scene/network.h"
 

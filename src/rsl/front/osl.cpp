@@ -7,13 +7,13 @@
 namespace alpenglow::rsl::front {
 namespace {
 
-using Kind = OslWord::Kind;
+using OslKind = OslWord::Kind;
 
-constexpr int kDepth = 200; // of brackets: each is a call of text()
+constexpr int kOslDepth = 200; // of brackets: each is a call of text()
 
-class Translator {
+class OslTranslator {
 public:
-    Translator(std::vector<OslWord> words, std::string path, Diagnostics& d)
+    OslTranslator(std::vector<OslWord> words, std::string path, Diagnostics& d)
         : w_(std::move(words)), path_(std::move(path)), diagnostics_(d) {}
 
     std::optional<std::string> run() {
@@ -34,19 +34,21 @@ private:
                                 "this OSL shader is not read: " + what, hint);
         failed_ = true;
     }
-    bool is(size_t i, std::string_view text) const { return i < w_.size() && w_[i].text == text && w_[i].kind != Kind::String; }
-    bool isType(size_t i) const { return i < w_.size() && w_[i].kind == Kind::Name && isOslType(w_[i].text); }
-    bool isName(size_t i) const { return i < w_.size() && w_[i].kind == Kind::Name; }
-    static bool opens(const OslWord& w) { return w.kind == Kind::Sign && (w.text == "(" || w.text == "[" || w.text == "{"); }
+    bool is(size_t i, std::string_view text) const {
+        return i < w_.size() && w_[i].text == text && w_[i].kind != OslKind::String;
+    }
+    bool isType(size_t i) const { return i < w_.size() && w_[i].kind == OslKind::Name && isOslType(w_[i].text); }
+    bool isName(size_t i) const { return i < w_.size() && w_[i].kind == OslKind::Name; }
+    static bool opens(const OslWord& w) { return w.kind == OslKind::Sign && (w.text == "(" || w.text == "[" || w.text == "{"); }
 
     bool pairBrackets() {
         std::vector<size_t> open;
         for (size_t i = 0; i < w_.size(); ++i) {
             if (opens(w_[i])) {
-                if (open.size() > size_t(kDepth)) return fail(i, "its brackets are nested too deeply"), false;
+                if (open.size() > size_t(kOslDepth)) return fail(i, "its brackets are nested too deeply"), false;
                 open.push_back(i);
             }
-            if (w_[i].kind == Kind::Sign && (w_[i].text == ")" || w_[i].text == "]" || w_[i].text == "}")) {
+            if (w_[i].kind == OslKind::Sign && (w_[i].text == ")" || w_[i].text == "]" || w_[i].text == "}")) {
                 if (open.empty()) return fail(i, "a bracket closes that was not opened"), false;
                 close_[open.back()] = i;
                 open.pop_back();
@@ -87,7 +89,7 @@ private:
     // --- what stands outside of everything: shaders, functions ---
 
     size_t declaration(size_t i, std::string& out) {
-        if (w_[i].kind == Kind::Directive) {
+        if (w_[i].kind == OslKind::Directive) {
             const bool standard = w_[i].text.find("include") != std::string::npos && w_[i].text.find("osl") != std::string::npos;
             out += lines(w_[i]) + (standard ? "" : w_[i].text);
             return i + 1;
@@ -198,13 +200,13 @@ private:
     }
     bool isWhole(size_t i) const {
         if (i >= w_.size()) return false;
-        if (w_[i].kind == Kind::Number) return w_[i].text.find_first_of(".eE") == std::string::npos;
+        if (w_[i].kind == OslKind::Number) return w_[i].text.find_first_of(".eE") == std::string::npos;
         return isName(i) && whole_.count(w_[i].text);
     }
 
     size_t one(size_t i, size_t end, std::string& out) {
         const OslWord& w = w_[i];
-        if (w.kind == Kind::Directive) return out += w.text + "\n", i + 1;
+        if (w.kind == OslKind::Directive) return out += w.text + "\n", i + 1;
         if (is(i, "(") && isType(i + 1) && is(i + 2, ")")) { // a cast
             out += " " + (w_[i + 1].text == "int" ? "osl_int" : w_[i + 1].text) + " ";
             if (w_[i + 1].text != "int") return i + 3;
@@ -220,12 +222,12 @@ private:
             if (part == kParts.end()) return fail(i, "structures are not translated"), end;
             return out += part->second, i + 2;
         }
-        if (w.kind == Kind::Sign &&
+        if (w.kind == OslKind::Sign &&
             (w.text == "<<" || w.text == ">>" || w.text == "&" || w.text == "|" || w.text == "^" || w.text == "~" ||
              w.text.ends_with("&=") || w.text == "|=" || w.text == "^=" || w.text == "<<=" || w.text == ">>="))
             return fail(i, "operators on bits are not translated"), end;
-        if (w.kind != Kind::Name) {
-            out += (w.kind == Kind::Sign ? "" : " ") + w.text;
+        if (w.kind != OslKind::Name) {
+            out += (w.kind == OslKind::Sign ? "" : " ") + w.text;
             return i + 1;
         }
         if (is(i, "and") || is(i, "or") || is(i, "not")) return out += is(i, "and") ? " && " : is(i, "or") ? " || " : "!", i + 1;
@@ -256,7 +258,7 @@ private:
     size_t call(size_t i, std::string& out) {
         const std::string& f = w_[i].text;
         const size_t open = i + 1, end = closing(open) + 1;
-        const bool named = w_[open + 1].kind == Kind::String;
+        const bool named = w_[open + 1].kind == OslKind::String;
         const std::vector<std::string> a = arguments(open);
         if (failed_) return end;
         if (isType(i) && named && a.size() > 1) { // color("hsv", ...)
@@ -326,7 +328,7 @@ private:
 } // namespace
 
 std::optional<std::string> rslFromOsl(const std::string& osl, const std::string& path, Diagnostics& d) {
-    return Translator(oslWords(osl), path, d).run();
+    return OslTranslator(oslWords(osl), path, d).run();
 }
 
 } // namespace alpenglow::rsl::front

@@ -9,11 +9,11 @@
 namespace alpenglow::rsl::front {
 namespace {
 
-bool letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+bool oslLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-class Reader {
+class OslReader {
 public:
-    explicit Reader(std::string_view text) : text_(text) {}
+    explicit OslReader(std::string_view text) : text_(text) {}
 
     std::vector<OslWord> all() {
         std::vector<OslWord> words;
@@ -78,12 +78,12 @@ private:
         } else if (number) {
             w.kind = OslWord::Kind::Number;
             while (at_ < text_.size() &&
-                   (letter(text_[at_]) || text_[at_] == '.' ||
+                   (oslLetter(text_[at_]) || text_[at_] == '.' ||
                     ((text_[at_] == '-' || text_[at_] == '+') && (text_[at_ - 1] == 'e' || text_[at_ - 1] == 'E'))))
                 ++at_;
-        } else if (letter(c)) {
+        } else if (oslLetter(c)) {
             w.kind = OslWord::Kind::Name;
-            while (at_ < text_.size() && letter(text_[at_])) ++at_;
+            while (at_ < text_.size() && oslLetter(text_[at_])) ++at_;
         } else {
             const auto sign = std::find_if(kSigns.begin(), kSigns.end(), [&](auto s) { return rest().starts_with(s); });
             at_ += sign == kSigns.end() ? 1 : sign->size();
@@ -100,7 +100,7 @@ private:
 
 } // namespace
 
-std::vector<OslWord> oslWords(std::string_view text) { return Reader(text).all(); }
+std::vector<OslWord> oslWords(std::string_view text) { return OslReader(text).all(); }
 
 bool isOslType(std::string_view w) {
     return w == "float" || w == "int" || w == "color" || w == "point" || w == "vector" || w == "normal" || w == "matrix" ||

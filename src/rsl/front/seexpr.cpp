@@ -7,23 +7,23 @@
 namespace alpenglow::rsl::front {
 namespace {
 
-constexpr int kDepth = 200;       // of brackets, conditions and signs
-constexpr size_t kText = 1 << 20; // of what comes out
+constexpr int kSeExprDepth = 200;       // of brackets, conditions and signs
+constexpr size_t kSeExprText = 1 << 20; // of what comes out
 
 /// A part of an expression in RSL; `vec`: three numbers, a color there.
-struct Part {
+struct SeExprPart {
     std::string text;
     bool vec = false;
 };
 
 /// How a function is called. Result: 'f' a number, 'v' three, 'a' as its widest argument. Arguments: so each, 'p' a place.
-struct Function {
+struct SeExprFunction {
     std::string_view name, rsl;
     char result;
     std::string_view arguments;
     std::string_view defaults; ///< of those that may be missing at the end, separated by commas
 };
-constexpr Function kFunctions[] = {
+constexpr SeExprFunction kSeExprFunctions[] = {
     {"noise", "se_noise", 'f', "p", ""},
     {"cnoise", "se_cnoise", 'v', "p", ""},
     {"snoise", "se_snoise", 'f', "p", ""},
@@ -52,17 +52,17 @@ constexpr Function kFunctions[] = {
     {"atan2", "atan", 'f', "ff", ""},
 };
 /// Functions of a number, which three numbers take one by one.
-constexpr std::string_view kOfOne[] = {"abs",  "floor", "ceil", "sqrt", "sin", "cos",  "tan",
-                                       "asin", "acos",  "atan", "exp",  "log", "sign", "round"};
+constexpr std::string_view kSeExprOfOne[] = {"abs",  "floor", "ceil", "sqrt", "sin", "cos",  "tan",
+                                             "asin", "acos",  "atan", "exp",  "log", "sign", "round"};
 
-class Translator {
+class SeExprTranslator {
 public:
-    Translator(const std::string& text, const std::vector<SeExprVariable>& given, SourcePlace place, Diagnostics& d)
+    SeExprTranslator(const std::string& text, const std::vector<SeExprVariable>& given, SourcePlace place, Diagnostics& d)
         : text_(text), given_(given), place_(std::move(place)), diagnostics_(d) {}
 
     std::optional<std::string> run() {
         std::string body;
-        Part result;
+        SeExprPart result;
         for (int pass = 0; pass < 8; ++pass) { // until what each variable is does not change any more
             const auto before = variables_;
             at_ = 0;
@@ -86,9 +86,9 @@ public:
 private:
     /// As the scene may name it, too (docs/ris.md).
     static std::string own(const std::string& name) { return name + "_"; }
-    static std::string color(const Part& p) { return p.vec ? p.text : "color(" + p.text + ")"; }
-    static std::string number(const Part& p) { return p.vec ? "comp(" + p.text + ", 0)" : p.text; }
-    static Part bracketed(std::string text, bool vec) { return {"(" + std::move(text) + ")", vec}; }
+    static std::string color(const SeExprPart& p) { return p.vec ? p.text : "color(" + p.text + ")"; }
+    static std::string number(const SeExprPart& p) { return p.vec ? "comp(" + p.text + ", 0)" : p.text; }
+    static SeExprPart bracketed(std::string text, bool vec) { return {"(" + std::move(text) + ")", vec}; }
 
     void fail(const std::string& what) {
         if (!failed_)
@@ -150,20 +150,20 @@ private:
                 return out;
             }
             at_ += op.size();
-            Part value = condition(depth + 1);
+            SeExprPart value = condition(depth + 1);
             const bool isGiven = std::any_of(given_.begin(), given_.end(), [&](const auto& v) { return v.name == to; });
             if (isGiven) return fail("\"" + to + "\" is given by the scene, and cannot be set"), out;
             bool& vec = variables_.try_emplace(to, value.vec).first->second;
             vec |= value.vec;
             out += own(to) + " " + std::string(op) + " " + (vec ? color(value) : value.text) + ";\n";
             want(";");
-            if (out.size() > kText) fail("it is too long");
+            if (out.size() > kSeExprText) fail("it is too long");
         }
         return out;
     }
 
     std::string branch(int depth) {
-        if (depth > kDepth) return fail("it is nested too deeply"), "";
+        if (depth > kSeExprDepth) return fail("it is nested too deeply"), "";
         want("(");
         std::string out = "if (" + number(condition(depth)) + " != 0) {\n";
         want(")");
@@ -183,108 +183,108 @@ private:
         return out + "\n";
     }
 
-    Part condition(int depth) {
-        if (depth > kDepth) return fail("it is nested too deeply"), Part{"0"};
-        Part c = binary(0, depth);
+    SeExprPart condition(int depth) {
+        if (depth > kSeExprDepth) return fail("it is nested too deeply"), SeExprPart{"0"};
+        SeExprPart c = binary(0, depth);
         if (failed_ || !take("?")) return c;
-        const Part yes = condition(depth + 1);
+        const SeExprPart yes = condition(depth + 1);
         want(":");
-        const Part no = condition(depth + 1);
+        const SeExprPart no = condition(depth + 1);
         const bool vec = yes.vec || no.vec;
-        const auto as = [&](const Part& p) { return vec ? color(p) : p.text; };
+        const auto as = [&](const SeExprPart& p) { return vec ? color(p) : p.text; };
         return bracketed("(" + number(c) + " != 0) ? " + as(yes) + " : " + as(no), vec);
     }
 
-    Part binary(int level, int depth) {
+    SeExprPart binary(int level, int depth) {
         static constexpr std::string_view kLevels[][4] = {{"||", "", "", ""},     {"&&", "", "", ""}, {"==", "!=", "", ""},
                                                           {"<=", ">=", "<", ">"}, {"+", "-", "", ""}, {"*", "/", "%", ""}};
         if (level == 6) return power(depth + 1);
-        Part a = binary(level + 1, depth);
+        SeExprPart a = binary(level + 1, depth);
         while (!failed_) {
             std::string_view op;
             for (std::string_view s : kLevels[level])
                 if (op.empty() && !s.empty() && peek(s)) op = s;
             if (op.empty()) return a;
             at_ += op.size();
-            const Part b = binary(level + 1, depth);
-            if (a.text.size() + b.text.size() > kText) return fail("it is too long"), a;
+            const SeExprPart b = binary(level + 1, depth);
+            if (a.text.size() + b.text.size() > kSeExprText) return fail("it is too long"), a;
             if (level < 2)
                 a = bracketed("(" + number(a) + " != 0 " + std::string(op) + " " + number(b) + " != 0) ? 1 : 0", false);
             else if (level < 4) {
                 const bool vec = level == 2 && (a.vec || b.vec);
-                const auto as = [&](const Part& p) { return vec ? color(p) : number(p); };
+                const auto as = [&](const SeExprPart& p) { return vec ? color(p) : number(p); };
                 a = bracketed("(" + as(a) + " " + std::string(op) + " " + as(b) + ") ? 1 : 0", false);
             } else if (op == "%") a = {"mod(" + number(a) + ", " + number(b) + ")", false};
             else {
                 const bool vec = a.vec || b.vec;
-                const auto as = [&](const Part& p) { return vec ? color(p) : p.text; };
+                const auto as = [&](const SeExprPart& p) { return vec ? color(p) : p.text; };
                 a = bracketed(as(a) + " " + std::string(op) + " " + as(b), vec);
             }
         }
         return a;
     }
 
-    Part power(int depth) {
-        if (depth > kDepth) return fail("it is nested too deeply"), Part{"0"};
+    SeExprPart power(int depth) {
+        if (depth > kSeExprDepth) return fail("it is nested too deeply"), SeExprPart{"0"};
         if (take("-")) {
-            const Part p = power(depth + 1);
+            const SeExprPart p = power(depth + 1);
             return bracketed("-" + p.text, p.vec);
         }
         if (take("+")) return power(depth + 1);
         if (!peek("!=") && take("!")) return bracketed("(" + number(power(depth + 1)) + " != 0) ? 0 : 1", false);
         if (take("~")) {
-            const Part p = power(depth + 1);
+            const SeExprPart p = power(depth + 1);
             return bracketed((p.vec ? "color(1) - " : "1 - ") + p.text, p.vec);
         }
-        Part a = postfix(depth);
+        SeExprPart a = postfix(depth);
         if (!failed_ && take("^")) {
-            const Part b = power(depth + 1);
-            if (a.text.size() + b.text.size() > kText / 16) return fail("it is too long"), a;
+            const SeExprPart b = power(depth + 1);
+            if (a.text.size() + b.text.size() > kSeExprText / 16) return fail("it is too long"), a;
             if (a.vec) return each(a, [&](const std::string& x) { return "pow(" + x + ", " + number(b) + ")"; });
             return {"pow(" + a.text + ", " + number(b) + ")", false};
         }
         return a;
     }
 
-    template <class F> static Part each(const Part& p, F f) {
+    template <class F> static SeExprPart each(const SeExprPart& p, F f) {
         std::string out = "color(";
         for (int n = 0; n < 3; ++n) out += (n ? ", " : "") + f("comp(" + p.text + ", " + std::to_string(n) + ")");
         return {out + ")", true};
     }
 
-    Part postfix(int depth) {
-        Part a = primary(depth);
+    SeExprPart postfix(int depth) {
+        SeExprPart a = primary(depth);
         while (!failed_ && take("[")) {
-            const Part i = condition(depth + 1);
+            const SeExprPart i = condition(depth + 1);
             want("]");
-            a = a.vec ? Part{"se_at(" + a.text + ", " + number(i) + ")", false} : a;
+            a = a.vec ? SeExprPart{"se_at(" + a.text + ", " + number(i) + ")", false} : a;
         }
         return a;
     }
 
-    Part primary(int depth) {
+    SeExprPart primary(int depth) {
         blank();
-        if (at_ >= text_.size()) return fail("it ends too early"), Part{"0"};
+        if (at_ >= text_.size()) return fail("it ends too early"), SeExprPart{"0"};
         const char c = text_[at_];
         if (std::isdigit(static_cast<unsigned char>(c)) || c == '.') return literal();
         if (take("(")) {
-            const Part p = condition(depth + 1);
+            const SeExprPart p = condition(depth + 1);
             want(")");
             return bracketed(p.text, p.vec);
         }
         if (take("[")) {
-            std::vector<Part> all = list("]", depth);
-            if (all.size() > 3) return fail("vectors have three numbers"), Part{"0"};
+            std::vector<SeExprPart> all = list("]", depth);
+            if (all.size() > 3) return fail("vectors have three numbers"), SeExprPart{"0"};
             while (all.size() < 3) all.push_back({"0"});
             return {"color(" + number(all[0]) + ", " + number(all[1]) + ", " + number(all[2]) + ")", true};
         }
         const std::string n = name();
-        if (n.empty()) return fail("\"" + text_.substr(at_, 10) + "\" is not expected"), Part{"0"};
+        if (n.empty()) return fail("\"" + text_.substr(at_, 10) + "\" is not expected"), SeExprPart{"0"};
         if (take("(")) return call(n, list(")", depth));
         return variable(n);
     }
 
-    Part literal() {
+    SeExprPart literal() {
         const size_t from = at_;
         while (at_ < text_.size() &&
                (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.' || text_[at_] == 'e' ||
@@ -294,8 +294,8 @@ private:
         return {text_.substr(from, at_ - from), false};
     }
 
-    std::vector<Part> list(std::string_view end, int depth) {
-        std::vector<Part> all;
+    std::vector<SeExprPart> list(std::string_view end, int depth) {
+        std::vector<SeExprPart> all;
         if (take(end)) return all;
         do all.push_back(condition(depth + 1));
         while (!failed_ && all.size() < 64 && take(","));
@@ -303,47 +303,47 @@ private:
         return all;
     }
 
-    Part variable(const std::string& n) {
+    SeExprPart variable(const std::string& n) {
         for (const SeExprVariable& v : given_)
             if (v.name == n) return {own(n), v.color};
         if (const auto v = variables_.find(n); v != variables_.end()) return {own(n), v->second};
-        static const std::map<std::string, Part> kKnown{{"PI", {"PI"}},     {"E", {"2.718281828"}}, {"u", {"u"}},
-                                                        {"v", {"v"}},       {"s", {"s"}},           {"t", {"t"}},
-                                                        {"time", {"time"}}, {"Cs", {"Cs", true}},   {"Os", {"Os", true}}};
+        static const std::map<std::string, SeExprPart> kKnown{{"PI", {"PI"}},     {"E", {"2.718281828"}}, {"u", {"u"}},
+                                                              {"v", {"v"}},       {"s", {"s"}},           {"t", {"t"}},
+                                                              {"time", {"time"}}, {"Cs", {"Cs", true}},   {"Os", {"Os", true}}};
         if (const auto k = kKnown.find(n); k != kKnown.end()) return k->second;
         static const std::map<std::string, const char*> kPlaces{
             {"P", "P"}, {"Po", "P"},      {"N", "normalize(N)"}, {"Nn", "normalize(N)"},
             {"I", "I"}, {"dPdu", "dPdu"}, {"dPdv", "dPdv"}};
         const auto p = kPlaces.find(n);
-        if (p == kPlaces.end()) return fail("there is no variable \"" + n + "\""), Part{"0"};
+        if (p == kPlaces.end()) return fail("there is no variable \"" + n + "\""), SeExprPart{"0"};
         const std::string v = p->second;
         return {"color(xcomp(" + v + "), ycomp(" + v + "), zcomp(" + v + "))", true};
     }
 
-    Part call(const std::string& n, std::vector<Part> a) {
+    SeExprPart call(const std::string& n, std::vector<SeExprPart> a) {
         if (failed_) return {"0"};
-        for (const Part& p : a)
-            if (p.text.size() > kText / 16) return fail("it is too long"), Part{"0"}; // some are written three times
-        if (std::find(std::begin(kOfOne), std::end(kOfOne), n) != std::end(kOfOne) && a.size() == 1) {
+        for (const SeExprPart& p : a)
+            if (p.text.size() > kSeExprText / 16) return fail("it is too long"), SeExprPart{"0"}; // some are written three times
+        if (std::find(std::begin(kSeExprOfOne), std::end(kSeExprOfOne), n) != std::end(kSeExprOfOne) && a.size() == 1) {
             if (a[0].vec) return each(a[0], [&](const std::string& x) { return n + "(" + x + ")"; });
             return {n + "(" + a[0].text + ")", false};
         }
         if (n == "smoothstep" && a.size() == 3) // the number comes first
             return {"smoothstep(" + number(a[1]) + ", " + number(a[2]) + ", " + number(a[0]) + ")", false};
         if (n == "boxstep" && a.size() == 2) return {"step(" + number(a[1]) + ", " + number(a[0]) + ")", false};
-        for (const Function& f : kFunctions) {
+        for (const SeExprFunction& f : kSeExprFunctions) {
             if (f.name != n) continue;
             std::string_view rest = f.defaults;
             const size_t optional = rest.empty() ? 0 : size_t(std::count(rest.begin(), rest.end(), ',')) + 1;
             if (f.arguments[0] == 'p' && f.arguments.size() == 1 && a.size() > 1) { // places may be numbers
-                Part place{"color(" + number(a[0]) + ", " + number(a[1]) + ", " + (a.size() > 2 ? number(a[2]) : "0") + ")",
-                           true};
+                SeExprPart place{"color(" + number(a[0]) + ", " + number(a[1]) + ", " + (a.size() > 2 ? number(a[2]) : "0") + ")",
+                                 true};
                 a = {place};
             }
             if (a.size() > f.arguments.size() || a.size() + optional < f.arguments.size())
-                return fail("\"" + n + "\" has another number of arguments"), Part{"0"};
-            const bool vec =
-                f.result == 'v' || (f.result == 'a' && std::any_of(a.begin(), a.end(), [](const Part& p) { return p.vec; }));
+                return fail("\"" + n + "\" has another number of arguments"), SeExprPart{"0"};
+            const bool vec = f.result == 'v' ||
+                             (f.result == 'a' && std::any_of(a.begin(), a.end(), [](const SeExprPart& p) { return p.vec; }));
             std::string out = std::string(f.rsl) + "(";
             for (size_t i = 0; i < f.arguments.size(); ++i) {
                 const char kind = f.arguments[i];
@@ -359,7 +359,7 @@ private:
             }
             return {out + ")", vec};
         }
-        return fail("there is no function \"" + n + "\" of so many arguments"), Part{"0"};
+        return fail("there is no function \"" + n + "\" of so many arguments"), SeExprPart{"0"};
     }
 
     const std::string& text_;
@@ -375,7 +375,7 @@ private:
 
 std::optional<std::string> rslFromSeExpr(const std::string& expression, const std::vector<SeExprVariable>& variables,
                                          const SourcePlace& place, Diagnostics& d) {
-    return Translator(expression, variables, place, d).run();
+    return SeExprTranslator(expression, variables, place, d).run();
 }
 
 } // namespace alpenglow::rsl::front

@@ -176,12 +176,16 @@ color layerGlass(normal n; float front; vector V, udir; float along, across, eta
             (1 - kr) * through * trace(P, (eta == 1) ? -V : refract(-V, n, 1 / relative), "samplelights", 1);
     } else {
         normal outside = (front == 1) ? n : -n;
-        light = through * trace(P, outside, "distribution", "glass-ggx", "wo", V, "udir", udir, "roughness", along, "roughnessv",
-                                across, "eta", eta, "samples", samples, "samplelights", 1);
-        if (mirror != through)
-            light += (mirror - through) * trace(P, outside, "distribution", "glass-ggx", "lobeparameters", {1, 0}, "wo", V, "udir",
-                                                udir, "roughness", along, "roughnessv", across, "eta", eta, "samples", samples,
-                                                "samplelights", 1);
+        color both = min(mirror, through), more = mirror - both, rest = through - both;
+        if (both != none)
+            light = both * trace(P, outside, "distribution", "glass-ggx", "wo", V, "udir", udir, "roughness", along, "roughnessv",
+                                 across, "eta", eta, "samples", samples, "samplelights", 1);
+        if (more != none)
+            light += more * trace(P, outside, "distribution", "glass-ggx", "lobeparameters", {1, 0}, "wo", V, "udir", udir,
+                                  "roughness", along, "roughnessv", across, "eta", eta, "samples", samples, "samplelights", 1);
+        if (rest != none)
+            light += rest * trace(P, outside, "distribution", "glass-ggx", "lobeparameters", {0, 1}, "wo", V, "udir", udir,
+                                  "roughness", along, "roughnessv", across, "eta", eta, "samples", samples, "samplelights", 1);
     }
     return light;
 }

@@ -109,6 +109,9 @@ TEST(Standard, WhiteFurnaceOfRis) {
          .9, 1},
         {"\"ris/PxrSurface\" \"diffuseGain\" 0 \"refractionGain\" 1 \"reflectionGain\" 1 \"glassRoughness\" 0", .999, 1.001,
          true},
+        {"\"ris/PxrSurface\" \"diffuseGain\" 0 \"refractionGain\" 1 \"reflectionGain\" 1 \"glassRoughness\" .2 "
+         "\"glassRefractionRoughness\" .1",
+         .9, 1.01, true},
         {"\"ris/PxrGlass\" \"roughness\" 0", .999, 1.001, true},
         {"\"ris/PxrConstant\" \"emitColor\" [1 1 1]", .9999, 1.0001},
         {"\"ris/PxrBlack\"", 0, 1e-6},

@@ -18,7 +18,7 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
     std::lock_guard lock(mutex_);
     const auto [at, fresh] = maps_.try_emplace(name);
     if (!fresh) return at->second.get();
-    // A stack of pictures or a grid of voxels is looked up as points are.
+    // Image stacks and voxel grids are looked up like point clouds.
     const auto volume = [&]() -> std::shared_ptr<const clouds::CloudMap> {
         std::vector<std::string> folders = {""};
         folders.insert(folders.end(), files_.folders.begin(), files_.folders.end());
@@ -62,7 +62,7 @@ CloudStore::octree(const std::string& name, bool light, const std::optional<clou
     for (const bool lit : {light, true}) // one with light serves both
         if (const auto known = octrees_.find({name, lit, shear}); known != octrees_.end()) return known->second;
     auto made = makeOctree(name, light, shear, place);
-    // Objects may stand in any number of sheared spaces. Which ones are kept changes time only.
+    // Objects can use any number of sheared spaces. Which ones are kept affects time only.
     if (!shear || !made || ++sheared_ <= limits::kShearedOctrees) octrees_[{name, light, shear}] = made;
     return made;
 }

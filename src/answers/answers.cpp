@@ -59,10 +59,10 @@ const SurfaceBinding* ServiceCall::binding(const WorldImpl& world, int lane) con
 
 void ServiceCall::answer(int lane, const Told& t) const {
     using rsl::ir::Kind;
-    if (d.resultKinds.size() < 2) return; // whether there is one was all that was asked
+    if (d.resultKinds.size() < 2) return; // only its presence was queried
     const bool open = s.open, array = s.array;
     const size_t before = open ? 2 : 1;                             // rows
-    if (open && d.resultKinds.size() == before && t.elements > 0) { // how long it is was all that was asked
+    if (open && d.resultKinds.size() == before && t.elements > 0) { // only its length was queried
         put(1, lane, float(t.elements));
         put(0, lane, 1);
     }

@@ -16,7 +16,8 @@ std::string number(double v) {
     return text;
 }
 
-/// The world that runs the imager of a merged film. Null: there is none, or it cannot be made (reported).
+/// The world that runs the imager of a merged film. Returns null if there is no imager, or if the world cannot be made
+/// (reported).
 std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std::string& file, const MergeSettings& settings,
                                                     Diagnostics& diags) {
     const auto text = film.metadata.find(kImagerKey);
@@ -39,7 +40,7 @@ std::string rangesText(const std::vector<SampleRange>& ranges) {
     return all;
 }
 
-/// Reports samples that no part has. True: there are such.
+/// Reports samples that no part has. Returns true if there are any.
 bool reportGaps(const Film& film, const MergeSettings& settings, Diagnostics& diags) {
     const std::vector<SampleRange>& have = film.ranges();
     if (have.empty()) return false;
@@ -112,7 +113,7 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     return writeOutputs(plan, facts, pixels, imager, allowWrite, diags);
 }
 
-/// Puts one picture in the place of those that -o replaces, as displaysOf() has it.
+/// Replaces the pictures that -o replaces by one, as displaysOf() does.
 static void nameOutput(OutputPlan& plan, const std::string& output, Diagnostics& diags) {
     std::vector<OutputSpec> kept{singleOutput(output, plan.basis, diags)};
     for (OutputSpec& s : plan.pictures) {
@@ -157,7 +158,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
                 return true;
             };
     bool written = writeFilm(*film, plan->first, plan->second, imager, settings.allowWrite, diags);
-    // What is not the beginning of a sequence may be merged further.
+    // Incomplete sequences may be merged further.
     const auto& r = film->ranges();
     const std::string part = plan->first.pictures.empty() ? "" : sidecarName(plan->first.pictures.front().name);
     const bool whole = !gaps && r.size() == 1 && r.front().begin == 0;

@@ -1,4 +1,4 @@
-// What options and the parameters of hiders say of image samples.
+// Options and hider parameters for image samples.
 #include "render/rendering.h"
 #include "scene/scene.h"
 #include <algorithm>
@@ -53,7 +53,7 @@ bool shadesMicropolygons(const scene::Options& o, bool hidden, const Camera& cam
                      "Hider \"hidden\" shades micropolygons once, when the shutter opens, and moves them");
         return false;
     }
-    return !camera.stereo(); // eyes see micropolygons of their own
+    return !camera.stereo(); // each eye sees micropolygons of its own
 }
 
 Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnostics& diags) {

@@ -12,7 +12,7 @@ void warn(Diagnostics& diags, const SourcePlace& place, std::string message, std
     diags.report(Severity::Warning, Rie::MissingData, place, std::move(message), std::move(hint));
 }
 
-/// Where to look when the camera sees none of these shapes.
+/// Hint for a camera that sees none of these shapes.
 std::string unseenHint(size_t shapes, size_t before) {
     if (shapes == 0) return "the world has no primitives that are drawn";
     const std::string camera = "the camera looks along +z, and requests before WorldBegin place the world before it";
@@ -71,7 +71,7 @@ void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& dia
         c.window().height() < c.height())
         return;
     const transport::World::Facts facts = job.world->facts();
-    if (!job.met && frame.options.imager) return; // it may paint all of the picture
+    if (!job.met && frame.options.imager) return; // it may paint the complete picture
     if (!job.met) {
         warn(diags, {}, "the picture is empty: the camera sees nothing of the scene", unseenHint(facts.shapes, facts.before));
         return;

@@ -1,4 +1,4 @@
-// The plan of a frame's pictures as JSON, for part files.
+// Converts the plan of a frame's pictures to JSON for part files.
 #include "render/outputs.h"
 #include <nlohmann/json.hpp>
 

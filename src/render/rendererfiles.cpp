@@ -1,4 +1,4 @@
-// The files of a run: what they are called, whether they can be written, and what is there already.
+// The files of a run: their names, whether they can be written, and existing ones.
 #include "display/driver.h"
 #include "render/filmpicture.h"
 #include "render/frameprocesses.h"
@@ -13,7 +13,7 @@ namespace alpenglow::render {
 
 namespace {
 
-/// What two renders do not have in common: "seed (3, not 4)".
+/// Differences between two renders: "seed (3, not 4)".
 std::string differing(const FilmDescription& a, const FilmDescription& b) {
     const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
     if (a.width != b.width || a.height != b.height)
@@ -27,7 +27,7 @@ std::string differing(const FilmDescription& a, const FilmDescription& b) {
 } // namespace
 
 std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
-    if (settings_.output == "-") return "-"; // frame after frame
+    if (settings_.output == "-") return "-"; // one frame after the other
     if (!settings_.output.empty()) {
         if (isNumbered(o)) {
             if (numbersFrame()) return numberedName(settings_.output, o.frameNumber);
@@ -56,10 +56,10 @@ bool Renderer::numbersFrame() {
 
 void Renderer::numberFirstPicture() {
     if (!firstPicture_) return;
-    settle(); // it is to be there
+    settle(); // it must exist
     const FirstPicture first = *std::exchange(firstPicture_, {});
     std::error_code e;
-    // What could not be written is not there; a name may also lead to a device.
+    // A file that could not be written does not exist; a name may also refer to a device.
     if (first.file.empty() || !std::filesystem::is_regular_file(first.file, e)) return;
     names_.release(first.file);
     scene::Options o;
@@ -114,7 +114,7 @@ void Renderer::passOverTexture(const std::vector<std::string>& files) {
 
 ReadPolicy Renderer::readPolicy() const {
     ReadPolicy policy = readPolicyOf(settings_.scenePath, settings_.allowRead);
-    policy.folders.insert(policy.folders.end(), written_.begin(), written_.end()); // each below itself
+    policy.folders.insert(policy.folders.end(), written_.begin(), written_.end()); // each includes its subfolders
     if (inProcess()) policy.before = [p = processes_](const std::string& name) { p->awaitRead(name); };
     return policy;
 }

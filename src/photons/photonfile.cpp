@@ -32,7 +32,7 @@ Vec3 takeFloats(const uint8_t* from) {
 }
 Vec3 turned(const Matrix& m, uint32_t unit) { return normalize(Vec3(transformVector(m, Vec3d(unpackUnit(unit))))); }
 
-/// Power has the units of radiance and area: what it is where lengths are those behind a matrix, over what it is before it.
+/// Scale factor of power by a matrix: power has units of radiance times area.
 float powerBehind(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 2.0 / 3)); }
 
 void pack(const Photon& p, const Matrix& m, float scale, uint8_t* to) {
@@ -49,7 +49,7 @@ bool sound(const Photon& p) {
     return std::isfinite(sum) && p.power.x >= 0 && p.power.y >= 0 && p.power.z >= 0;
 }
 
-/// "" where the header is one, and fits the size of the file.
+/// Returns "" if the header is valid and matches the size of the file.
 std::string faultOf(const std::vector<uint8_t>& b) {
     if (b.size() < 8 || std::memcmp(b.data(), kMagic, 8) != 0) return "it is no photon map";
     if (b.size() < kHeader + kEnd) return "it is cut short";

@@ -10,7 +10,7 @@ namespace alpenglow {
 fs::path programFolder() {
     std::error_code e;
     fs::path program = fs::read_symlink("/proc/self/exe", e);
-    if (e) { // no /proc here: the name that the program was started by
+    if (e) { // without /proc: by the name that the program was started with
         const auto* name = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
         program = name ? fs::canonical(name, e) : fs::path();
         if (e) return {};

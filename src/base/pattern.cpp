@@ -34,7 +34,7 @@ bool classBytes(const std::string& name, Bytes& out) {
     return false;
 }
 
-/// Whether a word begins ('<'), ends ('>'), either ('b') or neither ('B') before byte `at`.
+/// Whether a word starts ('<'), ends ('>'), either ('b') or neither ('B') before byte `at`.
 bool isEdge(std::string_view text, size_t at, char kind) {
     const bool before = at > 0 && isWordByte(static_cast<unsigned char>(text[at - 1]));
     const bool behind = at < text.size() && isWordByte(static_cast<unsigned char>(text[at]));
@@ -43,7 +43,7 @@ bool isEdge(std::string_view text, size_t at, char kind) {
 
 } // namespace
 
-/// Recursive descent over the text. A piece of the automaton has one way in, and one state with a way out that is not set yet.
+/// Recursive descent parser. A piece of the automaton has one entry, and one state whose exit is not yet set.
 class PatternParser {
 public:
     PatternParser(const std::string& text, Pattern& p) : text_(text), p_(p) {}
@@ -60,7 +60,7 @@ public:
 
 private:
     using Op = Pattern::Op;
-    /// `out` is a Split whose ways are not set.
+    /// `out` is a Split with unset exits.
     struct Piece {
         uint32_t in, out;
     };
@@ -139,13 +139,13 @@ private:
         return p;
     }
 
-    /// The text from begin to sign, `least` times and then at most to `most` times (-1: without end).
+    /// The text from begin to sign, `least` times, then optionally up to `most` times (-1: unlimited).
     Piece times(size_t begin, size_t sign, size_t end, int depth, int least, int most) {
         Piece all = nothing();
         const auto copy = [&]() {
             at_ = begin;
             if (sign == end) return atom(depth);
-            // Signs one behind the other, a*{2}: what stands before the last of them is repeated.
+            // Consecutive repetition signs, as in a*{2}: repeats everything before the last one.
             const std::string saved = text_.substr(sign);
             text_.resize(sign);
             const Piece p = repeated(depth);
@@ -341,7 +341,7 @@ std::shared_ptr<const Pattern> Pattern::make(const std::string& text, std::strin
 }
 
 bool Pattern::occurs(std::string_view text) const {
-    // The set of states that the automaton can be in, advanced a byte at a time; a new attempt begins at every byte.
+    // The set of active states of the automaton, advanced byte by byte; a new match may start at every byte.
     std::vector<uint32_t> now, next, open;
     std::vector<uint32_t> seen(states_.size(), 0);
     uint32_t round = 0;

@@ -74,7 +74,7 @@ std::string readText(std::span<const uint8_t> b, Baked& to) {
     return inLine == 0 ? "" : "its last line does not end";
 }
 
-/// Solves the normal equations of a plane a + b x + c y; gives a, or the mean where the points do not span a plane.
+/// Solves the normal equations of a plane a + b x + c y; returns a, or the mean if the points do not span a plane.
 struct Plane {
     double w = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
     double v[3] = {}, vx[3] = {}, vy[3] = {};
@@ -205,7 +205,7 @@ BakedPicture pictureOf(const Baked& baked) {
         if (inside(i)) points.push_back(uint32_t(i));
     p.outside = baked.size() - points.size();
     for (p.side = 1; p.side < limits::kBakedSide && double(p.side) * p.side * 2 < double(points.size()); p.side *= 2) {}
-    // Points by the pixel in which they lie, in their order.
+    // Points by pixel, in their order.
     const auto pixelOf = [&](float x) { return std::clamp(int(x * float(p.side)), 0, p.side - 1); };
     const size_t count = size_t(p.side) * size_t(p.side);
     std::vector<uint32_t> first(count + 1), by(points.size());

@@ -15,7 +15,7 @@ const Channel* colourNamed(const PointCloud& c, const std::string& name) {
     return nullptr;
 }
 
-/// What arrives at points from `begin` on, where they are disks.
+/// Computes the light that arrives at disks from index `begin` on.
 void arrive(const PointCloud& cloud, const PointOctree& octree, float solidAngle, size_t begin, size_t end,
             std::vector<Color>& to) {
     Hemisphere h;

@@ -25,7 +25,7 @@ class BrickMap final : public CloudMap {
 public:
     BrickMap(const std::string& path, Diagnostics& d, SourcePlace place, size_t cacheBytes)
         : path_(path), diagnostics_(d), place_(std::move(place)), file_(path), most_(cacheBytes) {}
-    /// "": fine, else what is wrong.
+    /// Returns "", or an error message.
     std::string readDirectory();
     BrickFacts facts() const;
     const std::vector<Channel>& channels() const override { return channels_; }
@@ -77,7 +77,7 @@ private:
     };
     mutable std::mutex mutex_;
     mutable std::map<uint32_t, Kept> kept_;
-    mutable std::list<uint32_t> used_; ///< the last one met first
+    mutable std::list<uint32_t> used_; ///< most recently used first
     mutable size_t bytes_ = 0;
 };
 
@@ -144,7 +144,7 @@ std::shared_ptr<const PointTree> BrickMap::load(const Brick& k) const {
     return std::make_shared<const PointTree>();
 }
 
-/// Null: there is none at this place.
+/// Returns null if there is none at this position.
 std::shared_ptr<const PointTree> BrickMap::brick(const BrickPlace& at) const {
     const auto found =
         std::lower_bound(bricks_.begin(), bricks_.end(), at, [](const Brick& b, const BrickPlace& p) { return b.at < p; });

@@ -14,7 +14,7 @@ namespace alpenglow::clouds {
 
 namespace {
 
-constexpr size_t kSlice = size_t(1) << 20; ///< bytes that are read or written at once
+constexpr size_t kSlice = size_t(1) << 20; ///< bytes read or written at once
 constexpr int kDeepestCubes = 7;           ///< of the cubes that the cloud is sorted into
 
 struct Close {
@@ -44,7 +44,7 @@ private:
 class Stream {
 public:
     explicit Stream(std::span<const std::string> paths) : paths_(paths.begin(), paths.end()) {}
-    /// "": fine, else which cloud is wrong, and what.
+    /// Returns "", or an error message that names the cloud.
     std::string open();
     const std::vector<Channel>& channels() const { return all_.channels; }
     size_t record() const { return 28 + 4 * size_t(all_.width()); } ///< bytes of a point
@@ -54,8 +54,8 @@ public:
 private:
     std::vector<std::string> paths_;
     std::vector<Part> parts_;
-    std::vector<std::vector<size_t>> places_; ///< by part and number of a point: where it goes
-    PointCloud all_;                          ///< channels alone
+    std::vector<std::vector<size_t>> places_; ///< by part and index of a point: its destination
+    PointCloud all_;                          ///< channels only
 };
 
 /// The header as loadCloud() checks it.
@@ -161,7 +161,7 @@ private:
     uint64_t written_ = 0;
     std::vector<Brick> bricks_; ///< offset: in bricksOut_
     std::vector<float> largest_;
-    PointCloud top_; ///< of the coarsest level that cubes have whole bricks of
+    PointCloud top_; ///< of the coarsest level for which cubes have complete bricks
 };
 
 std::string Maker::measure() {
@@ -247,7 +247,7 @@ void Maker::level(const PointCloud& points, int depth) {
     }
 }
 
-/// The levels of a cube down to the one whose bricks are as large as it.
+/// Writes the levels of a cube down to the one whose bricks have its size.
 void Maker::cube(const Cube& c) {
     std::vector<uint8_t> b(stream_.record());
     std::vector<float> room((stream_.record() - 28) / 4);

@@ -1,4 +1,4 @@
-// Reading Ptex files. Nothing in them is believed: every size is checked against the file before memory is taken for it.
+// Reads Ptex files. They are untrusted: every size is checked against the file before memory is allocated.
 #include "base/randomfile.h"
 #include "ptex/cache.h"
 #include "ptex/limits.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kHeader = 64, kExtended = 40, kFaceInfo = 20, kLevelInfo = 16, kBarrier = 8;
 
-/// Where the data of a face lie, and how.
+/// File position and encoding of a face's data.
 struct Block {
     uint64_t at = 0;
     uint32_t header = 0;
@@ -68,13 +68,13 @@ private:
     std::vector<uint8_t> constants_;
     uint32_t extended_ = 0, faceInfoSize_ = 0, constantSize_ = 0, levelInfoSize_ = 0, levels_ = 0, faceCount_ = 0;
     uint64_t levelDataSize_ = 0, largeSize_ = 0, editAt_ = 0;
-    uint64_t headBytes_ = 0; ///< of what is kept of all faces
+    uint64_t headBytes_ = 0; ///< memory for data of all faces
     std::unordered_map<std::string, size_t> metaAt_;
     uint32_t metaZip_ = 0, metaSize_ = 0, largeZip_ = 0, largeHeader_ = 0;
     std::vector<std::vector<Block>> blocks_; ///< by level, then by face in the level
     std::vector<uint32_t> place_;            ///< by face: in levels behind the first
     std::map<uint32_t, Block> edited_;       ///< faces that were edited: their data
-    std::vector<bool> stale_;                ///< their levels are not made of them
+    std::vector<bool> stale_;                ///< their levels are out of date
 };
 
 std::string File::open() {
@@ -93,7 +93,7 @@ std::string File::open() {
     return readEdits();
 }
 
-/// A stream that is much longer than what it stands for was not made by anybody who packs: nothing is read of it.
+/// Rejects a stream that is much longer than its contents, which no encoder would write.
 bool File::unpack(uint64_t at, uint64_t packed, uint64_t size, std::vector<uint8_t>& to) const {
     std::vector<uint8_t> zip;
     return packed <= size + size / 8 + 1024 && bytes_.read(at, packed, zip) && inflated(zip, size_t(size), to);
@@ -132,7 +132,7 @@ std::string File::readHeader() {
         return "it is cut short";
     std::vector<uint8_t> e;
     if (!bytes_.read(kHeader, std::min<uint64_t>(extended_, kExtended), e)) return "it is cut short";
-    e.resize(kExtended); // what older files do not have is 0
+    e.resize(kExtended); // missing in older files: 0
     const auto border = [&](size_t at) { return take<uint32_t>(&e[at]) <= 2 ? Border(e[at]) : Border::Clamp; };
     head_.uBorder = border(0);
     head_.vBorder = border(4);
@@ -210,7 +210,7 @@ std::string File::readLevel(size_t k, uint64_t at, uint64_t size, uint32_t heade
     return next > bytes_.size() ? "it is cut short" : "";
 }
 
-/// A stream of small items. Those of a key that is there already replace it.
+/// Parses a stream of small items. They replace existing items with the same key.
 std::string File::readMetas(std::span<const uint8_t> b) {
     for (size_t at = 0; at < b.size();) {
         const size_t key = b[at];
@@ -317,7 +317,7 @@ bool File::decodePlain(std::span<const uint8_t> b, Encoding how, size_t pixels, 
     return true;
 }
 
-/// Where the tiles of a block lie.
+/// Reads the positions of the tiles of a block.
 bool File::readTiles(uint64_t at, uint32_t header, int ulog, int vlog, Tiles& t) const {
     std::vector<uint8_t> b, headers;
     const uint64_t end = at + blockSize(header);
@@ -355,7 +355,7 @@ bool File::decodeTiles(uint64_t at, uint32_t header, int ulog, int vlog, std::ve
 
 bool File::decode(const Block& block, int ulog, int vlog, std::vector<float>& to) const {
     std::vector<uint8_t> b;
-    // Of tiles of one pixel more is said than they have.
+    // More data than tiles of one pixel can have.
     if (blockSize(block.header) > ((pixelBytes() + 64) << (ulog + vlog)) + 1024) return false;
     if (encodingOf(block.header) == kTiled) return decodeTiles(block.at, block.header, ulog, vlog, to);
     if (!bytes_.read(block.at, blockSize(block.header), b)) return false;
@@ -403,11 +403,11 @@ void File::sayDamaged(uint32_t face) const {
                              {}});
 }
 
-/// Half of a level. Where that is read by tiles, of two of them at a time: nothing of it is kept.
+/// Halves a level. If it is stored in tiles, reads two of them at a time and keeps none.
 Image File::halvedOf(uint32_t face, int halvings) const {
     const auto t = tiles(face, halvings);
     if (!t) return halved(*image(face, halvings), head_.channels, head_.mesh);
-    std::pair<uint32_t, std::shared_ptr<const Image>> last[2]; // of triangles those on their heads lie elsewhere
+    std::pair<uint32_t, std::shared_ptr<const Image>> last[2]; // inverted triangles are stored elsewhere
     return halved(*t, head_.channels, head_.mesh, [&](int i, int j) {
         const uint32_t n = t->numberOf(i, j);
         if (!last[0].second || last[0].first != n) std::swap(last[0], last[1]);
@@ -441,7 +441,7 @@ std::shared_ptr<const Tiles> File::tiles(uint32_t face, int halvings) const {
     const Cache::Key key{number_, face, halvings, Cache::kTable};
     if (auto known = cache_->find(key)) return std::static_pointer_cast<const Tiles>(known);
     auto t = std::make_shared<Tiles>();
-    if (!readTiles(block->at, block->header, u, v, *t)) return nullptr; // image() says so
+    if (!readTiles(block->at, block->header, u, v, *t)) return nullptr; // image() reports it
     cache_->keep(key, t, t->at.size() * (sizeof(uint64_t) + sizeof(uint32_t)));
     return t;
 }

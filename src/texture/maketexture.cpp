@@ -10,9 +10,9 @@
 namespace alpenglow::texture {
 namespace {
 
-constexpr int tileSide = 64; // 48 KiB of rgb floats: a disk read, a few cache ways
+constexpr int tileSide = 64; // 48 KiB of rgb floats: one disk read, a few cache ways
 
-/// What shaders have baked, as a picture of light or data.
+/// Reads baked data as a picture of light or data.
 std::optional<display::Image> readBaked(const std::string& path, const MakeOptions& o, Diagnostics& diags) {
     const auto baked = clouds::loadBaked(path, diags, o.place);
     if (!baked) return {};
@@ -27,7 +27,7 @@ std::optional<display::Image> readBaked(const std::string& path, const MakeOptio
     return image;
 }
 
-/// Whether a map would take the place of what it is made of. That is an error, which is reported.
+/// Whether a map would replace its own source, which is an error and reported.
 bool replacesIts(const char* source, const std::string& path, const std::string& map, const MakeOptions& o, Diagnostics& diags) {
     if (!sameFile(path, map)) return false;
     diags.report(Severity::Error, Rie::Consistency, o.place,
@@ -36,7 +36,7 @@ bool replacesIts(const char* source, const std::string& path, const std::string&
     return true;
 }
 
-/// The picture of which `map` is made.
+/// Reads the picture for `map`.
 std::optional<display::Image> readPicture(const std::string& given, const std::string& map, const MakeOptions& o,
                                           Diagnostics& diags) {
     bool binary = false;
@@ -60,7 +60,7 @@ std::optional<display::Image> readPicture(const std::string& given, const std::s
     r.place = o.place;
     auto image = display::readImage(found->path, diags, r);
     if (image) {
-        // A map has no place in a larger picture.
+        // A map is not part of a larger picture.
         image->originX = image->originY = image->fullWidth = image->fullHeight = 0;
         if (o.colours == MakeOptions::Colours::Auto) {
             if (image->bits == 8 && !image->floating && !image->metadata.contains("colorspace") &&

@@ -24,8 +24,8 @@ namespace alpenglow::display {
 
 namespace {
 
-constexpr int kWhy = 512;                ///< bytes of what a child has to say
-constexpr int kKnown = 1, kNoModule = 2; ///< exit codes of the child: it said why; the module cannot be loaded
+constexpr int kWhy = 512;                ///< bytes for the error message of a child
+constexpr int kKnown = 1, kNoModule = 2; ///< exit codes of the child: failed with a message; module cannot be loaded
 
 /// A file descriptor that is closed.
 struct Descriptor {
@@ -35,8 +35,8 @@ struct Descriptor {
     }
 };
 
-/// Lets this process take so much memory beside what it has; what asks for more is told that there is none. Not under
-/// AddressSanitizer, whose own tables are larger than any limit.
+/// Limits the memory of this process to its current size plus `bytes`; larger allocations fail. Disabled under AddressSanitizer,
+/// whose own tables exceed any limit.
 void limitMemory([[maybe_unused]] uint64_t bytes) {
 #if !__has_feature(address_sanitizer)
     unsigned long has = 0; // pages of data
@@ -53,7 +53,7 @@ void limitMemory([[maybe_unused]] uint64_t bytes) {
 #endif
 }
 
-/// The child: reads the picture into `to` and says to `tell` what went wrong. No destructor of the program runs in it.
+/// In the child: reads the picture into `to` and writes an error message to `tell`. No destructor of the program runs.
 [[noreturn]] void readInChild(const std::string& module, const std::string& path, uint64_t memory, int to, int tell) {
     char why[kWhy] = "";
     int code = kNoModule;
@@ -79,7 +79,7 @@ void limitMemory([[maybe_unused]] uint64_t bytes) {
     _exit(code);
 }
 
-/// What the child says until it is gone or its time is over; false: over.
+/// Reads the child's message until it ends or the time is over; returns false in the latter case.
 bool listen(int from, std::string& why) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(limits::kProgramSeconds);
     for (;;) {
@@ -106,7 +106,7 @@ bool readAll(int from, void* to, size_t n) {
     return true;
 }
 
-/// What a child has written, looked at as a stranger's file is.
+/// Reads the output of a child, which is untrusted like any file.
 std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
     ForeignPicture p{};
     struct stat about{};
@@ -165,7 +165,7 @@ std::optional<Image> readForeign(const ForeignModule& of, const std::string& pat
     if (picture.fd < 0 || pipe2(ends, O_CLOEXEC) != 0)
         return ctx.refuse(std::string("no child process: ") + std::strerror(errno));
     Descriptor from{ends[0]}, to{ends[1]};
-    // Twice what the picture may be: as it is in the file, and as floats.
+    // Twice the size of a picture: file data, and floats.
     const uint64_t allowed = std::max<uint64_t>(limits::kImageSmallBytes, uint64_t(ctx.fileBytes) * limits::kImageExpansion);
     const uint64_t memory = kForeignBytes + 2 * std::min<uint64_t>(limits::kImageBytes, allowed);
     const pid_t child = fork();

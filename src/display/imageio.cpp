@@ -93,7 +93,7 @@ static std::optional<Image> decodeAs(std::span<const uint8_t> b, const DecodeCon
         if (starts({'#', '?'})) return decodeRadiance(b, ctx);
         if (starts({0xfa, 0xce}) || starts({0xce, 0xfa})) return decodePixar(b, ctx);
         if (looksLikeKtx(b)) return decodeKtx(b, ctx);
-        if (looksLikeTarga(b)) return decodeTarga(b, ctx); // last: it has nothing of its own to be known by
+        if (looksLikeTarga(b)) return decodeTarga(b, ctx); // last, because it has no magic number
         if (ctx.file) return readForeign(pictureModule(), ctx.name, ctx);
     } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);

@@ -78,7 +78,7 @@ std::string tevUpdate(const std::string& name, int x, int y, int width, int heig
     p.put(int32_t(channels.size()));
     for (const std::string& c : channels) p.put(c);
     for (int v : {x, y, width, height}) p.put(int32_t(v));
-    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(i));               // where each channel begins,
+    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(i));               // start of each channel,
     for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(channels.size())); // and how far its pixels are apart
     p.raw(data.data(), data.size() * sizeof(float));
     return std::move(p).whole();

@@ -32,7 +32,7 @@ ViewServer::ViewServer(Session& s, HttpServer& h, std::string token) : session_(
 
 std::string ViewServer::address() const { return "http://127.0.0.1:" + std::to_string(port_) + "/" + token_ + "/"; }
 
-/// A name that leads here by itself: another could be a stranger's page that had its name point to this machine.
+/// Whether a host name refers to this machine: another could be a foreign page whose name was pointed here (DNS rebinding).
 bool ViewServer::isOurs(const std::string& host) const {
     const std::string port = ":" + std::to_string(port_);
     return host == "127.0.0.1" + port || host == "localhost" + port;
@@ -89,7 +89,7 @@ std::optional<HttpResponse> ViewServer::picture(const HttpRequest& r, bool last)
     }
     state["serial"] = shot.serial;
     std::string text = textOf(state);
-    text.resize((text.size() + 7) / 8 * 8 + 4, ' '); // so that pixels begin at a multiple of eight
+    text.resize((text.size() + 7) / 8 * 8 + 4, ' '); // aligns pixels to eight bytes
     std::string body(4, '\0');
     const uint32_t n = uint32_t(text.size());
     for (int k = 0; k < 4; ++k) body[size_t(k)] = char(n >> 8 * k);

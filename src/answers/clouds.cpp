@@ -80,7 +80,7 @@ void reportNotBaked(const ServiceCall& call) {
     call.diagnostics.reportOnce("bake:imager", {Severity::Warning,
                                                 Rie::Unimplement,
                                                 call.place(),
-                                                call.d.op + "() of imager shaders writes nothing",
+                                                call.d.op + "() has no effect in imager shaders",
                                                 "surface, displacement, volume and light shaders bake",
                                                 {}});
 }
@@ -155,7 +155,7 @@ void answerTexture3d(Answers& answers, const ServiceCall& call) {
                                                  call.place(),
                                                  "texture3d(): \"" + call.name(lane) + "\" has no channel \"" + part.name +
                                                      "\" of " + std::to_string(clouds::sizeOf(part.type)) + " numbers; it is 0",
-                                                 "alpenglow ptc info tells what is in a file",
+                                                 "alpenglow ptc info shows the contents of a file",
                                                  {}});
             }
         }

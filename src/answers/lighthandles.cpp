@@ -104,14 +104,13 @@ void Answers::getLights(const ServiceCall& call) {
             world_->eachLight(surface->lights, [&](int i) {
                 if (!world_->lights_[size_t(i)].kernel || !isOfCategory(want, i)) return false;
                 if (n == limits::kLightHandles) {
-                    diagnostics_.reportOnce("getlights",
-                                            {Severity::Error,
-                                             Rie::Limit,
-                                             {},
-                                             "getlights() gives no more than " + std::to_string(limits::kLightHandles) +
-                                                 " lights; the others are left out",
-                                             {},
-                                             {}});
+                    diagnostics_.reportOnce("getlights", {Severity::Error,
+                                                          Rie::Limit,
+                                                          {},
+                                                          "getlights() returns at most " + std::to_string(limits::kLightHandles) +
+                                                              " lights; the others are left out",
+                                                          {},
+                                                          {}});
                     return true;
                 }
                 call.put(++n, lane, std::bit_cast<float>(handleOf(i)));

@@ -191,7 +191,7 @@ static void noteNoShadowMap(texture::Handle map, const ServiceCall& call) {
         {Severity::Warning,
          Rie::BadFile,
          call.place(),
-         "shadow(): \"" + map->path + "\" is no shadow map: it has no matrices of a camera, and gives no shadow",
+         "shadow(): \"" + map->path + "\" is not a shadow map: it has no camera matrices, so it casts no shadow",
          "Display of type \"zfile\" or \"deepshad\", or MakeShadow of the former, makes one",
          {}});
 }

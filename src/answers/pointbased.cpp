@@ -25,7 +25,7 @@ void cloudsOf(Answers& answers, const ServiceCall& call, int lane, bool light, c
                                     {Severity::Error,
                                      Rie::MissingData,
                                      call.place(),
-                                     call.d.op + "() with \"pointbased\" names no point cloud; it finds nothing",
+                                     call.d.op + "() with \"pointbased\" needs the name of a point cloud; it returns 0",
                                      "\"filename\" or \"filenames\" says which",
                                      {}});
 }

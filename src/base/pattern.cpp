@@ -194,10 +194,10 @@ private:
             if (!number(most)) most = -1;
             else if (!from) least = 0;
         } else if (!from) {
-            return fail("between '{' and '}' stand one or two numbers"), false;
+            return fail("expected one or two numbers between '{' and '}'"), false;
         }
         if (at_ >= text_.size()) return fail("there is a '{' without its '}'"), false;
-        if (peek() != '}') return fail("between '{' and '}' stand one or two numbers"), false;
+        if (peek() != '}') return fail("expected one or two numbers between '{' and '}'"), false;
         ++at_;
         if (least > kMostRepeats || most > kMostRepeats) return fail("a repetition is too large"), false;
         if (most >= 0 && most < least) return fail("the second number of a repetition is less than the first"), false;
@@ -227,7 +227,7 @@ private:
         case '+':
         case '?':
         case '{':
-            fail("there is nothing before a sign of repetition");
+            fail("nothing to repeat before a repetition sign");
             return {0, 0};
         case '\\':
             return escaped();
@@ -298,7 +298,7 @@ private:
         if (text_.compare(at_, 2, "[:") == 0) {
             const size_t end = text_.find(":]", at_ + 2);
             if (end == std::string::npos) return fail("there is a '[:' without its ':]'");
-            if (!classBytes(text_.substr(at_ + 2, end - at_ - 2), b)) fail("there is no such class of characters");
+            if (!classBytes(text_.substr(at_ + 2, end - at_ - 2), b)) fail("unknown character class");
             at_ = end + 2;
             return;
         }
@@ -318,7 +318,7 @@ private:
         for (const char* form : {"[.", "[="}) {
             if (text_.compare(at_, 2, form) != 0) continue;
             if (at_ + 5 > text_.size() || text_[at_ + 3] != form[1] || text_[at_ + 4] != ']')
-                return fail("between '[.' and '.]' stands one character"), false;
+                return fail("expected one character between '[.' and '.]'"), false;
             c = static_cast<unsigned char>(text_[at_ + 2]);
             at_ += 5;
             return true;

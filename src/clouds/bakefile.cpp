@@ -50,7 +50,7 @@ std::string readText(std::span<const uint8_t> b, Baked& to) {
     bool known = false;
     for (int t = 0; t <= int(ChannelType::Normal); ++t)
         if (type == nameOf(ChannelType(t))) known = true, to.type = ChannelType(t);
-    if (!known) return "its first line does not say of what type its values are";
+    if (!known) return "its first line does not name the type of its values";
     const size_t width = 2 + size_t(sizeOf(to.type));
     size_t number = 1, inLine = 0;
     for (at = line; at < end;) {

@@ -228,7 +228,7 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
             d.report(Severity::Warning, Rie::Consistency, order.front()->place,
                      "bake3d(): " + std::to_string(cloud.size() - n) + " of " + std::to_string(cloud.size()) + " points of \"" +
                          name + "\" have no channel \"" + c.name + "\"; it is 0 there",
-                     "all calls that bake into a file give the same channels, or others at the same points");
+                     "all calls that bake into one file must write the same channels, or other channels at the same points");
     return saveCloud(name, cloud, policy, d, f.rows.front().layout->place);
 }
 

@@ -106,7 +106,7 @@ std::string BrickMap::readDirectory() {
     size_t at = kBrickFixed;
     if (std::string fault = unpackChannels(head, channels, &at, channels_); !fault.empty()) return fault;
     width_ = width();
-    if (head.size() != at + levels * 4 + uint64_t(bricks) * kOfBrick) return "its header does not say what its bricks are";
+    if (head.size() != at + levels * 4 + uint64_t(bricks) * kOfBrick) return "its header does not match its bricks";
     for (uint32_t i = 0; i < levels; ++i, at += 4) largest_.push_back(takeFloat(&b[at]));
     for (const float r : largest_)
         if (!(r >= 0) || !std::isfinite(r)) return "its header is damaged";
@@ -138,7 +138,7 @@ std::shared_ptr<const PointTree> BrickMap::load(const Brick& k) const {
         {Severity::Error,
          Rie::BadFile,
          place_,
-         "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; there is nothing in them",
+         "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; these bricks are empty",
          "alpenglow ptc brick makes it anew",
          {}});
     return std::make_shared<const PointTree>();

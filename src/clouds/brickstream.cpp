@@ -75,7 +75,7 @@ std::string Part::open() {
         return f;
     int width = 0;
     for (const Channel& c : channels_) width += sizeOf(c.type);
-    if (at != header_ - 4 || record_ != 28 + 4 * size_t(width)) return "its header does not say what its points are";
+    if (at != header_ - 4 || record_ != 28 + 4 * size_t(width)) return "its header does not match its points";
     if (count_ > limits::kCloudPoints) return "it has more than " + std::to_string(limits::kCloudPoints) + " points";
     return "";
 }
@@ -165,7 +165,7 @@ private:
 };
 
 std::string Maker::measure() {
-    if (!scratch_ || !bricksOut_) return "there is no room for files in between";
+    if (!scratch_ || !bricksOut_) return "there is no disk space for temporary files";
     Vec3 lo(INFINITY), hi(-INFINITY);
     std::vector<float> radii;
     bool finite = true;
@@ -233,7 +233,7 @@ std::string Maker::sort() {
     });
     for (size_t k = 0; k < waiting.size(); ++k)
         if (!waiting[k].empty()) put(k);
-    return !fault.empty() ? fault : fine ? "" : "there is no room for files in between";
+    return !fault.empty() ? fault : fine ? "" : "there is no disk space for temporary files";
 }
 
 void Maker::level(const PointCloud& points, int depth) {
@@ -287,8 +287,8 @@ bool Maker::write(const std::string& name, const OutputPolicy& policy, Diagnosti
         b.resize(k.points * stream_.record());
         if (std::fseek(bricksOut_.get(), long(k.offset), SEEK_SET) != 0 ||
             std::fread(b.data(), 1, b.size(), bricksOut_.get()) != b.size()) {
-            d.report(Severity::Error, Rie::System, place, "brick map \"" + name + "\": there is no room for files in between",
-                     "TMPDIR has too little");
+            d.report(Severity::Error, Rie::System, place,
+                     "brick map \"" + name + "\": there is no disk space for temporary files", "TMPDIR has too little");
             return false;
         }
         if (!file->write(b.data(), b.size())) break;

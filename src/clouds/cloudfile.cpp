@@ -37,7 +37,7 @@ std::string readCloud(std::span<const uint8_t> b, PointCloud& to) {
         !fault.empty())
         return fault;
     const int width = to.width();
-    if (at != header - kEnd || record != kOfPoint + 4 * uint64_t(width)) return "its header does not say what its points are";
+    if (at != header - kEnd || record != kOfPoint + 4 * uint64_t(width)) return "its header does not match its points";
     if (count > limits::kCloudPoints) return "it has more than " + std::to_string(limits::kCloudPoints) + " points";
     if (const uint64_t want = header + count * record + kEnd; b.size() != want)
         return b.size() < want ? "it is cut short" : "something follows its points";

@@ -75,7 +75,7 @@ std::string readLine(const std::string& line, Header& h, std::string& element, b
         const auto end = std::from_chars(b.data(), b.data() + b.size(), n);
         if (end.ec != std::errc() || end.ptr != b.data() + b.size()) return "its element \"" + a + "\" has no count";
         if (a == "vertex" && !seen) seen = true, h.count = n;
-        else if (!seen && n > 0) return "its element \"" + a + "\" stands before the vertices";
+        else if (!seen && n > 0) return "its element \"" + a + "\" precedes the vertices";
     } else if (word == "property" && element == "vertex") {
         const auto type = numberByName(a);
         if (!type) return "the type \"" + a + "\" of a property of its vertices is no number";

@@ -159,7 +159,8 @@ std::string fileOf(const ForeignModule& m) { return moduleFile(m.file, m.variabl
 
 std::optional<Image> readForeign(const ForeignModule& of, const std::string& path, const DecodeContext& ctx) {
     const std::string module = fileOf(of);
-    if (module.empty()) return ctx.refuse(std::string(of.known) + ", and the module for others, " + of.file + ", is not there");
+    if (module.empty())
+        return ctx.refuse(std::string(of.known) + ", and the module for others, " + of.file + ", is not installed");
     Descriptor picture{memfd_create("alpenglow-picture", MFD_CLOEXEC)};
     int ends[2] = {-1, -1};
     if (picture.fd < 0 || pipe2(ends, O_CLOEXEC) != 0)

@@ -193,8 +193,7 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
     }
     if (out.empty()) {
         if (!words(mode, " ,\t\r\n").empty())
-            diags.report(Severity::Error, Rie::BadToken, place,
-                         "display mode \"" + mode + "\" names nothing to show; rgba is used");
+            diags.report(Severity::Error, Rie::BadToken, place, "display mode \"" + mode + "\" names no variable; rgba is used");
         standardMode("rgba", out);
     }
     return out;

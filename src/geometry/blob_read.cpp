@@ -194,7 +194,8 @@ bool BlobField::Reader::ground() {
     auto g = readGround(strings[size_t(name)], objectToWorld, why);
     if (!g) { // the rest is drawn
         diag.report(Severity::Error, Rie::NoFile, place,
-                    "Blobby: the depth map \"" + strings[size_t(name)] + "\" of a repelling plane: " + why + "; nothing repels");
+                    "Blobby: the depth map \"" + strings[size_t(name)] + "\" of a repelling plane: " + why +
+                        "; the plane is ignored");
         results.push_back(add({Kind::Constant, 0, 0, 0}));
         return true;
     }

@@ -260,7 +260,7 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
     if (full(p->place)) return;
     if (place.moves() && !std::all_of(place.keys.begin(), place.keys.end(), affine)) {
         once(diag_, "movingprojective", Rie::Incapable, p->place,
-             "a moving transformation of this " + p->kind + " holds a perspective: it stands where it is when the shutter opens");
+             "a moving transformation of this " + p->kind + " contains a perspective: its motion is ignored");
         place = Transform(place.first());
     }
     const Matrix open = place.first();

@@ -65,10 +65,10 @@ NormalsSay normalsSay(const Shape& s, Diagnostics& diag) {
     if (10 * few > all) {
         d.message = s.kind() + ": \"N\" lies on the front of some faces and on the back of others (" + std::to_string(few) +
                     " of " + counted(all, "place") + " looked at); these look dark";
-        d.hint = "all faces must wind the same way, seen from where their normals are; else leave \"N\" out";
+        d.hint = "wind all faces the same way as seen from the side of their normals, or omit \"N\"";
     } else if (says == NormalsSay::Back) {
-        d.message = s.kind() + ": \"N\" lies on the back of its faces; the side of \"N\" is taken for the front";
-        d.hint = "ReverseOrientation, or faces that wind the other way round, say the same without this note";
+        d.message = s.kind() + ": \"N\" lies on the back of its faces; the side of \"N\" is used as the front";
+        d.hint = "use ReverseOrientation or reverse the winding of the faces to avoid this note";
     }
     if (!d.message.empty()) diag.reportOnce("normals:" + d.place.file + ":" + std::to_string(d.place.line), d);
     return says;

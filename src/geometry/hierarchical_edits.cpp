@@ -75,7 +75,7 @@ private:
                 continue;
             }
             if (k + 3 > t.strings.size())
-                return say(t, "its strings are not in threes (how, variable, what); it is ignored"), false;
+                return say(t, "its strings must be triples (operation, variable, value); it is ignored"), false;
             const std::string &how = t.strings[k], &what = t.strings[k + 2];
             e.variable = t.strings[k + 1];
             if (how == "set") e.how = Edit::Set;
@@ -89,17 +89,16 @@ private:
                 const auto v =
                     std::find_if(values_.begin(), values_.end(), [&](const scene::Param& q) { return q.name == e.variable; });
                 if (v == values_.end())
-                    return say(t, "there is no variable \"" + e.variable + "\" whose values could be edited; it is ignored"),
-                           false;
+                    return say(t, "there is no editable variable \"" + e.variable + "\"; it is ignored"), false;
                 width = size_t(scene::componentCount(v->type)) * size_t(std::max(1, v->arrayLength));
             } else {
-                return say(t, "\"" + what + "\" is not a thing that it edits; it is ignored"), false;
+                return say(t, "\"" + what + "\" cannot be edited; it is ignored"), false;
             }
             ops.push_back(e);
             widths.push_back(width);
             k += 3;
         }
-        if (ops.empty()) say(t, "it says nothing to do; it is ignored");
+        if (ops.empty()) say(t, "it has no operation; it is ignored");
         return !ops.empty();
     }
 

@@ -21,7 +21,7 @@ bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_
         d.code = Rie::BadToken;
         d.place = sense->place;
         d.message =
-            "Attribute \"trimcurve\" \"sense\" is \"inside\" or \"outside\", not \"" + named + "\"; what is inside is cut away";
+            "Attribute \"trimcurve\" \"sense\" is \"inside\" or \"outside\", not \"" + named + "\"; the inside is cut away";
         diag.reportOnce("geometry:trimsense:" + named, d);
     }
     std::string why;
@@ -40,7 +40,7 @@ bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_
     d.severity = Severity::Warning;
     d.code = Rie::Consistency;
     d.place = s.primitive->place;
-    d.message = "NuPatch: its trim curves leave nothing of it";
+    d.message = "NuPatch: its trim curves cut all of it away";
     d.hint = std::string("Attribute \"trimcurve\" \"sense\" \"") + (named == "outside" ? "inside" : "outside") +
              "\" keeps the other part";
     diag.report(std::move(d));

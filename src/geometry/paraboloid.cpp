@@ -39,7 +39,7 @@ ShapeRef makeParaboloid(ShapeSource s, Diagnostics& diag) {
     if (r == 0 || sweep == 0 || zref == 0 || zmin == zmax)
         return reportDegenerate(p, diag, "has no radius, no sweep or no height"), nullptr;
     if (zmin / zref < 0) {
-        diag.report(Severity::Warning, Rie::Range, p.place, "Paraboloid zmin lies beyond its apex; it is drawn from the apex");
+        diag.report(Severity::Warning, Rie::Range, p.place, "Paraboloid zmin is beyond its apex; it is drawn from the apex");
         zmin = 0;
     }
     return std::make_shared<Paraboloid>(std::move(s), r, zmin, zmax, zref, sweep, diag);

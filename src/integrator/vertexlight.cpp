@@ -29,9 +29,8 @@ void VertexLight::tellScaled(const SurfaceBinding& b, bool more) {
                             {more ? Severity::Warning : Severity::Info,
                              Rie::NoError,
                              b.surface->place,
-                             "shader \"" + b.surface->name + "\" reflects" +
-                                 (more ? "" : ", together with what comes through it,") +
-                                 " more light than it receives; its indirect light is scaled down to what it receives",
+                             "shader \"" + b.surface->name + "\" reflects" + (more ? "" : ", including transmitted light,") +
+                                 " more light than it receives; its indirect light is scaled down to conserve energy",
                              "--unbiased leaves it as it is",
                              {}});
 }

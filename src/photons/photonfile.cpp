@@ -116,7 +116,7 @@ std::shared_ptr<const PhotonMap> loadPhotons(const std::string& path, const Matr
             p.normal = packUnit(turned(worldToCamera, take<uint32_t>(at + 28)));
             std::memcpy(p.reflected, at + 32, 3);
             p.bounces = at[35];
-            if (!sound(p)) fault = "a photon in it is not a number, or carries less than nothing";
+            if (!sound(p)) fault = "a photon in it is not a number, or has negative power";
         }
     }
     if (!fault.empty()) {

@@ -125,8 +125,8 @@ std::string File::readHeader() {
     metaSize_ = u32(60);
     if (faceCount_ > limits::kPtexFaces) return "it has more than " + std::to_string(limits::kPtexFaces) + " faces";
     headBytes_ = uint64_t(faceCount_) * (sizeof(Face) + sizeof(Block) + sizeof(uint32_t) + pixelBytes());
-    if (headBytes_ > limits::kPtexHeadBytes) return "what it says of its faces is too large";
-    if (levels_ > 32 || levelInfoSize_ != levels_ * kLevelInfo) return "its header does not say what its levels are";
+    if (headBytes_ > limits::kPtexHeadBytes) return "its face data is too large";
+    if (levels_ > 32 || levelInfoSize_ != levels_ * kLevelInfo) return "its header does not match its levels";
     if (uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + kHeader > bytes_.size() ||
         levelDataSize_ > bytes_.size())
         return "it is cut short";
@@ -155,7 +155,7 @@ std::string File::checkFace(const Face& f) const {
 std::string File::readFaces() {
     std::vector<uint8_t> b;
     if (!unpack(kHeader + uint64_t(extended_), faceInfoSize_, uint64_t(faceCount_) * kFaceInfo, b))
-        return "what it says of its faces is damaged";
+        return "its face data is damaged";
     head_.faces.reserve(faceCount_);
     for (uint32_t i = 0; i < faceCount_; ++i) {
         head_.faces.push_back(faceOf(&b[i * kFaceInfo]));
@@ -192,7 +192,7 @@ std::string File::readLevels() {
 
 std::string File::readLevel(size_t k, uint64_t at, uint64_t size, uint32_t headerSize, uint32_t count) {
     if (headerSize > size || count > faceCount_ || (k == 0 && count != faceCount_)) return "a level of it is damaged";
-    if (k > 0 && (headBytes_ += count * sizeof(Block)) > limits::kPtexHeadBytes) return "what it says of its faces is too large";
+    if (k > 0 && (headBytes_ += count * sizeof(Block)) > limits::kPtexHeadBytes) return "its face data is too large";
     std::vector<uint8_t> b;
     if (!unpack(at, headerSize, uint64_t(count) * 4, b)) return "a level of it is damaged";
     std::vector<Block>& blocks = blocks_.emplace_back();

@@ -133,9 +133,9 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
     setProjection(o, diags);
     near_ = o.clipNear > 0 && std::isfinite(o.clipNear) ? o.clipNear : 0;
     if (near_ <= 1e-9) near_ = 0; // RI_EPSILON: no near plane
-    if (o.clipFar < o.clipNear) bad("Clipping: far lies in front of near");
+    if (o.clipFar < o.clipNear) bad("Clipping: far is in front of near");
     else if (o.clipFar < 1e30f)
-        diags.report(Severity::Info, Rie::NoError, {}, "Clipping: rays see what lies behind the far plane too");
+        diags.report(Severity::Info, Rie::NoError, {}, "Clipping: rays also see geometry behind the far plane");
 
     setLens(o, diags);
     if (o.shutterClose < o.shutterOpen) bad("Shutter: it closes before it opens; there is no motion blur");

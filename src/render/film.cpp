@@ -222,7 +222,7 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
     for (auto r : o.ranges_)
         if (!insertRange(next, r))
             return bad(Rie::Consistency, "the parts share samples: " + std::to_string(r.begin) + ":" + std::to_string(r.end) +
-                                             " overlaps what is already there");
+                                             " overlaps the samples already present");
     if (total(next) > limits::kSamplesPerPixel)
         return bad(Rie::Limit, "more than " + std::to_string(limits::kSamplesPerPixel) + " samples per pixel");
     ranges_ = std::move(next);

@@ -23,7 +23,7 @@ std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std:
     const auto text = film.metadata.find(kImagerKey);
     if (text == film.metadata.end()) {
         diags.report(Severity::Error, Rie::Incapable, {file},
-                     "the scene has an imager shader, of which the part file says nothing; it is not run");
+                     "the scene has an imager shader that the part file does not describe; it is not run");
         return nullptr;
     }
     auto scene = imagerFromText(text->second, file, diags);

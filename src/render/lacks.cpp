@@ -16,7 +16,7 @@ void warn(Diagnostics& diags, const SourcePlace& place, std::string message, std
 std::string unseenHint(size_t shapes, size_t before) {
     if (shapes == 0) return "the world has no primitives that are drawn";
     const std::string camera = "the camera looks along +z, and requests before WorldBegin place the world before it";
-    if (before == 0) return "all of it lies behind the camera: " + camera + "; Translate 0 0 5, for example, moves it 5 away";
+    if (before == 0) return "everything is behind the camera: " + camera + "; Translate 0 0 5, for example, moves it 5 away";
     return "check the camera: " + camera + "; " + counted(before, "shape") + " of " + std::to_string(shapes) +
            (before == 1 ? " lies" : " lie") +
            " before it, outside the picture or hidden from it by Attribute \"visibility\" or Sides 1";
@@ -58,8 +58,7 @@ void sayTurnedAway(const Job& job, Diagnostics& diags) {
         warn(diags, f.call,
              f.shadeop + "(): all over " + (f.primitives == 1 ? "a primitive" : counted(f.primitives, "primitive")) + where +
                  " its normal faces away from the viewer, and " +
-                 (f.shadeop == "occlusion" ? "all that it looks at is blocked: it is 1"
-                                           : "what it sees is the inside of the primitive itself"),
+                 (f.shadeop == "occlusion" ? "all that it looks at is blocked: it is 1" : "the primitive itself blocks its rays"),
              "faceforward(normalize(N), I) is the normal of the side that is seen; ReverseOrientation turns those of the "
              "primitive");
     }

@@ -193,7 +193,7 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
         return result;
     } catch (const std::exception& e) {
         diags.report(Severity::Error, Rie::BadFile, {file},
-                     std::string("part file: what it says about its pictures is damaged: ") + e.what());
+                     std::string("part file: the description of its pictures is damaged: ") + e.what());
         return std::nullopt;
     }
 }

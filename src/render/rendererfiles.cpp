@@ -159,8 +159,12 @@ bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint, b
 
 bool Renderer::resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film) {
     if (std::error_code e; !std::filesystem::exists(checkpoint, e)) {
-        Diagnostic begins{
-            Severity::Info, Rie::NoError, {checkpoint}, "there is no checkpoint yet; rendering begins anew", {}, {}};
+        Diagnostic begins{Severity::Info,
+                          Rie::NoError,
+                          {checkpoint},
+                          "there is no checkpoint yet; rendering starts from the beginning",
+                          {},
+                          {}};
         begins.always = true;
         diagnostics_.report(std::move(begins));
         return true;
@@ -168,13 +172,14 @@ bool Renderer::resume(const std::string& checkpoint, const FilmDescription& want
     film = loadPart(checkpoint, diagnostics_);
     if (film && film->description() == wanted) return true;
     if (film)
-        diagnostics_.report(Severity::Error, Rie::Consistency, {checkpoint},
-                            "the checkpoint belongs to another " + differing(film->description(), wanted) +
-                                "; it is left as it is, and nothing is rendered",
-                            "render what it belongs to, name another file, or give --restart instead of --resume to replace it");
+        diagnostics_.report(
+            Severity::Error, Rie::Consistency, {checkpoint},
+            "the checkpoint belongs to another " + differing(film->description(), wanted) +
+                "; it is not changed, and nothing is rendered",
+            "render the scene it belongs to, choose another file, or replace it with --restart instead of --resume");
     else
         diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint},
-                            "the checkpoint is left as it is, and nothing is rendered",
+                            "the checkpoint is not changed, and nothing is rendered",
                             "--restart instead of --resume begins anew and replaces it");
     film.reset();
     return false;
@@ -184,7 +189,7 @@ bool Renderer::mayReplace(const std::string& checkpoint) {
     std::error_code e;
     if (settings_.resume || settings_.restart || checkpoint.empty() || !std::filesystem::exists(checkpoint, e)) return true;
     diagnostics_.report(Severity::Error, Rie::BadFile, {checkpoint},
-                        "the checkpoint is there already; it is left as it is, and nothing is rendered",
+                        "the checkpoint is there already; it is not changed, and nothing is rendered",
                         "--resume goes on with it, --restart begins anew and replaces it");
     return false;
 }

@@ -322,7 +322,7 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
         ++outcome_.refused;
         if (job.interrupted && writesFiles(settings_))
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                                "interrupted before the first pass was whole; nothing is written");
+                                "interrupted before the first pass was complete; no picture is written");
     } else {
         writeFrameFilm(f, *film, renderSec);
     }
@@ -364,7 +364,7 @@ bool Renderer::makeDepths(FrameWork& f, Job& job) {
     outcome_.interrupted |= job.interrupted;
     if (job.interrupted)
         diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                            "interrupted before the deep shadow map was whole; nothing is written");
+                            "interrupted before the deep shadow map was complete; it is not written");
     if (f.picture.deep || job.interrupted) return f.picture.deep != nullptr;
     std::erase_if(f.plan.pictures, [](const OutputSpec& p) { return p.deep; });
     return !f.plan.pictures.empty();
@@ -387,7 +387,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     outcome_.interrupted |= job.interrupted;
     ++outcome_.rendered;
     if (job.interrupted && writesFiles(settings_))
-        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what was not reached stays black in the picture");
+        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: unfinished parts of the picture are black");
     if (f.nonFinite) {
         const auto at = dropped.first.value_or(std::array{-1, -1, -1});
         reportDropped(f.nonFinite, at[2], at[1], at[0]);
@@ -410,7 +410,7 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
 void Renderer::writeBaked(FrameWork& f, const Job& job) {
     if (!transport::bakes(*f.world)) return;
     if (job.interrupted)
-        return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what shaders bake is not written");
+        return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: baked files are not written");
     awaitTurn();
     clouds::FileOwners others;
     for (const OutputSpec& s : f.plan.pictures) {
@@ -460,7 +460,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     if (c.overLimit)
         diagnostics_.report(Severity::Error, Rie::Limit, {},
                             std::to_string(c.overLimit) +
-                                " ray calls were beyond the memory for waiting shaders and brought nothing");
+                                " ray calls exceeded the memory for waiting shaders and returned no light");
     if (c.depthCap && f.path)
         diagnostics_.report(Severity::Info, Rie::NoError, {},
                             std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");

@@ -175,7 +175,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
         for (const char* key : {"colorspace", "gamma"})
             if (textOf(*face, key) != textOf(all, key))
                 return refuse("\"" + name +
-                              "\" declares other colours than the first picture; --srgb or --linear says what they are");
+                              "\" declares another colour space than the first picture; choose one with --srgb or --linear");
         all.height += face->height;
         all.data.insert(all.data.end(), face->data.begin(), face->data.end());
     }

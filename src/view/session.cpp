@@ -348,7 +348,7 @@ Json Session::act(const Json& j) try {
         } else if (what == "reload") {
             reload_ = true;
             interrupt();
-        } else return failed("there is nothing called \"" + what + "\" to do");
+        } else return failed("unknown action \"" + what + "\"");
     }
     changed_();
     return answer;

@@ -98,7 +98,7 @@ std::unique_ptr<TevPreview> TevPreview::connect(const std::string& host, int por
     freeaddrinfo(all);
     if (s < 0) {
         diags.report(Severity::Warning, Rie::System, {},
-                     "--display tev:" + where + ": nobody listens there; rendering goes on without it",
+                     "--display tev:" + where + ": no viewer listens there; rendering continues without it",
                      "start tev first; it listens at 127.0.0.1:14158");
         return nullptr;
     }

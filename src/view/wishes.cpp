@@ -89,7 +89,7 @@ std::string Wishes::take(const Json& j) {
         } else if (name == "crop") fine = cropOf(value, &w.crop);
         else if (name == "channels") fine = channelsOf(value, &w.channels);
         else if (name == "dim") fine = dimOf(value, &w.dim);
-        else return "there is no switch \"" + name + "\"";
+        else return "there is no setting \"" + name + "\"";
         if (!fine) return "\"" + name + "\" cannot be that";
     }
     *this = std::move(w);

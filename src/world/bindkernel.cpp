@@ -229,13 +229,12 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
         said("type", "a point cloud is read where \"filename\" names one; light is found by rays here");
     else if (!type.empty() && type != "pointcloud" && type != "raytrace")
-        said("type " + type, "there is no type \"" + type + "\"; light is found by rays here",
-             "types are raytrace and pointcloud");
+        said("type " + type, "unknown type \"" + type + "\"; rays compute the light", "types are raytrace and pointcloud");
     const std::string model = text("model");
     if (model == "jensen") b->model = SubsurfaceSite::Model::Dipole;
     else if (model == "grosjean") b->model = SubsurfaceSite::Model::BetterDipole;
     else if (!model.empty() && model != "walk")
-        said("model " + model, "there is no model \"" + model + "\"; light is followed as it walks below the surface",
+        said("model " + model, "unknown model \"" + model + "\"; random walks below the surface are used",
              "models are walk, jensen and grosjean");
     return b;
 }

@@ -8,7 +8,7 @@
 namespace alpenglow::transport {
 
 std::optional<std::string> CloudStore::pathOf(const std::string& name, const SourcePlace& place) {
-    static constexpr MapKind kKind{"point cloud", "what reads it gives 0", "bake3d() in a frame before this one makes it", true,
+    static constexpr MapKind kKind{"point cloud", "lookups return 0", "bake3d() in a frame before this one makes it", true,
                                    "point cloud or brick map"};
     return findMap(name, files_, kKind, diagnostics_, place);
 }
@@ -99,7 +99,7 @@ CloudStore::makeOctree(const std::string& name, bool light, const std::optional<
                "has " + std::to_string(octree->leftOut()) + " points without area, which are left out",
                "bake3d() writes a radius and \"_area\"");
     if (light && !octree->lit() && cloud->size() > 0)
-        report(Severity::Warning, "has no channel \"_radiosity\"; what its points send is 0",
+        report(Severity::Warning, "has no channel \"_radiosity\"; its points emit no light",
                "bake3d(..., \"_radiosity\", Ci) writes it");
     return octree;
 }

@@ -103,7 +103,7 @@ void SurfaceBinder::bindEntering(SurfaceBinding& b, const Names& varying) {
                              Rie::Unimplement,
                              place,
                              "subsurface(): its \"irradiance\" waits for rays (" + b.entering.kernel->facts().whyNot +
-                                 "), so that it is not used: what enters is found from the lights",
+                                 "), so it is not used: the entering light is computed from the lights",
                              "sums and products with what does not depend on light need not wait",
                              {}});
     b.entering = {};

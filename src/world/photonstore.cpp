@@ -6,7 +6,7 @@ namespace alpenglow::transport {
 namespace {
 
 constexpr MapKind kKind{
-    "photon map", "it gives no light",
+    "photon map", "lookups return no light",
     "Hider \"photon\" makes it, and so does rendering where lights have Attribute \"light\" \"int emitphotons\" 1", false};
 
 } // namespace

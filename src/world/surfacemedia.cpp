@@ -36,7 +36,7 @@ Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying
             {Severity::Info,
              Rie::NoError,
              shader->place,
-             "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1",
+             "volume shader " + name + " is not affine in Ci; its transmittance is measured between Ci = 0 and 1",
              {},
              {}});
     m.shader = shader;

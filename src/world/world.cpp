@@ -170,7 +170,7 @@ static texture::TextureSettings mapSettings(const scene::Options& o, const Setti
         if (kilobytes >= 1 && kilobytes < 1e15) t.memory = size_t(kilobytes) * 1024;
         else
             d.report(Severity::Error, Rie::Range, i->second.place,
-                     "Option \"limits\" \"texturememory\" is a number of kB, at least 1; what the machine has decides");
+                     "Option \"limits\" \"texturememory\" is a number of kB, at least 1; the default is used");
     }
     return t;
 }

@@ -174,7 +174,7 @@ std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
     jpeg_destroy_decompress(&r.info);
     if (r.refused) return {};
     if (!ok) return ctx.refuse(r.error);
-    if (r.warning[0]) ctx.warn(std::string(r.warning) + "; what could be read is used");
+    if (r.warning[0]) ctx.warn(std::string(r.warning) + "; the readable part is used");
     return std::move(r.image);
 }
 

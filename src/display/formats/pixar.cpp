@@ -128,7 +128,7 @@ private:
         const size_t across = size_t(m.width / tw), count = across * size_t(m.height / th),
                      need = size_t(tw) * size_t(th) * sample;
         const uint64_t values = at + 8, codes = values + 4 * count;
-        if (!r_.holds(at, raw_ ? count * need : 8 + 6 * count)) return refuse("a level lies outside of the file");
+        if (!r_.holds(at, raw_ ? count * need : 8 + 6 * count)) return refuse("a level is outside of the file");
         uint8_t bytes[tileBytes];
         const std::span<uint8_t> tile(bytes, need);
         for (size_t t = 0; t < count; ++t) {
@@ -149,7 +149,7 @@ private:
             }
             return true;
         }
-        if (!r_.holds(value, length)) return refuse("a tile lies outside of the file");
+        if (!r_.holds(value, length)) return refuse("a tile is outside of the file");
         const Bytes from = r_.b.subspan(value, length);
         const auto check = [&](const char* what, const char* why) { return !why || refuse(std::string(what) + " " + why); };
         switch (mode) {

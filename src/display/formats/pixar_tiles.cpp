@@ -151,7 +151,7 @@ const char* huffman(Bytes from, std::span<uint8_t> tile) {
 const char* deflated(Bytes from, std::span<uint8_t> tile, size_t sampleBytes, bool bigEndian) {
     uLongf size = uLongf(tile.size());
     const int result = uncompress(tile.data(), &size, from.data(), uLong(from.size()));
-    if (result == Z_MEM_ERROR) return "need memory that is not there";
+    if (result == Z_MEM_ERROR) return "need more memory than is available";
     if (result != Z_OK) return "cannot be inflated";
     if (size != tile.size()) return "end too early";
     if (sampleBytes == 1) {

@@ -47,7 +47,7 @@ std::string readTo(const char* path, int to, const ForeignLimits& limits) {
     file.open();
     const Grids g(*file.getGrids());
     if (g.names.empty()) return "it has no grid of floats or of vectors of floats";
-    if (g.box.empty()) return "nothing in its grids is active";
+    if (g.box.empty()) return "its grids have no active voxels";
     const openvdb::Coord size = g.box.dim();
     const uint64_t w = uint64_t(size.x()), h = uint64_t(size.y()), d = uint64_t(size.z()), n = g.names.size();
     if (w > limits.side || h > limits.side || d > limits.side)

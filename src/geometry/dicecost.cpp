@@ -14,7 +14,7 @@ double threadSeconds() {
 
 DiceCost costOf(const Shape& s, double seconds) {
     const TriMesh& m = s.mesh();
-    // A point has its place and its parameters, a triangle its corners.
+    // A point has its position and parameters, a triangle its corners.
     return {seconds, m.P.size() * (sizeof(Vec3) + sizeof(Vec2)) + m.made.size() * sizeof(uint32_t)};
 }
 

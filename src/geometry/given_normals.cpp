@@ -7,7 +7,7 @@ namespace alpenglow::geometry {
 
 namespace {
 
-/// Faces of a mesh that are looked at, evenly spread over it.
+/// Number of faces sampled, uniformly over the mesh.
 constexpr uint32_t kFacesLookedAt = 256;
 
 /// Places along a parametric surface, in each direction.
@@ -40,8 +40,8 @@ Count lookAt(const Shape& s) {
     return c;
 }
 
-/// Whether normals mean a side at all: curves and points turn by rules of their own, and what is taken from a solid shows its
-/// inside.
+/// Whether normals define a side: not for curves and points, which have their own rules, nor for subtracted parts of solids,
+/// which show their inside.
 bool meansSide(const Shape& s) {
     static constexpr const char* kOthers[] = {"Curves", "Points", "Blobby", "SubdivisionMesh", "HierarchicalSubdivisionMesh"};
     return s.givesNormals() && !scene::solidTakenAway(s.attributes()) &&

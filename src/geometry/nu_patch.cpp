@@ -8,7 +8,7 @@ namespace alpenglow::geometry {
 
 namespace {
 
-/// The part of the patch that trim curves keep: null for all of it. False when that is nothing.
+/// The part of the patch that trim curves keep: null for all. Returns false if nothing is kept.
 bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_ptr<const TrimRegion>& region,
             Diagnostics& diag) {
     const scene::ParamList& curves = *s.attributes->trimCurve;

@@ -134,7 +134,7 @@ void Accel::Impl::refuse(Diagnostics& diag) { // without a tree the picture woul
 void Accel::Impl::sayBeyond(const Tree& tree, const Shape& first, Diagnostics& diag) {
     diag.report(Severity::Warning, Rie::Range, first.place(),
                 std::to_string(tree.beyond()) + " triangles, of this " + first.kind() +
-                    " among others, reach farther than 1e30 and are not drawn");
+                    " among others, extend beyond 1e30 and are not drawn");
 }
 
 Accel::~Accel() = default;

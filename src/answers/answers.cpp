@@ -71,15 +71,15 @@ void ServiceCall::answer(int lane, const Told& t) const {
     if (t.kind && (*t.kind != wanted || (t.elements > 0) != array)) return;
     if (t.varying && wanted != Kind::String && s.uniform) {
         const SourcePlace at = place();
-        diagnostics.reportOnce(
-            "uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" + name(lane),
-            {Severity::Warning,
-             Rie::Consistency,
-             at,
-             d.op + "(): \"" + name(lane) +
-                 "\" is varying and the variable that takes it is uniform: it stays as it is, and the result is 0",
-             "a varying variable takes it",
-             {}});
+        diagnostics.reportOnce("uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" +
+                                   name(lane),
+                               {Severity::Warning,
+                                Rie::Consistency,
+                                at,
+                                d.op + "(): \"" + name(lane) +
+                                    "\" is varying and the destination is uniform: it is not changed, and the result is 0",
+                                "a varying variable takes it",
+                                {}});
         return;
     }
     const size_t size = size_t(rsl::ir::components(wanted)), rows = size_t(s.resultRowCount) - before;

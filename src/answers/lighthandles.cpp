@@ -108,7 +108,7 @@ void Answers::getLights(const ServiceCall& call) {
                                                           Rie::Limit,
                                                           {},
                                                           "getlights() returns at most " + std::to_string(limits::kLightHandles) +
-                                                              " lights; the others are left out",
+                                                              " lights; the others are dropped",
                                                           {},
                                                           {}});
                     return true;

@@ -26,7 +26,7 @@ void cloudsOf(Answers& answers, const ServiceCall& call, int lane, bool light, c
                                      Rie::MissingData,
                                      call.place(),
                                      call.d.op + "() with \"pointbased\" needs the name of a point cloud; it returns 0",
-                                     "\"filename\" or \"filenames\" says which",
+                                     "set \"filename\" or \"filenames\"",
                                      {}});
 }
 

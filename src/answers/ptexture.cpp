@@ -77,8 +77,8 @@ void answerPtexture(Answers& answers, const ServiceCall& call) {
                                          Rie::Range,
                                          call.place(),
                                          "ptexture(): \"" + call.name(lane) + "\" has " + std::to_string(t->head().faces.size()) +
-                                             " faces, and a face beyond them is asked for; there it is 0",
-                                         "a shader parameter __faceindex gets the number of the face",
+                                             " faces, but the shader requests a face beyond them; the result is 0",
+                                         "a shader parameter __faceindex receives the number of the face",
                                          {}});
         for (int k = 0; k < s.count; ++k) call.put(k, lane, out[k]);
     });

@@ -82,7 +82,7 @@ struct Reader {
     bool all() {
         if (!next()) return true; // no restriction
         const bool in = list();
-        if (error.empty() && next()) fail(std::string("'") + text.front() + "' is not expected there");
+        if (error.empty() && next()) fail(std::string("'") + text.front() + "' is unexpected there");
         return in;
     }
 };

@@ -197,7 +197,7 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
     const bool plain = policy.root.empty() || policy.root == ".";
     std::string path = climbs(name) ? real.string() : absolute || plain ? name : given.string();
     if (!replaceable(path))
-        return refuse("\"" + path + "\" is there and is no picture; a scene may not replace it",
+        return refuse("\"" + path + "\" exists and is not a picture; a scene may not replace it",
                       "choose another name, or permit it by --allow-write");
     return path;
 }
@@ -255,7 +255,7 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
     fs::path dir = target.parent_path();
     if (!dir.empty() && !fs::exists(dir, e) && !fs::create_directories(dir, e) && e) {
         diags.report(Severity::Error, codeOf(e.value()), place,
-                     "cannot write \"" + f.path_ + "\": its folder cannot be made: " + e.message());
+                     "cannot write \"" + f.path_ + "\": cannot create its folder: " + e.message());
         return {};
     }
     removeAbandoned(dir);

@@ -73,7 +73,7 @@ private:
     char peek() const { return text_[at_]; }
 
     uint32_t state(Pattern::State s) {
-        if (p_.states_.size() >= limits::kPatternStates) fail("the pattern is too large once its repetitions are written out");
+        if (p_.states_.size() >= limits::kPatternStates) fail("the pattern is too large after expanding repetitions");
         else p_.states_.push_back(s);
         return uint32_t(p_.states_.size() - 1);
     }
@@ -245,7 +245,7 @@ private:
             return {0, 0};
         }
         const auto c = static_cast<unsigned char>(text_[at_++]);
-        if (c >= '1' && c <= '9') fail("back-references such as \\1 are not understood");
+        if (c >= '1' && c <= '9') fail("back-references such as \\1 are not supported");
         switch (c) {
         case 'b':
         case 'B':
@@ -308,7 +308,7 @@ private:
         if (at_ + 1 < text_.size() && peek() == '-' && text_[at_ + 1] != ']') {
             ++at_;
             if (!element(high)) return;
-            if (high < low) return fail("a range of characters ends before it begins");
+            if (high < low) return fail("a range of characters ends before it starts");
         }
         for (int c = low; c <= high; ++c) b[size_t(c)] = true;
     }

@@ -34,7 +34,7 @@ std::string readBinary(std::span<const uint8_t> b, Baked& to) {
     const size_t width = 2 + size_t(sizeOf(to.type));
     if (count > limits::kCloudPoints) return "it has more than " + std::to_string(limits::kCloudPoints) + " points";
     if (const uint64_t want = kHeader + count * width * 4 + 4; b.size() != want)
-        return b.size() < want ? "it is cut short" : "something follows its points";
+        return b.size() < want ? "it is cut short" : "there is extra data after its points";
     if (checksum(b.first(b.size() - 4)) != takeNumber<uint32_t>(b.data() + b.size() - 4)) return "it is damaged";
     to.rows.resize(size_t(count) * width);
     for (size_t i = 0; i < to.rows.size(); ++i) to.rows[i] = takeFloat(&b[kHeader + 4 * i]);
@@ -71,7 +71,7 @@ std::string readText(std::span<const uint8_t> b, Baked& to) {
             at = r.ptr;
         }
     }
-    return inLine == 0 ? "" : "its last line does not end";
+    return inLine == 0 ? "" : "its last line is incomplete";
 }
 
 /// Solves the normal equations of a plane a + b x + c y; returns a, or the mean if the points do not span a plane.

@@ -212,7 +212,7 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
             d.report(Severity::Error, Rie::Consistency, l->place,
                      "bake3d(): \"" + name + "\" has " +
                          (l->flat ? "points of bake() as well" : "channels of these names and other types already") +
-                         "; these points are left out");
+                         "; these points are dropped");
         k.fits &= !l->flat;
         for (const Channel& c : l->channels)
             for (int n = 0, at = cloud.offsetOf(c.name); n < sizeOf(c.type); ++n) k.to.push_back(at + n);
@@ -239,7 +239,7 @@ bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d, FileOwners owner
         if (f.notFinite)
             d.report(Severity::Warning, Rie::Math, {},
                      "\"" + name + "\": " + std::to_string(f.notFinite) +
-                         " baked points have numbers that are not finite; they are left out");
+                         " baked points have numbers that are not finite; they are dropped");
         if (f.rows.empty()) continue;
         const BakeLayout& first = *f.rows.front().layout;
         const std::string call = first.flat ? "bake()" : "bake3d()";

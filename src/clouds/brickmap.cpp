@@ -139,7 +139,7 @@ std::shared_ptr<const PointTree> BrickMap::load(const Brick& k) const {
          Rie::BadFile,
          place_,
          "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; these bricks are empty",
-         "alpenglow ptc brick makes it anew",
+         "alpenglow ptc brick makes it again",
          {}});
     return std::make_shared<const PointTree>();
 }
@@ -185,7 +185,7 @@ std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostic
     const std::string fault = map->readDirectory();
     if (fault.empty()) return map;
     d.report(Severity::Error, Rie::BadFile, place, "brick map \"" + path + "\" cannot be read: " + fault,
-             "alpenglow ptc brick makes it anew");
+             "alpenglow ptc brick makes it again");
     return nullptr;
 }
 
@@ -194,7 +194,7 @@ std::optional<BrickFacts> brickFacts(const std::string& path, Diagnostics& d) {
     const std::string fault = map.readDirectory();
     if (fault.empty()) return map.facts();
     d.report(Severity::Error, Rie::BadFile, {}, "brick map \"" + path + "\" cannot be read: " + fault,
-             "alpenglow ptc brick makes it anew");
+             "alpenglow ptc brick makes it again");
     return {};
 }
 

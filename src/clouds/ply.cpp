@@ -103,7 +103,7 @@ std::string readHeader(std::span<const uint8_t> bytes, Header& h) {
         }
         if (std::string fault = readLine(line, h, element, seen); !fault.empty()) return fault;
     }
-    return "its header does not end";
+    return "its header is incomplete";
 }
 
 double numberAt(const uint8_t* from, Number type, bool big) {

@@ -69,7 +69,7 @@ void limitMemory([[maybe_unused]] uint64_t bytes) {
         code = read(path.c_str(), to, &limits, why, kWhy) == 0 ? 0 : kKnown;
     } else {
         const char* text = dlerror();
-        std::strncpy(why, text ? text : "it has no function of ours", kWhy - 1);
+        std::strncpy(why, text ? text : "it does not have the expected function", kWhy - 1);
     }
     for (size_t done = 0, n = std::strlen(why); done < n;) {
         const ssize_t k = write(tell, why + done, n - done);
@@ -112,7 +112,7 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
     struct stat about{};
     if (fstat(file, &about) != 0 || !readAll(file, &p, sizeof p) || p.stamp != kForeignStamp || p.width <= 0 || p.height <= 0 ||
         p.channels <= 0)
-        return ctx.refuse("the module that reads it was built from other sources than this program");
+        return ctx.refuse("the module that reads it was built for another version of this program");
     const uint64_t slices = std::max<uint64_t>(1, p.depth), side = uint64_t(limits::kImageSide);
     if (slices > side || uint64_t(p.height) * slices > uint64_t(std::numeric_limits<int>::max()) || // rows of an Image
         uint64_t(p.height) * slices * uint64_t(p.width) > limits::kImageBytes / sizeof(float) / uint64_t(p.channels))
@@ -120,7 +120,7 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
     if (!ctx.sizeAllowed(uint64_t(p.width), uint64_t(p.height), uint64_t(p.channels))) return {};
     const size_t names = size_t(p.channels) * kForeignName,
                  numbers = size_t(p.width) * size_t(p.height) * slices * size_t(p.channels) * sizeof(float);
-    if (size_t(about.st_size) != sizeof p + names + numbers) return ctx.refuse("its reader gave too little");
+    if (size_t(about.st_size) != sizeof p + names + numbers) return ctx.refuse("its reader returned too little data");
     void* all = mmap(nullptr, size_t(about.st_size), PROT_READ, MAP_SHARED, file, 0);
     if (all == MAP_FAILED) return ctx.refuse("out of memory", Rie::NoMem);
     const char* at = static_cast<const char*>(all) + sizeof p;

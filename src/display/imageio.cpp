@@ -62,7 +62,7 @@ void sayLeftOut(const char* format, const Image& m, const std::vector<int>& writ
             left += (left.empty() ? "" : ", ") + m.channels[size_t(c)];
     if (left.empty()) return;
     diags.report(left == "a" ? Severity::Info : Severity::Warning, Rie::Incapable, o.place,
-                 std::string(format) + " holds no more than one picture" + (left == "a" ? " without alpha" : "") +
+                 std::string(format) + " holds a single picture only" + (left == "a" ? " without alpha" : "") +
                      "; left out of \"" + path + "\": " + left,
                  left == "a" ? "PNG, TIFF and OpenEXR hold alpha" : "OpenEXR holds any channels");
 }

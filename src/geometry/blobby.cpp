@@ -122,7 +122,7 @@ void Blobby::cut(Diagnostics& diag) {
         const bool full = boxes_.size() + 2 * now.size() > limits::kBlobBoxes;
         if (full) {
             diag.report(Severity::Info, Rie::Limit, place(),
-                        "Blobby: its boxes are larger than would be fast, for there would be too many");
+                        "Blobby: it needs too many boxes; larger ones are used, which is slower");
             boxes_.insert(boxes_.end(), now.begin(), now.end());
             break;
         }

@@ -95,7 +95,7 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     }
     if (!affine)
         once(diag, "projective", Rie::Incapable, prim->place,
-             "a transformation of this " + prim->kind + " holds a perspective; derivatives and quadrics ignore it");
+             "a transformation of this " + prim->kind + " contains a perspective; derivatives and quadrics ignore it");
     ShapeSource s;
     s.primitive = prim;
     s.toCamera = toCamera;

@@ -448,7 +448,7 @@ ShapeRef makeNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std:
                  std::shared_ptr<const TrimRegion> trim) {
     if (atInfinity(u, v, points)) {
         diag.report(Severity::Error, Rie::Range, s.primitive->place,
-                    s.primitive->kind + ": the weights of \"Pw\" vanish, so that a part of it is at infinity; it is not drawn");
+                    s.primitive->kind + ": the weights of \"Pw\" vanish, so it reaches infinity; it is not drawn");
         return nullptr;
     }
     return std::make_shared<ControlNet>(std::move(s), std::move(u), std::move(v), std::move(points), diag, std::move(trim));

@@ -190,8 +190,7 @@ Vec3 Deforming::velocity(const SurfacePoint& at) const {
 
 void reportUnlike(const Shape& s, Diagnostics& diag) {
     diag.report(Severity::Warning, Rie::Incapable, s.place(),
-                "the keys of this moving " + s.kind() +
-                    " are not made of the same pieces: it is drawn where it is at its first time");
+                "the keys of this moving " + s.kind() + " do not match: it is drawn at its first position");
 }
 
 void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {

@@ -196,16 +196,16 @@ bool displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
     if (notFinite)
         diag.report(Severity::Error, Rie::Math, shape.place(),
                     "displacement of this " + shape.kind() + " is not finite at " + std::to_string(notFinite) +
-                        " points; they stay where they were");
+                        " points; these are not displaced");
     if (tooFar)
         diag.report(Severity::Error, Rie::Limit, shape.place(),
                     "displacement of this " + shape.kind() + " moves " + std::to_string(tooFar) +
-                        " points farther than the limit; they stay where they were");
+                        " points farther than the limit; these are not displaced");
     if (bound.radius < 0 || farthest <= bound.radius * 1.001) return true;
     diag.report(Severity::Warning, Rie::Range, shape.place(),
                 "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
                     ", beyond its displacementbound of " + std::to_string(bound.radius) + " in \"" + bound.space +
-                    "\" space; it is drawn whole",
+                    "\" space; it is drawn completely",
                 bound.radius > 0 ? "other renderers need the bound times " + factor(farthest / bound.radius)
                                  : "other renderers need a bound that is not 0");
     return false;

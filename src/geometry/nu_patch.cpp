@@ -28,7 +28,7 @@ bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_
     double gap = 0;
     region = TrimRegion::make(curves, domain, named == "outside", why, gap);
     if (!region) {
-        diag.report(Severity::Error, Rie::Range, place, "TrimCurve: " + why + "; the NuPatch is drawn whole");
+        diag.report(Severity::Error, Rie::Range, place, "TrimCurve: " + why + "; the NuPatch is drawn completely");
         return true;
     }
     constexpr double kSeen = 1e-3; // of the patch

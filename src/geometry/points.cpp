@@ -465,7 +465,7 @@ ShapeRef makePoints(ShapeSource s, Diagnostics& diag) {
             d.severity = Severity::Warning;
             d.code = t == "blobby" ? Rie::Incapable : Rie::BadToken;
             d.place = type->place;
-            d.message = t == "blobby" ? "Points of type \"blobby\" are drawn as spheres, which do not melt together"
+            d.message = t == "blobby" ? "Points of type \"blobby\" are drawn as spheres, which do not blend"
                                       : "Points of type \"" + t +
                                             "\" are drawn as particles; known are particle, disk, sphere, patch and blobby";
             diag.reportOnce("geometry:points:" + t, d);

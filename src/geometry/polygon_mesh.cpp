@@ -121,7 +121,7 @@ void PolygonMesh::cutFaces(const PolygonInput& in, Diagnostics& diag) {
     if (forced)
         diag.report(Severity::Warning, Rie::Consistency, place(),
                     kind() + ": the loops of " + std::to_string(forced) +
-                        " faces cross or lie outside each other; they are filled as well as possible");
+                        " faces have loops that cross or are outside each other; they are filled approximately");
     mesh_.made.reserve(corner_.size());
     for (uint32_t c : corner_) mesh_.made.push_back(vertex(c));
     mesh_.index = mesh_.made;

@@ -34,10 +34,10 @@ Subdivision::Subdivision(ShapeSource s, CageInput&& in, std::vector<FaceDomain> 
                         " faces have more neighbours than their limit can be evaluated for; they are drawn flat");
     if (limit_->blunted())
         diag.report(Severity::Warning, Rie::Incapable, place(),
-                    kind() + ": faces share edges or vertices in more than one sheet; its creases and corners are left out");
+                    kind() + ": faces share edges or vertices in more than one sheet; its creases and corners are ignored");
     if (limit_->coarser())
         diag.report(Severity::Info, Rie::Limit, place(),
-                    kind() + " has very many different neighbourhoods of faces; some are evaluated less exactly");
+                    kind() + " has very many different face neighbourhoods; some are evaluated less accurately");
     if (empty())
         diag.report(Severity::Warning, Rie::Range, place(), kind() + " has no face with a limit surface; it is not drawn",
                     input_.cage.boundary == SubdivisionCage::Boundary::None

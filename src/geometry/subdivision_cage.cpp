@@ -268,7 +268,7 @@ bool readCage(const Primitive& p, Diagnostics& diag, CageInput& in) {
                         " faces have fewer than three corners or more than 4096; they are not drawn");
     if (sound.twice)
         diag.report(Severity::Warning, Rie::Range, p.place,
-                    p.kind + ": " + std::to_string(sound.twice) + " faces meet one of their points twice; they are not drawn");
+                    p.kind + ": " + std::to_string(sound.twice) + " faces use one of their points twice; they are not drawn");
     if (sound.all()) {
         in.cage.corners = p.ints;
         in.cage.vertex = {p.ints2.data(), corners};

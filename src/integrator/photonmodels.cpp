@@ -52,7 +52,7 @@ void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
          b.surface->place,
          "surface \"" + b.surface->name + "\" makes no caustics: its shader branches on the results of its rays",
          "a shader whose Ci is a sum of products with trace() makes them, as slmaterial does; `alpenglow info` names the "
-         "call that is used otherwise",
+         "call that prevents it",
          {}});
 }
 

@@ -31,7 +31,7 @@ void VertexLight::tellScaled(const SurfaceBinding& b, bool more) {
                              b.surface->place,
                              "shader \"" + b.surface->name + "\" reflects" + (more ? "" : ", including transmitted light,") +
                                  " more light than it receives; its indirect light is scaled down to conserve energy",
-                             "--unbiased leaves it as it is",
+                             "--unbiased disables this",
                              {}});
 }
 

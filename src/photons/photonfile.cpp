@@ -56,7 +56,7 @@ std::string faultOf(const std::vector<uint8_t>& b) {
     if (uint32_t(crc32(0, b.data(), 32)) != take<uint32_t>(b.data() + 32)) return "its header is damaged";
     if (const uint32_t v = take<uint32_t>(b.data() + 8); v != kVersion)
         return "it has version " + std::to_string(v) + ", this program reads version " + std::to_string(kVersion);
-    if (take<uint32_t>(b.data() + 12) != kRecord) return "its photons have another size than those of its version";
+    if (take<uint32_t>(b.data() + 12) != kRecord) return "its photons do not have the size of its version";
     const uint64_t count = take<uint64_t>(b.data() + 16);
     if (count > limits::kPhotons) return "it has more than " + std::to_string(limits::kPhotons) + " photons";
     if (const uint64_t want = kHeader + count * kRecord + kEnd; b.size() != want)
@@ -121,7 +121,7 @@ std::shared_ptr<const PhotonMap> loadPhotons(const std::string& path, const Matr
     }
     if (!fault.empty()) {
         d.report(Severity::Error, Rie::BadFile, place, "photon map \"" + path + "\" cannot be read: " + fault,
-                 "Hider \"photon\" makes it anew");
+                 "Hider \"photon\" makes it again");
         return nullptr;
     }
     return std::make_shared<const PhotonMap>(std::move(photons));

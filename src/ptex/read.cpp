@@ -78,7 +78,7 @@ private:
 };
 
 std::string File::open() {
-    if (!bytes_.regular()) return "it is no file that can be read";
+    if (!bytes_.regular()) return "it is not a regular file";
     if (std::string f = readHeader(); !f.empty()) return f;
     if (std::string f = readFaces(); !f.empty()) return f;
     if (std::string f = readLevels(); !f.empty()) return f;
@@ -148,7 +148,7 @@ std::string File::checkFace(const Face& f) const {
     if ((size_t(head_.channels) << (f.ulog + f.vlog)) > limits::kPtexFaceNumbers) return "it has a face of too many pixels";
     if (head_.mesh == Mesh::Triangle && f.ulog != f.vlog) return "it has a triangle that is not square";
     for (const int32_t a : f.adjacent)
-        if (a < -1 || a >= int64_t(faceCount_)) return "it has a face beside one that does not exist";
+        if (a < -1 || a >= int64_t(faceCount_)) return "it has a face adjacent to one that does not exist";
     return "";
 }
 
@@ -182,7 +182,7 @@ std::string File::readLevels() {
     for (uint32_t k = 0; k < levels_; ++k) {
         const uint8_t* info = &b[k * kLevelInfo];
         const uint64_t size = take<uint64_t>(info);
-        if (size > left) return "its levels are larger than it says";
+        if (size > left) return "its levels are larger than declared";
         if (std::string f = readLevel(k, at, size, take<uint32_t>(info + 8), take<uint32_t>(info + 12)); !f.empty()) return f;
         at += size, left -= size;
     }
@@ -203,7 +203,7 @@ std::string File::readLevel(size_t k, uint64_t at, uint64_t size, uint32_t heade
         // Constant faces have their pixel elsewhere.
         const bool elsewhere = k == 0 && head_.faces[i].constant;
         const uint64_t bytes = elsewhere ? 0 : blockSize(header);
-        if (next + bytes > at + size) return "the faces of a level are larger than it says";
+        if (next + bytes > at + size) return "the faces of a level are larger than declared";
         blocks.push_back({next, header});
         next += bytes;
     }
@@ -266,7 +266,7 @@ std::string File::readEdits() {
         const uint32_t size = take<uint32_t>(&b[1]);
         if (type == 0 && size == 0) break;
         at += 5;
-        if (size > bytes_.size() - at) return "an edit in it is cut short";
+        if (size > bytes_.size() - at) return "an edit in it is truncated";
         if (type == 1) {
             if (!bytes_.read(at, std::min<uint64_t>(size, 28 + pixelBytes()), b)) return "it is cut short";
             if (std::string f = editFace(b, at + 28 + pixelBytes()); !f.empty()) return f;
@@ -289,7 +289,7 @@ std::string File::editFace(std::span<const uint8_t> b, uint64_t at) {
     const Face f = faceOf(&b[4]);
     if (std::string fault = checkFace(f); !fault.empty()) return fault;
     const uint32_t header = take<uint32_t>(&b[24]);
-    if (blockSize(header) > bytes_.size() - std::min(at, bytes_.size())) return "an edit in it is cut short";
+    if (blockSize(header) > bytes_.size() - std::min(at, bytes_.size())) return "an edit in it is truncated";
     head_.faces[face] = f;
     stale_[face] = true;
     edited_[face] = {at, header};
@@ -398,7 +398,7 @@ void File::sayDamaged(uint32_t face) const {
                             {Severity::Error,
                              Rie::BadFile,
                              {},
-                             "Ptex file \"" + path_ + "\": face " + std::to_string(face) + " is damaged; its mean is shown",
+                             "Ptex file \"" + path_ + "\": face " + std::to_string(face) + " is damaged; its mean is used",
                              {},
                              {}});
 }

@@ -120,7 +120,7 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
     float c[4];
     std::copy(o.crop, o.crop + 4, c);
     if (!(c[0] <= c[1] && c[2] <= c[3])) {
-        bad("CropWindow: its lower limits are above its upper ones; the whole picture is rendered");
+        bad("CropWindow: its lower limits exceed its upper ones; the complete picture is rendered");
         c[0] = c[2] = 0;
         c[1] = c[3] = 1;
     }
@@ -195,22 +195,22 @@ void Camera::setHiderLens(const scene::Options& o, Diagnostics& diags) {
     if (!first) return;
     if (o.hider != "raytrace") {
         diags.report(Severity::Warning, Rie::Incapable, first->place,
-                     "\"" + first->name + "\" is for the hider raytrace; it is ignored", "DepthOfField is for all hiders");
+                     "\"" + first->name + "\" requires the hider raytrace; it is ignored", "DepthOfField works with all hiders");
         return;
     }
     const auto bad = [&](const scene::Param& p, const char* rule) {
         diags.report(Severity::Error, Rie::Range, p.place, "hider parameter \"" + p.name + "\" " + rule);
     };
     const auto positive = [](const scene::Param& p) { return !p.numbers.empty() && p.numbers[0] > 0 && p.numbers[0] < 1e30f; };
-    if (distance && !positive(*distance)) bad(*distance, "is a distance above 0; that of DepthOfField is used");
+    if (distance && !positive(*distance)) bad(*distance, "must be a distance > 0; that of DepthOfField is used");
     else if (distance) focus_ = distance->numbers[0];
     if (diameter && (diameter->numbers.empty() || !(diameter->numbers[0] >= 0 && diameter->numbers[0] < 1e30f)))
-        bad(*diameter, "is a length, 0 for a pinhole; that of DepthOfField is used");
+        bad(*diameter, "must be a length >= 0; that of DepthOfField is used");
     else if (diameter && diameter->numbers[0] > 0 && !(distance && positive(*distance)) && !(lensRadius_ > 0))
-        bad(*diameter, "needs \"focalDist\", the distance that is in focus; everything is");
+        bad(*diameter, "needs \"focalDist\", the distance in focus; everything is in focus");
     else if (diameter) lensRadius_ = 0.5 * diameter->numbers[0];
     lensGrid_ = lensGridOf(o);
-    if (samples && !lensGrid_.on()) bad(*samples, "is two whole numbers from 1 to 256; PixelSamples is used");
+    if (samples && !lensGrid_.on()) bad(*samples, "must be two integers from 1 to 256; PixelSamples is used");
     if (lensGrid_.x * lensGrid_.y == 1) lensRadius_ = 0;
 }
 

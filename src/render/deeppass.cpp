@@ -72,7 +72,7 @@ float deepShadowError(const scene::Options& o, Diagnostics& d) {
     if (i == o.values.end() || i->second.numbers.empty()) return 0.01f;
     const float e = i->second.numbers[0];
     if (e >= 0 && e <= 1) return e;
-    d.report(Severity::Error, Rie::Range, i->second.place, "\"deepshadowerror\" is a part of the light, 0 to 1; 0.01 is used");
+    d.report(Severity::Error, Rie::Range, i->second.place, "\"deepshadowerror\" must be in 0 to 1; 0.01 is used");
     return 0.01f;
 }
 

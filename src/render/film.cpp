@@ -217,7 +217,7 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
                    "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
     if (a.scene != b.scene) return bad(Rie::Consistency, "the parts come from different scenes or options");
     if (spread_ || o.spread_)
-        return bad(Rie::Consistency, "pixels have different numbers of samples (--noise); such a render is no part of another");
+        return bad(Rie::Consistency, "pixels have different numbers of samples (--noise); such renders cannot be merged");
     auto next = ranges_;
     for (auto r : o.ranges_)
         if (!insertRange(next, r))

@@ -52,7 +52,7 @@ bool reportGaps(const Film& film, const MergeSettings& settings, Diagnostics& di
     if (!missing.empty())
         diags.report(settings.expect ? Severity::Error : Severity::Warning, Rie::MissingData, {},
                      "no part has the samples " + rangesText(missing) + " of " + rangeText(whole) +
-                         "; the picture is made without them",
+                         "; the picture is written without them",
                      "render them with --samples " + rangeText(missing.front()) + (missing.size() > 1 ? " and so on" : "") +
                          ", and merge them with this picture");
     if (settings.expect && (have.front().begin < whole.begin || have.back().end > whole.end))
@@ -142,7 +142,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
     auto plan = planFromText(text->second, files.front(), diags);
     if (!plan) return MergeResult::NoInput;
     if (filmChannels(plan->first) != film->description().channels) {
-        diags.report(Severity::Error, Rie::BadFile, {files.front()}, "the part file's channels are not those of its pictures");
+        diags.report(Severity::Error, Rie::BadFile, {files.front()}, "the part file's channels do not match its pictures");
         return MergeResult::NoInput;
     }
     const bool gaps = reportGaps(*film, settings, diags);

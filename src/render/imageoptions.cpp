@@ -30,7 +30,7 @@ Jitter jitterOf(const scene::Options& o, Diagnostics& diags) {
     if (!p || p->numbers.empty()) return Jitter::Jittered;
     int j = int(p->numbers[0]);
     if (j >= 0 && j <= 2) return Jitter(j);
-    diags.report(Severity::Error, Rie::Range, p->place, "hider parameter \"jitter\" is 0, 1 or 2; 1 is used");
+    diags.report(Severity::Error, Rie::Range, p->place, "hider parameter \"jitter\" must be 0, 1 or 2; 1 is used");
     return Jitter::Jittered;
 }
 
@@ -64,7 +64,7 @@ Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnosti
     if (!first || (samples && samples->numbers.empty())) return r;
     if (o.hider != "raytrace") {
         diags.report(Severity::Warning, Rie::Incapable, first->place,
-                     "\"" + first->name + "\" is for the hider raytrace; it is ignored");
+                     "\"" + first->name + "\" requires the hider raytrace; it is ignored");
         return r;
     }
     r.side = !samples ? 3 : std::isnan(samples->numbers[0]) ? 0 : int(std::clamp(samples->numbers[0], 0.f, 100.f));
@@ -76,7 +76,7 @@ Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnosti
     }
     if (threshold && !threshold->numbers.empty()) r.threshold = threshold->numbers[0];
     if (!(r.threshold >= 0)) {
-        diags.report(Severity::Error, Rie::Range, threshold->place, "hider parameter \"aaThreshold\" is at least 0; 0.3 is used");
+        diags.report(Severity::Error, Rie::Range, threshold->place, "hider parameter \"aaThreshold\" must be >= 0; 0.3 is used");
         r.threshold = 0.3f;
     }
     if (r.on() && (camera.hasLens() || camera.lensGrid().on() || camera.shutterClose() > camera.shutterOpen())) {

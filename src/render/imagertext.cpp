@@ -227,7 +227,7 @@ std::optional<ImagerScene> imagerFromText(const std::string& text, const std::st
         scene.frame = std::move(frame);
         return scene;
     } catch (const Json::exception& e) {
-        diags.report(Severity::Error, Rie::BadFile, {file}, std::string("the part file's imager is not readable: ") + e.what());
+        diags.report(Severity::Error, Rie::BadFile, {file}, std::string("cannot read the part file's imager: ") + e.what());
         return std::nullopt;
     }
 }

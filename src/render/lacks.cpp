@@ -45,8 +45,8 @@ void sayEmptyClouds(const Job& job, Diagnostics& diags) {
     const Camera& c = job.camera;
     if (job.interrupted || !job.world || c.window().width() < c.width() || c.window().height() < c.height()) return;
     for (const auto& [name, place] : job.world->cloudsFoundEmpty())
-        warn(diags, place, "texture3d(): \"" + name + "\" has no point near any place that was looked up",
-             "alpenglow ptc info tells where its points are; \"coordsystem\" must name the space in which they were baked, and "
+        warn(diags, place, "texture3d(): \"" + name + "\" has no point near any lookup position",
+             "alpenglow ptc info shows where its points are; \"coordsystem\" must name the space in which they were baked, and "
              "normals must fit");
 }
 
@@ -58,7 +58,7 @@ void sayTurnedAway(const Job& job, Diagnostics& diags) {
         warn(diags, f.call,
              f.shadeop + "(): all over " + (f.primitives == 1 ? "a primitive" : counted(f.primitives, "primitive")) + where +
                  " its normal faces away from the viewer, and " +
-                 (f.shadeop == "occlusion" ? "all that it looks at is blocked: it is 1" : "the primitive itself blocks its rays"),
+                 (f.shadeop == "occlusion" ? "all its rays are blocked: it returns 1" : "the primitive itself blocks its rays"),
              "faceforward(normalize(N), I) is the normal of the side that is seen; ReverseOrientation turns those of the "
              "primitive");
     }

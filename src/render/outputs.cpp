@@ -24,7 +24,7 @@ const scene::Param* numbers(const scene::ParamList& list, std::string_view name,
     if (!p) return nullptr;
     if (p->numbers.size() == count) return p;
     diags.report(Severity::Error, Rie::BadToken, p->place,
-                 "display parameter \"" + std::string(name) + "\" takes " + std::to_string(count) + " numbers; it is left out");
+                 "display parameter \"" + std::string(name) + "\" takes " + std::to_string(count) + " numbers; it is dropped");
     return nullptr;
 }
 

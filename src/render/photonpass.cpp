@@ -104,7 +104,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<transport::St
                                 "photon maps hold no more than " + std::to_string(limits::kPhotons) +
                                     " photons: emission ends after " + std::to_string(done * kBlock) + " of " +
                                     std::to_string(count),
-                                "they share the light of all lights, so maps are right, and coarser");
+                                "they carry the light of all lights, so maps are correct but coarser");
             break;
         }
         for (const auto& o : of) stored.insert(stored.end(), o.begin(), o.end());
@@ -160,9 +160,9 @@ bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t 
                                     {Severity::Warning,
                                      Rie::Limit,
                                      {},
-                                     "more than " + std::to_string(most) + " photons of a pass came to rest: it ends after " +
+                                     "more than " + std::to_string(most) + " photons of a pass were stored: it ends after " +
                                          std::to_string(emitted) + " of " + std::to_string(count),
-                                     "they share the light of all lights, so caustics are right, and coarser",
+                                     "they carry the light of all lights, so caustics are correct but coarser",
                                      {}});
             thin(stored, most, first + pass);
             take(pass, std::exchange(stored, {}));
@@ -231,7 +231,7 @@ float CausticPasses::widthOf(const scene::Options& o) {
     const scene::Param* p = hiderParam(o, "causticwidth");
     if (!p) return kWidth;
     if (!(p->numbers[0] >= 0 && p->numbers[0] <= kMostWidth))
-        job_.diagnostics.report(Severity::Error, Rie::Range, p->place, "\"causticwidth\" is an angle in radians, 0 to 0.5");
+        job_.diagnostics.report(Severity::Error, Rie::Range, p->place, "\"causticwidth\" must be an angle of 0 to 0.5 radians");
     return p->numbers[0] >= 0 ? std::min(float(p->numbers[0]), kMostWidth) : 0;
 }
 

@@ -159,8 +159,8 @@ void Renderer::reportDropped(uint64_t count, int x, int y, int64_t sample) {
     diagnostics_.report(
         Severity::Warning, Rie::Math, {},
         std::to_string(count) +
-            (count == 1 ? " sample was not finite and is left out" : " samples were not finite and are left out") +
-            (sample < 0 ? "" : "; the first is made by --pixel " + at + " --seed " + std::to_string(settings_.seed)));
+            (count == 1 ? " sample was not finite and is dropped" : " samples were not finite and are dropped") +
+            (sample < 0 ? "" : "; reproduce the first with --pixel " + at + " --seed " + std::to_string(settings_.seed)));
 }
 
 void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted, bool path) {

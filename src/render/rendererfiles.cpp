@@ -180,7 +180,7 @@ bool Renderer::resume(const std::string& checkpoint, const FilmDescription& want
     else
         diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint},
                             "the checkpoint is not changed, and nothing is rendered",
-                            "--restart instead of --resume begins anew and replaces it");
+                            "--restart instead of --resume starts from the beginning and replaces it");
     film.reset();
     return false;
 }
@@ -189,8 +189,8 @@ bool Renderer::mayReplace(const std::string& checkpoint) {
     std::error_code e;
     if (settings_.resume || settings_.restart || checkpoint.empty() || !std::filesystem::exists(checkpoint, e)) return true;
     diagnostics_.report(Severity::Error, Rie::BadFile, {checkpoint},
-                        "the checkpoint is there already; it is not changed, and nothing is rendered",
-                        "--resume goes on with it, --restart begins anew and replaces it");
+                        "the checkpoint already exists; it is not changed, and nothing is rendered",
+                        "--resume continues it, --restart starts from the beginning and replaces it");
     return false;
 }
 

@@ -92,7 +92,7 @@ void Renderer::drawFrame(FrameWork& f) {
                                             Rie::System,
                                             {},
                                             "only " + std::to_string(team) + " of " + std::to_string(settings_.threads) +
-                                                " threads can be started; the picture is the same, later",
+                                                " threads can be started; rendering takes longer",
                                             {},
                                             {}});
     tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
@@ -161,7 +161,7 @@ bool Renderer::planFrame(FrameWork& f) {
     f.plan = planOutputs(f.o, settings_, f.path, file, diagnostics_);
     if (f.plan.pictures.empty()) {
         ++outcome_.refused;
-        diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be made; it is not rendered");
+        diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be written; it is not rendered");
         return false;
     }
     if (!writesFiles(settings_)) return true;
@@ -343,7 +343,7 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
     if (auto first = film.firstDropped()) reportDropped(film.nonFinite(), first->x, first->y, first->sample);
     if (film.saturated())
         diagnostics_.report(Severity::Warning, Rie::Range, {},
-                            std::to_string(film.saturated()) + " values beyond 2^60 were cut there");
+                            std::to_string(film.saturated()) + " values beyond 2^60 were clamped");
     if (!writesFiles(settings_)) return;
     if (settings_.stamp) addStamp(f.picture, settings_, renderSec);
     awaitTurn(f);
@@ -463,7 +463,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
                                 " ray calls exceeded the memory for waiting shaders and returned no light");
     if (c.depthCap && f.path)
         diagnostics_.report(Severity::Info, Rie::NoError, {},
-                            std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");
+                            std::to_string(c.depthCap) + " paths ended at the maximum depth, which is a bias (--max-depth)");
 }
 
 } // namespace alpenglow::render

@@ -51,7 +51,7 @@ bool Job::makeMet() {
     const std::vector<int> numbers = transport::procedurals(*world);
     std::shared_ptr<const transport::World> next = make && !numbers.empty() ? make(numbers) : nullptr;
     if (!next) {
-        if (!pollStop()) throw std::runtime_error("procedurals that rays came to cannot be made");
+        if (!pollStop()) throw std::runtime_error("procedurals that rays reached cannot be expanded");
         return false;
     }
     transport::takeOver(*next, *world);

@@ -26,7 +26,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     PhotonPasses passes(job, f.world, {});
     if (!passes.emission().lights())
         return refuse("Hider \"photon\": no light of the frame emits photons",
-                      "ambient lights do not, nor do lights without a place");
+                      "ambient lights and lights without a position emit none");
     std::vector<transport::StoredPhoton> stored;
     uint64_t emitted = 0;
     const bool whole = passes.emit(0, photonsToEmit(f.o, diagnostics_), stored, maps.front(), &emitted);
@@ -44,7 +44,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     for (const auto& [name, photons] : transport::photonsByMap(*f.world, maps, stored)) {
         if (photons.empty())
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                                "photon map \"" + name + "\" is empty: no photon came to rest on its surfaces");
+                                "photon map \"" + name + "\" is empty: no photon was stored on its surfaces");
         const bool saved = transport::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
         outcome_.outputFailed |= !saved;
         if (saved)

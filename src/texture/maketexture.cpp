@@ -20,7 +20,7 @@ std::optional<display::Image> readBaked(const std::string& path, const MakeOptio
     if (p.outside > 0)
         diags.report(Severity::Warning, Rie::Range, o.place,
                      "\"" + path + "\": " + std::to_string(p.outside) + " of " + std::to_string(baked->size()) +
-                         " points have an s or t that is not of 0 to 1; they are left out");
+                         " points have s or t outside of 0 to 1; they are dropped");
     display::Image image = display::makeImage(p.side, p.side, display::defaultChannels(p.channels));
     image.data = std::move(p.pixels);
     image.metadata["colorspace"] = kLight;
@@ -101,7 +101,7 @@ Reduction reductionOf(const MakeOptions& o, Diagnostics& diags) {
     }
     for (float* w : {&r.swidth, &r.twidth})
         if (!(*w > 0 && *w <= 1024)) {
-            diags.report(Severity::Error, Rie::Range, o.place, "a filter width is above 0 and at most 1024; 1 is used");
+            diags.report(Severity::Error, Rie::Range, o.place, "a filter width must be > 0 and at most 1024; 1 is used");
             *w = 1;
         }
     return r;
@@ -145,7 +145,7 @@ bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeO
     z.bits = 32;
     if (!z.worldToCamera || !z.worldToNDC)
         diags.report(Severity::Warning, Rie::MissingData, o.place,
-                     "depth picture \"" + zfile + "\" has no matrices; shadow() cannot place the map");
+                     "depth picture \"" + zfile + "\" has no matrices; shadow() cannot use the map");
     return writeMap(shadow, z, o, diags);
 }
 
@@ -156,7 +156,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
         return false;
     };
     if (pictures.size() != 6) return refuse("it takes six pictures, not " + std::to_string(pictures.size()));
-    if (!(fov > 0 && fov < 180)) return refuse("its field of view is above 0 and below 180 degrees");
+    if (!(fov > 0 && fov < 180)) return refuse("its field of view must be between 0 and 180 degrees");
     display::Image all;
     int height = 0; // of one face
     for (const std::string& name : pictures) {

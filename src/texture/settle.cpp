@@ -51,7 +51,7 @@ void TextureSystem::settle(Texture& t, const SourcePlace& place) {
                           {Severity::Warning,
                            Rie::System,
                            place,
-                           "maps take more than " + memorySizeText(limit_) + " and stay in memory all the same: " + why,
+                           "maps take more than " + memorySizeText(limit_) + " and stay in memory: " + why,
                            "TMPDIR names the folder of scratch files; Option \"limits\" \"texturememory\" the limit, in kB",
                            {}});
         return;

@@ -116,9 +116,9 @@ public:
         if (!m) return {};
         const bool known = textOf(*m, "textureformat") == volumeFormat;
         if (depth == 0) depth = known ? std::atoi(textOf(*m, "depth").c_str()) : 1;
-        if (depth < 1 || depth > limits::kImageSide) return refuse("its depth is no number from 1 on");
+        if (depth < 1 || depth > limits::kImageSide) return refuse("its depth must be at least 1");
         if (m->height % depth == 0 && (known || m->height / depth >= m->width)) return strip(std::move(*m), depth);
-        if (known) return refuse("its height is no multiple of its depth");
+        if (known) return refuse("its height is not a multiple of its depth");
         if (m->data.size() * size_t(depth) * sizeof(float) > limits::kImageBytes)
             return refuse("its slices would take more than " + std::to_string(limits::kImageBytes >> 30) + " GiB", Rie::Limit);
         Volume v = *strip(*m, 1);

@@ -99,15 +99,16 @@ HttpResponse refusalOf(const boost::system::error_code& e, std::string_view head
     if (e == http::error::header_limit) return refusal(431, "The headers are too long.\n");
     if (e == http::error::body_limit || (e == http::error::bad_content_length && lengthIsHuge(head)))
         return refusal(413, "The request is too long.\n");
-    if (e == http::error::bad_content_length) return refusal(400, "Content-Length makes no sense.\n");
-    return refusal(400, "This is no request of HTTP/1.\n");
+    if (e == http::error::bad_content_length) return refusal(400, "Content-Length is invalid.\n");
+    return refusal(400, "This is not an HTTP/1 request.\n");
 }
 
 /// The response to a request that its headers disqualify; otherwise nothing.
 std::optional<HttpResponse> refusalOf(const Parser& p) {
     const auto& m = p.get();
-    if (m.target().empty() || m.target()[0] != '/') return refusal(400, "This is no request of HTTP/1.\n");
-    if (m.method() != http::verb::get && m.method() != http::verb::post) return refusal(405, "Only GET and POST are known.\n");
+    if (m.target().empty() || m.target()[0] != '/') return refusal(400, "This is not an HTTP/1 request.\n");
+    if (m.method() != http::verb::get && m.method() != http::verb::post)
+        return refusal(405, "Only GET and POST are supported.\n");
     for (const http::field f : {http::field::host, http::field::origin}) // ambiguous between proxy and browser
         if (m.count(f) > 1) return refusal(400, "Host and Origin may be given once.\n");
     if (p.chunked()) return refusal(411, "A request needs Content-Length.\n");
@@ -213,7 +214,7 @@ void HttpServer::Loop::accept() {
                 oldest = std::find_if(connections.begin(), connections.end(),
                                       [](const Connection& c) { return c.state == State::Reading && !c.begun; });
             if (oldest == connections.end()) {
-                const HttpResponse r = refusal(503, "Too many viewers at a time.\n");
+                const HttpResponse r = refusal(503, "Too many viewers.\n");
                 const std::string text = headOf(r, true) + r.body;
                 [[maybe_unused]] ssize_t k = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
                 ::close(fd);
@@ -295,7 +296,7 @@ bool HttpServer::Loop::ask(Connection& c, bool last) {
     try {
         r = handler(c.request, last, &c.known);
     } catch (const std::exception&) { // out of memory for the response
-        answer(c, refusal(503, "There is no memory for this.\n"), true);
+        answer(c, refusal(503, "Out of memory.\n"), true);
         return write(c);
     }
     if (r) {

@@ -314,12 +314,12 @@ Json Session::moveCamera(const Json& j) {
 Json Session::askSave(const Json& j) {
     Save s;
     s.type = j.value("type", "png");
-    if (s.type != "png" && s.type != "exr") return failed("pictures are saved as png or exr");
+    if (s.type != "png" && s.type != "exr") return failed("pictures can be saved as png or exr");
     s.gain = j.value("gain", 1.f);
     s.gamma = j.value("gamma", 1.f);
     s.srgb = j.value("srgb", false);
     if (!(s.gain > 0 && s.gain < 1e9f && s.gamma >= 0.01f && s.gamma <= 100))
-        return failed("gain and gamma are positive numbers");
+        return failed("gain and gamma must be positive numbers");
     if (saves_.size() > 20) return failed("pictures are still being saved");
     saves_.push_back(s);
     work_.notify_all();
@@ -334,7 +334,7 @@ Json Session::act(const Json& j) try {
         std::lock_guard lock(mutex_);
         if (what == "set") {
             const Json wishes = j.value("wishes", Json::object());
-            if (!wishes.is_object()) return failed("\"wishes\" is an object");
+            if (!wishes.is_object()) return failed("\"wishes\" must be an object");
             if (const std::string fault = wishes_.take(wishes); !fault.empty()) return failed(fault);
             if (wishes.size() == 1 && wishes.contains("dim")) ++serial_; // needs no rendering
             else interrupt();

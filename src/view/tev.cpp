@@ -90,7 +90,7 @@ std::unique_ptr<TevPreview> TevPreview::connect(const std::string& host, int por
     wanted.ai_socktype = SOCK_STREAM;
     if (const int fault = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &all); fault != 0) {
         diags.report(Severity::Warning, Rie::System, {},
-                     "--display tev:" + where + ": " + gai_strerror(fault) + "; rendering goes on without it");
+                     "--display tev:" + where + ": " + gai_strerror(fault) + "; rendering continues without it");
         return nullptr;
     }
     int s = -1;
@@ -123,7 +123,7 @@ void TevPreview::send(const std::string& bytes) {
         ::close(socket_);
         socket_ = -1;
         diagnostics_.report(Severity::Warning, Rie::System, {},
-                            "tev at " + where_ + " takes no more pictures; rendering goes on without it");
+                            "tev at " + where_ + " takes no more pictures; rendering continues without it");
     }
 }
 

@@ -130,8 +130,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
     t->distribution = row("distribution") >= 0 ? row("distribution") : row("bsdf");
     for (const char* name : {"environmentmap", "environmentspace"})
-        if (row(name) >= 0)
-            said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+        if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     if (const std::string map = text("environmentmap"); !map.empty()) {
         t->map = world.textures_->open(map, world.settings_.texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
@@ -223,11 +222,10 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] == rsl::ir::Kind::Triple) (b->point < 0 ? b->point : b->normal) = i.rows[a];
     for (const char* name : {"model", "groupname"})
-        if (row({name}) >= 0)
-            said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+        if (row({name}) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
-        said("type", "a point cloud is read where \"filename\" names one; light is found by rays here");
+        said("type", "name a point cloud by \"filename\"; without one rays compute the light");
     else if (!type.empty() && type != "pointcloud" && type != "raytrace")
         said("type " + type, "unknown type \"" + type + "\"; rays compute the light", "types are raytrace and pointcloud");
     const std::string model = text("model");

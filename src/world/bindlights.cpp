@@ -73,7 +73,7 @@ void warnOfOwnPoint(const ShaderInstance& light, Diagnostics& d) {
     d.reportOnce("ownpoint:" + light.name, {Severity::Warning,
                                             Rie::NoError,
                                             light.place,
-                                            "light \"" + light.name + "\": P is its own place, as it has no area",
+                                            "light \"" + light.name + "\": P is the position of the light, as it has no area",
                                             "Ps is the point being lit; --dialect pixie reads P so",
                                             {}});
 }
@@ -384,7 +384,7 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
                               l.instance->place,
                               "area light \"" + l.instance->name +
                                   "\" divides by the distance itself; its Cl is read as intensity, spread over its surface",
-                              "the Cl of an area light is the radiance that leaves it: without the division it needs no guess",
+                              "Cl of an area light is its radiance: remove the division",
                               {}});
             }
             l.power = mean * float(l.emitter->area()) / float(kPi);

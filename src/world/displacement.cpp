@@ -72,8 +72,8 @@ BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKe
                                                Rie::Unimplement,
                                                surface.place,
                                                "surface shader \"" + surface.name + "\" moves P by " + why +
-                                                   ", which is not known when the primitive is diced; it stays where it is",
-                                               "a displacement shader moves primitives",
+                                                   ", which is unknown when the primitive is diced; it is not displaced",
+                                               "use a displacement shader",
                                                {}});
         return {};
     }

@@ -105,11 +105,11 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
         if (i.kind == SiteKind::GatherTurn) {
             g->outputs.clear();
             const auto unknown = [&](const std::string& name) {
-                told(i, "\"" + name + "\" is not known; the variable stays as it is",
+                told(i, "\"" + name + "\" is not known; the variable is not changed",
                      "names begin with surface: displacement: volume: primitive: attribute: ray: environment:");
             };
             readOutputs(*i.site, *g, unknown, [&](const std::string& name) {
-                told(i, "the variable of \"" + name + "\" has another type; it stays as it is",
+                told(i, "the variable of \"" + name + "\" has another type; it is not changed",
                      "ray:length and environment:solidangle are floats; the others a colour, a point or a vector");
             });
             for (const GatherSite::Output& o : g->outputs) {
@@ -131,13 +131,13 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
             const auto map = world.textures_->open(category.substr(kSky.size()), world.settings_.texturePaths, place);
             g->sky = &world.skyMaps_.of(map, world.textures_->latLong());
         } else if (!category.empty() && category != "illuminance") {
-            told(i, "the category \"" + category + "\" is not known; \"illuminance\" is taken",
+            told(i, "the category \"" + category + "\" is not known; \"illuminance\" is used",
                  "illuminance, samplepattern, environment:MAP");
         }
         if (const auto d = i.text.find("distribution"); d != i.text.end()) {
             g->cosine = d->second == "cosine";
             if (!g->cosine && d->second != "uniform")
-                told(i, "the distribution \"" + d->second + "\" is not known; uniform is taken", "uniform, cosine");
+                told(i, "the distribution \"" + d->second + "\" is not known; uniform is used", "uniform, cosine");
         }
         g->sent.clear();
         for (const auto& [name, row] : i.named) {

@@ -100,7 +100,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
                                        {Severity::Warning,
                                         Rie::BadToken,
                                         place,
-                                        op + "(): \"" + name + "\" \"" + word + "\" is not known; it is taken as not given",
+                                        op + "(): \"" + name + "\" \"" + word + "\" is not known; it is ignored",
                                         known,
                                         {}});
     };

@@ -78,7 +78,7 @@ SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, cons
                                          v.param->place,
                                          "the variable \"" + p.name +
                                              "\" of the primitive does not fit the parameter of shader \"" + shader.name +
-                                             "\", which is a " + rsl::toString(p.type) + ": the parameter keeps its value",
+                                             "\", which is a " + rsl::toString(p.type) + ": the parameter is not changed",
                                          {},
                                          {}});
         }
@@ -344,7 +344,7 @@ void SurfaceBinder::hearMembers(SurfaceBinding& b) {
                                  b.displacement->place,
                                  "displacement() of \"" + b.displacement->name + "\" waits for rays (" +
                                      b.displacementS.kernel->facts().whyNot +
-                                     "): the surface does not see what it writes to members",
+                                     "): the surface does not see its changes of members",
                                  {},
                                  {}});
         return;

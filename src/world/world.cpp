@@ -163,14 +163,14 @@ static texture::TextureSettings mapSettings(const scene::Options& o, const Setti
         if (const float most = i->second.numbers[0]; most >= 1) t.squeeze = 1 / (most * most);
         else
             d.report(Severity::Error, Rie::Range, i->second.place,
-                     "Option \"texture\" \"maxanisotropy\" is a number, at least 1; footprints stay as they are");
+                     "Option \"texture\" \"maxanisotropy\" must be a number >= 1; it is ignored");
     }
     if (const auto i = o.values.find("limits:texturememory"); i != o.values.end() && !i->second.numbers.empty()) {
         const double kilobytes = double(i->second.numbers[0]);
         if (kilobytes >= 1 && kilobytes < 1e15) t.memory = size_t(kilobytes) * 1024;
         else
             d.report(Severity::Error, Rie::Range, i->second.place,
-                     "Option \"limits\" \"texturememory\" is a number of kB, at least 1; the default is used");
+                     "Option \"limits\" \"texturememory\" must be a number of kB >= 1; the default is used");
     }
     return t;
 }

@@ -293,7 +293,7 @@ TEST_F(PointScenes, NothingFoundIsSaidOnce) {
                            "\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\nWorldEnd\n");
         return run("render s.rib", "2>&1");
     };
-    const std::string word = "has no point near any place", far = said("1000"), line = "looks.sl:1:";
+    const std::string word = "has no point near any lookup position", far = said("1000"), line = "looks.sl:1:";
     EXPECT_NE(far.find(line), std::string::npos) << far;
     EXPECT_NE(far.find(word), std::string::npos) << far;
     EXPECT_EQ(far.find(word), far.rfind(word)) << far;

@@ -102,7 +102,7 @@ struct Layout {
 bool fits(uint64_t samples, const Layout& l) {
     return samples <= limits::kDeepSteps && samples * 4 <= uint64_t(l.fileBytes) * 1100;
 }
-const char* const kTooMany = "it has more samples than it has bytes for";
+const char* const kTooMany = "it declares more samples than the file can hold";
 
 /// Appends the pixels of a line from a sample on. Returns "" or an error.
 std::string addPixels(const Line& line, const Layout& l, size_t from, int width, int y, size_t& at, Image& m, DeepSamples& deep) {

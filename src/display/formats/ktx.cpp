@@ -305,7 +305,7 @@ static std::optional<Image> decodeKtx1(Bytes b, const DecodeContext& ctx) {
     for (uint32_t level = 0, n = levelsOf(h, ctx); level < n; ++level) {
         const uint64_t size = h.bytesOfFace(level), step = (size + 3) / 4 * 4;
         if (!f.has(at, 4) || !f.has(at + 4, step * (h.faces - 1) + size)) return ctx.refuse("it is truncated");
-        if (f.u32(at) != size) return ctx.refuse("a level has another size than its pixels need");
+        if (f.u32(at) != size) return ctx.refuse("the size of a level does not match its pixels");
         Image m = pictureFor(h, level);
         for (uint32_t face = 0; face < h.faces; ++face)
             decodeFace(b.data() + at + 4 + face * step, h, level, m, int(face * h.heightOf(level)));
@@ -325,7 +325,7 @@ static const uint8_t* levelBytes(const KtxBytes& f, uint32_t level, bool packed,
     }
     const uint8_t* from = f.b.data() + f.u64(entry);
     if (f.u64(entry + (packed ? 16 : 8)) != size) {
-        ctx.refuse("a level has another size than its pixels need");
+        ctx.refuse("the size of a level does not match its pixels");
         return nullptr;
     }
     if (!packed) return from;

@@ -99,7 +99,7 @@ std::optional<Image> decodeTarga(Bytes b, const DecodeContext& ctx) {
             float rgba[4];
             if (h.mapped()) {
                 const unsigned k = (unsigned(p[0]) | (h.bits == 16 ? unsigned(p[1]) << 8 : 0u)) - h.mapFirst;
-                if (k >= h.mapLength) return ctx.refuse("a pixel names a colour that its colour map does not have");
+                if (k >= h.mapLength) return ctx.refuse("a pixel has an index beyond its colour map");
                 colourOf(b.data() + map + size_t(k) * entry, h.mapBits, rgba);
             } else {
                 colourOf(p, h.bits, rgba);

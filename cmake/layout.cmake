@@ -3,6 +3,11 @@
 include(GNUInstallDirs)
 file(RELATIVE_PATH installed_modules ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/alpenglow)
 file(RELATIVE_PATH installed_shaders ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/alpenglow/shaders)
+# The same from libalpenglow.so, and from the package of Python (its folder's parent is what PYTHONPATH names).
+set(installed_python ${CMAKE_INSTALL_LIBDIR}/alpenglow/python/alpenglow)
+file(RELATIVE_PATH library_shaders ${CMAKE_INSTALL_FULL_LIBDIR} ${CMAKE_INSTALL_FULL_DATADIR}/alpenglow/shaders)
+file(RELATIVE_PATH python_shaders ${CMAKE_INSTALL_FULL_LIBDIR}/alpenglow/python/alpenglow
+  ${CMAKE_INSTALL_FULL_DATADIR}/alpenglow/shaders)
 configure_file(${CMAKE_SOURCE_DIR}/cmake/configured.h.in ${CMAKE_BINARY_DIR}/generated/base/configured.h @ONLY)
 
 # The build folder has the layout of an installation: programs in bin/ find the shaders where installed ones do.

@@ -1,21 +1,27 @@
-/* The C binding of the RenderMan Interface 3.2, as far as a library of procedurals needs it: Procedural "DynamicLoad"
- * loads such a library with --allow-exec and calls the three functions that it defines,
+/* The C binding of the RenderMan Interface 3.2 (appendix A of the specification), and the calls of later renderers that
+ * requests of RIB have here. A program is built with
+ *
+ *     cc program.c $(pkg-config --cflags --libs alpenglow)
+ *
+ * and draws its pictures itself, or writes RIB (RiBegin says which). docs/capi.md tells what the calls do beyond the
+ * specification, docs/rib.md what each of them means. In C (C89 and later) and C++.
+ *
+ * The same header serves libraries of procedurals: Procedural "DynamicLoad" loads such a library with --allow-exec and
+ * calls the three functions that it defines,
  *
  *     RtPointer ConvertParameters(RtString data);            the data of the request to whatever the library wants to keep
  *     RtVoid    Subdivide(RtPointer data, RtFloat detail);   makes the content by calls of the functions below
  *     RtVoid    Free(RtPointer data);                        gives back what ConvertParameters made
  *
- * Nothing is linked to: the program that loads the library has the functions. Build it with cc -shared -fPIC -I include,
- * in C or C++.
+ * Nothing is linked to: the program that loads the library has the functions. Build it with cc -shared -fPIC -I include. Its
+ * calls mean what the requests of the same names mean at the place of the procedural: they may come only while Subdivide (or
+ * a function given to RiProcedural) runs, in the thread that it runs in; at other times they do nothing. The graphics state
+ * is saved before and restored after. detail is the area in pixels of the bound, RI_INFINITY when it reaches behind the eye
+ * or there is no picture. RiBegin, RiEnd, RiContext and error handling belong to who draws and are not for libraries.
  *
- * The calls mean what the requests of the same names mean in RIB (docs/rib.md), at the place of the procedural: they may
- * come only while Subdivide (or a function given to RiProcedural) runs, in the thread that it runs in; at other times
- * they do nothing. The graphics state is saved before and restored after. detail is the area in pixels of the bound,
- * RI_INFINITY when it reaches behind the eye or there is no picture. Errors are reported by the program, at the line of
- * the request; bad arguments never end it, but what the library itself does to memory is done to the program. The
- * requests of cameras, options, frames, worlds, textures and error handling belong to the scene and are not here.
- * Parameter lists end with RI_NULL; the forms ending in V take arrays. Lengths of values follow from declarations
- * (RiDeclare, or "class type name" as token); a token that nobody declared is left out with an error. */
+ * Bad arguments never end the program, but arrays must be as long as the calls say. Parameter lists end with RI_NULL; the
+ * forms ending in V take arrays. Lengths of values follow from declarations (RiDeclare, or "class type name" as token); a
+ * token that nobody declared is left out with an error. One thread calls at a time. */
 #ifndef ALPENGLOW_RI_H
 #define ALPENGLOW_RI_H
 
@@ -43,11 +49,16 @@ typedef RtFloat RtBasis[4][4];
 typedef RtFloat RtBound[6]; /* xmin xmax ymin ymax zmin zmax */
 typedef void RtVoid;
 typedef void* RtPointer;
-typedef RtPointer RtLightHandle;
 typedef RtPointer RtObjectHandle;
-typedef RtVoid (*RtProcSubdivFunc)(RtPointer, RtFloat);
-typedef RtVoid (*RtProcFreeFunc)(RtPointer);
-typedef RtVoid (*RtArchiveCallback)(RtToken, RI_CHARS*, ...);
+typedef RtPointer RtLightHandle;
+typedef RtPointer RtContextHandle;
+typedef RtPointer RtArchiveHandle;
+typedef RtFloat (*RtFilterFunc)(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+typedef RtVoid (*RtErrorHandler)(RtInt code, RtInt severity, char* message);
+typedef RtVoid (*RtFunc)(void);
+typedef RtVoid (*RtProcSubdivFunc)(RtPointer data, RtFloat detail);
+typedef RtVoid (*RtProcFreeFunc)(RtPointer data);
+typedef RtVoid (*RtArchiveCallback)(RtToken type, char* format, ...);
 
 #define RI_FALSE 0
 #define RI_TRUE 1
@@ -55,47 +66,151 @@ typedef RtVoid (*RtArchiveCallback)(RtToken, RI_CHARS*, ...);
 #define RI_EPSILON ((RtFloat)1.0e-10)
 #define RI_NULL ((RtToken)0)
 
-#define RI_P ((RtToken) "P")
-#define RI_PZ ((RtToken) "Pz")
-#define RI_PW ((RtToken) "Pw")
-#define RI_N ((RtToken) "N")
-#define RI_NP ((RtToken) "Np")
-#define RI_CS ((RtToken) "Cs")
-#define RI_OS ((RtToken) "Os")
-#define RI_S ((RtToken) "s")
-#define RI_T ((RtToken) "t")
-#define RI_ST ((RtToken) "st")
-#define RI_WIDTH ((RtToken) "width")
+/* The code of the last warning or error; nothing sets it back to RIE_NOERROR. Codes and severities are those of section 7.2. */
+extern RtInt RiLastError;
+
+#define RIE_NOERROR 0
+#define RIE_NOMEM 1
+#define RIE_SYSTEM 2
+#define RIE_NOFILE 3
+#define RIE_BADFILE 4
+#define RIE_VERSION 5
+#define RIE_DISKFULL 6
+#define RIE_INCAPABLE 11
+#define RIE_UNIMPLEMENT 12
+#define RIE_LIMIT 13
+#define RIE_BUG 14
+#define RIE_NOTSTARTED 23
+#define RIE_NESTING 24
+#define RIE_NOTOPTIONS 25
+#define RIE_NOTATTRIBS 26
+#define RIE_NOTPRIMS 27
+#define RIE_ILLSTATE 28
+#define RIE_BADMOTION 29
+#define RIE_BADSOLID 30
+#define RIE_BADTOKEN 41
+#define RIE_RANGE 42
+#define RIE_CONSISTENCY 43
+#define RIE_BADHANDLE 44
+#define RIE_NOSHADER 45
+#define RIE_MISSINGDATA 46
+#define RIE_SYNTAX 47
+#define RIE_MATH 61
+
+#define RIE_INFO 0
+#define RIE_WARNING 1
+#define RIE_ERROR 2
+#define RIE_SEVERE 3
+
+#define RI_A ((RtToken) "a")
+#define RI_ABORT ((RtToken) "abort")
+#define RI_AMBIENTLIGHT ((RtToken) "ambientlight")
+#define RI_AMPLITUDE ((RtToken) "amplitude")
+#define RI_AZ ((RtToken) "az")
+#define RI_BACKGROUND ((RtToken) "background")
+#define RI_BEAMDISTRIBUTION ((RtToken) "beamdistribution")
+#define RI_BICUBIC ((RtToken) "bicubic")
+#define RI_BILINEAR ((RtToken) "bilinear")
+#define RI_BLACK ((RtToken) "black")
+#define RI_BUMPY ((RtToken) "bumpy")
+#define RI_CAMERA ((RtToken) "camera")
+#define RI_CI ((RtToken) "Ci")
+#define RI_CLAMP ((RtToken) "clamp")
+#define RI_COMMENT ((RtToken) "comment")
+#define RI_CONEANGLE ((RtToken) "coneangle")
+#define RI_CONEDELTAANGLE ((RtToken) "conedeltaangle")
+#define RI_CONSTANT ((RtToken) "constant")
 #define RI_CONSTANTWIDTH ((RtToken) "constantwidth")
+#define RI_CS ((RtToken) "Cs")
+#define RI_CUBIC ((RtToken) "cubic")
+#define RI_CURRENT ((RtToken) "current")
+#define RI_DEPTHCUE ((RtToken) "depthcue")
+#define RI_DIFFERENCE ((RtToken) "difference")
+#define RI_DISTANCE ((RtToken) "distance")
+#define RI_DISTANTLIGHT ((RtToken) "distantlight")
+#define RI_EYESPLITS ((RtToken) "eyesplits")
+#define RI_FACEVARYING ((RtToken) "facevarying")
+#define RI_FILE ((RtToken) "file")
+#define RI_FLATNESS ((RtToken) "flatness")
+#define RI_FOG ((RtToken) "fog")
+#define RI_FOV ((RtToken) "fov")
+#define RI_FRAMEBUFFER ((RtToken) "framebuffer")
+#define RI_FROM ((RtToken) "from")
+#define RI_HANDLER ((RtToken) "handler")
+#define RI_HANDLEID ((RtToken) "__handleid")
+#define RI_HIDDEN ((RtToken) "hidden")
+#define RI_IDENTIFIER ((RtToken) "identifier")
+#define RI_IGNORE ((RtToken) "ignore")
+#define RI_INSIDE ((RtToken) "inside")
+#define RI_INTENSITY ((RtToken) "intensity")
+#define RI_INTERSECTION ((RtToken) "intersection")
 #define RI_KA ((RtToken) "Ka")
 #define RI_KD ((RtToken) "Kd")
-#define RI_KS ((RtToken) "Ks")
+#define RI_KM ((RtToken) "Km")
 #define RI_KR ((RtToken) "Kr")
-#define RI_ROUGHNESS ((RtToken) "roughness")
-#define RI_INTENSITY ((RtToken) "intensity")
-#define RI_LIGHTCOLOR ((RtToken) "lightcolor")
-#define RI_FROM ((RtToken) "from")
-#define RI_TO ((RtToken) "to")
-#define RI_BILINEAR ((RtToken) "bilinear")
-#define RI_BICUBIC ((RtToken) "bicubic")
-#define RI_LINEAR ((RtToken) "linear")
-#define RI_CUBIC ((RtToken) "cubic")
-#define RI_PERIODIC ((RtToken) "periodic")
-#define RI_NONPERIODIC ((RtToken) "nonperiodic")
-#define RI_PRIMITIVE ((RtToken) "primitive")
-#define RI_UNION ((RtToken) "union")
-#define RI_INTERSECTION ((RtToken) "intersection")
-#define RI_DIFFERENCE ((RtToken) "difference")
-#define RI_INSIDE ((RtToken) "inside")
-#define RI_OUTSIDE ((RtToken) "outside")
+#define RI_KS ((RtToken) "Ks")
 #define RI_LH ((RtToken) "lh")
+#define RI_LIGHTCOLOR ((RtToken) "lightcolor")
+#define RI_LINEAR ((RtToken) "linear")
+#define RI_MATTE ((RtToken) "matte")
+#define RI_MAXDISTANCE ((RtToken) "maxdistance")
+#define RI_METAL ((RtToken) "metal")
+#define RI_MINDISTANCE ((RtToken) "mindistance")
+#define RI_N ((RtToken) "N")
+#define RI_NAME ((RtToken) "name")
+#define RI_NDC ((RtToken) "NDC")
+#define RI_NG ((RtToken) "Ng")
+#define RI_NONPERIODIC ((RtToken) "nonperiodic")
+#define RI_NP ((RtToken) "Np")
+#define RI_OBJECT ((RtToken) "object")
+#define RI_OI ((RtToken) "Oi")
+#define RI_ORIGIN ((RtToken) "origin")
+#define RI_ORTHOGRAPHIC ((RtToken) "orthographic")
+#define RI_OS ((RtToken) "Os")
+#define RI_OUTSIDE ((RtToken) "outside")
+#define RI_P ((RtToken) "P")
+#define RI_PAINT ((RtToken) "paint")
+#define RI_PAINTEDPLASTIC ((RtToken) "paintedplastic")
+#define RI_PERIODIC ((RtToken) "periodic")
+#define RI_PERSPECTIVE ((RtToken) "perspective")
+#define RI_PLASTIC ((RtToken) "plastic")
+#define RI_POINTLIGHT ((RtToken) "pointlight")
+#define RI_PRIMITIVE ((RtToken) "primitive")
+#define RI_PRINT ((RtToken) "print")
+#define RI_PW ((RtToken) "Pw")
+#define RI_PZ ((RtToken) "Pz")
+#define RI_RASTER ((RtToken) "raster")
+#define RI_RGB ((RtToken) "rgb")
+#define RI_RGBA ((RtToken) "rgba")
+#define RI_RGBAI ((RtToken) "rgbai")
+#define RI_RGBAZ ((RtToken) "rgbaz")
+#define RI_RGBI ((RtToken) "rgbi")
+#define RI_RGBZ ((RtToken) "rgbz")
+#define RI_RGBZI ((RtToken) "rgbzi")
 #define RI_RH ((RtToken) "rh")
-#define RI_CONSTANT ((RtToken) "constant")
+#define RI_ROUGHNESS ((RtToken) "roughness")
+#define RI_S ((RtToken) "s")
+#define RI_SCREEN ((RtToken) "screen")
+#define RI_SHADER ((RtToken) "shader")
+#define RI_SHADINGGROUP ((RtToken) "shadinggroup")
+#define RI_SHINYMETAL ((RtToken) "shinymetal")
 #define RI_SMOOTH ((RtToken) "smooth")
-#define RI_FLATNESS ((RtToken) "flatness")
-#define RI_COMMENT ((RtToken) "comment")
+#define RI_SPECULARCOLOR ((RtToken) "specularcolor")
+#define RI_SPOTLIGHT ((RtToken) "spotlight")
+#define RI_ST ((RtToken) "st")
 #define RI_STRUCTURE ((RtToken) "structure")
+#define RI_T ((RtToken) "t")
+#define RI_TEXTURENAME ((RtToken) "texturename")
+#define RI_THRESHOLD ((RtToken) "threshold")
+#define RI_TO ((RtToken) "to")
+#define RI_UNIFORM ((RtToken) "uniform")
+#define RI_UNION ((RtToken) "union")
+#define RI_VARYING ((RtToken) "varying")
 #define RI_VERBATIM ((RtToken) "verbatim")
+#define RI_VERTEX ((RtToken) "vertex")
+#define RI_WIDTH ((RtToken) "width")
+#define RI_WORLD ((RtToken) "world")
+#define RI_Z ((RtToken) "z")
 
 #define RI_BEZIERSTEP 3
 #define RI_BSPLINESTEP 1
@@ -104,13 +219,25 @@ typedef RtVoid (*RtArchiveCallback)(RtToken, RI_CHARS*, ...);
 #define RI_POWERSTEP 4
 extern RtBasis RiBezierBasis, RiBSplineBasis, RiCatmullRomBasis, RiHermiteBasis, RiPowerBasis;
 
-/* Every call with a parameter list, in both forms. */
-#define RI_BOTH(result, name, ...)                                                                                               \
-    result name(__VA_ARGS__, ...);                                                                                               \
-    result name##V(__VA_ARGS__, RtInt n, RtToken tokens[], RtPointer values[])
+/* Contexts. The name of RiBegin says who gets the calls: RI_NULL or "" draws here, anything else is the RIB file to be
+ * written ("-" is standard output), compressed where the name ends in .gz. */
+RtVoid RiBegin(RI_CHARS* name);
+RtVoid RiEnd(void);
+RtContextHandle RiGetContext(void);
+RtVoid RiContext(RtContextHandle context);
+
+/* Errors. RiErrorHandler may be called at any time, also before RiBegin. RiErrorPrint is what is used until then. */
+RtVoid RiErrorHandler(RtErrorHandler handler);
+RtVoid RiErrorIgnore(RtInt code, RtInt severity, char* message);
+RtVoid RiErrorPrint(RtInt code, RtInt severity, char* message);
+RtVoid RiErrorAbort(RtInt code, RtInt severity, char* message);
 
 /* Blocks, declarations, motion */
 RtToken RiDeclare(RI_CHARS* name, RI_CHARS* declaration);
+RtVoid RiFrameBegin(RtInt number);
+RtVoid RiFrameEnd(void);
+RtVoid RiWorldBegin(void);
+RtVoid RiWorldEnd(void);
 RtVoid RiAttributeBegin(void);
 RtVoid RiAttributeEnd(void);
 RtVoid RiTransformBegin(void);
@@ -123,6 +250,60 @@ RtVoid RiObjectInstance(RtObjectHandle handle);
 RtVoid RiMotionBegin(RtInt n, ...);
 RtVoid RiMotionBeginV(RtInt n, RtFloat times[]);
 RtVoid RiMotionEnd(void);
+RtVoid RiResourceBegin(void);
+RtVoid RiResourceEnd(void);
+RtVoid RiResource(RtToken handle, RtToken type, ...);
+RtVoid RiResourceV(RtToken handle, RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiIfBegin(RI_CHARS* expression, ...);
+RtVoid RiIfBeginV(RI_CHARS* expression, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiElseIf(RI_CHARS* expression, ...);
+RtVoid RiElseIfV(RI_CHARS* expression, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiElse(void);
+RtVoid RiIfEnd(void);
+
+/* Cameras and other options */
+RtVoid RiFormat(RtInt xres, RtInt yres, RtFloat pixelaspect);
+RtVoid RiFrameAspectRatio(RtFloat ratio);
+RtVoid RiScreenWindow(RtFloat left, RtFloat right, RtFloat bottom, RtFloat top);
+RtVoid RiCropWindow(RtFloat xmin, RtFloat xmax, RtFloat ymin, RtFloat ymax);
+RtVoid RiProjection(RI_CHARS* name, ...);
+RtVoid RiProjectionV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiClipping(RtFloat hither, RtFloat yon);
+RtVoid RiClippingPlane(RtFloat x, RtFloat y, RtFloat z, RtFloat nx, RtFloat ny, RtFloat nz);
+RtVoid RiDepthOfField(RtFloat fstop, RtFloat focallength, RtFloat focaldistance);
+RtVoid RiShutter(RtFloat open, RtFloat close);
+RtVoid RiPixelVariance(RtFloat variance);
+RtVoid RiPixelSamples(RtFloat x, RtFloat y);
+RtVoid RiPixelFilter(RtFilterFunc filter, RtFloat xwidth, RtFloat ywidth);
+RtVoid RiExposure(RtFloat gain, RtFloat gamma);
+RtVoid RiImager(RI_CHARS* name, ...);
+RtVoid RiImagerV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiQuantize(RtToken type, RtInt one, RtInt min, RtInt max, RtFloat dither);
+RtVoid RiDisplay(RI_CHARS* name, RtToken type, RtToken mode, ...);
+RtVoid RiDisplayV(RI_CHARS* name, RtToken type, RtToken mode, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisplayChannel(RI_CHARS* channel, ...);
+RtVoid RiDisplayChannelV(RI_CHARS* channel, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiHider(RtToken name, ...);
+RtVoid RiHiderV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiColorSamples(RtInt n, RtFloat nRGB[], RtFloat RGBn[]);
+RtVoid RiRelativeDetail(RtFloat factor);
+RtVoid RiOption(RI_CHARS* name, ...);
+RtVoid RiOptionV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiCamera(RI_CHARS* name, ...);
+RtVoid RiCameraV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+
+/* Pixel filters: x and y from the middle of the filter, its widths, all in pixels. */
+RtFloat RiBoxFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiTriangleFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiCatmullRomFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiSeparableCatmullRomFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiGaussianFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiSincFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiBesselFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiDiskFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiMitchellFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiBlackmanHarrisFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
+RtFloat RiLanczosFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
 
 /* Attributes */
 RtVoid RiColor(RtColor color);
@@ -135,24 +316,61 @@ RtVoid RiBound(RtBound bound);
 RtVoid RiDetail(RtBound bound);
 RtVoid RiDetailRange(RtFloat minvisible, RtFloat lowertransition, RtFloat uppertransition, RtFloat maxvisible);
 RtVoid RiGeometricApproximation(RtToken type, RtFloat value);
+RtVoid RiGeometricRepresentation(RtToken type);
 RtVoid RiOrientation(RtToken orientation);
 RtVoid RiReverseOrientation(void);
 RtVoid RiSides(RtInt sides);
 RtVoid RiBasis(RtBasis ubasis, RtInt ustep, RtBasis vbasis, RtInt vstep);
 RtVoid RiTrimCurve(RtInt nloops, RtInt ncurves[], RtInt order[], RtFloat knot[], RtFloat min[], RtFloat max[], RtInt n[],
                    RtFloat u[], RtFloat v[], RtFloat w[]);
-RI_BOTH(RtVoid, RiAttribute, RI_CHARS* name);
+RtVoid RiAttribute(RI_CHARS* name, ...);
+RtVoid RiAttributeV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
 
 /* Shaders and lights */
-RI_BOTH(RtVoid, RiSurface, RI_CHARS* name);
-RI_BOTH(RtVoid, RiDisplacement, RI_CHARS* name);
-RI_BOTH(RtVoid, RiAtmosphere, RI_CHARS* name);
-RI_BOTH(RtVoid, RiInterior, RI_CHARS* name);
-RI_BOTH(RtVoid, RiExterior, RI_CHARS* name);
-RI_BOTH(RtVoid, RiShader, RI_CHARS* name, RI_CHARS* handle);
-RI_BOTH(RtLightHandle, RiLightSource, RI_CHARS* name);
-RI_BOTH(RtLightHandle, RiAreaLightSource, RI_CHARS* name);
+RtVoid RiSurface(RI_CHARS* name, ...);
+RtVoid RiSurfaceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisplacement(RI_CHARS* name, ...);
+RtVoid RiDisplacementV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiAtmosphere(RI_CHARS* name, ...);
+RtVoid RiAtmosphereV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiInterior(RI_CHARS* name, ...);
+RtVoid RiInteriorV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiExterior(RI_CHARS* name, ...);
+RtVoid RiExteriorV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiShader(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiShaderV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtLightHandle RiLightSource(RI_CHARS* name, ...);
+RtLightHandle RiLightSourceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtLightHandle RiAreaLightSource(RI_CHARS* name, ...);
+RtLightHandle RiAreaLightSourceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiIlluminate(RtLightHandle light, RtBoolean on);
+
+/* The requests of later renderers (PRMan) that name a plug-in and a handle */
+RtVoid RiBxdf(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiBxdfV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPattern(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiPatternV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisplace(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiDisplaceV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiLight(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiLightV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiLightFilter(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiLightFilterV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiEnableLightFilter(RI_CHARS* light, RI_CHARS* filter, RtBoolean on);
+RtVoid RiIntegrator(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiIntegratorV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisplayFilter(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiDisplayFilterV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiSampleFilter(RI_CHARS* name, RI_CHARS* handle, ...);
+RtVoid RiSampleFilterV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPixelSampleImager(RI_CHARS* name, ...);
+RtVoid RiPixelSampleImagerV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiVPAtmosphere(RI_CHARS* name, ...);
+RtVoid RiVPAtmosphereV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiVPInterior(RI_CHARS* name, ...);
+RtVoid RiVPInteriorV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiVPSurface(RI_CHARS* name, ...);
+RtVoid RiVPSurfaceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
 
 /* Transformations. RiTransformPoints gives back points, or 0 when there is no such space: then they are as they were. */
 RtVoid RiIdentity(void);
@@ -163,46 +381,111 @@ RtVoid RiTranslate(RtFloat dx, RtFloat dy, RtFloat dz);
 RtVoid RiRotate(RtFloat angle, RtFloat dx, RtFloat dy, RtFloat dz);
 RtVoid RiScale(RtFloat sx, RtFloat sy, RtFloat sz);
 RtVoid RiSkew(RtFloat angle, RtFloat dx1, RtFloat dy1, RtFloat dz1, RtFloat dx2, RtFloat dy2, RtFloat dz2);
+RtVoid RiDeformation(RI_CHARS* name, ...);
+RtVoid RiDeformationV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiCoordinateSystem(RtToken space);
 RtVoid RiScopedCoordinateSystem(RtToken space);
 RtVoid RiCoordSysTransform(RtToken space);
 RtPoint* RiTransformPoints(RtToken fromspace, RtToken tospace, RtInt n, RtPoint points[]);
 
 /* Primitives */
-RI_BOTH(RtVoid, RiPolygon, RtInt nvertices);
-RI_BOTH(RtVoid, RiGeneralPolygon, RtInt nloops, RtInt nverts[]);
-RI_BOTH(RtVoid, RiPointsPolygons, RtInt npolys, RtInt nverts[], RtInt verts[]);
-RI_BOTH(RtVoid, RiPointsGeneralPolygons, RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[]);
-RI_BOTH(RtVoid, RiPatch, RtToken type);
-RI_BOTH(RtVoid, RiPatchMesh, RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap);
-RI_BOTH(RtVoid, RiNuPatch, RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder,
-        RtFloat vknot[], RtFloat vmin, RtFloat vmax);
-RI_BOTH(RtVoid, RiSubdivisionMesh, RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[],
-        RtInt nargs[], RtInt intargs[], RtFloat floatargs[]);
-RI_BOTH(RtVoid, RiSphere, RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax);
-RI_BOTH(RtVoid, RiCone, RtFloat height, RtFloat radius, RtFloat thetamax);
-RI_BOTH(RtVoid, RiCylinder, RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax);
-RI_BOTH(RtVoid, RiHyperboloid, RtPoint point1, RtPoint point2, RtFloat thetamax);
-RI_BOTH(RtVoid, RiParaboloid, RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax);
-RI_BOTH(RtVoid, RiDisk, RtFloat height, RtFloat radius, RtFloat thetamax);
-RI_BOTH(RtVoid, RiTorus, RtFloat majorradius, RtFloat minorradius, RtFloat phimin, RtFloat phimax, RtFloat thetamax);
-RI_BOTH(RtVoid, RiPoints, RtInt npoints);
-RI_BOTH(RtVoid, RiCurves, RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap);
-RI_BOTH(RtVoid, RiBlobby, RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings,
-        RtString strings[]);
-RI_BOTH(RtVoid, RiGeometry, RtToken type);
+RtVoid RiPolygon(RtInt nvertices, ...);
+RtVoid RiPolygonV(RtInt nvertices, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiGeneralPolygon(RtInt nloops, RtInt nverts[], ...);
+RtVoid RiGeneralPolygonV(RtInt nloops, RtInt nverts[], RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPointsPolygons(RtInt npolys, RtInt nverts[], RtInt verts[], ...);
+RtVoid RiPointsPolygonsV(RtInt npolys, RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPointsGeneralPolygons(RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], ...);
+RtVoid RiPointsGeneralPolygonsV(RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[],
+                                RtPointer values[]);
+RtVoid RiPatch(RtToken type, ...);
+RtVoid RiPatchV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPatchMesh(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, ...);
+RtVoid RiPatchMeshV(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, RtInt n, RtToken tokens[],
+                    RtPointer values[]);
+RtVoid RiNuPatch(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
+                 RtFloat vmin, RtFloat vmax, ...);
+RtVoid RiNuPatchV(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
+                  RtFloat vmin, RtFloat vmax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiSubdivisionMesh(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
+                         RtInt intargs[], RtFloat floatargs[], ...);
+RtVoid RiSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
+                          RtInt intargs[], RtFloat floatargs[], RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiHierarchicalSubdivisionMesh(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[],
+                                     RtInt nargs[], RtInt intargs[], RtFloat floatargs[], RtToken stringargs[], ...);
+RtVoid RiHierarchicalSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[],
+                                      RtInt nargs[], RtInt intargs[], RtFloat floatargs[], RtToken stringargs[], RtInt n,
+                                      RtToken tokens[], RtPointer values[]);
+RtVoid RiSphere(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
+RtVoid RiSphereV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiCone(RtFloat height, RtFloat radius, RtFloat thetamax, ...);
+RtVoid RiConeV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiCylinder(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
+RtVoid RiCylinderV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiHyperboloid(RtPoint point1, RtPoint point2, RtFloat thetamax, ...);
+RtVoid RiHyperboloidV(RtPoint point1, RtPoint point2, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiParaboloid(RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
+RtVoid RiParaboloidV(RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisk(RtFloat height, RtFloat radius, RtFloat thetamax, ...);
+RtVoid RiDiskV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiTorus(RtFloat majorradius, RtFloat minorradius, RtFloat phimin, RtFloat phimax, RtFloat thetamax, ...);
+RtVoid RiTorusV(RtFloat majorradius, RtFloat minorradius, RtFloat phimin, RtFloat phimax, RtFloat thetamax, RtInt n,
+                RtToken tokens[], RtPointer values[]);
+RtVoid RiPoints(RtInt npoints, ...);
+RtVoid RiPointsV(RtInt npoints, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiCurves(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, ...);
+RtVoid RiCurvesV(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiBlobby(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[], ...);
+RtVoid RiBlobbyV(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[],
+                 RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiGeometry(RtToken type, ...);
+RtVoid RiGeometryV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiVolume(RtToken type, RtBound bound, RtInt dimensions[], ...);
+RtVoid RiVolumeV(RtToken type, RtBound bound, RtInt dimensions[], RtInt n, RtToken tokens[], RtPointer values[]);
 
-/* More procedurals: done at once, nested up to a limit of the program. The first three take RtString arrays as data: {
- * file }, { command, data }, { library, data }. RiProcFree is free(). The callback of RiReadArchive is not called. */
+/* Procedurals: a function of the program's own is called at once, with the area of the bound in pixels (RI_INFINITY when it
+ * is not known), and free after it. The built-in ones take RtString arrays as data: { file }, { command, data }, { library, data
+ * }. RiProcFree is free(). */
 RtVoid RiProcedural(RtPointer data, RtBound bound, RtProcSubdivFunc subdivide, RtProcFreeFunc free);
 RtVoid RiProcDelayedReadArchive(RtPointer data, RtFloat detail);
 RtVoid RiProcRunProgram(RtPointer data, RtFloat detail);
 RtVoid RiProcDynamicLoad(RtPointer data, RtFloat detail);
 RtVoid RiProcFree(RtPointer data);
-RI_BOTH(RtVoid, RiReadArchive, RtToken name, RtArchiveCallback callback);
-RtVoid RiArchiveRecord(RtToken type, RI_CHARS* format, ...);
 
-#undef RI_BOTH
+/* Archives. The callback of RiReadArchive gets the comments of the archive, at their places: "comment" or "structure", and
+ * the text as a format without arguments. */
+RtVoid RiReadArchive(RI_CHARS* name, RtArchiveCallback callback, ...);
+RtVoid RiReadArchiveV(RI_CHARS* name, RtArchiveCallback callback, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiArchiveRecord(RtToken type, RI_CHARS* format, ...);
+RtArchiveHandle RiArchiveBegin(RI_CHARS* name, ...);
+RtArchiveHandle RiArchiveBeginV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiArchiveEnd(void);
+RtVoid RiSystem(RI_CHARS* command);
+
+/* Maps of pictures */
+RtVoid RiMakeTexture(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+                     RtFloat twidth, ...);
+RtVoid RiMakeTextureV(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+                      RtFloat twidth, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeBump(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+                  RtFloat twidth, ...);
+RtVoid RiMakeBumpV(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+                   RtFloat twidth, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeLatLongEnvironment(RI_CHARS* picture, RI_CHARS* texture, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, ...);
+RtVoid RiMakeLatLongEnvironmentV(RI_CHARS* picture, RI_CHARS* texture, RtFilterFunc filter, RtFloat swidth, RtFloat twidth,
+                                 RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeCubeFaceEnvironment(RI_CHARS* px, RI_CHARS* nx, RI_CHARS* py, RI_CHARS* ny, RI_CHARS* pz, RI_CHARS* nz,
+                                 RI_CHARS* texture, RtFloat fov, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, ...);
+RtVoid RiMakeCubeFaceEnvironmentV(RI_CHARS* px, RI_CHARS* nx, RI_CHARS* py, RI_CHARS* ny, RI_CHARS* pz, RI_CHARS* nz,
+                                  RI_CHARS* texture, RtFloat fov, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, RtInt n,
+                                  RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeShadow(RI_CHARS* picture, RI_CHARS* shadow, ...);
+RtVoid RiMakeShadowV(RI_CHARS* picture, RI_CHARS* shadow, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeBrickMap(RtInt nclouds, RtString clouds[], RI_CHARS* brickmap, ...);
+RtVoid RiMakeBrickMapV(RtInt nclouds, RtString clouds[], RI_CHARS* brickmap, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeOcclusion(RtInt npictures, RtString pictures[], RI_CHARS* shadow, ...);
+RtVoid RiMakeOcclusionV(RtInt npictures, RtString pictures[], RI_CHARS* shadow, RtInt n, RtToken tokens[], RtPointer values[]);
+
 #undef RI_CHARS
 
 #ifdef __cplusplus

@@ -1,27 +1,48 @@
 #include "base/installation.h"
 #include "base/configured.h"
 #include <cstdlib>
+#include <dlfcn.h>
+#include <link.h>
 #include <sys/auxv.h>
 
 namespace fs = std::filesystem;
 
 namespace alpenglow {
 
-fs::path programFolder() {
+namespace {
+
+/// Its address tells which file this code is in.
+char placeOfThisCode;
+
+fs::path programFile() {
     std::error_code e;
     fs::path program = fs::read_symlink("/proc/self/exe", e);
-    if (e) { // without /proc: by the name that the program was started with
-        const auto* name = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
-        program = name ? fs::canonical(name, e) : fs::path();
-        if (e) return {};
-    }
-    return program.parent_path();
+    if (!e) return program;
+    const auto* name = reinterpret_cast<const char*>(getauxval(AT_EXECFN)); // no /proc here: the name that it was started by
+    program = name ? fs::canonical(name, e) : fs::path();
+    return e ? fs::path() : program;
 }
+
+} // namespace
+
+fs::path codeFile() {
+    Dl_info info{};
+    void* entry = nullptr;
+    if (dladdr1(&placeOfThisCode, &info, &entry, RTLD_DL_LINKMAP) == 0 || !entry) return programFile();
+    const char* library = static_cast<const link_map*>(entry)->l_name; // "" for the program itself
+    if (!library || !*library) return programFile();
+    std::error_code e;
+    const fs::path file = fs::canonical(library, e);
+    return e ? fs::path() : file;
+}
+
+fs::path codeFolder() { return codeFile().parent_path(); }
 
 std::string shippedShaders(const fs::path& folder) {
     if (folder.empty()) return {};
     std::error_code e;
-    for (const char* place : {configured::kShaders, "../share/alpenglow/shaders"})
+    for (const char* place : {configured::kShaders, configured::kShadersOfLibrary, configured::kShadersOfPython,
+                              "../share/alpenglow/shaders", "../../share/alpenglow/shaders"})
         if (const fs::path found = fs::canonical(folder / place, e); !e && fs::is_directory(found, e)) return found.string();
     return {};
 }
@@ -30,7 +51,7 @@ std::string moduleFile(const char* name, const char* variable, const fs::path& f
     std::error_code e;
     if (const char* named = std::getenv(variable)) return fs::is_regular_file(named, e) ? named : "";
     if (folder.empty()) return {};
-    for (const char* place : {".", configured::kModules, "../lib/alpenglow"})
+    for (const char* place : {".", configured::kModules, "../lib/alpenglow", "alpenglow", "../bin", "../../bin", "../.."})
         if (const fs::path found = (folder / place / name).lexically_normal(); fs::is_regular_file(found, e))
             return found.string();
     return {};

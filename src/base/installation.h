@@ -1,19 +1,29 @@
-// Locates files of the program relative to the folder of the running program, so that an installation can be moved. A build
-// folder has the same layout (its share/alpenglow/shaders is a link to the sources), except that modules are next to the program.
+// Where the files that belong to the program are. They are found from the folder of the file that this code was loaded from (the
+// program, libalpenglow.so, an extension module of Python), so that an installation may be moved. A build folder has the same
+// layout (its share/alpenglow/shaders is a link to the sources), except that modules lie beside the program.
+//
+//   <prefix>/bin/alpenglow                                    build/<preset>/bin/alpenglow, with the modules
+//   <prefix>/<lib>/libalpenglow.so                            build/<preset>/lib/libalpenglow.so
+//   <prefix>/<lib>/alpenglow/                   the modules
+//   <prefix>/<lib>/alpenglow/python/alpenglow/  extension     build/<preset>/python/alpenglow/
+//   <prefix>/share/alpenglow/shaders/                         build/<preset>/share/alpenglow/shaders
 #pragma once
 #include <filesystem>
 #include <string>
 
 namespace alpenglow {
 
-/// The folder of the running program, with links resolved; empty if unknown.
-std::filesystem::path programFolder();
+/// The file that this code was loaded from, links resolved: the running program, unless the code is in a library that it loaded.
+/// Empty when the system does not tell it.
+std::filesystem::path codeFile();
+/// Its folder; empty when the system does not tell it.
+std::filesystem::path codeFolder();
 
-/// The folder of the shipped shaders, for a program in `folder`; "" if there is none.
-std::string shippedShaders(const std::filesystem::path& folder = programFolder());
+/// The folder of the shaders that ship, for code in `folder`; "" when there is none.
+std::string shippedShaders(const std::filesystem::path& folder = codeFolder());
 
-/// A module of the program (libalpenglow_*.so), for a program in `folder`. If the environment variable `variable` is set, only
-/// that file is considered. "" if there is no such file.
-std::string moduleFile(const char* name, const char* variable, const std::filesystem::path& folder = programFolder());
+/// A module of the program (libalpenglow_*.so), for code in `folder`. When the environment variable `variable` is set, it
+/// names the file, and no other is looked for. "" when there is no such file.
+std::string moduleFile(const char* name, const char* variable, const std::filesystem::path& folder = codeFolder());
 
 } // namespace alpenglow

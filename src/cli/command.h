@@ -49,7 +49,9 @@ void addMaketx(CLI::App&, int* status);
 void addPtc(CLI::App&, int* status);
 void addDiff(CLI::App&, int* status);
 void addMerge(CLI::App&, int* status);
+void addRib(CLI::App&, int* status);
 void addLsp(CLI::App&, int* status);
+void addFrom(CLI::App&, int* status);
 
 /// Prints diagnostics of at least this severity to standard error, taking a progress bar off the line first.
 Diagnostics::Handler printer(Severity least = Severity::Warning);

@@ -24,6 +24,10 @@ struct OldFlag {
 
 std::span<const OldFlag> oldFlags();
 
+/// What to use in the place of filters that are C++ libraries.
+inline constexpr std::string_view kNoRif =
+    "C++ filters (Rif) are not loaded; `alpenglow rib --replace`, or a program in a pipe, does what they do";
+
 /// A command line with the flags of other renderers replaced.
 struct TranslatedFlags {
     std::vector<std::string> arguments;
@@ -34,8 +38,11 @@ struct TranslatedFlags {
 
 /// `arguments`: those of `render`, without its name. Arguments that are no such flags stay as they are.
 TranslatedFlags translateOldFlags(const std::vector<std::string>& arguments);
+/// The same by another table.
+TranslatedFlags translateFlags(std::span<const OldFlag> table, const std::vector<std::string>& arguments);
 
-/// The table for docs/options.md.
+/// The table for docs/options.md; of render's flags, or of others.
 std::string oldFlagsPage();
+std::string flagsPage(std::span<const OldFlag> table);
 
 } // namespace alpenglow::cli

@@ -20,6 +20,7 @@ struct RenderArguments {
     std::vector<std::pair<std::string, int>> tev; ///< hosts and ports
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
+    double modelTime = 0; ///< seconds of the animation of a model
     int framesAtOnce = 1; ///< 1 to limits::kFramesAtOnce
 };
 
@@ -27,5 +28,8 @@ struct RenderArguments {
 void addRenderOptions(CLI::App&, RenderArguments&);
 /// To be called when the command line was read: checks what the parser cannot. Throws CLI::ValidationError.
 void checkRenderArguments(RenderArguments&, const CLI::App&);
+/// The same for a program without a command line that draws (libalpenglow): options as a shell would split this text, no scenes.
+/// What is wrong with them, or "".
+std::string readRenderOptions(const std::string& text, RenderArguments&);
 
 } // namespace alpenglow::cli

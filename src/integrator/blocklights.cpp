@@ -55,10 +55,11 @@ void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
     connect(light, c);
 }
 
-/// Whether lobes of a call site sample a light. trace() samples emitters and skies only, and none that illuminance loops handle.
+/// Whether lobes of a call site sample a light. trace() without "samplelights" samples emitters and skies only; it samples none
+/// that illuminance loops handle.
 bool BlockVertices::samples(const Site& s, const BoundLight& light) {
     if (!s.lights || s.lighting) return s.lights;
-    return (light.kind == LightKind::Area || light.sky) && light.strategy != LightStrategy::Illuminance;
+    return (light.kind == LightKind::Area || light.sky || s.info->allLights) && light.strategy != LightStrategy::Illuminance;
 }
 
 /// Draws the random numbers of a stream (NumberBlock) at all points.
@@ -162,7 +163,7 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
                                 BatchContext& c, const size_t* pointOf) {
     Lanes failed = 0, fresh = 0;
     s.addBeside(lobe.lights & l.asked, l.w, pointOf, value_[kRowPdf]);
-    const float* kept = !s.lighting ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
+    const float* kept = !s.lighting && l.met ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
     Lanes some = stages_.contribute(points, lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting, value_[0],
                                     shadow_, &failed);
     for (; failed; failed &= failed - 1) accumulator_.notFinite(c, c.rays[pointOf[std::countr_zero(failed)]], uint32_t(s.number));

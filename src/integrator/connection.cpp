@@ -93,7 +93,7 @@ Color Connection::contribution(const Reached& r) {
     const LightValue& v = lightSampling_.queries.value[k];
     const bool area = light.kind == LightKind::Area;
     const float fcos = r.value.fcos, drawn = lightSampling_.queries.drawn[k].pdf, chance = lightSampling_.queries.chance[k];
-    const float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
+    const float kept = l.lobeOfShader || !light.hasDensity() ? v.kept(l.rays->type) : 1;
     Color c = l.ownsTarget ? l.weight * v.Cl : l.weight * rayOf(l).weight * v.Cl;
     c *= r.value.colour / (fcos * float(lightSampling_.lightSamples(l))); // the lobe's weight counts once for all its rays
     if (area && l.trace && l.trace->sums)
@@ -119,6 +119,8 @@ void Connection::send(const Reached& r) {
     // The light's own surface must not occlude: stop before it by both error bounds.
     const Vec3 end = area ? leavesFrom(lightSampling_.queries.at[k].surface, -r.w) : Vec3();
     if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
+    const float away = light.kind == LightKind::Distant ? 1e38f : length(lightSampling_.queries.value[k].L);
+    if (l.trace && !area && !light.sky && light.kind != LightKind::Distant && away > l.maxDistance) return;
     const Color given = contribution(r);
     const int32_t share = shareOf(l);
     const uint16_t path = paths_.atLobe(l, c_->points[size_t(l.point)], ray, r.w);
@@ -136,9 +138,7 @@ void Connection::send(const Reached& r) {
             {from, normalizeOr(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
         // A ray of trace() sees the sky also behind geometry beyond its distance.
-        const float far = light.sky                          ? l.maxDistance
-                          : light.kind == LightKind::Distant ? 1e38f
-                                                             : length(lightSampling_.queries.value[k].L);
+        const float far = light.sky ? l.maxDistance : away;
         shadows_.queue.push_back(
             {from, r.w, far < 1e30f && !light.sky ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
         if (const float radius = lightSampling_.queries.value[k].shadowRadius; radius > 0) {
@@ -156,8 +156,10 @@ void Connection::send(const Reached& r) {
     shadow.share = share;
     shadow.path = path;
     if (path) shadow.light = paths_.lights[size_t(&light - world_.lights_.data())];
-    // Not occluded: light loops below a surface under the other hiders, and lights whose shader computed visibility.
-    if ((c_->below && !rules_.pickOne && !light.shadows) || lightSampling_.queries.value[k].ownShadow) shadow.distance = 0;
+    // Not occluded: light loops and trace() with "samplelights" under the other hiders, and lights whose shader computed
+    // visibility.
+    const bool asInLoops = c_->below || (l.trace && !area && !light.sky);
+    if ((asInLoops && !rules_.pickOne && !light.shadows) || lightSampling_.queries.value[k].ownShadow) shadow.distance = 0;
 }
 
 } // namespace alpenglow::transport

@@ -57,7 +57,8 @@ void LightQueries::clear() {
     drawn.clear();
 }
 
-/// Whether a lobe samples this light. trace() samples emitters only, and none that illuminance loops handle.
+/// Whether a lobe samples this light. trace() without "samplelights" samples emitters only; it samples none that illuminance
+/// loops handle.
 bool LightSampling::samples(const LobeVertex& l, const BoundLight& light) const {
     if (!light.importance && (l.trace || rules_.emissionCounts)) return false; // only rays find it
     if (photonScatter_.leftToPhotons(l, light)) return false;

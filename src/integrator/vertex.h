@@ -46,7 +46,7 @@ struct LobeVertex {
     TargetId target = shading::kNoTarget;
     const RayKind* rays = &kDiffuseKind;
     bool lights = true;       ///< samples lights
-    bool deltaLights = true;  ///< including point, spot and distant lights (lighting shadeops, not trace())
+    bool deltaLights = true;  ///< including point, spot and distant lights (not trace() without "samplelights")
     bool lobeOfShader = true; ///< of a lighting shadeop: subject to the energy rule and to lobe selection
     uint32_t site = 0, occurrence = 0;
     uint32_t before = 0; ///< rays that the same waiting kernel has requested at this point before

@@ -43,14 +43,15 @@ struct alignas(64) LobeBlock {
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.
 struct LobeArguments {
     int axis = -1, wo = -1, horizon = -1, a = -1;
-    int from = -1;        ///< trace(): origin of its ray
-    int lights = -1;      ///< trace(): "samplearealights"; points where it is 0 are processed one by one
-    int samples = -1;     ///< trace(): number of rays; more than kMostSamples are reported point by point
-    float otherwise = 0;  ///< `a` if there is no row
-    float perRow = 0;     ///< > 0: `a` is this divided by the row
-    bool needsWo = false; ///< the kind reads the viewing direction
-    bool traces = false;  ///< trace(): a direction of length 0 requests nothing
-    /// For distributions (DistributionParams): rows copied from kRowRoughness on; default numbers for those not given.
+    int from = -1;        ///< trace(): where its ray starts
+    int lights = -1;      ///< trace(): "samplearealights" or "samplelights"; points that say no are looked at one by one
+    int samples = -1;     ///< trace(): how many rays it asks for; more than kMostSamples are reported point by point
+    float otherwise = 0;  ///< `a` where there is no row
+    float perRow = 0;     ///< > 0: `a` is this over the row
+    bool needsWo = false; ///< the kind reads the direction toward the viewer
+    bool traces = false;  ///< trace(): a direction of length 0 asks for nothing
+    /// Of distributions (DistributionParams): rows that are copied as they are, from kRowRoughness on; of those that are not
+    /// given, the number that stands for them.
     bool surface = false;
     int rows[kRowAlbedo - kRowRoughness] = {};
     float numbers[kRowAlbedo - kRowRoughness] = {};

@@ -34,12 +34,16 @@ public:
     virtual ~Watcher() = default;
     /// False: pictures are only displayed. No file is written, and file names are not checked.
     virtual bool writes() const { return true; }
+    /// Whether the noise figures of the frame are wanted in Renderer::stats(), which takes a look at every pixel.
+    virtual bool wantsNoise() const { return writes(); }
     virtual void begin(const WatchedFrame&) {}
     /// Under path: a film to continue; null: none. The result must match this description.
     virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }
     /// Called under path after each pass, else when the picture is complete; and about every 20 ms in between.
     virtual void look(const Glance&) {}
-    /// The end of a frame, also of an interrupted one. Under path with its film, if a pass is complete.
+    /// How far the samples of a frame are, as often as the progress line is told. what: the picture.
+    virtual void progress(const ProgressState&, const std::string& what) { (void)what; }
+    /// The end of a frame; also of one that was interrupted. Under path with its film, if a pass is whole.
     virtual void finished(std::unique_ptr<Film>) {}
 };
 

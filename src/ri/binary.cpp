@@ -1,12 +1,19 @@
 // The binary tokens of RIB, RISpec 3.2, appendix C.2. Integers and fixed point numbers are signed, as the specification says.
 #include "base/limits.h"
 #include "ri/lexer.h"
+#include "ri/requests/request.h"
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace alpenglow::ri {
 namespace {
+
+constexpr size_t kBuffered = 64u << 10; // bytes of an array that memory is taken for before they come
+
+inline uint32_t fromBig(uint32_t v) { return std::endian::native == std::endian::little ? __builtin_bswap32(v) : v; }
 
 uint64_t bigEndian(const std::string& s) {
     uint64_t v = 0;
@@ -57,8 +64,96 @@ bool Lexer::binaryString(std::string& out, const char* what) {
     return false;
 }
 
+/// n floats to t.floats, as many as come: a lying length costs nothing.
+bool Lexer::binaryFloats(Token& t, uint64_t n) {
+    t.floats.clear();
+    t.floats.reserve(size_t(std::min<uint64_t>(n, kBuffered / 4)));
+    while (n > 0) {
+        const size_t have = size_t(std::min<uint64_t>(n, (end_ - pos_) / 4)), old = t.floats.size();
+        if (have == 0) {
+            if (!more()) return truncated("a binary array");
+            continue;
+        }
+        t.floats.resize(old + have);
+        const char* from = buffer_.data() + pos_;
+        double* to = t.floats.data() + old;
+        for (size_t i = 0; i < have; ++i) {
+            uint32_t bits;
+            std::memcpy(&bits, from + 4 * i, 4);
+            to[i] = double(std::bit_cast<float>(fromBig(bits)));
+        }
+        pos_ += 4 * have;
+        n -= have;
+    }
+    return true;
+}
+
+namespace {
+
+/// The number whose code is at p, which has kNumberBytes behind it. Null: another code; else where it ends.
+inline const char* numberAt(const char* p, double& out) {
+    const auto c = static_cast<unsigned char>(*p++);
+    if (c >= 0200 && c <= 0217) {
+        const unsigned w = c & 3, d = (c >> 2) & 3;
+        uint32_t bits;
+        std::memcpy(&bits, p, 4);
+        const int32_t v = int32_t(fromBig(bits)) >> (8 * (3 - w));
+        out = d == 0 ? double(v) : std::ldexp(double(v), -8 * int(d));
+        return p + w + 1;
+    }
+    if (c == 0244) {
+        uint32_t bits;
+        std::memcpy(&bits, p, 4);
+        out = double(std::bit_cast<float>(fromBig(bits)));
+        return p + 4;
+    }
+    if (c == 0245) {
+        uint64_t bits;
+        std::memcpy(&bits, p, 8);
+        out = std::bit_cast<double>(std::endian::native == std::endian::little ? __builtin_bswap64(bits) : bits);
+        return p + 8;
+    }
+    return nullptr;
+}
+
+constexpr size_t kNumberBytes = 9;
+
+} // namespace
+
+void Lexer::binaryNumbers(std::vector<double>& out) {
+    double v;
+    while (end_ - pos_ >= kNumberBytes) {
+        const char* end = numberAt(buffer_.data() + pos_, v);
+        if (!end) return;
+        out.push_back(v);
+        pos_ = size_t(end - buffer_.data());
+    }
+}
+
+/// Numbers and known codes, which are nearly all of a file, where they are in the buffer. False: look closer.
+bool Lexer::binaryPlain(Token& t) {
+    if (end_ - pos_ < kNumberBytes) return false;
+    const char* const p = buffer_.data() + pos_;
+    if (const char* end = numberAt(p, t.number)) {
+        t.kind = Token::Kind::Number;
+        pos_ = size_t(end - buffer_.data());
+        return true;
+    }
+    const unsigned code = static_cast<unsigned char>(p[1]);
+    if (peek() == 0246 && requests_[code]) {
+        t.kind = Token::Kind::Identifier;
+        t.request = requests_[code];
+    } else if (peek() == 0317 && code < stringCodes_.size() && stringCodes_[code]) {
+        t.kind = Token::Kind::String;
+        t.text = *stringCodes_[code];
+    } else return false;
+    pos_ += 2;
+    return true;
+}
+
 bool Lexer::binary(Token& t) {
-    SourcePlace where = here();
+    if (binaryPlain(t)) return true;
+    const int line = line_, at = int(column());
     unsigned c = 0, b = 0;
     byte(c);
     std::string data;
@@ -77,7 +172,8 @@ bool Lexer::binary(Token& t) {
             n = bigEndian(data);
         }
         if (n > limits::kStringBytes) {
-            reporter_.error(Rie::Limit, where, "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
+            reporter_.error(Rie::Limit, place(line, at),
+                            "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
             return false; // what follows cannot be told from noise; the request is lost, the reader resynchronises
         }
         t.kind = Token::Kind::String;
@@ -92,24 +188,22 @@ bool Lexer::binary(Token& t) {
         if (!byte(b)) return truncated("a request code");
         t.kind = Token::Kind::Identifier;
         t.text = requestCodes_[b];
+        t.request = requests_[b];
         if (!t.text.empty()) return true;
-        reporter_.error(Rie::BadFile, where, "request code " + std::to_string(b) + " was not defined");
+        reporter_.error(Rie::BadFile, place(line, at), "request code " + std::to_string(b) + " was not defined");
         return false;
     }
     if (c >= 0310 && c <= 0313) {
         if (!bytes(c - 0310 + 1, data)) return truncated("an array's length");
-        uint64_t n = bigEndian(data);
         t.kind = Token::Kind::Floats;
-        t.floats.clear();
-        for (uint64_t i = 0; i < n; ++i) {
-            if (!bytes(4, data)) return truncated("a binary array");
-            t.floats.push_back(double(std::bit_cast<float>(uint32_t(bigEndian(data)))));
-        }
-        return true;
+        return binaryFloats(t, bigEndian(data));
     }
     if (c == 0314) {
         if (!byte(b)) return truncated("a request definition");
-        if (binaryString(data, "a request definition")) requestCodes_[b] = data;
+        if (binaryString(data, "a request definition")) {
+            requestCodes_[b] = data;
+            requests_[b] = findRequest(data);
+        }
         return false;
     }
     if (c >= 0315 && c <= 0320) {
@@ -117,19 +211,21 @@ bool Lexer::binary(Token& t) {
         if (!bytes(two ? 2 : 1, data)) return truncated("a string code");
         unsigned code = unsigned(bigEndian(data));
         if (define) {
-            if (binaryString(data, "a string definition")) stringCodes_[code] = data;
+            if (binaryString(data, "a string definition")) {
+                if (stringCodes_.size() <= code) stringCodes_.resize(code + 1);
+                stringCodes_[code] = data;
+            }
             return false;
         }
-        auto i = stringCodes_.find(code);
-        if (i == stringCodes_.end()) {
-            reporter_.error(Rie::BadFile, where, "string code " + std::to_string(code) + " was not defined");
+        if (code >= stringCodes_.size() || !stringCodes_[code]) {
+            reporter_.error(Rie::BadFile, place(line, at), "string code " + std::to_string(code) + " was not defined");
             return false;
         }
         t.kind = Token::Kind::String;
-        t.text = i->second;
+        t.text = *stringCodes_[code];
         return true;
     }
-    reporter_.error(Rie::BadFile, where, "byte " + std::to_string(c) + " is reserved in binary RIB");
+    reporter_.error(Rie::BadFile, place(line, at), "byte " + std::to_string(c) + " is reserved in binary RIB");
     return false;
 }
 

@@ -104,6 +104,7 @@ void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld)
             reporter.error(
                 Rie::Nesting, where,
                 fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
+        tellName(b.inner ? "AttributeEnd" : endName(b.kind), where);
         pop();
     }
 }
@@ -176,6 +177,7 @@ void Interpreter::worldBegin(const Call& call) {
         state.ctm = cameraToWorld = scene::Transform();
     }
     worldToCamera_ = state.ctm;
+    std::erase_if(globalLights_, [&](int l) { return l >= int(lights_.size()); });
     const bool projected = takeProjection(worldToCamera_, options);
     frame_ = std::make_shared<scene::Frame>();
     ++worldSerial_;
@@ -219,7 +221,10 @@ void Interpreter::worldEnd(Block& b) {
     objectIndex_.clear();
     sharedArchives_.clear();
     if (!frameWanted()) return ended_.clear(), consumer.passOver(frame->options);
+    risOptions(frame->options);
     if (settings.overrides) settings.overrides(frame->options);
+    addHeadlight(*frame);
+    overrideAttributes(*frame);
     sayUnlit(*frame);
     consumer.render(std::move(frame));
     waiting_.clear();

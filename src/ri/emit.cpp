@@ -60,10 +60,14 @@ void Interpreter::light(const Call& call, bool area) {
     own->lights.clear();
     l.attributes = std::move(own);
     int index = int(lights().size());
+    const bool standard = l.shader->name.starts_with("PxrStd"); // of PRMan 19: on everywhere as those of 21
     lights().push_back(std::move(l));
     if (!call.text(1).empty()) handles_[call.text(1)] = index;
     attributes().lights.insert(index);
     if (area) attributes().areaLight = index;
+    if (!standard) return;
+    ris_ = true;
+    globalLights_.insert(index);
 }
 
 void Interpreter::illuminate(const Call& call) {
@@ -137,6 +141,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
 }
 
 void Interpreter::store(std::shared_ptr<scene::Primitive> p) {
+    if (settings.executed) return;
     if (scene::Object* o = openObject()) {
         o->primitives.push_back(std::move(p));
         return;
@@ -213,6 +218,7 @@ void Interpreter::instance(const Call& call) {
 }
 
 void Interpreter::place(const StoredObject& object, const SourcePlace& where) {
+    if (settings.executed) return;
     auto [slot, fresh] = objectIndex_.try_emplace(object.serial, int(frame_->objects.size()));
     if (fresh) frame_->objects.push_back(forThisWorld(object));
     scene::Instance n;

@@ -31,6 +31,9 @@ void Interpreter::nextScene() {
     archivesRead_.clear();
     shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
+    ris_ = false;
+    headlight_ = true;
+    integratorSurface_ = nullptr;
 }
 
 scene::Attributes& Interpreter::attributes() {
@@ -47,6 +50,7 @@ scene::AttributesRef Interpreter::snapshot() {
 void Interpreter::run(Parser& parser) {
     auto outer = std::move(reporter.lineText);
     reporter.lineText = [&](const SourcePlace& p) { return parser.lineText(p); };
+    parser.unknown = settings.unknown;
     Call call;
     while (!stopped() && parser.next(call) && !stopped() && mayReplay(call)) execute(call);
     reporter.lineText = std::move(outer);
@@ -65,8 +69,7 @@ void Interpreter::expand(const std::string& requests, const Call& call, scene::P
 
 void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string& name) {
     SourcePlace end{name, 0, 0};
-    size_t slash = name.find_last_of('/');
-    sceneFolder_ = slash == std::string::npos ? "" : name.substr(0, slash);
+    sceneFolder_ = folderOf(name);
     ahead_ = ReadAhead();
     shelf_.forgetPlaces();
     unscanned_ = name;
@@ -78,6 +81,10 @@ void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string&
         reporter.lineText = outer;
     }
     if (aborted()) reporter.report(Severity::Warning, Rie::IllState, end, "ErrorHandler \"abort\": the rest is not read");
+    finish(end);
+}
+
+void Interpreter::finish(const SourcePlace& end) {
     closeOpenEnds(0, end);
     unwind(0, end, false);
     overflow_ = 0;
@@ -87,6 +94,11 @@ void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string&
 void Interpreter::execute(const Call& call) {
     if (record(call) || conditional(call)) return;
     if (!conditions_.empty() && !conditions_.back().active) return;
+    if (settings.executed && !telling_) tell(call);
+    else perform(call);
+}
+
+void Interpreter::perform(const Call& call) {
     if (motion_ && call.request->name != "MotionEnd") {
         std::string_view n = call.request->name;
         if (n == "ReadArchive" || n == "Declare" || n == "version" || n == "ArchiveRecord") return dispatch(call);
@@ -200,6 +212,7 @@ void Interpreter::closeOpenEnds(size_t conditions, const SourcePlace& where) {
     }
     if (motion_) {
         if (!interrupted()) reporter.error(Rie::Nesting, motion_->place, "MotionBegin without MotionEnd");
+        tellName("MotionEnd", where);
         Call end;
         end.place = where;
         endMotion(end);

@@ -13,6 +13,7 @@
 #include "ri/sharedarchives.h"
 #include "ri/shelf.h"
 #include "ri/source.h"
+#include "scene/network.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
 #include <functional>
@@ -53,6 +54,10 @@ public:
     /// Reads a whole stream at the outermost level and closes what it leaves open.
     void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
     void execute(const Call& call);
+    /// The end of a stream, or of a program's calls: closes what is open, with an error for each, and draws a world that is open.
+    void finish(const SourcePlace& end);
+    /// What is executed now is kept for an archive, or passed over by a condition.
+    bool holdsBack() const { return recording_ || (!conditions_.empty() && !conditions_.back().active); }
     /// By the user. What is not closed then is no error.
     bool interrupted() const { return settings.stop && *settings.stop; }
     bool stopped() const { return aborted() || interrupted(); }
@@ -105,6 +110,16 @@ public:
     /// Null when unknown. "world", "camera", "object", "current" and "shader" are known too.
     std::optional<scene::Transform> namedSystem(const std::string& name) const;
 
+    /// RIS: what a Bxdf or its like says, with the patterns that its connections mean now (scene/network.h).
+    scene::ShaderRef network(const Call& call, scene::Keeper);
+    void pattern(const Call& call);
+    void risLight(const Call& call);
+    void isRis() { ris_ = true; }
+    /// The shader that an Integrator sees instead of all surfaces; null: none.
+    void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
+    /// Whether the integrator lights a scene without lights from the eye.
+    void headlight(bool on) { headlight_ = on; }
+
     void light(const Call& call, bool area);
     void illuminate(const Call& call);
     void emit(scene::Primitive primitive, const Call& call);
@@ -123,7 +138,7 @@ public:
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                     const Call& call);
     /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the
-    /// graphics state saved before and restored after. name: of who makes it, for messages.
+    /// graphics state saved before and restored after. name: of the library, for messages; "" for a function of a program's own.
     void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound,
                    const Call& call);
     /// Numbers for lights and objects that libraries make: never the same twice.
@@ -226,6 +241,11 @@ private:
     /// Reads a DelayedReadArchive; from the second time under the same attributes on as an object.
     void readDelayed(const std::string& name, const Call& call);
     void learn(SharedArchive& of, const std::string& file);
+    // ris.cpp
+    std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
+    void overrideAttributes(scene::Frame&) const;
+    void addHeadlight(scene::Frame&);
+    void risOptions(scene::Options&) const;
     // unlit.cpp
     void noteEnded(const Block&);
     void sayUnlit(const scene::Frame&);
@@ -258,7 +278,16 @@ private:
     /// name says that it is of this kind, others are read from the scene's own folders only.
     std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
     void run(class Parser& parser);
+    /// What execute() does, once it is to be done.
+    void perform(const Call& call);
     void dispatch(const Call& call);
+    // executed.cpp: ReaderOptions::executed
+    /// Performs a request and passes it on, or what is in it.
+    void tell(const Call& call);
+    void tellProcedural(const Call& call, const std::string& kind);
+    void tellName(std::string_view request, const SourcePlace& place);
+    /// Options of an archive in the world, held back until it is known that it has no world of its own.
+    void tellHeld();
     bool conditional(const Call& call);
     bool record(const Call& call);
     void checkScope(const Call& call);
@@ -308,6 +337,10 @@ private:
     std::map<size_t, int> objectIndex_;                   ///< serial -> index in this frame
     std::map<std::string, SharedArchive> sharedArchives_; ///< of the open world, by ArchiveShelf::Found::key
     std::set<int> ended_;                                 ///< lights of this world that an AttributeEnd has ended
+    std::set<int> globalLights_;                          ///< lights of this world that are on everywhere
+    scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
+    bool headlight_ = true;                               ///< no integrator, or PxrDefault: what has no light is lit from the eye
+    bool ris_ = false;                                    ///< the scene has requests of RIS
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;
@@ -334,8 +367,10 @@ private:
     int partsWithin_ = 0;                                 ///< procedurals in it that wait
     bool making_ = false;                                 ///< what is in procedurals that waited is being made
     bool replaying_ = false;                              ///< inside an archive that was read before
-    Lasting base_;                                        ///< what a scene begins with
-    size_t baseWorld_ = 0;                                ///< worldSerial_ at that time
+    bool telling_ = false;   ///< a request that was passed on is executed: what it makes of itself is not
+    std::vector<Call> held_; ///< tellHeld()
+    Lasting base_;           ///< what a scene begins with
+    size_t baseWorld_ = 0;   ///< worldSerial_ at that time
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.
@@ -356,6 +391,8 @@ using MayRead = std::function<bool(const std::string& path)>;
 /// The path of an archive along folders: as given, then with '/' for '\', its base name, other case. "" = not found.
 /// *fallback says which liberty was taken, or is "".
 std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback, const MayRead& may);
+/// The folder that a RIB file lies in, or the zip archive that holds it; "" for the current one.
+std::string folderOf(const std::string& file);
 /// "a:b;c" to folders; a single letter before ":/" or ":\" is a drive, "&" and "@" are left to the caller.
 std::vector<std::string> splitSearchPath(const std::string& text);
 

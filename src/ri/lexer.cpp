@@ -247,6 +247,8 @@ void Lexer::plainNumbers(std::vector<double>& out) {
 
 void Lexer::numbers(std::vector<double>& out) {
     plainNumbers(out);
+    binaryNumbers(out);
+    if (pos_ < end_ && peek() >= 0x80) return; // another token
     const auto begins = [&] {
         if (startsNumber(peek())) return true;
         if (!std::strchr("nNiI", peek())) return false;
@@ -263,10 +265,11 @@ void Lexer::numbers(std::vector<double>& out) {
 
 void Lexer::identifier(std::string& out) {
     out.clear();
-    SourcePlace where = here();
+    const int line = line_, first = int(column());
     while (at() && (letter(peek()) || digit(peek()))) {
         if (out.size() == limits::kTokenBytes) {
-            reporter_.error(Rie::Limit, where, "a name is longer than " + std::to_string(limits::kTokenBytes) + " bytes");
+            reporter_.error(Rie::Limit, place(line, first),
+                            "a name is longer than " + std::to_string(limits::kTokenBytes) + " bytes");
             while (at() && (letter(peek()) || digit(peek()))) ++pos_;
             return;
         }
@@ -383,6 +386,7 @@ void Lexer::badBytes() {
 void Lexer::next(Token& t) {
     t.text.clear();
     t.floats.clear();
+    t.request = nullptr;
     for (;;) {
         bool any = skipSpace();
         t.line = line_;

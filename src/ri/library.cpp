@@ -1,4 +1,5 @@
 #include "ri/library.h"
+#include "base/installation.h"
 #include "ri/c/client.h"
 #include "scene/scene.h"
 #include <dlfcn.h>
@@ -12,12 +13,22 @@ namespace {
 
 /// One function of every file of the C binding, so that a program that has this file has them all (a static library gives only
 /// what is asked for) and libraries find them in it.
-[[gnu::used]] const void* const kBinding[] = {reinterpret_cast<const void*>(&RiDeclare),
-                                              reinterpret_cast<const void*>(&RiPolygonV)};
+[[gnu::used]] const void* const kBinding[] = {
+    reinterpret_cast<const void*>(&RiDeclare),      reinterpret_cast<const void*>(&RiPolygonV),
+    reinterpret_cast<const void*>(&RiFormat),       reinterpret_cast<const void*>(&RiMakeTextureV),
+    reinterpret_cast<const void*>(&RiReadArchiveV), reinterpret_cast<const void*>(&RiErrorPrint),
+    reinterpret_cast<const void*>(&RiBoxFilter),    reinterpret_cast<const void*>(&RiBxdfV)};
+
+/// Where the binding is in a library that was itself loaded for its loader alone (Python's ctypes, cgkit), others do not see it.
+void offerBinding() {
+    static const bool offered = dlopen(codeFile().c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) != nullptr;
+    (void)offered; // false: it is in the program
+}
 
 } // namespace
 
 std::unique_ptr<Library> Library::load(const std::string& path, std::string& why) {
+    offerBinding();
     void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         const char* reason = dlerror();
@@ -84,11 +95,16 @@ void Interpreter::subdivide(const std::function<void(float)>& make, const std::s
     if (detail < 0) return; // not in the picture
     if (!begin(BlockKind::Attribute, call)) return;
     inPart(fmt::format("library:{}", ++programSerial_), [&] {
-        const Client client(*this, call);
+        const LibraryCalls calls(*this, call);
+        const auto threw = [&](const char* what) { // C++ libraries may; what they made before stays
+            reporter.error(Rie::System, call.place,
+                           (name.empty() ? "the function of a Procedural" : fmt::format("library \"{}\" of procedurals", name)) +
+                               " threw" + what);
+        };
         try {
             make(detail < 1e38 ? float(detail) : RI_INFINITY);
-        } catch (const std::exception& e) { // C++ libraries may; what they made before stays
-            reporter.error(Rie::System, call.place, fmt::format("library \"{}\" of procedurals threw: {}", name, e.what()));
+        } catch (const std::exception& e) { threw((std::string(": ") + e.what()).c_str()); } catch (...) {
+            threw("");
         }
         return call.place;
     });

@@ -14,14 +14,31 @@ public:
     bool next(Call& out);
     SourcePlace here() const { return lexer_.here(); }
     std::string lineText(const SourcePlace& p) const { return lexer_.lineText(p); }
+    /// Gets requests that are not in the table, as ReaderOptions::unknown.
+    std::function<void(const std::string& name, const std::vector<Value>& values)> unknown;
 
 private:
+    struct Comment {
+        std::string kind, text;
+    };
+    /// Those that were met behind the name of the last request.
+    void passComments();
     void collect(std::vector<Value>& out);
     void array(Value& out);
 
+    const Lexer::Comments comments_;
+    std::vector<Comment> held_; ///< comments that the next call of next() passes on
     Lexer lexer_;
     Reporter& reporter_;
     Token token_;
+    /// An empty one, with room that another one had.
+    Value fresh();
+    /// Takes what the last request held.
+    void keep(Value&& v);
+    void takeBack(Call& call);
+
+    std::vector<Value> values_;     ///< of the request that is read
+    std::vector<Value> spare_;      ///< of those before
     bool pending_ = false;          ///< token_ was read ahead
     std::set<std::string> unknown_; ///< names that are no requests, reported
 };

@@ -15,6 +15,9 @@
 
 namespace alpenglow::ri {
 
+struct Call;
+struct Value;
+
 struct ReaderOptions {
     std::vector<std::string> searchPaths;            ///< folders for archives, after those of Option "searchpath" "archive"
     bool allowExec = false;                          ///< RunProgram, DynamicLoad, System were asked for by the user
@@ -33,8 +36,15 @@ struct ReaderOptions {
     std::function<void(int)> frameSeen;
     /// Called for each frame on its own copy of the options, just before it is handed over: the command line has the last word.
     std::function<void(scene::Options&)> overrides;
-    /// Comments of the stream, as ReadArchive's callback gets them: kind "comment" or "structure", text after # or ##.
+    /// Comments of the stream, as ReadArchive's callback gets them: kind "comment" or "structure", text after # or ##. Those
+    /// inside a request and behind it come once it is executed.
     std::function<void(const std::string& kind, const std::string& text)> comments;
+    /// Set: called with each request before it is executed, and nothing is kept of primitives, so that streams of any length are
+    /// read in bounded memory; frames are empty. In place of archives, and of procedurals that may be made, come the requests
+    /// that are in them; conditions are decided. What is left open by an archive is closed.
+    std::function<void(const Call&)> executed;
+    /// With `executed`, of requests that are not in the table, each time. `values`: all up to the next name.
+    std::function<void(const std::string& name, const std::vector<Value>& values)> unknown;
 };
 
 /// Reads streams one after the other into one graphics state. Every problem is reported; nothing throws, nothing stops early

@@ -62,7 +62,9 @@ void Interpreter::learn(SharedArchive& of, const std::string& file) {
 }
 
 bool Interpreter::mayShare(const std::string& name) const {
-    if (making_ || settings.comments || !frame_ || !frameWanted() || motion_ || capture_ || !everywhere_.empty()) return false;
+    if (making_ || settings.comments || settings.executed || !frame_ || !frameWanted() || motion_ || capture_ ||
+        !everywhere_.empty())
+        return false;
     if (innermost(BlockKind::Object) || innermost(BlockKind::Solid) || innermost(BlockKind::Edit)) return false;
     return state.attributes->areaLight < 0 && !state.attributes->value(scene::kSolidAttribute) && !inlineArchives_.count(name);
 }

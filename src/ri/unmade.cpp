@@ -128,6 +128,7 @@ std::shared_ptr<scene::Frame> Interpreter::makeSome(const scene::Frame& from, co
     std::shared_ptr<scene::Frame> made = std::move(frame_);
     frame_.reset();
     made->coordinateSystems.insert(systems_.begin(), systems_.end());
+    overrideAttributes(*made);
     if (made->instances.size() > from.instances.size()) orderInstances(*made);
     blocks_.pop_back();
     making_ = false;

@@ -175,6 +175,8 @@ constexpr OptionDescription kHiderParameters[] = {
     {"guide", "int", "1", "0", Used,
      "path: 1: where light reaches surfaces by way of mirrors and clear glass, rays are sent toward them, which photons have "
      "found before the first sample: less noise, and no bias; 0: paths find such light by chance alone."},
+    {"incremental", "", "", "", Ignored, kPrman},
+    {"integrationmode", "", "", "", Ignored, kPrman},
     {"jitter", "int", "1", "0", Used,
      "hidden and raytrace: 1: samples lie at random places of their cells; 0: in the middle of them; 2: all pixels have the same "
      "pattern."},
@@ -185,6 +187,9 @@ constexpr OptionDescription kHiderParameters[] = {
      "raytrace: so many by so many rays (1 to 256) go through the middle of each pixel, from places spread evenly over the lens; "
      "1 by 1: a "
      "pinhole. A pixel is the mean of its own rays; PixelSamples, --spp and filters have no say."},
+    {"maxsamples", "int", "", "64", Used,
+     "raytrace, in a scene of RIS, which is drawn by path (docs/ris.md): samples per pixel, where PixelSamples says nothing."},
+    {"minsamples", "", "", "", Ignored, kPrman},
     {"mpcache", "", "", "", Ignored, kPrman},
     {"samplemotion", "int", "0", "1", Used,
      "hidden: surfaces are shaded at the time of each sample, not when the shutter opens."},

@@ -3,10 +3,12 @@
 #include "base/limits.h"
 #include "rsl/front/visit.h"
 #include "rsl/ir/build.h"
+#include "scene/network.h"
 #include "scene/scene.h"
 #include "world/fitparameter.h"
 #include "world/impl.h"
 #include "world/lightobjects.h"
+#include "world/patterns.h"
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -95,9 +97,13 @@ static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, st
     }
 }
 
-/// VTK and similar exporters pass the colour of the standard imager "background" as "color", which is a reserved word of the
-/// language.
+/// VTK and its kin give the standard imager "background" its colour as "color", which no shader of ours can name so: it is a word
+/// of the language. Parameters of RIS that are such words have an underscore behind them here.
 static scene::Param asDeclared(scene::Param given, const rsl::CompiledShader& shader) {
+    const auto has = [&](const std::string& name) {
+        return std::any_of(shader.parameters().begin(), shader.parameters().end(), [&](const auto& p) { return p.name == name; });
+    };
+    if (!has(given.name) && has(given.name + "_")) given.name += "_";
     if (given.name == "color" && shader.kind() == rsl::ShaderKind::Imager && shader.name() == "background")
         given.name = "background";
     return given;
@@ -187,6 +193,10 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
     const auto& program = i->program;
     std::vector<rsl::ParameterValue> values;
     for (const scene::Param& written : call.params) {
+        if (const auto c = scene::connectionOf(written)) {
+            connect(*i, *c, d);
+            continue;
+        }
         const scene::Param renamed = asDeclared(written, *program);
         const scene::Param& given = renamed;
         const rsl::ParameterInfo* p = nullptr;
@@ -256,8 +266,12 @@ void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::strin
 
 InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders,
                                      Diagnostics& d, const scene::LightSet& lights) {
-    if (!shader || !shader->program->program().handles) return shader;
-    std::vector<std::pair<std::string, scene::ShaderRef>> called(coshaders.begin(), coshaders.end());
+    const bool connected = shader && takesOutputs(*shader), handles = shader && shader->program->program().handles;
+    if (!connected && !handles) return shader;
+    std::vector<std::pair<std::string, scene::ShaderRef>> called;
+    for (const auto& c : coshaders)
+        if (handles && !scene::isKept(c.first)) called.push_back(c);
+    if (connected) addPatterns(*this, *shader, coshaders, called, d);
     const auto instanceOf = [&](const scene::ShaderRef& call, Diagnostics& to) -> const InstanceRef& {
         auto [i, fresh] = coShaders_.try_emplace(call.get());
         if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, to, true);
@@ -265,7 +279,7 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
     };
     // Names of methods and members of lights that are called, perhaps by a co-shader.
     std::set<std::string> names;
-    if (!lights.empty()) {
+    if (handles && !lights.empty()) {
         names = calledOfLights(shader->program->program());
         for (const auto& [handle, call] : coshaders)
             if (const InstanceRef& i = instanceOf(call, d)) names.merge(calledOfLights(i->program->program()));

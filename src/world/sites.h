@@ -184,9 +184,10 @@ struct SiteInfo {
     bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == rsl::Base::Float; }
     const LobeKind* lobe = nullptr; ///< Trace: the distribution; the lobe of a lighting shadeop
     float exponent = 1;             ///< Specular: this over the roughness (shadeops/specular.h)
-    int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< entries of `named`
-    std::shared_ptr<const struct TraceSite> trace;    ///< Trace: rare parameters; Diffuse: null, or `apart`
-    std::shared_ptr<const OcclusionSite> occlusion;   ///< Occlusion; `trace` is set, too, for its map
+    int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
+    bool allLights = false; ///< Trace: rowLights is of "samplelights": point, spot and distant lights are sampled, too
+    std::shared_ptr<const struct TraceSite> trace;    ///< Trace: what only some calls use; Diffuse: null, or `apart`
+    std::shared_ptr<const OcclusionSite> occlusion;   ///< Occlusion, which has `trace` for its map, too
     std::shared_ptr<const SubsurfaceSite> subsurface; ///< Subsurface
     std::shared_ptr<const GatherSite> gather;         ///< Gather, GatherTurn
     std::shared_ptr<const RaySite> rays;              ///< Trace, Transmission, Occlusion, Gather

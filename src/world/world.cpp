@@ -221,7 +221,10 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     w->compiler_ = std::make_shared<rsl::ShaderCompiler>(cs);
     if (const char* e = std::getenv("ALPENGLOW_SHADERS"))
         for (auto& folder : splitSearchPath(e)) w->settings_.shaderPaths.push_back(folder);
-    if (std::string s = shippedShaders(); !s.empty()) w->settings_.shaderPaths.push_back(std::move(s));
+    if (std::string s = shippedShaders(); !s.empty()) {
+        w->settings_.shaderPaths.push_back(s);
+        w->settings_.shaderPaths.push_back(s + "/ris"); // materials, patterns and lights of RIS
+    }
     w->photons_ = std::make_shared<PhotonStore>(MapFiles{settings.texturePaths, settings.read}, w->worldToCamera_, d);
     w->clouds_ = std::make_shared<CloudStore>(MapFiles{settings.texturePaths, settings.read}, d);
     w->shapes_ = geometry::buildShapes(*frame, d);

@@ -58,6 +58,28 @@ TEST_F(Installation, OfABuildFolder) {
     EXPECT_EQ(shaders(), (prefix / "sources/shaders").string());
 }
 
+// libalpenglow.so in <prefix>/lib, and Python's extension module below the modules.
+TEST_F(Installation, OfALibrary) {
+    make("lib/alpenglow/libtest.so");
+    make("share/alpenglow/shaders/matte.sl");
+    for (const char* folder : {"lib", "lib/alpenglow/python/alpenglow"}) {
+        fs::create_directories(prefix / folder);
+        EXPECT_EQ(moduleFile("libtest.so", "ALPENGLOW_TEST_MODULE", prefix / folder),
+                  (prefix / "lib/alpenglow/libtest.so").string());
+    }
+    EXPECT_EQ(shippedShaders(prefix / "lib"), (prefix / "share/alpenglow/shaders").string());
+}
+
+TEST_F(Installation, OfALibraryInABuildFolder) {
+    make("bin/libtest.so");
+    make("share/alpenglow/shaders/matte.sl");
+    for (const char* folder : {"lib", "python/alpenglow"}) {
+        fs::create_directories(prefix / folder);
+        EXPECT_EQ(moduleFile("libtest.so", "ALPENGLOW_TEST_MODULE", prefix / folder), (prefix / "bin/libtest.so").string());
+        EXPECT_EQ(shippedShaders(prefix / folder), (prefix / "share/alpenglow/shaders").string());
+    }
+}
+
 TEST_F(Installation, AVariableNamesTheOnlyModule) {
     make("bin/libtest.so");
     make("other.so");
@@ -70,7 +92,8 @@ TEST_F(Installation, AVariableNamesTheOnlyModule) {
 }
 
 TEST_F(Installation, ThisProgramIsInABuildFolder) {
-    EXPECT_EQ(programFolder().filename(), "bin");
+    EXPECT_EQ(codeFolder().filename(), "bin");
+    EXPECT_EQ(codeFile(), fs::read_symlink("/proc/self/exe"));
     EXPECT_EQ(shippedShaders(), fs::canonical(ALPENGLOW_SOURCE_DIR "/shaders").string());
 }
 

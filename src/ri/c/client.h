@@ -1,27 +1,50 @@
-// The C binding (include/ri.h): what a library calls while it makes the content of a procedural becomes requests at the
-// procedural's place, by the same way as those of a file.
+// The C binding (include/ri.h): what a program calls, or a library while it makes the content of a procedural, becomes requests,
+// by the same way as those of a file.
 #pragma once
-#include "ri/interpreter.h"
+#include "ri/c/target.h"
 #include "scene/counts.h"
 #include <cstdarg>
 #include <ri.h>
 
 namespace alpenglow::ri {
 
-/// Who the C functions of this thread talk to, while it lives. C gives them no argument that could say so.
-class Client {
-public:
-    Client(Interpreter& to, const Call& by);
-    ~Client();
-    Client(const Client&) = delete;
-    Client& operator=(const Client&) = delete;
-    /// Null when nobody has asked this thread for content.
+/// Who the C functions talk to. C gives them no argument that could say so.
+struct Client {
+    Target& to;
+    SourcePlace place; ///< of what is called; for a program "call" and which one it is
+    const char* by;    ///< " called by a library" or "", for messages
+    /// That of this thread, else that of the process; null when there is none.
     static Client* current();
+    /// RiBegin, RiContext, RiEnd: who all threads talk to that make no content of a procedural. Null: nobody. It outlives that.
+    static void setOfProcess(Client*);
+};
 
-    Interpreter& in;
-    const Call& by; ///< the request that asked; failures are reported with its place
+/// While it lives, calls of this thread are those of a library that makes content for an interpreter.
+class LibraryCalls {
+public:
+    /// Failures are reported with the place of the request that asked.
+    LibraryCalls(Interpreter& to, const Call& by);
+    ~LibraryCalls();
+    LibraryCalls(const LibraryCalls&) = delete;
+    LibraryCalls& operator=(const LibraryCalls&) = delete;
+
 private:
+    InterpreterTarget target_;
+    Client client_;
     Client* outer_;
+};
+
+/// One call of ri.h, around everything that is done for it. Calls of a program come one after the other, whatever their thread;
+/// what they report reaches the program's error handler when the outermost is done (ri/c/errors.h).
+class Boundary {
+public:
+    Boundary();
+    ~Boundary();
+    Boundary(const Boundary&) = delete;
+    Boundary& operator=(const Boundary&) = delete;
+
+private:
+    bool locked_;
 };
 
 /// A parameter list of C: tokens and values up to RI_NULL.
@@ -33,39 +56,59 @@ struct Pairs {
 };
 
 /// A request under construction: the arguments of its RIB form, in order. Null pointers and negative counts are reported and drop
-/// it; without a client nothing happens.
-class Building {
+/// it; without a client RIE_NOTSTARTED is reported.
+class Building : Boundary {
 public:
     explicit Building(const char* request);
     Building& number(double);
+    Building& number(RtFloat f);
+    Building& number(RtInt i) { return number(double(i)); }
     Building& numbers(const RtFloat*, int64_t n);
     Building& ints(const RtInt*, int64_t n);
     Building& text(const char*);
+    Building& text(const std::string& s) { return text(s.c_str()); }
     Building& texts(const RtToken*, int64_t n);
-    /// counts: of a primitive's variables; null where every value is one element. category: of Attribute.
+    /// counts: of a primitive's variables; null where every value is one element. category: of Attribute and Option.
     Building& parameters(RtInt n, const RtToken*, const RtPointer*, const scene::VariableCounts* counts = nullptr,
                          const std::string& category = {});
     /// The same for a primitive of which p holds what its counts follow from.
     Building& variables(RtInt n, const RtToken*, const RtPointer*, const scene::Primitive& p);
-    void run();
+    void run() {
+        finish([this](const Call& c) { client_->to.execute(c); });
+    }
+    /// The same, done by somebody else.
+    void finish(const std::function<void(const Call&)>& how);
     /// Whether arrays of `n` behind these pointers may be looked at: reported otherwise, and the request is dropped.
     bool may(int64_t n, std::initializer_list<const void*>);
+    /// Reports, and goes on.
+    void report(Severity, Rie, const std::string& why, const std::string& hint = {});
+    /// Reports, and drops the request.
+    void drop(Rie, const std::string& why, const std::string& hint = {});
+    /// Null: the request has been dropped.
     Client* client() const { return client_; }
 
 private:
     scene::VariableCounts counted(const scene::Primitive&);
-    void drop(const std::string& why);
     Value& add(Value::Kind, bool array);
+    /// Adds n elements as numbers, or as strings.
+    template <class T> void addNumbers(const T*, int64_t n, double (*number)(T));
     void parameter(const char* token, const void* values, const scene::VariableCounts&, const std::string& category);
+    /// n strings whose addresses stand at `values`; a text that stands there itself is taken as the one string.
+    void stringValues(const char* token, const void* values, int64_t n);
     Client* client_;
     const Request* request_ = nullptr;
     std::vector<Value> values_;
 };
 
+/// What a float of C is as a number of RIB: that of the shortest decimals that mean it, so that a program and a file that say .1
+/// make the same scene.
+double numberOf(RtFloat);
+
 /// The sum of counts; -1 with a negative one among them.
 int64_t total(const RtInt*, int64_t n);
-/// A number that this reader has not given to a light or an object of a library before, as a handle and as what requests call it.
-RtPointer newHandle(Client&, std::string& name);
-std::string handleName(RtPointer);
+/// A new light or object, as a handle.
+RtPointer newHandle(Client&);
+/// What requests call it. Handles that nobody made have names that nobody has.
+std::string handleName(const Client&, RtPointer);
 
 } // namespace alpenglow::ri

@@ -1,7 +1,8 @@
-// ri.h: primitives, archives and procedurals of procedurals.
+// ri.h: primitives.
 #include "ri/c/pairs.h"
 #include "scene/scene.h"
-#include <cstdlib>
+#include <algorithm>
+#include <array>
 
 using namespace alpenglow;
 using namespace alpenglow::ri;
@@ -12,7 +13,7 @@ namespace {
 scene::Primitive kindOf(const char* kind) {
     scene::Primitive p;
     p.kind = kind;
-    if (Client* c = Client::current()) p.attributes = c->in.snapshot();
+    if (const Client* c = Client::current()) p.attributes = c->to.attributes();
     return p;
 }
 
@@ -34,14 +35,32 @@ int64_t sumOf(Building& b, const RtInt* counts, int64_t n) {
     return b.may(sum, {}) ? sum : 0;
 }
 
-/// One of the procedurals that every renderer has, with the strings that it takes.
-void builtIn(const char* kind, RtPointer data, int strings, const RtFloat* bound) {
-    static const RtFloat kUnbounded[6] = {-RI_INFINITY, RI_INFINITY, -RI_INFINITY, RI_INFINITY, -RI_INFINITY, RI_INFINITY};
-    Building("Procedural")
-        .text(kind)
-        .texts(static_cast<const RtToken*>(data), strings)
-        .numbers(bound ? bound : kUnbounded, 6)
-        .run();
+/// A scheme and the faces of a subdivision mesh.
+void faces(Building& b, const char* scheme, RtInt nfaces, const RtInt* nverts, const RtInt* verts) {
+    const int64_t corners = sumOf(b, nverts, nfaces);
+    b.text(scheme).ints(nverts, nfaces).ints(verts, corners);
+}
+
+/// Its tags, each with `per` counts of arguments. How many integers, floats and strings all have.
+std::array<int64_t, 3> tagged(Building& b, RtInt ntags, const RtToken* tags, const RtInt* nargs, int64_t per) {
+    std::array<int64_t, 3> all{};
+    if (!b.may(ntags, {tags, nargs})) return all;
+    for (int64_t i = 0; i < per * ntags; ++i) {
+        if (!b.may(nargs[i], {})) return all;
+        all[size_t(i % per)] += nargs[i];
+    }
+    b.texts(tags, ntags).ints(nargs, per * ntags);
+    return all;
+}
+
+/// Its variables, and the end of the request. They are counted as those of polygons.
+void facesVariables(Building& b, RtInt nfaces, const RtInt* nverts, const RtInt* verts, RtInt n, const RtToken* tokens,
+                    const RtPointer* values) {
+    if (!b.client()) return;
+    scene::Primitive p = kindOf("PointsPolygons");
+    p.ints.assign(nverts, nverts + nfaces);
+    p.ints2.assign(verts, verts + total(nverts, nfaces));
+    b.variables(n, tokens, values, p).run();
 }
 
 } // namespace
@@ -124,20 +143,20 @@ RtVoid RiNuPatchV(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat
 RtVoid RiSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
                           RtInt intargs[], RtFloat floatargs[], RtInt n, RtToken tokens[], RtPointer values[]) {
     Building b("SubdivisionMesh");
-    const int64_t corners = sumOf(b, nverts, nfaces);
-    b.text(scheme).ints(nverts, nfaces).ints(verts, corners);
-    if (!b.may(ntags, {tags, nargs})) return;
-    int64_t numbers[2] = {};
-    for (int64_t i = 0; i < 2 * int64_t(ntags); ++i) {
-        if (!b.may(nargs[i], {})) return;
-        numbers[i % 2] += nargs[i];
-    }
-    b.texts(tags, ntags).ints(nargs, 2 * int64_t(ntags)).ints(intargs, numbers[0]).numbers(floatargs, numbers[1]);
-    if (!b.client()) return;
-    scene::Primitive p = kindOf("PointsPolygons"); // the variables of both are counted alike
-    p.ints.assign(nverts, nverts + nfaces);
-    p.ints2.assign(verts, verts + corners);
-    b.variables(n, tokens, values, p).run();
+    faces(b, scheme, nfaces, nverts, verts);
+    const auto args = tagged(b, ntags, tags, nargs, 2);
+    b.ints(intargs, args[0]).numbers(floatargs, args[1]);
+    facesVariables(b, nfaces, nverts, verts, n, tokens, values);
+}
+
+RtVoid RiHierarchicalSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[],
+                                      RtInt nargs[], RtInt intargs[], RtFloat floatargs[], RtToken stringargs[], RtInt n,
+                                      RtToken tokens[], RtPointer values[]) {
+    Building b("HierarchicalSubdivisionMesh");
+    faces(b, scheme, nfaces, nverts, verts);
+    const auto args = tagged(b, ntags, tags, nargs, 3);
+    b.ints(intargs, args[0]).numbers(floatargs, args[1]).texts(stringargs, args[2]);
+    facesVariables(b, nfaces, nverts, verts, n, tokens, values);
 }
 
 RtVoid RiSphereV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]) {
@@ -193,6 +212,16 @@ RtVoid RiBlobbyV(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat 
         .run();
 }
 
+RtVoid RiVolumeV(RtToken type, RtBound bound, RtInt dimensions[], RtInt n, RtToken tokens[], RtPointer values[]) {
+    Building b("Volume");
+    b.text(type).numbers(bound, 6).ints(dimensions, 3);
+    if (!b.client()) return;
+    int64_t cells = 1;
+    for (int i = 0; i < 3; ++i) cells *= std::clamp<int64_t>(dimensions[i], 0, 1 << 20);
+    const scene::VariableCounts counts = points(cells);
+    b.parameters(n, tokens, values, &counts).run();
+}
+
 RtVoid RiGeometryV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]) {
     Building("Geometry").text(type).variables(n, tokens, values, kindOf("Geometry")).run();
 }
@@ -219,6 +248,12 @@ ALPENGLOW_BOTH(RiSubdivisionMesh,
                (RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
                 RtInt intargs[], RtFloat floatargs[], ...),
                (scheme, nfaces, nverts, verts, ntags, tags, nargs, intargs, floatargs, ALPENGLOW_LIST), floatargs)
+ALPENGLOW_BOTH(RiHierarchicalSubdivisionMesh,
+               (RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
+                RtInt intargs[], RtFloat floatargs[], RtToken stringargs[], ...),
+               (scheme, nfaces, nverts, verts, ntags, tags, nargs, intargs, floatargs, stringargs, ALPENGLOW_LIST), stringargs)
+ALPENGLOW_BOTH(RiVolume, (RtToken type, RtBound bound, RtInt dimensions[], ...), (type, bound, dimensions, ALPENGLOW_LIST),
+               dimensions)
 ALPENGLOW_BOTH(RiSphere, (RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...),
                (radius, zmin, zmax, thetamax, ALPENGLOW_LIST), thetamax)
 ALPENGLOW_BOTH(RiCone, (RtFloat height, RtFloat radius, RtFloat thetamax, ...), (height, radius, thetamax, ALPENGLOW_LIST),
@@ -239,30 +274,5 @@ ALPENGLOW_BOTH(RiBlobby,
                (RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[], ...),
                (nleaf, ncode, code, nfloats, floats, nstrings, strings, ALPENGLOW_LIST), strings)
 ALPENGLOW_BOTH(RiGeometry, (RtToken type, ...), (type, ALPENGLOW_LIST), type)
-
-RtVoid RiProcDelayedReadArchive(RtPointer data, RtFloat) { builtIn("DelayedReadArchive", data, 1, nullptr); }
-RtVoid RiProcRunProgram(RtPointer data, RtFloat) { builtIn("RunProgram", data, 2, nullptr); }
-RtVoid RiProcDynamicLoad(RtPointer data, RtFloat) { builtIn("DynamicLoad", data, 2, nullptr); }
-RtVoid RiProcFree(RtPointer data) { std::free(data); }
-
-RtVoid RiProcedural(RtPointer data, RtBound bound, RtProcSubdivFunc subdivide, RtProcFreeFunc free) {
-    Building b("Procedural");
-    if (b.may(1, {bound, reinterpret_cast<const void*>(subdivide)})) {
-        if (subdivide == RiProcDelayedReadArchive) builtIn("DelayedReadArchive", data, 1, bound);
-        else if (subdivide == RiProcRunProgram) builtIn("RunProgram", data, 2, bound);
-        else if (subdivide == RiProcDynamicLoad) builtIn("DynamicLoad", data, 2, bound);
-        else {
-            Call by = b.client()->by;
-            b.client()->in.subdivide([&](float detail) { subdivide(data, detail); }, "library", {bound, bound + 6}, by);
-        }
-    }
-    if (free) free(data);
-}
-
-RtVoid RiReadArchiveV(RtToken name, RtArchiveCallback, RtInt, RtToken[], RtPointer[]) {
-    Building("ReadArchive").text(name).run();
-}
-RtVoid RiReadArchive(RtToken name, RtArchiveCallback, ...) { RiReadArchiveV(name, nullptr, 0, nullptr, nullptr); }
-RtVoid RiArchiveRecord(RtToken, const char*, ...) {} // there is no archive that it could be written to
 
 } // extern "C"

@@ -1,7 +1,10 @@
 // ri.h: blocks, attributes, shaders, lights and transformations.
 #include "ri/c/pairs.h"
+#include "ri/c/strings.h"
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
+#include <optional>
 
 using namespace alpenglow;
 using namespace alpenglow::ri;
@@ -11,23 +14,42 @@ namespace {
 /// A request without arguments.
 void bare(const char* request) { Building(request).run(); }
 
-void oneNumber(const char* request, double d) { Building(request).number(d).run(); }
+template <class Number> void oneNumber(const char* request, Number d) { Building(request).number(d).run(); }
 void oneText(const char* request, const char* s) { Building(request).text(s).run(); }
 void someNumbers(const char* request, const RtFloat* f, int64_t n) { Building(request).numbers(f, n).run(); }
 void someNumbers(const char* request, std::initializer_list<RtFloat> f) { someNumbers(request, f.begin(), int64_t(f.size())); }
 
 /// Colours have as many components as ColorSamples says.
 void color(const char* request, const RtFloat* c) {
-    const Client* client = Client::current();
-    someNumbers(request, c, client && !client->in.nRGB.empty() ? int64_t(client->in.nRGB.size() / 3) : 3);
+    Building b(request);
+    if (b.client()) b.numbers(c, b.client()->to.colorSamples()).run();
+}
+
+/// The name that a program gives to a light itself, by "string __handleid"; it is taken out of the list.
+std::optional<std::string> ownHandle(std::vector<RtToken>& tokens, std::vector<RtPointer>& values) {
+    for (size_t i = 0; i < tokens.size(); ++i) {
+        const std::string_view token = tokens[i] ? tokens[i] : "";
+        if (token != "__handleid" && !token.ends_with(" __handleid")) continue;
+        const void* value = values[i];
+        tokens.erase(tokens.begin() + std::ptrdiff_t(i));
+        values.erase(values.begin() + std::ptrdiff_t(i));
+        if (auto text = textInsteadOfAddress(value)) return text;
+        const RtToken* name = static_cast<const RtToken*>(value);
+        if (name && *name) return *name;
+        return {};
+    }
+    return {};
 }
 
 RtPointer light(const char* request, const char* shader, RtInt n, RtToken tokens[], RtPointer values[]) {
     Building b(request);
-    if (!b.client()) return nullptr;
-    std::string name;
-    RtPointer handle = newHandle(*b.client(), name);
-    b.text(shader).text(name.c_str()).parameters(n, tokens, values).run();
+    if (!b.may(n, {tokens, values})) return nullptr;
+    std::vector<RtToken> names(tokens, tokens + n);
+    std::vector<RtPointer> of(values, values + n);
+    RtPointer handle = newHandle(*b.client());
+    if (auto own = ownHandle(names, of)) b.client()->to.nameHandle(int(reinterpret_cast<uintptr_t>(handle)), *own);
+    const std::string name = handleName(*b.client(), handle);
+    b.text(shader).text(name).parameters(RtInt(names.size()), names.data(), of.data()).run();
     return handle;
 }
 
@@ -77,13 +99,23 @@ RtVoid RiSolidEnd(void) { bare("SolidEnd"); }
 RtObjectHandle RiObjectBegin(void) {
     Building b("ObjectBegin");
     if (!b.client()) return nullptr;
-    std::string name;
-    RtPointer handle = newHandle(*b.client(), name);
-    b.text(name.c_str()).run();
+    RtPointer handle = newHandle(*b.client());
+    b.text(handleName(*b.client(), handle)).run();
     return handle;
 }
 RtVoid RiObjectEnd(void) { bare("ObjectEnd"); }
-RtVoid RiObjectInstance(RtObjectHandle handle) { oneText("ObjectInstance", handleName(handle).c_str()); }
+RtVoid RiObjectInstance(RtObjectHandle handle) {
+    Building b("ObjectInstance");
+    if (b.client()) b.text(handleName(*b.client(), handle)).run();
+}
+RtVoid RiFrameBegin(RtInt number) { oneNumber("FrameBegin", number); }
+RtVoid RiFrameEnd(void) { bare("FrameEnd"); }
+RtVoid RiWorldBegin(void) { bare("WorldBegin"); }
+RtVoid RiWorldEnd(void) { bare("WorldEnd"); }
+RtVoid RiResourceBegin(void) { bare("ResourceBegin"); }
+RtVoid RiResourceEnd(void) { bare("ResourceEnd"); }
+RtVoid RiElse(void) { bare("Else"); }
+RtVoid RiIfEnd(void) { bare("IfEnd"); }
 
 RtVoid RiMotionBegin(RtInt n, ...) {
     std::vector<RtFloat> times;
@@ -103,13 +135,14 @@ RtVoid RiTextureCoordinates(RtFloat s1, RtFloat t1, RtFloat s2, RtFloat t2, RtFl
 }
 RtVoid RiShadingRate(RtFloat size) { oneNumber("ShadingRate", size); }
 RtVoid RiShadingInterpolation(RtToken type) { oneText("ShadingInterpolation", type); }
-RtVoid RiMatte(RtBoolean on) { oneNumber("Matte", on); }
+RtVoid RiMatte(RtBoolean on) { oneNumber("Matte", RtInt(on)); }
 RtVoid RiBound(RtBound bound) { someNumbers("Bound", bound, 6); }
 RtVoid RiDetail(RtBound bound) { someNumbers("Detail", bound, 6); }
 RtVoid RiDetailRange(RtFloat a, RtFloat b, RtFloat c, RtFloat d) { someNumbers("DetailRange", {a, b, c, d}); }
 RtVoid RiGeometricApproximation(RtToken type, RtFloat value) {
     Building("GeometricApproximation").text(type).number(value).run();
 }
+RtVoid RiGeometricRepresentation(RtToken type) { oneText("GeometricRepresentation", type); }
 RtVoid RiOrientation(RtToken orientation) { oneText("Orientation", orientation); }
 RtVoid RiReverseOrientation(void) { bare("ReverseOrientation"); }
 RtVoid RiSides(RtInt sides) { oneNumber("Sides", sides); }
@@ -140,28 +173,6 @@ RtVoid RiAttribute(const char* name, ...) {
     RiAttributeV(name, ALPENGLOW_LIST);
 }
 
-#define ALPENGLOW_SHADER(request)                                                                                                \
-    RtVoid Ri##request##V(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {                                     \
-        Building(#request).text(name).parameters(n, tokens, values).run();                                                       \
-    }                                                                                                                            \
-    RtVoid Ri##request(const char* name, ...) {                                                                                  \
-        ALPENGLOW_PAIRS(name);                                                                                                   \
-        Ri##request##V(name, ALPENGLOW_LIST);                                                                                    \
-    }
-ALPENGLOW_SHADER(Surface)
-ALPENGLOW_SHADER(Displacement)
-ALPENGLOW_SHADER(Atmosphere)
-ALPENGLOW_SHADER(Interior)
-ALPENGLOW_SHADER(Exterior)
-
-RtVoid RiShaderV(const char* name, const char* handle, RtInt n, RtToken tokens[], RtPointer values[]) {
-    Building("Shader").text(name).text(handle).parameters(n, tokens, values).run();
-}
-RtVoid RiShader(const char* name, const char* handle, ...) {
-    ALPENGLOW_PAIRS(handle);
-    RiShaderV(name, handle, ALPENGLOW_LIST);
-}
-
 RtLightHandle RiLightSourceV(const char* name, RtInt n, RtToken tokens[], RtPointer values[]) {
     return light("LightSource", name, n, tokens, values);
 }
@@ -177,7 +188,8 @@ RtLightHandle RiAreaLightSource(const char* name, ...) {
     return RiAreaLightSourceV(name, ALPENGLOW_LIST);
 }
 RtVoid RiIlluminate(RtLightHandle light, RtBoolean on) {
-    Building("Illuminate").text(handleName(light).c_str()).number(on != 0).run();
+    Building b("Illuminate");
+    if (b.client()) b.text(handleName(*b.client(), light)).number(RtInt(on != 0)).run();
 }
 
 RtVoid RiIdentity(void) { bare("Identity"); }
@@ -195,11 +207,14 @@ RtVoid RiScopedCoordinateSystem(RtToken space) { oneText("ScopedCoordinateSystem
 RtVoid RiCoordSysTransform(RtToken space) { oneText("CoordSysTransform", space); }
 
 RtPoint* RiTransformPoints(RtToken from, RtToken to, RtInt n, RtPoint points[]) {
-    const Client* c = Client::current();
-    if (!c || !from || !to || n < 0 || !points) return nullptr;
-    const auto a = c->in.namedSystem(from), b = c->in.namedSystem(to);
-    if (!a || !b) return nullptr;
-    const Matrix m = a->first() * inverse(b->first());
+    Building b("CoordSysTransform"); // which looks for spaces as well
+    if (!b.may(1, {from, to, points}) || !b.may(n, {})) return nullptr;
+    const auto between = b.client()->to.between(from, to);
+    if (!between) {
+        b.drop(Rie::BadToken, fmt::format("TransformPoints: there is no space \"{}\" or no \"{}\" here", from, to));
+        return nullptr;
+    }
+    const Matrix& m = *between;
     for (RtInt i = 0; i < n; ++i) {
         const Vec3d p = transformPoint(m, Vec3d(points[i][0], points[i][1], points[i][2]));
         points[i][0] = toFloat(p.x);

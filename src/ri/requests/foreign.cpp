@@ -1,5 +1,5 @@
-// Requests of later renderers (PRMan 13 on, RIS, Aqsis): recognised so that the rest of their files renders. What has a meaning
-// here is done; the others are said once each.
+// Requests of later renderers (PRMan 13 on, Aqsis; those of RIS are in ris.cpp): recognised so that the rest of their files
+// renders. What has a meaning here is done; the others are said once each.
 #include "ri/interpreter.h"
 #include <fmt/format.h>
 
@@ -7,13 +7,6 @@ namespace alpenglow::ri {
 namespace {
 
 void notDone(Interpreter& in, const Call& c) { in.incapable(c, fmt::format("{} is not done by this version", c.request->name)); }
-
-/// Shading of the later kind is no RSL: one sentence for all of its requests.
-void ris(Interpreter& in, const Call& c) {
-    in.incapable(c, "Bxdf, Pattern, Displace, Integrator and their like belong to renderers without shading language and are "
-                    "left out; Surface, "
-                    "Shader, LightSource and Hider say the same here");
-}
 
 /// A volume primitive shader: the volume shader of the primitive.
 template <scene::ShaderRef scene::Attributes::* Slot> void volumeShader(Interpreter& in, const Call& c) {
@@ -57,9 +50,6 @@ void procedural2(Interpreter& in, const Call& c) {
 std::vector<Request> foreignRequests() {
     using A = scene::Attributes;
     const unsigned any = kAnywhere;
-    const Kind k = Kind::Other;
-    const char* named = "string name; handle handle; ..";
-    const char* risDoc = "A request of renderers without shading language: reported once and left out.";
     return {
         {"VPAtmosphere", "string name; ..", Kind::Shader, any, true, "Atmosphere under its later name.", "\"fog\"",
          volumeShader<&A::atmosphere>},
@@ -77,16 +67,7 @@ std::vector<Request> foreignRequests() {
          "(\"RunProgram2\": \"string command\", \"string data\") or a library (\"DynamicLoad2\": \"string dsoname\", \"string "
          "data\").",
          "\"RunProgram2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1]", procedural2},
-        {"Bxdf", named, Kind::Shader, any, false, risDoc, "\"PxrSurface\" \"s\"", ris},
-        {"Displace", named, Kind::Shader, any, false, risDoc, "\"PxrDisplace\" \"d\" \"float dispAmount\" .1", ris},
-        {"Pattern", named, Kind::Shader, any, false, risDoc, "\"PxrTexture\" \"t\"", ris},
-        {"Light", named, Kind::Light, any, false, risDoc, "\"PxrRectLight\" \"l\" \"float intensity\" 2", ris},
-        {"LightFilter", named, Kind::Light, any, false, risDoc, "\"PxrBarn\" \"f\"", ris},
-        {"EnableLightFilter", "string light; string filter; int on", Kind::Light, any, false, risDoc, "\"l\" \"f\" 1", ris},
-        {"Integrator", named, k, any, false, risDoc, "\"PxrPathTracer\" \"i\"", ris},
-        {"DisplayFilter", named, k, any, false, risDoc, "\"PxrGrade\" \"g\"", ris},
-        {"SampleFilter", named, k, any, false, risDoc, "\"PxrCryptomatte\" \"c\"", ris},
-        {"PixelSampleImager", "string name; ..", k, any, false, "An imager for samples: not done.", "\"bg\"", notDone},
+        {"PixelSampleImager", "string name; ..", Kind::Other, any, false, "An imager for samples: not done.", "\"bg\"", notDone},
     };
 }
 

@@ -1,6 +1,7 @@
 // Polygons, patches, meshes, points, curves and the rest (RISpec 3.2, section 5).
 #include "ri/interpreter.h"
 #include "ri/models/model.h"
+#include "ri/ris.h"
 #include "ri/teapot.h"
 #include <fmt/format.h>
 #include <map>
@@ -120,6 +121,7 @@ void geometry(Interpreter& in, const Call& c) {
     static const std::map<std::string, const std::string& (*)()> kShapes = {
         {"teapot", teapotRequests}, {"cube", cubeRequests}, {"sphere", sphereRequests}};
     const std::string& name = c.text(0);
+    if (const auto light = lightGeometry(name)) return in.expand(std::string(*light), c);
     const auto shape = kShapes.find(name);
     const bool file = name == "ply" || name == "obj" || namedAsModel(name);
     if (file || (shape != kShapes.end() && !in.gatheringMotion())) {
@@ -198,7 +200,8 @@ std::vector<Request> primitiveRequests() {
          "1 [1001 0] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", blobby},
         {"Geometry", "string name; ..", k, s, true,
          "A shape the renderer knows: \"teapot\" (Newell's: on z = 0 about the z axis, spout to +x, largest radius 2, 3 high), "
-         "\"cube\" (side 1), \"sphere\" (radius 1); or the polygons of a file of .ply or .obj.",
+         "\"cube\" (side 1), \"sphere\" (radius 1); \"rectlight\", \"disklight\", \"spherelight\", "
+         "\"cylinderlight\" (1 across); or the polygons of a file of .ply or .obj.",
          "\"teapot\"", geometry},
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
          "A region that the Interior, or without one the Atmosphere, fills: \"box\", \"ellipsoid\", or along z \"cylinder\" and "

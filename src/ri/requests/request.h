@@ -70,5 +70,6 @@ std::vector<Request> primitiveRequests();
 std::vector<Request> archiveRequests();
 std::vector<Request> textureRequests();
 std::vector<Request> foreignRequests();
+std::vector<Request> risRequests();
 
 } // namespace alpenglow::ri

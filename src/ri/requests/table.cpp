@@ -48,7 +48,7 @@ void parseSignature(Request& r) {
 std::vector<Request> build() {
     std::vector<Request> all;
     for (auto group : {structureRequests, optionRequests, attributeRequests, shaderRequests, transformRequests, quadricRequests,
-                       primitiveRequests, archiveRequests, textureRequests, foreignRequests})
+                       primitiveRequests, archiveRequests, textureRequests, foreignRequests, risRequests})
         for (Request& r : group()) {
             parseSignature(r);
             all.push_back(std::move(r));

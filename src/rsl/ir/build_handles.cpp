@@ -122,61 +122,68 @@ void Builder::leaveInstance() {
     switchInstance(isSelf(i), i, own, own ? 0 : current_.back());
 }
 
-/// Binds the parameters and runs what comes before the methods: members, construct() and begin().
+/// Binds the parameters of a co-shader and runs what comes before the methods: members, construct() and begin().
+void Builder::beginInstance(size_t i) {
+    const CoShader& c = *instances_[i].binding;
+    enterInstance(i);
+    ++handleDepth_;
+    for (const ShaderParameter& p : c.shader->parameters) {
+        const Symbol& s = *p.symbol;
+        const auto& numbers = c.numbers.count(s.name) ? c.numbers.at(s.name) : std::vector<float>{};
+        Inst* v = connectedParameter(s, c);
+        if (v) {
+            // it takes an output of another
+        } else if (std::find(c.computed.begin(), c.computed.end(), s.name) != c.computed.end()) {
+            v = defaultValue(p, std::max(1, s.type.array));
+        } else if (s.type.base == Base::String && !s.type.array) {
+            v = leaves_.string(c.strings.count(s.name) ? c.strings.at(s.name) : "");
+        } else if (s.type.base == Base::String) {
+            const std::vector<std::pair<std::string, std::string>> given(c.strings.begin(), c.strings.end());
+            int n = 0;
+            while (c.strings.count(s.name + "[" + std::to_string(n) + "]")) ++n;
+            v = constantTexts(s.name, n, given);
+            if (!v) v = newArray(Base::String, std::max(1, s.type.array));
+            if (s.type.array < 0 || s.open) given_[v] = parameterLength(p, given);
+            noteTexts(v, s, n, given);
+        } else if (s.type.array) {
+            const size_t each = static_cast<size_t>(components(kindOf(s.type.element())));
+            const int n = std::max<int>(1, static_cast<int>(numbers.size() / each));
+            v = newArray(s.type.base, n);
+            for (size_t k = 0; k < numbers.size() / each; ++k) {
+                const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(k * each);
+                Inst* x = leaves_.constant(v->element, std::vector<float>(first, first + static_cast<std::ptrdiff_t>(each)));
+                emit(Op::ArrayStore, Kind::None, {v, constant(static_cast<float>(k)), x});
+            }
+            connectElements(s, v, c);
+            if (s.type.array < 0 || s.open)
+                given_[v] =
+                    parameterLength(p, std::vector<std::pair<std::string, std::string>>(c.strings.begin(), c.strings.end()));
+        } else {
+            std::vector<float> all = numbers;
+            all.resize(static_cast<size_t>(components(kindOf(s.type))));
+            v = leaves_.constant(kindOf(s.type), all);
+        }
+        set(slot(&s), v);
+    }
+    if (c.shader->object && c.shader->body)
+        for (const StmtPtr& s : c.shader->body->body) {
+            const bool starts = s->kind == StmtKind::Expression && (s->value->text == "construct" || s->value->text == "begin");
+            if ((s->kind == StmtKind::Declare && !s->definition) || starts) statement(*s);
+        }
+    --handleDepth_;
+    leaveInstance();
+}
+
+/// Begins all co-shaders but patterns, which begin when a parameter wants their outputs.
 void Builder::beginCoShaders() {
-    if (!program_.handles) return;
+    if (options_.coShaders.empty() && !program_.handles) return;
     for (const CoShader& c : options_.coShaders) {
         instances_.push_back({&c, &c.program->files, int(k_.files.size()), {}});
         k_.files.insert(k_.files.end(), c.program->files.begin(), c.program->files.end());
     }
-    for (size_t i = 0; i < instances_.size(); ++i) {
-        const CoShader& c = *instances_[i].binding;
-        enterInstance(i);
-        ++handleDepth_;
-        for (const ShaderParameter& p : c.shader->parameters) {
-            const Symbol& s = *p.symbol;
-            const auto& numbers = c.numbers.count(s.name) ? c.numbers.at(s.name) : std::vector<float>{};
-            Inst* v = nullptr;
-            if (std::find(c.computed.begin(), c.computed.end(), s.name) != c.computed.end()) {
-                v = defaultValue(p, std::max(1, s.type.array));
-            } else if (s.type.base == Base::String && !s.type.array) {
-                v = leaves_.string(c.strings.count(s.name) ? c.strings.at(s.name) : "");
-            } else if (s.type.base == Base::String) {
-                const std::vector<std::pair<std::string, std::string>> given(c.strings.begin(), c.strings.end());
-                int n = 0;
-                while (c.strings.count(s.name + "[" + std::to_string(n) + "]")) ++n;
-                v = constantTexts(s.name, n, given);
-                if (!v) v = newArray(Base::String, std::max(1, s.type.array));
-                if (s.type.array < 0 || s.open) given_[v] = parameterLength(p, given);
-                noteTexts(v, s, n, given);
-            } else if (s.type.array) {
-                const size_t each = static_cast<size_t>(components(kindOf(s.type.element())));
-                const int n = std::max<int>(1, static_cast<int>(numbers.size() / each));
-                v = newArray(s.type.base, n);
-                for (size_t k = 0; k < numbers.size() / each; ++k) {
-                    const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(k * each);
-                    Inst* x = leaves_.constant(v->element, std::vector<float>(first, first + static_cast<std::ptrdiff_t>(each)));
-                    emit(Op::ArrayStore, Kind::None, {v, constant(static_cast<float>(k)), x});
-                }
-                if (s.type.array < 0 || s.open)
-                    given_[v] =
-                        parameterLength(p, std::vector<std::pair<std::string, std::string>>(c.strings.begin(), c.strings.end()));
-            } else {
-                std::vector<float> all = numbers;
-                all.resize(static_cast<size_t>(components(kindOf(s.type))));
-                v = leaves_.constant(kindOf(s.type), all);
-            }
-            set(slot(&s), v);
-        }
-        if (c.shader->object && c.shader->body)
-            for (const StmtPtr& s : c.shader->body->body) {
-                const bool starts =
-                    s->kind == StmtKind::Expression && (s->value->text == "construct" || s->value->text == "begin");
-                if ((s->kind == StmtKind::Declare && !s->definition) || starts) statement(*s);
-            }
-        --handleDepth_;
-        leaveInstance();
-    }
+    const std::set<std::string> patterns = connectedHandles();
+    for (size_t i = 0; i < instances_.size(); ++i)
+        if (!patterns.count(instances_[i].binding->handle)) beginInstance(i);
     bool handed = handsItselfOver(shader_, program_);
     for (const CoShader& c : options_.coShaders) handed |= handsItselfOver(*c.shader, *c.program);
     if (!handed) return;

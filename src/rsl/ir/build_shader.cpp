@@ -60,6 +60,7 @@ Inst* Builder::parameterValue(const ShaderParameter& p) {
     Type type = s.type;
     const int length = parameterLength(p, options_.stringParameters);
     if (type.array) type.array = std::max(1, length); // storage
+    if (Inst* v = connectedParameter(s)) return v;
     if (const auto& over = options_.varyingParameters;
         type == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
         // The primitive has a variable of this name, which counts more.

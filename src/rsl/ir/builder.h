@@ -12,6 +12,10 @@
 #include <span>
 #include <unordered_map>
 
+namespace alpenglow::rsl {
+struct Connected;
+}
+
 namespace alpenglow::rsl::ir {
 
 /// A call of a shader's own function whose result is an array.
@@ -231,6 +235,17 @@ private:
     void enterInstance(size_t);
     void leaveInstance();
     void beginCoShaders();
+    void beginInstance(size_t);
+    // build_network.cpp: parameters that take outputs of co-shaders
+    enum class Pattern { Waits, Runs, Done };
+    std::vector<Pattern> pattern_; ///< by instance
+    std::set<std::string> connectedHandles() const;
+    bool runPattern(size_t instance);
+    Inst* connectedOutput(const Connected&, const Symbol& to);
+    template <class Strings> Inst* connected(const Symbol&, int element, const Strings&);
+    Inst* connectedParameter(const Symbol&);
+    Inst* connectedParameter(const Symbol&, const CoShader& of);
+    void connectElements(const Symbol&, Inst* array, const CoShader& of);
     Inst* forHandle(const Expr& handle, Kind, const std::function<Inst*(size_t)>& code,
                     const std::function<Inst*(Inst* handle)>& light = nullptr);
     static bool argumentsOf(const Function&, const Expr& call, std::vector<const Expr*>& given);

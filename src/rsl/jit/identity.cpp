@@ -1,4 +1,5 @@
 #include "rsl/jit/identity.h"
+#include "base/installation.h"
 #include "rsl/jit/module.h"
 #include <cstring>
 #include <elf.h>
@@ -65,7 +66,7 @@ std::string buildIdOfFile(const std::string& path) {
 }
 
 const std::string& programIdentity() {
-    static const std::string identity = identityOf("/proc/self/exe") + "+" + identityOf(moduleFile());
+    static const std::string identity = identityOf(codeFile().string()) + "+" + identityOf(moduleFile());
     return identity;
 }
 

@@ -1,0 +1,282 @@
+// Requests of PRMan 21 and later (RIS): networks of patterns, lights that are on everywhere, what such a scene is drawn with.
+// docs/ris.md has what they mean here.
+#include "ri/ris.h"
+#include "ri/interpreter.h"
+#include "ri/motion.h"
+#include "scene/network.h"
+#include <algorithm>
+#include <fmt/format.h>
+#include <sstream>
+
+namespace alpenglow::ri {
+namespace {
+
+/// The words of a token that names a connection: "reference color diffuseColor" gives its last. Empty: it is none.
+std::string connectedName(const std::string& token) {
+    std::istringstream in(token);
+    std::string word, last;
+    if (!(in >> word) || word != "reference") return {};
+    while (in >> word)
+        if (word.front() != '[') last = word;
+    return last.substr(0, last.find('['));
+}
+
+/// "tex:resultRGB", with the handle up to the last colon: those of Maya have some of their own.
+scene::Connection connection(const std::string& parameter, int element, const std::string& text, const SourcePlace& place) {
+    const size_t colon = text.rfind(':');
+    if (colon == std::string::npos) return {parameter, element, text, {}, place};
+    return {parameter, element, text.substr(0, colon), text.substr(colon + 1), place};
+}
+
+/// Follows the connections of a request from pattern to pattern, and keeps what they mean now.
+class Network {
+public:
+    Network(Interpreter& in, scene::Keeper keeper, std::map<std::string, scene::ShaderRef> patterns)
+        : in_(in), keeper_(keeper), patterns_(std::move(patterns)) {}
+
+    /// The call with its connections led to what is kept.
+    scene::ShaderRef keep(const scene::ShaderCall& call, const std::string& handle) {
+        way_.push_back(handle);
+        auto copy = std::make_shared<scene::ShaderCall>(call);
+        copy->params.clear();
+        for (const scene::Param& p : call.params) {
+            auto c = scene::connectionOf(p);
+            if (!c) copy->params.push_back(p);
+            else if (follow(*c, call)) {
+                c->handle = scene::keptHandle(keeper_, c->handle);
+                copy->params.push_back(scene::connectionParam(*c));
+            }
+        }
+        way_.pop_back();
+        return copy;
+    }
+    std::map<std::string, scene::ShaderRef> kept;
+
+private:
+    bool follow(const scene::Connection& c, const scene::ShaderCall& of) {
+        const std::string what = fmt::format("\"{}\" of {} keeps its own value", c.parameter, of.name);
+        if (std::find(way_.begin(), way_.end(), c.handle) != way_.end()) {
+            std::string circle;
+            for (auto i = std::find(way_.begin(), way_.end(), c.handle); i != way_.end(); ++i) circle += *i + " > ";
+            in_.reporter.error(Rie::BadHandle, c.place,
+                               fmt::format("connections run in a circle: {}{}; {}", circle, c.handle, what));
+            return false;
+        }
+        const std::string key = scene::keptHandle(keeper_, c.handle);
+        if (kept.count(key)) return true;
+        const auto found = patterns_.find(c.handle);
+        if (found == patterns_.end()) {
+            std::vector<std::string> known;
+            for (const auto& [handle, call] : patterns_)
+                if (!scene::isKept(handle)) known.push_back(handle);
+            const std::string near = nearestName(c.handle, known);
+            in_.reporter.once("ri:pattern:" + of.name + c.parameter + c.handle, Severity::Error, Rie::BadHandle, c.place,
+                              fmt::format("there is no Pattern \"{}\" here: {}", c.handle, what),
+                              near.empty() ? "" : "did you mean \"" + near + "\"?");
+            return false;
+        }
+        if (way_.size() >= kNetworkDepth || kept.size() >= kNetworkPatterns) {
+            in_.reporter.once("ri:network", Severity::Error, Rie::Limit, c.place,
+                              fmt::format("a network has more than {} patterns, or more than {} behind each other: {}",
+                                          kNetworkPatterns, kNetworkDepth, what));
+            return false;
+        }
+        scene::ShaderRef pattern = keep(*found->second, c.handle);
+        kept[key] = std::move(pattern);
+        return true;
+    }
+
+    Interpreter& in_;
+    scene::Keeper keeper_;
+    std::map<std::string, scene::ShaderRef> patterns_;
+    std::vector<std::string> way_; ///< handles from the request to here
+};
+
+/// Where a light of RIS stands when its shape is not what the scene draws: one across, shining along +z.
+struct LightShape {
+    std::string_view name, requests;
+};
+constexpr LightShape kGeometryShapes[] = {
+    {"PxrRectLight", "Polygon \"P\" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0] \"st\" [0 0 1 0 1 1 0 1]"},
+    {"PxrPortalLight", "Polygon \"P\" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0] \"st\" [0 0 1 0 1 1 0 1]"},
+    {"PxrDiskLight", "Disk 0 .5 360"},
+    {"PxrSphereLight", "Sphere .5 -.5 .5 360"},
+    {"PxrCylinderLight", "TransformBegin Rotate 90 0 1 0 Cylinder .5 -.5 .5 360 TransformEnd"},
+};
+/// Geometry that stands for a light, and draws nothing: "envsphere" and its like.
+constexpr std::string_view kNoShapes[] = {"envsphere", "domelight", "distantlight", "envlight", "envdaylight"};
+constexpr std::string_view kFar[] = {"PxrDomeLight", "PxrDistantLight", "PxrEnvDayLight", "PxrStdEnvMapLight",
+                                     "PxrStdEnvDayLight"};
+
+} // namespace
+
+std::optional<std::string_view> lightGeometry(std::string_view name) {
+    static constexpr std::pair<std::string_view, std::string_view> kShapeNames[] = {{"rectlight", "PxrRectLight"},
+                                                                                    {"disklight", "PxrDiskLight"},
+                                                                                    {"spherelight", "PxrSphereLight"},
+                                                                                    {"cylinderlight", "PxrCylinderLight"}};
+    for (const auto& [geometry, light] : kShapeNames)
+        if (geometry == name)
+            return std::find_if(std::begin(kGeometryShapes), std::end(kGeometryShapes), [&](auto& s) { return s.name == light; })
+                ->requests;
+    if (std::find(std::begin(kNoShapes), std::end(kNoShapes), name) != std::end(kNoShapes)) return "";
+    return {};
+}
+
+std::shared_ptr<scene::ShaderCall> Interpreter::networkCall(const Call& call) {
+    ris_ = true;
+    Call plain = call;
+    plain.params.clear();
+    scene::ParamList connections;
+    for (const RawParam& raw : call.params) {
+        const std::string name = connectedName(raw.token);
+        if (name.empty()) {
+            plain.params.push_back(raw);
+            continue;
+        }
+        const std::vector<std::string>& to = raw.value.strings;
+        if (raw.value.kind != Value::Kind::Strings) {
+            reporter.error(
+                Rie::Consistency, call.at(raw),
+                fmt::format("{}: \"{}\" is a connection, which is a string \"handle:output\"", call.request->name, name));
+            continue;
+        }
+        for (size_t i = 0; i < to.size(); ++i)
+            if (!to[i].empty())
+                connections.push_back(scene::connectionParam(connection(name, to.size() > 1 ? int(i) : -1, to[i], call.at(raw))));
+    }
+    auto s = std::make_shared<scene::ShaderCall>(*shader(plain));
+    s->params.insert(s->params.end(), connections.begin(), connections.end());
+    return s;
+}
+
+void Interpreter::pattern(const Call& call) {
+    std::shared_ptr<scene::ShaderCall> p = networkCall(call);
+    if (p->name == "PxrOSL") { // its "shader" is the pattern
+        const auto named = std::find_if(p->params.begin(), p->params.end(), [](const auto& v) { return v.name == "shader"; });
+        if (named == p->params.end() || named->strings.empty()) {
+            reporter.error(Rie::MissingData, call.place, "Pattern \"PxrOSL\" needs \"string shader\"");
+            return;
+        }
+        p->name = named->strings[0];
+        p->params.erase(named);
+    }
+    attributes().coshaders[call.text(1)] = std::move(p);
+}
+
+scene::ShaderRef Interpreter::network(const Call& call, scene::Keeper keeper) {
+    const std::shared_ptr<scene::ShaderCall> root = networkCall(call);
+    scene::Attributes& a = attributes();
+    const std::string mark = scene::keptHandle(keeper, "");
+    std::erase_if(a.coshaders, [&](const auto& c) { return c.first.starts_with(mark); });
+    if (keeper != scene::Keeper::Light && !call.text(1).empty()) a.coshaders[call.text(1)] = root;
+    Network n(*this, keeper, a.coshaders);
+    scene::ShaderRef kept = n.keep(*root, call.text(1));
+    a.coshaders.insert(n.kept.begin(), n.kept.end());
+    return kept;
+}
+
+void Interpreter::risLight(const Call& call) {
+    ris_ = true;
+    const std::string& name = call.text(0);
+    if (std::any_of(call.params.begin(), call.params.end(), [](const RawParam& p) { return !connectedName(p.token).empty(); }))
+        incapable(call, "connections of lights and light filters are not done by this version: they keep their own values");
+    Call plain = call;
+    std::erase_if(plain.params, [](const RawParam& p) { return !connectedName(p.token).empty(); });
+    const auto shape =
+        std::find_if(std::begin(kGeometryShapes), std::end(kGeometryShapes), [&](const LightShape& s) { return s.name == name; });
+    const bool far = std::find(std::begin(kFar), std::end(kFar), name) != std::end(kFar);
+    if (shape == std::end(kGeometryShapes)) { // far away, or the primitives that follow
+        light(plain, !far);
+        globalLights_.insert(int(lights().size()) - 1);
+        return;
+    }
+    if (!inWorld())
+        return reporter.once("ri:worldlight", Severity::Warning, Rie::Incapable, call.place,
+                             "a light with a shape before WorldBegin is left out", "put it behind WorldBegin");
+    if (!begin(BlockKind::Attribute, call)) return;
+    light(plain, true);
+    scene::Attributes& a = attributes();
+    globalLights_.insert(a.areaLight);
+    // Of black paint that shines: seen by what it lights, hides nothing, and is seen by the camera where the scene says so.
+    a.surface = nullptr;
+    a.displacement = a.atmosphere = a.interior = a.exterior = nullptr;
+    a.coshaders.clear();
+    a.color = Color{0};
+    a.opacity = Color{1};
+    a.sides = name == "PxrSphereLight" || name == "PxrCylinderLight" ? 2 : 1;
+    expand("Surface \"constant\"", call);
+    if (!a.value("visibility:camera")) expand("Attribute \"visibility\" \"int camera\" 0", call);
+    expand("Attribute \"visibility\" \"int transmission\" 0", call);
+    expand(std::string(shape->requests), call);
+    end(BlockKind::Attribute, call);
+}
+
+/// Lights of RIS are on for all that there is, whatever stood before them; an integrator may see one surface everywhere.
+void Interpreter::overrideAttributes(scene::Frame& frame) const {
+    if (globalLights_.empty() && !integratorSurface_) return;
+    std::map<scene::AttributesRef, scene::AttributesRef> lit;
+    const auto light = [&](const scene::AttributesRef& a) {
+        scene::AttributesRef& known = lit[a];
+        if (known) return known;
+        auto copy = std::make_shared<scene::Attributes>(*a);
+        for (const int l : globalLights_) copy->lights.insert(l);
+        if (integratorSurface_ && !globalLights_.count(a->areaLight)) copy->surface = integratorSurface_;
+        return known = copy;
+    };
+    const auto all = [&](std::vector<scene::PrimitiveRef>& list) {
+        for (scene::PrimitiveRef& p : list) {
+            if (!p->attributes) continue;
+            auto copy = std::make_shared<scene::Primitive>(*p);
+            copy->attributes = light(p->attributes);
+            if (p->attributesBefore) copy->attributesBefore = light(p->attributesBefore);
+            for (auto& k : copy->motionKeys) {
+                k = std::make_shared<scene::Primitive>(*k);
+                if (k->attributes) k->attributes = light(k->attributes);
+            }
+            p = std::move(copy);
+        }
+    };
+    all(frame.primitives);
+    for (scene::Object& o : frame.objects) all(o.primitives);
+    for (scene::Instance& i : frame.instances)
+        if (i.attributes) i.attributes = light(i.attributes);
+}
+
+/// A scene of RIS without lights and without an integrator that follows light is lit along the axis of the camera: white paint
+/// that faces it has radiance 1.
+void Interpreter::addHeadlight(scene::Frame& frame) {
+    if (!ris_ || !headlight_ || !frame.lights.empty() || frame.primitives.empty()) return;
+    auto call = std::make_shared<scene::ShaderCall>();
+    call->name = "PxrDistantLight";
+    const auto give = [&](const char* name, float value) {
+        scene::Param p;
+        p.name = name;
+        p.numbers = {value};
+        call->params.push_back(std::move(p));
+    };
+    give("intensity", 3.14159265f);
+    give("areaNormalize", 1);
+    call->toWorld = inverse(frame.options.worldToCamera);
+    call->place = frame.primitives[0]->place;
+    scene::Light l;
+    l.shader = std::move(call);
+    l.attributes = std::make_shared<scene::Attributes>();
+    globalLights_.insert(0);
+    frame.lights.push_back(std::move(l));
+}
+
+/// What a scene of RIS is drawn with when it names no hider that could: by path, with as many samples as its raytrace has.
+void Interpreter::risOptions(scene::Options& o) const {
+    if (!ris_) return;
+    const bool chosen = o.hiderPlace.line > 0;
+    if (chosen && o.hider != "raytrace") return;
+    o.hider = "path";
+    const scene::Param* most = scene::find(o.hiderParams, "maxsamples");
+    if (!chosen || !most || most->numbers.empty() || o.pixelSamplesSet || !(most->numbers[0] >= 1)) return;
+    o.pixelSamplesX = most->numbers[0];
+    o.pixelSamplesY = 1;
+    o.pixelSamplesSet = true;
+}
+
+} // namespace alpenglow::ri

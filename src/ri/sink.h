@@ -1,0 +1,41 @@
+// Where the bytes of a written stream go: the other side of source.h.
+#pragma once
+#include "base/file.h"
+#include <memory>
+#include <ostream>
+#include <string>
+#include <string_view>
+
+namespace alpenglow::ri {
+
+/// A one-way stream of bytes. After the first failure nothing more is written.
+class ByteSink {
+public:
+    virtual ~ByteSink() = default;
+    /// All of these bytes. False: failure() says why.
+    virtual bool write(std::string_view bytes) = 0;
+    /// Hands on what is held back, so that a reader at the other end of a pipe has all that was written.
+    virtual bool flush() = 0;
+    /// Hands on everything and ends the stream; nothing is written behind it. False: failure() says why.
+    virtual bool finish() { return flush(); }
+    /// Why a write failed, or "".
+    const std::string& failure() const { return failure_; }
+
+protected:
+    std::string failure_;
+};
+
+/// Appends to a text, which must outlive the sink.
+std::unique_ptr<ByteSink> stringSink(std::string& to);
+/// The stream must outlive the sink.
+std::unique_ptr<ByteSink> streamSink(std::ostream&);
+/// An open descriptor, which stays open; a pipe's reader sees what was flushed.
+std::unique_ptr<ByteSink> descriptorSink(int descriptor);
+/// Creates or empties a file; a pipe of that name is written to. Null when it cannot be opened; *why says the reason.
+std::unique_ptr<ByteSink> fileSink(const std::string& path, std::string* why);
+/// A file that appears when it is whole. finish() does not commit it: that is the caller's. It must outlive the sink.
+std::unique_ptr<ByteSink> outputSink(OutputFile&);
+/// Gzip, in front of another sink.
+std::unique_ptr<ByteSink> deflating(std::unique_ptr<ByteSink> to);
+
+} // namespace alpenglow::ri

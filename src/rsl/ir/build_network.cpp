@@ -1,0 +1,109 @@
+// Networks of patterns: parameters that take outputs of co-shaders. The body of a pattern runs once, in line, before the first
+// parameter that needs it; its derivatives and the affine form of the shader are those of code that is written out.
+#include "rsl/front/connections.h"
+#include "rsl/ir/builder.h"
+#include <algorithm>
+
+namespace alpenglow::rsl::ir {
+
+/// Handles that a connection of the shader or of a co-shader names.
+std::set<std::string> Builder::connectedHandles() const {
+    std::set<std::string> handles;
+    const auto look = [&](const auto& strings) {
+        for (const auto& [key, text] : strings)
+            if (const auto c = Connected::isKey(key) ? Connected::parse(text) : std::nullopt) handles.insert(c->handle);
+    };
+    look(options_.stringParameters);
+    for (const CoShader& c : options_.coShaders) look(c.strings);
+    return handles;
+}
+
+/// Runs a pattern whose outputs are wanted. False: it is running already, or cannot.
+bool Builder::runPattern(size_t i) {
+    if (pattern_.size() < instances_.size()) pattern_.resize(instances_.size(), Pattern::Waits);
+    if (pattern_[i] == Pattern::Runs) return false;
+    if (pattern_[i] == Pattern::Done) return true;
+    pattern_[i] = Pattern::Runs;
+    const Place outside = place_;
+    const CoShader& c = *instances_[i].binding;
+    beginInstance(i);
+    if (!c.shader->object && c.shader->body) {
+        // What it writes to Ci and its like is nobody's.
+        std::map<std::string, Inst*> before;
+        for (const auto& [name, n] : globals_) before[name] = env_[static_cast<size_t>(n)];
+        enterInstance(i);
+        ++handleDepth_;
+        Frame frame;
+        frame.returned = newSlot(boolean(false));
+        frames_.push_back(frame);
+        statement(*c.shader->body);
+        frames_.pop_back();
+        --handleDepth_;
+        leaveInstance();
+        for (const auto& [name, n] : std::map<std::string, int>(globals_)) {
+            const auto was = before.find(name);
+            Inst* value = was == before.end() ? nullptr : was->second;
+            if (env_[static_cast<size_t>(n)] == value) continue;
+            const Symbol* s = symbols_[static_cast<size_t>(n)];
+            if (!value && s) value = initialGlobal(name, s->type);
+            if (value) set(n, value);
+        }
+    }
+    place_ = outside;
+    pattern_[i] = Pattern::Done;
+    return true;
+}
+
+/// The value of an output as a variable takes it: a number is a grey, a color gives its mean. Null: there is none that fits.
+Inst* Builder::connectedOutput(const Connected& c, const Symbol& to) {
+    for (size_t i = 0; i < instances_.size(); ++i) {
+        const CoShader& pattern = *instances_[i].binding;
+        if (pattern.handle != c.handle) continue;
+        if (!runPattern(i)) return nullptr;
+        const Symbol* s = memberOf(i, c.output);
+        const auto keeps = [&](const std::string& why) -> Inst* {
+            if (!c.member)
+                warn(to.place, "pattern '" + pattern.shader->name + "' " + why + ": '" + to.name + "' keeps its own value");
+            return nullptr;
+        };
+        if (!s) return keeps("has no output '" + c.output + "'");
+        Inst* v = memberValue(i, *s);
+        const Kind kind = kindOf(to.type.element());
+        if (v->kind == kind) return v;
+        if (v->kind == Kind::Float && kind == Kind::Triple) return coerce(v, kind);
+        if (v->kind == Kind::Triple && kind == Kind::Float) {
+            const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
+            Inst* sum = emit(Op::Add, Kind::Float, {emit(Op::Add, Kind::Float, {part(0), part(1)}), part(2)});
+            return emit(Op::Mul, Kind::Float, {sum, constant(1.0f / 3)});
+        }
+        return keeps("gives '" + c.output + "' as " + toString(s->type) + ", not " + toString(to.type.element()));
+    }
+    return nullptr; // there is no such pattern, which whoever bound it has said
+}
+
+/// What a connection gives for a parameter, or for an element of it; null: it has none. strings: what the shader was given.
+template <class Strings> Inst* Builder::connected(const Symbol& s, int element, const Strings& strings) {
+    const std::string key = Connected::key(s.name, element);
+    for (const auto& [name, text] : strings)
+        if (name == key)
+            if (const auto c = Connected::parse(text)) return connectedOutput(*c, s);
+    return nullptr;
+}
+
+Inst* Builder::connectedParameter(const Symbol& s) {
+    return s.type.array ? nullptr : connected(s, -1, options_.stringParameters);
+}
+
+Inst* Builder::connectedParameter(const Symbol& s, const CoShader& of) {
+    return s.type.array ? nullptr : connected(s, -1, of.strings);
+}
+
+/// Puts what is connected to elements of an array parameter of a co-shader there.
+void Builder::connectElements(const Symbol& s, Inst* array, const CoShader& of) {
+    for (int n = 0; n < arrayLength(array); ++n)
+        if (of.strings.count(Connected::key(s.name, n)))
+            if (Inst* v = connected(s, n, of.strings))
+                emit(Op::ArrayStore, Kind::None, {array, constant(static_cast<float>(n)), v});
+}
+
+} // namespace alpenglow::rsl::ir

@@ -206,7 +206,6 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     w->setCamera(o);
     w->maxDepth_ = path ? 32 : 4;
     if (auto i = o.values.find("trace:maxdepth"); i != o.values.end() && !i->second.numbers.empty())
-        // Including values out of the range of int
         w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth)));
     if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
     w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);

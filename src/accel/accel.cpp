@@ -12,7 +12,7 @@ Accel::Impl::Ball Accel::Impl::ballAround(uint32_t s) const {
     geometry::Bounds b = shape.bounds();
     Vec3d lo(b.lo), hi(b.hi), centre = (lo + hi) * 0.5;
     double radius = 0.5 * length(hi - lo) * (1 + 1e-9);
-    // A sphere whose transform keeps it one is its own ball; bounds are a box around it.
+    // A sphere that its transform keeps spherical is its own bounding sphere; bounds are a box around it.
     const auto& numbers = shape.source().primitive->numbers;
     const auto& m = shape.toCamera().m;
     if (shape.kind() == "Sphere" && !numbers.empty() && !shape.placed()) {
@@ -39,7 +39,7 @@ bool Accel::Impl::readyDirect() {
         else count += s->mesh().triangles();
         if (count > DirectTriangles::kMost || exact > kDirectExact || (s->exact() && s->exactPrims() != 1)) return false;
         if (!s->exact() && std::any_of(s->mesh().P.begin(), s->mesh().P.end(), Tree::reaches))
-            return false; // a tree leaves them out
+            return false; // trees leave such shapes out
     }
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         const Shape& shape = *shapes[s];
@@ -59,7 +59,7 @@ bool Accel::Impl::readyDirect() {
     return direct = true;
 }
 
-/// The answer in q.best.
+/// Returns the result in q.best.
 void Accel::Impl::meetDirect(Query& q) const {
     const Ray& r = *q.ray;
     const Vec3d o(r.org), d(r.dir);
@@ -67,7 +67,7 @@ void Accel::Impl::meetDirect(Query& q) const {
     for (uint32_t left = triangles.candidates(r, near); left; left &= left - 1) {
         size_t i = size_t(std::countr_zero(left));
         if (double(near[i]) > q.best.t) continue;
-        // The plane that the ray leaves, or that of the light a shadow ray goes to: most candidates end here.
+        // The plane that the ray starts on, or that of the light that a shadow ray ends on: most candidates end here.
         if (q.any || !(near[i] > r.tnear)) {
             double margin, plane = triangles.planeT(i, o, d, triangles.planeError(o), margin);
             if (plane + margin < double(r.tnear) || plane - margin > std::min(double(r.tfar), q.best.t)) continue;
@@ -80,7 +80,7 @@ void Accel::Impl::meetDirect(Query& q) const {
         Vec3d to = b.centre - o;
         double along = dot(to, d), gap = dot(to, to) - b.radius2;
         if (gap > 0 && (along < 0 || along * along < gap * dd * (1 - 1e-9)))
-            continue; // begins outside, and looks away or passes by
+            continue; // starts outside, and points away or misses
         if (meetExact(q, b.shape, 0) && q.any) return;
     }
 }
@@ -122,7 +122,7 @@ void Accel::Impl::readyForms() {
     }
 }
 
-void Accel::Impl::refuse(Diagnostics& diag) { // a scene without its tree would be a black picture
+void Accel::Impl::refuse(Diagnostics& diag) { // without a tree the picture would be black
     sound = false;
     tree = Tree();
     shapes.clear();
@@ -134,7 +134,7 @@ void Accel::Impl::refuse(Diagnostics& diag) { // a scene without its tree would 
 void Accel::Impl::sayBeyond(const Tree& tree, const Shape& first, Diagnostics& diag) {
     diag.report(Severity::Warning, Rie::Range, first.place(),
                 std::to_string(tree.beyond()) + " triangles, of this " + first.kind() +
-                    " among others, reach farther than 1e30 and are not drawn");
+                    " among others, extend beyond 1e30 and are not drawn");
 }
 
 Accel::~Accel() = default;
@@ -153,7 +153,7 @@ bool Accel::hasSolids() const { return impl_->solids != nullptr; }
 bool Accel::keeps(uint32_t shape, const Vec3& point, const Vec3& normal, float time) const {
     if (!impl_->solids || !impl_->solids->in(shape)) return true;
     Ray r;
-    r.org = point - normal; // straight through: a grazing ray would miss a rounded point by far
+    r.org = point - normal; // along the normal: a grazing ray would miss a rounded point
     r.dir = normal;
     r.time = time;
     return impl_->solids->keeps(r, shape, 1);

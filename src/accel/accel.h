@@ -1,12 +1,12 @@
-// Rays against shapes.
+// Ray intersection with shapes.
 //
-// Results do not depend on threads, ray order or who else is asked, on the processor or on how the tree was built: the tree
-// (tree.h) only proposes candidates and overlooks none, each candidate's t and parameters are computed in double from the shape,
-// and equal distances go to the lower (shape, primitive).
+// Results do not depend on threads, order of rays, other rays, processor, or the way the tree was built: the tree (tree.h) only
+// proposes candidates and misses none, t and parameters of each candidate are computed in double from the shape, and ties go to
+// the lower (shape, primitive).
 //
-// Two levels: a shape that is geometry::Placed has a tree of its own in the space of its geometry, one for all places of that
-// geometry; parts of it are leaves of the tree of all. A ray that comes to it is taken there in double, by the place at the ray's
-// time; t stays what it is. What deforms has leaves whose triangles stand where they are at the ray's time.
+// Two levels: a geometry::Placed shape has a tree in the space of its geometry, shared by all instances; parts of it are leaves
+// of the top-level tree. A ray that reaches one is transformed in double to that space at the ray's time; t is preserved.
+// Deforming shapes have leaves whose triangles are interpolated to the ray's time.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/stopflag.h"
@@ -22,37 +22,37 @@ namespace alpenglow::accel {
 
 inline constexpr uint32_t kNone = geometry::kNone;
 
-/// Kinds of rays, for Ray::mask and the shapes' visibility.
+/// Kinds of rays, for Ray::mask and visibility of shapes.
 enum Visibility : uint32_t { kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kAll = 0xffffffffu };
 
-/// From where a ray meets surfaces with Sides 1; those with two sides it meets from both.
+/// The side from which a ray hits surfaces with Sides 1; two-sided surfaces are hit from both.
 enum class Sides : uint8_t { Front, Back, Both };
 
-/// Camera space. dir need not be unit; t counts in its lengths.
+/// A ray in camera space. dir need not be unit; t is in units of its length.
 struct Ray {
     Vec3 org, dir;
     float tnear = 0;                                    ///< hits have t > tnear ...
     float tfar = 1e38f;                                 ///< ... and t < tfar
     float time = 0;                                     ///< of the shutter, 0 to 1
-    uint32_t mask = kAll;                               ///< meets shapes whose visibility shares a bit
-    uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to pass through: one primitive; prim kNone: the whole shape
-    /// Hit::distance of the excluded primitive, for a ray that goes on behind it: of what lies at one distance it has met those
-    /// that come first in the order of shapes and primitives, and neighbours in the mesh, whose edge or corner it went through.
-    /// Negative: it begins.
+    uint32_t mask = kAll;                               ///< hits shapes whose visibility shares a bit
+    uint32_t excludeShape = kNone, excludePrim = kNone; ///< a surface to ignore: one primitive; prim kNone: the complete shape
+    /// Hit::distance of the excluded primitive, for a ray that continues behind it: at equal distance it has passed the surfaces
+    /// that come first in the order of shapes and primitives, and neighbours in the mesh whose common edge or corner it hit.
+    /// Negative: a new ray.
     double passed = -1;
     Sides sides = Sides::Front;
-    const uint8_t* only = nullptr; ///< by shape: 0 is passed through; null: all are considered
-    float level = 0.5f;            ///< meets shapes within whose levels it lies: setLevels()
+    const uint8_t* only = nullptr; ///< by shape: 0 is ignored; null: all are considered
+    float level = 0.5f;            ///< hits shapes whose interval of levels contains it: setLevels()
 };
 
-/// What evaluateHit of the shape needs. shape == kNone: nothing was met.
+/// Input for the shape's evaluateHit. shape == kNone: no hit.
 struct Hit {
     float t = 0;
-    uint32_t shape = kNone; ///< index into the vector the Accel was built from: the placement
+    uint32_t shape = kNone; ///< index in the shapes of the Accel: the instance
     uint32_t prim = 0;
-    float time = 0; ///< the ray's
+    float time = 0; ///< of the ray
     double b1 = 0, b2 = 0;
-    double distance = 0; ///< t before it was rounded
+    double distance = 0; ///< t before rounding
     bool valid() const { return shape != kNone; }
 };
 
@@ -61,53 +61,53 @@ struct DirectRays;
 
 class Accel {
 public:
-    /// shapes must have been diced (geometry/dice.h); the Accel keeps them. visibility: a mask a shape, or empty for kAll.
-    /// quick: Building::Quick, for frames of which few rays a facet are sent.
-    /// Throws std::bad_alloc when memory is short. Other failures are reported: sound() is then false, and nothing will be met.
+    /// shapes must have been diced (geometry/dice.h); the Accel keeps them. visibility: a mask for each shape, or empty for kAll.
+    /// quick: Building::Quick, for frames with few rays per facet. Throws std::bad_alloc if memory is short. Other failures are
+    /// reported: sound() is then false, and no ray hits anything.
     Accel(std::vector<geometry::ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics&, bool quick = false);
     ~Accel();
     bool sound() const;
     Accel(const Accel&) = delete;
     Accel& operator=(const Accel&) = delete;
 
-    /// By shape the part of all rays that meet it: those whose level is at least `from` and below `to`. Before any ray is sent.
+    /// By shape: levels of the rays that hit it, from `from` (included) to `to` (excluded). Set before tracing.
     struct Levels {
         float from = 0, to = 1;
     };
     void setLevels(std::vector<Levels>);
 
-    /// Of shapes that are parts of solids (scene/solids.h) rays meet from now on only what bounds the whole. Before any ray is
-    /// sent.
+    /// Restricts hits on parts of CSG solids (scene/solids.h) to the boundary of the solid. Call before tracing.
     void makeSolids(Diagnostics&);
     bool hasSolids() const;
-    /// False: at this point of its surface (camera space) a shape bounds no whole, but lies inside of one or was taken away.
+    /// Returns false if the shape's surface at this point (camera space) is not part of a solid's boundary.
     bool keeps(uint32_t shape, const Vec3& point, const Vec3& normal, float time) const;
 
-    /// Nearest hit. False, and hit.shape == kNone, when there is none or the ray is not finite. Thread safe.
+    /// Nearest hit. Returns false, with hit.shape == kNone, without a hit or if the ray is not finite. Thread safe.
     bool intersect(const Ray&, Hit& hit) const;
-    /// Whether anything is met. Thread safe.
+    /// Whether the ray hits anything. Thread safe.
     bool occluded(const Ray&) const;
-    /// The same for arrays; rays and results have equal length. stop: once it is set they return within some milliseconds,
-    /// however many shapes a ray meets; results are void then, and those that have not been found stay what they were.
+    /// The same for arrays; rays and results have equal length. stop: once set, the call returns within some milliseconds,
+    /// however many shapes a ray hits; results are then undefined or unchanged.
     void intersect(std::span<const Ray>, std::span<Hit>, const StopFlag* stop = nullptr) const;
     void occluded(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 
-    /// intersect() for rays of which those one behind the other go about the same way, as those of a camera do: the same hits.
+    /// intersect() for rays of which consecutive ones are coherent, such as camera rays: the same hits.
     void intersectTogether(std::span<const Ray>, std::span<Hit>, const StopFlag* stop = nullptr) const;
 
-    /// Whether rays may be given in rows (directblock.h): the scene is small. Then the same for those of 16 rays whose bit is
-    /// set, which begin (Ray::passed), and consider all shapes of their mask from both sides; see takesRows(Sides). time: of the
-    /// shutter, by ray. Results of the others stay what they were.
+    /// Whether rays can be given in rows (directblock.h), i.e. the scene is small. nearest and any hits for those of 16 rays
+    /// whose bit is set; these must be new rays (Ray::passed), and consider all shapes of their mask from both sides; see
+    /// takesRows(Sides). time: of the shutter, by ray. Results of other rays are unchanged.
     bool takesRows() const;
-    bool takesRows(Sides) const; ///< of rays that say so
+    bool takesRows(Sides) const; ///< for rays with this value
     void intersect(const DirectRays&, uint32_t rays, const float* time, Hit* hits) const;
     void occluded(const DirectRays&, uint32_t rays, const float* time, uint8_t* met) const;
 
-    /// False: no point that a ray can meet, at any time of the shutter, lies in all of the half-spaces. True says nothing.
+    /// Returns false if no point that a ray can hit, at any time of the shutter, is in all of the half-spaces. True means
+    /// unknown.
     bool reachesInto(std::span<const Plane>) const;
 
     const std::vector<geometry::ShapeRef>& shapes() const;
-    /// The point of a hit, where it is at the hit's time.
+    /// The surface point of a hit, at the hit's time.
     geometry::SurfacePoint point(const Hit& h) const {
         geometry::SurfacePoint p;
         point(h, p);
@@ -117,7 +117,7 @@ public:
         const geometry::HitRef at{h.prim, h.b1, h.b2, &out, h.time};
         shapes()[h.shape]->points({&at, 1}, needs);
     }
-    /// Encloses everything.
+    /// Bounding box of everything.
     geometry::Bounds bounds() const;
 
     struct Impl; ///< accel/impl.h
@@ -126,13 +126,14 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Meeting a triangle in double: false when the line is parallel to it or the triangle has no area. b1, b2 are clamped to the
-/// triangle, for candidates that are known to be hits; `outside` says by how much they had to be. wanted(t): false ends it early.
+/// Intersects a triangle in double: returns false if the line is parallel to it or the triangle has no area. b1, b2 are clamped
+/// to the triangle, for candidates known to be hits; `outside`: by how much. wanted(t): returns false to stop early.
 template <class Wanted>
 [[gnu::always_inline]] inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb,
                                                 const Vec3d& fc, double& t, double& b1, double& b2, double& outside,
                                                 Wanted wanted) {
-    // Float coordinates subtract exactly or nearly so in double: the plane test keeps the side of an origin one float step away.
+    // Differences of float coordinates are exact or nearly so in double: the plane test is correct for an origin one float step
+    // off the plane.
     Vec3d a = fa - org, b = fb - org, c = fc - org;
     Vec3d e1 = b - a, e2 = c - a, n = cross(e1, e2);
     double den = dot(n, d);

@@ -9,20 +9,20 @@ namespace alpenglow::accel {
 
 namespace {
 float norm1(const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
-// Of a point that a ray meets: each product and sum rounds by 2^-24 of at most its reach, t by that over n.dir. 64 of them are
-// more than are made.
+// Rounding error bound of a hit point: each product and sum rounds by 2^-24 of at most its magnitude, t by that over n.dir. 64
+// exceeds their number.
 float slackOf(float extent, const Vec3& origin) { return 64 * 0x1p-24f * (2 * extent + norm1(origin)) + 1e-30f; }
 } // namespace
 
 void DirectTriangles::add(const Triangle& t) {
     const size_t lane = size_++;
-    if (lane == 0) std::fill_n(rows_.u0, kRoom, -1e30f); // lanes without a triangle: planes that no point is on
+    if (lane == 0) std::fill_n(rows_.u0, kRoom, -1e30f); // lanes without a triangle: planes without points
     triangles_.push_back(t);
     planes_.push_back({});
     for (const Vec3& p : {t.a, t.b, t.c}) extent_ = std::max(extent_, norm1(p));
     Vec3d a(t.a), e1 = Vec3d(t.b) - a, e2 = Vec3d(t.c) - a, c = cross(e1, e2);
     double l = length(c);
-    if (!(l > 0)) return;                                        // without an area: never met
+    if (!(l > 0)) return;                                        // no area: never hit
     Vec3d n = c / l, u = cross(e2, n) / l, v = cross(n, e1) / l; // u.(p - a) is the weight of b, v.(p - a) that of c
     planes_.back() = {n, dot(n, a)};
     auto put = [&](float to[3][kRoom], const Vec3d& x) {
@@ -61,10 +61,10 @@ template <int Lanes> struct DirectTriangles::Search {
 
     static const Floats& lanes(const float* p) { return *reinterpret_cast<const Floats*>(p); }
 
-    // Inlined into functions for the instructions of one width: elsewhere its types have no registers.
+    // Inlined into functions for the instruction set of one width; its types have no registers elsewhere.
     [[gnu::always_inline]] static inline uint32_t find(const DirectTriangles& all, const Ray& r, Near& near) {
         const float slack = slackOf(all.extent_, r.org), length = norm1(r.dir);
-        // Copies: `near` could be the ray's memory, for all that a compiler knows, and would have it read anew.
+        // Copies: the compiler must assume that `near` aliases the ray, and would reload it.
         const float dx = r.dir.x, dy = r.dir.y, dz = r.dir.z, ox = r.org.x, oy = r.org.y, oz = r.org.z, from = r.tnear,
                     to = r.tfar;
         const size_t size = all.size_;
@@ -74,14 +74,14 @@ template <int Lanes> struct DirectTriangles::Search {
             const Floats inverse = 1.f / (lanes(f.n[0] + k) * dx + lanes(f.n[1] + k) * dy + lanes(f.n[2] + k) * dz);
             const Floats height = lanes(f.n[0] + k) * ox + lanes(f.n[1] + k) * oy + lanes(f.n[2] + k) * oz;
             const Floats t = (lanes(f.d + k) - height) * inverse;
-            // How far off t is, in lengths of dir; the point is off by as many lengths.
+            // Error of t, in lengths of dir; the point has the same error.
             const Floats off = reinterpret_cast<Floats>(reinterpret_cast<Ints>(inverse) & 0x7fffffff) * slack, nearest = t - off;
             *reinterpret_cast<Floats*>(near + k) = nearest;
             const Floats px = ox + t * dx, py = oy + t * dy, pz = oz + t * dz;
             const Floats u = lanes(f.u[0] + k) * px + lanes(f.u[1] + k) * py + lanes(f.u[2] + k) * pz + lanes(f.u0 + k);
             const Floats v = lanes(f.v[0] + k) * px + lanes(f.v[1] + k) * py + lanes(f.v[2] + k) * pz + lanes(f.v0 + k);
             const Floats room = off * length * lanes(f.slope + k);
-            // "Not outside", so that what is not a number counts as a candidate: a ray in the plane, an overflow.
+            // "Not outside", so that NaN counts as a candidate: a ray in the plane, an overflow.
             const Ints outside = (t + off < from) | (nearest > to) | (u < -room) | (v < -room) | (u + v > 1.f + (room + room));
             const Bools mask = __builtin_convertvector(outside, Bools);
             std::conditional_t<Lanes == 16, uint16_t, uint8_t> bits;

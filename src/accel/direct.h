@@ -1,5 +1,5 @@
-// Tiny scenes without a tree: all triangles are looked at, several at a time, in float; those that may be met are then met in
-// double. Up to some two dozen triangles that is faster than walking a hierarchy.
+// Tiny scenes without a tree: tests all triangles in float, several at a time; possible hits are then intersected in double.
+// Faster than a hierarchy for up to two dozen triangles.
 #pragma once
 #include "geometry/shape.h"
 #include <span>
@@ -12,7 +12,7 @@ struct DirectScene;
 
 class DirectTriangles {
 public:
-    static constexpr size_t kMost = 24; ///< triangles; beyond them the tree is faster
+    static constexpr size_t kMost = 24; ///< triangles; with more the tree is faster
 
     struct Triangle {
         Vec3 a, b, c;
@@ -21,20 +21,19 @@ public:
     void add(const Triangle&);
     size_t size() const { return size_; }
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
-    void tell(DirectScene&) const; ///< all of them, for searches in blocks (accel/directblock.h)
+    void tell(DirectScene&) const; ///< copies all of them, for block searches (accel/directblock.h)
 
-    /// Below where the ray meets triangle i, in its lengths of dir; for those in `candidates`.
+    /// Lower bound of t for the hit on triangle i, in lengths of dir; valid for `candidates`.
     static constexpr size_t kWidest = 16, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;
     using Near = float[kRoom];
-    /// Bit i: the ray may meet triangle i between its tnear and tfar. Never clear for a triangle that it meets: the bounds are
-    /// widened by more than float arithmetic can be off.
+    /// Bit i: the ray may hit triangle i between its tnear and tfar. Conservative: bounds are widened by more than the float
+    /// error.
     uint32_t candidates(const Ray& r, Near& near) const { return find_(*this, r, near); }
-    /// What planeT() takes as `error` of a ray from org.
+    /// The argument `error` of planeT() for a ray from org.
     double planeError(const Vec3d& org) const {
         return 1e-13 * (double(extent_) + std::fabs(org.x) + std::fabs(org.y) + std::fabs(org.z));
     }
-    /// The t at which the ray meets the plane of triangle i, in double, and more than it can be off; infinite or not a number in
-    /// the plane itself.
+    /// t at the plane of triangle i, in double, and a bound on its error; infinite or NaN in the plane itself.
     double planeT(size_t i, const Vec3d& org, const Vec3d& dir, double error, double& margin) const {
         double inverse = 1 / dot(planes_[i].n, dir), t = (planes_[i].d - dot(planes_[i].n, org)) * inverse;
         margin = std::fabs(inverse) * error + 1e-13 * std::fabs(t);
@@ -48,7 +47,7 @@ private:
         float n[3][kRoom], d[kRoom], u[3][kRoom], u0[kRoom], v[3][kRoom], v0[kRoom], slope[kRoom];
     };
     Rows rows_{};
-    /// The same by four, eight and sixteen lanes, where the processor has them. The bits of all that is computed agree.
+    /// Versions for four, eight and sixteen lanes, by processor. All give the same bits.
     using Find = uint32_t (*)(const DirectTriangles&, const Ray&, Near&);
     template <int Lanes> struct Search;
     static uint32_t findFour(const DirectTriangles&, const Ray&, Near&);

@@ -1,5 +1,5 @@
-// Small scenes, a block of rays at a time. What float bounds do not decide goes ray by ray (Accel::Impl::meetDirect), with the
-// same bits.
+// Small scenes in blocks of rays. Rays that float bounds do not decide are intersected one by one (Accel::Impl::meetDirect), with
+// the same bits.
 #include "accel/directblock.h"
 #include "accel/impl.h"
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace alpenglow::accel {
 
-// One for each file made from lanes/direct.inc.
+// One for each file compiled from lanes/direct.inc.
 const DirectSearch& directSearch_4v2();
 const DirectSearch& directSearch_8v3();
 const DirectSearch& directSearch_16v4();
@@ -41,10 +41,10 @@ void Accel::Impl::readyBlocks() {
     blockScene = scene;
 }
 
-/// Whether rays of a scene go in blocks: nothing of it is left out by who asks from where.
+/// Whether rays can be traced in blocks: no shape is hidden from some rays.
 bool Accel::Impl::takesBlocks() const { return blockScene && levels.empty() && trimmed.empty() && !solids; }
 
-/// A ray that begins, and meets all surfaces from both sides.
+/// A new ray that hits all surfaces from both sides.
 bool Accel::Impl::beginsPlainly(const Ray& r) const {
     return r.passed < 0 && r.excludeShape == kNone && !r.only && (r.sides == Sides::Both || !anyOneSided) && usable(r);
 }
@@ -63,7 +63,7 @@ uint32_t Accel::Impl::loadBlock(std::span<const Ray> rays, DirectRays& to) const
 }
 
 namespace {
-/// A ray of a block, on its own.
+/// One ray of a block.
 Ray rayOf(const DirectRays& b, int i, float time) {
     Ray r;
     r.org = {b.org[0][i], b.org[1][i], b.org[2][i]};
@@ -75,7 +75,7 @@ Ray rayOf(const DirectRays& b, int i, float time) {
     r.sides = Sides::Both;
     return r;
 }
-/// usable() of each.
+/// usable() for each.
 uint32_t usableOf(const DirectRays& b) {
     uint32_t all = 0;
     for (int i = 0; i < DirectRays::kSize; ++i)

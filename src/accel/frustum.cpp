@@ -1,4 +1,4 @@
-// What a part of the picture may see at all, by the boxes of the tree.
+// Conservative visibility of a part of the picture, by the boxes of the tree.
 #include "accel/impl.h"
 #include <algorithm>
 
@@ -6,7 +6,7 @@ namespace alpenglow::accel {
 
 namespace {
 
-/// Whether all of a box lies behind a plane, by more than float arithmetic can be off.
+/// Whether a box is entirely behind a plane, by more than the float error.
 bool behind(const Vec3& lo, const Vec3& hi, const Plane& p) {
     constexpr float kRounding = 1e-5f;
     float sum = p.d, size = std::fabs(p.d);
@@ -15,7 +15,7 @@ bool behind(const Vec3& lo, const Vec3& hi, const Plane& p) {
         sum += part;
         size += std::fabs(part);
     }
-    return sum < -kRounding * size; // not where something is no number
+    return sum < -kRounding * size; // false for NaN
 }
 bool outside(const Vec3& lo, const Vec3& hi, std::span<const Plane> planes) {
     return std::any_of(planes.begin(), planes.end(), [&](const Plane& p) { return behind(lo, hi, p); });

@@ -1,4 +1,4 @@
-// The inside of an Accel: what counts as a hit. Not for other rooms.
+// Implementation of Accel: rules of what counts as a hit. Internal to accel.
 #pragma once
 #include "accel/accel.h"
 #include "accel/direct.h"
@@ -33,16 +33,15 @@ inline bool before(double t, uint32_t shape, uint32_t prim, const Best& b) {
     return prim < b.prim;
 }
 
-// Exact shapes of a scene that is looked through directly.
+// Maximum number of exact shapes in a scene searched directly.
 constexpr size_t kDirectExact = 4;
-// Weights of a triangle may be this far outside of it: twice what double arithmetic makes of a ray through a shared edge, so that
-// none slips between two triangles.
+// Tolerance of triangle weights: twice the double error for a ray through a shared edge, so that no ray slips between two
+// triangles.
 constexpr double kEdge = 1e-12;
-// Neighbours that a ray meets along their edge are this far apart at most: single precision, in which they were found once.
+// Largest distance between hits of neighbours at their common edge: single precision, in which the first was stored.
 constexpr double kSame = 1e-6;
 
-/// Beyond kEdge: what double arithmetic can make of the weights where a triangle is a sliver, or small and far from the origin of
-/// the ray.
+/// Additional tolerance: double error of the weights for slivers, and for triangles that are small and far from the ray origin.
 inline double edgeRoom(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb, const Vec3d& fc) {
     const auto norm = [](const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
     const Vec3d a = fa - org, e1 = fb - fa, e2 = fc - fa;
@@ -51,7 +50,7 @@ inline double edgeRoom(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const 
 }
 
 inline bool usable(const Vec3& org, const Vec3& dir) {
-    // An infinite far end is usual; anything else infinite or NaN would wander through every box.
+    // An infinite far end is usual; other infinite values or NaN would traverse every box.
     constexpr float kFar = 1e18f;
     auto near = [](float c) { return std::fabs(c) < kFar; };
     // Without branches: nearly all rays pass.
@@ -63,15 +62,15 @@ inline bool usable(const Ray& r) { return bool(int(r.tnear < r.tfar) & int(usabl
 struct Accel::Impl {
     std::vector<ShapeRef> shapes;
     std::vector<uint32_t> visibility;
-    std::vector<Levels> levels; ///< empty: all are met
+    std::vector<Levels> levels; ///< empty: all are visible
     geometry::Bounds bounds;
     bool sound = true;
     Tree tree;
     std::unique_ptr<Solids> solids; ///< null: there are none
     bool ofSolid(uint32_t s) const { return solids && solids->in(s); }
 
-    std::vector<geometry::QuadricForm> forms; ///< of the shapes that have one
-    std::vector<uint32_t> formNumbers;        ///< by shape, into forms, or kNone; empty: none has one
+    std::vector<geometry::QuadricForm> forms; ///< of shapes that have one
+    std::vector<uint32_t> formNumbers;        ///< by shape: index in forms, or kNone; empty: no forms
     void readyForms();
     const geometry::QuadricForm* formOf(uint32_t s) const {
         return formNumbers.empty() || formNumbers[s] == kNone ? nullptr : &forms[formNumbers[s]];
@@ -82,7 +81,7 @@ struct Accel::Impl {
         uint32_t shape;
         Vec3d centre;
         double radius2;
-    }; ///< an exact shape and a sphere around it
+    }; ///< an exact shape and its bounding sphere
     bool direct = false;
     DirectTriangles triangles;
     std::vector<Ball> balls;
@@ -91,9 +90,9 @@ struct Accel::Impl {
     void refuse(Diagnostics&);
     static void sayBeyond(const Tree&, const Shape& first, Diagnostics&);
     void meetDirect(Query&) const;
-    /// The same over blocks of rays. directblock.cpp
+    /// The same for blocks of rays (directblock.cpp).
     std::shared_ptr<const DirectScene> blockScene; ///< null: the scene has a tree
-    bool anyOneSided = false;                      ///< some shape of it
+    bool anyOneSided = false;                      ///< some shape is one-sided
     void readyBlocks();
     bool takesBlocks() const;
     bool beginsPlainly(const Ray&) const;
@@ -111,8 +110,8 @@ struct Accel::Impl {
         return r.excludeShape == s && (r.excludePrim == kNone || r.excludePrim == prim);
     }
 
-    /// A ray that goes on behind a triangle through its edge has met the neighbours as well, those that show it the same side: it
-    /// leaves a small thing far away right behind where it came in.
+    /// A ray that continues behind a triangle through its edge has also hit the neighbours that face the same way, so that it
+    /// does not hit a small distant object twice at its entry.
     bool sameCrossing(const Ray& r, uint32_t s, double t, const Vec3& a, const Vec3& b, const Vec3& c) const {
         if (!(t <= r.passed * (1 + kSame)) || r.excludeShape != s || r.excludePrim == kNone) return false;
         const geometry::TriMesh& m = shapes[s]->mesh();
@@ -121,14 +120,14 @@ struct Accel::Impl {
             return dot(cross(Vec3d(q) - Vec3d(p), Vec3d(w) - Vec3d(p)), Vec3d(r.dir)) > 0;
         };
         if (side(a, b, c) != side(m.P[last[0]], m.P[last[1]], m.P[last[2]])) return false;
-        for (int k = 0; k < 3; ++k) // by place: meshes have a seam where they close
+        for (int k = 0; k < 3; ++k) // by position: closed meshes have a seam
             if (const Vec3& p = m.P[last[k]]; p == a || p == b || p == c) return true;
         return false;
     }
 
-    /// False: take() will not, whatever is met there.
+    /// Returns false if take() cannot accept a hit at t.
     static bool mayTake(const Query& q, double t) { return t > q.ray->tnear && t < q.ray->tfar && (q.any || !(t > q.best.t)); }
-    /// Whether a candidate counts; then q.best is it. t is ours. away(): how far its normal points along the ray, if one-sided.
+    /// Whether a candidate counts; q.best is then set to it. away(): component of its normal along the ray, for one-sided shapes.
     template <class Away> bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2, Away away) const {
         const Ray& r = *q.ray;
         if (!mayTake(q, t)) return false;
@@ -143,7 +142,7 @@ struct Accel::Impl {
     bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
         return take(q, s, prim, t, b1, b2, [&] { return dot(shapes[s]->hitNormal(prim, b1, b2), Vec3d(q.ray->dir)); });
     }
-    /// Whether a candidate triangle is met and counts: then q.best is it.
+    /// Whether a candidate triangle is hit and counts; q.best is then set to it.
     [[gnu::always_inline]] bool meetOne(Query& q, uint32_t s, uint32_t prim, const Vec3& a, const Vec3& b, const Vec3& c) const {
         const Ray& r = *q.ray;
         if (!visible(r, s) || excluded(r, s, prim)) return false;
@@ -155,8 +154,8 @@ struct Accel::Impl {
         return !sameCrossing(r, s, t, a, b, c) && take(q, s, prim, t, b1, b2);
     }
 
-    /// Points of an exact primitive count behind this t. The one that the ray goes on behind may be met again (a ball twice),
-    /// another that lies at its place and comes after it is yet to be met there.
+    /// Smallest t of valid hits on an exact primitive. The primitive that the ray continues behind may be hit again (a sphere
+    /// twice); another one at the same position that comes later in order has yet to be hit.
     static double exactFrom(const Ray& r, uint32_t s, uint32_t prim) {
         const double near = r.tnear;
         if (r.passed < 0) return near;
@@ -170,7 +169,7 @@ struct Accel::Impl {
                : q.any                                                         ? Shape::Wanted::Any
                                                                                : Shape::Wanted::Nearest;
     }
-    /// Tries all points of one primitive of an exact shape, or of a shape that is placed; true when one was taken.
+    /// Tries all hits of one primitive of an exact or instanced shape; returns true if one was accepted.
     bool meetExact(Query& q, uint32_t s, uint32_t prim) const {
         const Ray& r = *q.ray;
         if (!visible(r, s)) return false;
@@ -188,42 +187,41 @@ struct Accel::Impl {
         return taken;
     }
 
-    /// A geometry, in its own space, for all its places.
+    /// A geometry in its own space, for all its instances.
     struct Geometry {
         ShapeRef shape;
         Tree tree; ///< empty: one exact primitive
     };
     std::vector<std::unique_ptr<Geometry>> geometries;
-    std::vector<uint32_t> geometryOf; ///< by shape: into geometries, or kNone; empty: nothing is placed
+    std::vector<uint32_t> geometryOf; ///< by shape: index in geometries, or kNone; empty: no instances
     bool isPlaced(uint32_t s) const { return !geometryOf.empty() && geometryOf[s] != kNone; }
-    const Geometry& geometryAt(uint32_t s) const { return *geometries[geometryOf[s]]; } ///< of a shape that is placed
-    /// A shape whose geometry has a tree, as rays come into it.
+    const Geometry& geometryAt(uint32_t s) const { return *geometries[geometryOf[s]]; } ///< of an instanced shape
+    /// An instance of a geometry with a tree, prepared for rays.
     struct alignas(128) Place {
-        geometry::Affine in; ///< to the geometry's space, where it stands still
+        geometry::Affine in; ///< to the geometry's space, if it does not move
         const Geometry* geometry;
         const geometry::Placed* placed;
         const geometry::Deforming* deforming; ///< or null
         uint32_t shape;
         bool moves;
     };
-    std::vector<Place> places; ///< Tree::Exact::shape of a part is into it
-    bool placesMove = false;   ///< some of them do, or are of what deforms
+    std::vector<Place> places; ///< Tree::Exact::shape of a part is an index in it
+    bool placesMove = false;   ///< some of them move or deform
     void readyPlaced();
-    /// Boxes of what is placed, each of a part of its geometry's tree: a ray comes to the parts that it may meet, the nearest
-    /// first, and passes what overlaps them (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial Re-Braiding",
-    /// HPG 2017).
+    /// Boxes of instances, each of a part of the geometry's tree: a ray visits the parts that it may hit, nearest first, and
+    /// skips overlapping ones (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial Re-Braiding", HPG 2017).
     std::vector<Tree::Part> partsOfPlaces();
     void buildTree(Building b = Building::Best) { tree.build(shapes, {}, {}, partsOfPlaces(), b); } ///< after readyPlaced()
-    std::vector<const Shape*> trimmed; ///< by shape: who knows what of it is cut away, or null; empty: nothing is
+    std::vector<const Shape*> trimmed; ///< by shape: trim information, or null; empty: none
     void readyTrimmed();
-    /// A ray in the space of a placed geometry.
+    /// A ray in the space of an instanced geometry.
     struct Inside {
         const Geometry* geometry;
         const geometry::Placed* place;
         uint32_t shape;
         Vec3d org, dir;
     };
-    /// A placed geometry that has no tree; others are walked into (tree_walk.inc).
+    /// An instanced geometry without a tree; others are traversed (tree_walk.inc).
     bool meetPlaced(Query&, uint32_t s) const;
     bool meetInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
     bool meetInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
@@ -231,7 +229,7 @@ struct Accel::Impl {
 
     bool intersectOne(const Ray&, Hit&) const;
     bool occludedOne(const Ray&) const;
-    /// plain: with the instructions that every processor has.
+    /// plain: with the baseline instruction set.
     void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
     void walkNearestTogether(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
     void walkAny(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;

@@ -1,4 +1,4 @@
-// Shapes that are placed: the tree of their geometry, and a ray's way into its space.
+// Instanced shapes: trees of their geometry, and the transformation of rays into its space.
 #include "accel/impl.h"
 #include "base/parallel.h"
 #include <unordered_map>
@@ -16,7 +16,7 @@ void Accel::Impl::readyPlaced() {
         if (!fresh) continue;
         auto g = std::make_unique<Geometry>();
         g->shape = p->geometry();
-        if (p->deforming() && p->deforming()->keys().size() == 1) g->shape = p->deforming()->keys()[0]; // they did not fit
+        if (p->deforming() && p->deforming()->keys().size() == 1) g->shape = p->deforming()->keys()[0]; // its keys did not match
         if (const geometry::Deforming* d = p->deforming()) g->tree.build({&d->keys()[0], 1}, d->keys(), d->times());
         else if (!g->shape->exact() || g->shape->exactPrims() > 1) g->tree.build({&g->shape, 1});
         geometries.push_back(std::move(g));
@@ -25,7 +25,7 @@ void Accel::Impl::readyPlaced() {
 
 namespace {
 
-/// The box of a box that is placed; rounded outwards, and by what rays are off on their way into the geometry's space.
+/// Bounding box of a transformed box; rounded outwards, and enlarged by the error of rays in the geometry's space.
 geometry::Bounds placed(const geometry::Bounds& of, const geometry::Affine& m) {
     Vec3d lo = m.o, hi = m.o;
     const auto axis = [&](const Vec3d& x, double from, double to) {
@@ -49,7 +49,7 @@ geometry::Bounds placed(const geometry::Bounds& of, const geometry::Affine& m) {
 } // namespace
 
 std::vector<Tree::Part> Accel::Impl::partsOfPlaces() {
-    // More parts of a place bring rays of the camera through foliage another fifth, and cost all others and the building.
+    // More parts of an instance make camera rays through foliage a fifth faster, but slow down all other rays and building.
     constexpr size_t kParts = 8, kMost = 2'000'000;
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         if (!isPlaced(s) || geometryAt(s).tree.empty()) continue;
@@ -129,7 +129,7 @@ bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim) const {
     return taken;
 }
 
-/// As of what is not placed: the neighbours of a triangle that the ray goes on behind.
+/// As for other shapes: the neighbours of a triangle that the ray continues behind.
 bool Accel::Impl::sameCrossing(const Query& q, const Inside& at, double t, const Vec3d corner[3]) const {
     const Ray& r = *q.ray;
     if (!(t <= r.passed * (1 + kSame)) || r.excludeShape != at.shape || r.excludePrim == kNone) return false;

@@ -14,7 +14,7 @@ std::unique_ptr<Solids> Solids::of(const std::vector<geometry::ShapeRef>& shapes
     std::map<std::pair<int, uint32_t>, uint32_t> node; // by instance and block
     for (uint32_t s = 0; s < shapes.size(); ++s) {
         const std::vector<scene::SolidStep> path = scene::solidPath(shapes[s]->attributes());
-        if (path.size() < 2 || path.back().operation != SolidOperation::Part) continue; // a part alone is what it is
+        if (path.size() < 2 || path.back().operation != SolidOperation::Part) continue; // a single part is no solid
         uint32_t parent = kNone, root = kNone;
         for (const scene::SolidStep& step : path) {
             const auto [at, fresh] = node.try_emplace({shapes[s]->source().instance, step.id}, uint32_t(all->nodes_.size()));
@@ -80,7 +80,7 @@ template <class At> Solids::Sides Solids::resolve(uint32_t node, const At& at) c
     if (n.part != kNone) return at(n.part);
     if (n.children.empty()) return {false, false};
     const auto operation = SolidOperation(n.operation);
-    // A difference whose first child has nothing that is drawn is empty.
+    // A difference whose first child is not drawn is empty.
     if (operation == SolidOperation::Difference && n.order[0] != 0) return {false, false};
     Sides all = resolve(n.children[0], at);
     for (size_t i = 1; i < n.children.size(); ++i) {
@@ -97,7 +97,7 @@ template <class At> Solids::Sides Solids::resolve(uint32_t node, const At& at) c
 bool Solids::keeps(const Ray& r, uint32_t shape, double t) const {
     const uint32_t own = partOf_[shape];
     const Whole& whole = wholes_[wholeOf_[own]];
-    // As far as coordinates in single precision may be apart that mean one place.
+    // Distance between float coordinates that represent the same position.
     const auto norm = [](const Vec3& v) { return std::fabs(double(v.x)) + std::fabs(double(v.y)) + std::fabs(double(v.z)); };
     const double near = 4e-7 * (std::fabs(t) + norm(r.org) / std::max(norm(r.dir), 1e-300));
     int8_t few[64];
@@ -118,7 +118,7 @@ bool Solids::keeps(const Ray& r, uint32_t shape, double t) const {
     };
     const Sides s = resolve(whole.root, at);
     if (s.before == s.behind) return false;
-    // Of parts that have a face here, the first shows it.
+    // The first part with a face here shows it.
     for (uint32_t p : whole.parts) {
         if (p == own) return true;
         if (const Sides other = at(p); other.before != other.behind) return false;

@@ -1,8 +1,8 @@
-// Solids: which points of their parts' surfaces bound the whole. Not for other rooms.
+// CSG solids: which points on the surfaces of parts are on the boundary of the solid. Internal to accel.
 //
-// All parts of a solid that a ray goes through are known by where it crosses their surfaces; at a crossing the whole begins or
-// ends where the operations give another answer behind it than before it. Crossings as near to each other as single precision can
-// tell are one, which belongs to the first part, so that parts may share a face.
+// For a ray, the inside of all parts of a solid is known from its crossings with their surfaces; at a crossing the solid starts
+// or ends if the operations give different results before and behind it. Crossings that single precision cannot distinguish count
+// as one, which belongs to the first part, so that parts may share a face.
 #pragma once
 #include "accel/accel.h"
 #include <memory>
@@ -12,10 +12,10 @@ namespace alpenglow::accel {
 
 class Solids {
 public:
-    /// Null where no shape is of a solid of more than one part.
+    /// Null if no shape belongs to a solid with more than one part.
     static std::unique_ptr<Solids> of(const std::vector<geometry::ShapeRef>&, Diagnostics&);
     bool in(uint32_t shape) const { return partOf_[shape] != kNone; }
-    /// Whether the whole begins or ends where the ray crosses the shape's surface.
+    /// Whether the solid starts or ends where the ray crosses the shape's surface.
     bool keeps(const Ray&, uint32_t shape, double t) const;
 
 private:
@@ -26,14 +26,14 @@ private:
     struct Node {
         int operation = 0; ///< scene::SolidOperation
         uint32_t part = kNone;
-        std::vector<uint32_t> children; ///< into nodes_, by their order in the request
+        std::vector<uint32_t> children; ///< indices in nodes_, by order in the request
         std::vector<int> order;
     };
     struct Whole {
         uint32_t root;
         std::vector<uint32_t> parts;
     };
-    /// What a ray finds at a place: inside of a part before and behind it.
+    /// State at a crossing: inside a part before and behind it.
     struct Sides {
         bool before, behind;
     };

@@ -1,4 +1,4 @@
-// Boxes as trees are built of them. Not for other rooms.
+// Boxes during construction of trees. Internal to accel.
 #pragma once
 #include "accel/tree.h"
 #include <algorithm>
@@ -22,11 +22,11 @@ struct Box {
     }
 };
 
-/// The boxes of children, rounded outwards to eighths of bits of their node's.
+/// Sets the boxes of children, rounded outwards to 8 bits relative to their node's.
 inline void setBoxes(Tree::Node& node, const Box& all, std::span<const Box> child) {
     node = Tree::Node{};
     std::fill_n(node.child, Tree::kWide, Tree::kNothing);
-    // Wider than a ray along a flat box could leave it by, and than rounding.
+    // Wider than the error of a ray along a flat box, and than rounding.
     double most = 1e-30;
     for (int a = 0; a < 3; ++a) most = std::max({most, std::fabs(double(all.lo[a])), std::fabs(double(all.hi[a]))});
     const double pad = most * 0x1p-21;

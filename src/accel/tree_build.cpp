@@ -1,4 +1,4 @@
-// Building: ranges of references are cut in two by the surface area heuristic (tree_cut.h), large ones over groups
+// Construction: ranges of references are split by the surface area heuristic (tree_cut.h), large ones over groups
 // (tree_groups.h).
 #include "accel/tree_cut.h"
 #include "accel/tree_groups.h"
@@ -16,10 +16,10 @@ namespace alpenglow::accel {
 
 namespace {
 
-constexpr size_t kParallel = 8192; // references below which a task of its own costs more than it brings
+constexpr size_t kParallel = 8192; // with fewer references a separate task costs more than it saves
 constexpr size_t kExactRun = 256;  // exact primitives that are measured at once
-constexpr size_t kPieces = 65536;  // of which all pieces are known at once: some megabytes of a thread
-constexpr size_t kGrouped = 512;   // more are put into groups first
+constexpr size_t kPieces = 65536;  // with at most so many references all pieces are held at once: some megabytes of a thread
+constexpr size_t kGrouped = 512;   // larger ranges are put into groups first
 
 } // namespace
 
@@ -28,14 +28,14 @@ struct Tree::Builder {
     std::span<const geometry::ShapeRef> shapes, keys;
     std::span<const Part> parts;
     bool quick = false;     ///< over the leaves of grids
-    uint32_t triangles = 0; // numbers from here on are primitives of exact shapes: exact[number - triangles]
-    size_t exacts = 0;      ///< primitives of exact shapes: first the parts, then those of shapes one after the other
+    uint32_t triangles = 0; // larger numbers are primitives of exact shapes: exact[number - triangles]
+    size_t exacts = 0;      ///< primitives of exact shapes: first the parts, then those of shapes in order
     std::vector<Mesh> exactShapes;
-    std::vector<uint32_t> placeOf; ///< by exact primitive, its place in the tree
+    std::vector<uint32_t> placeOf; ///< by exact primitive: its position in the tree
     std::unique_ptr<Ref[]> refs;
-    size_t groups = 0; ///< references to triangles, the first ones
-    // Nodes as they come, by any thread: pieces that stay where they are. A leaf's child is the number of its first reference,
-    // and its size lies in `spare` by child.
+    size_t groups = 0; ///< references to triangles, which come first
+    // Nodes in the order of creation by any thread, in pieces that do not move. A leaf's child is the index of its first
+    // reference, and its size is in `spare` by child.
     static constexpr size_t kPiece = 1024;
     std::vector<std::unique_ptr<Node[]>> pieces;
     std::atomic<size_t> made{0};
@@ -44,15 +44,15 @@ struct Tree::Builder {
     Node& node(size_t i) { return pieces[i / kPiece][i % kPiece]; }
     size_t newNode() {
         const size_t i = made.fetch_add(1);
-        if (i / kPiece >= pieces.size()) throw std::length_error("nodes"); // never: see room()
+        if (i / kPiece >= pieces.size()) throw std::length_error("nodes"); // impossible: see room()
         std::lock_guard lock(growing);
         if (!pieces[i / kPiece]) pieces[i / kPiece] = std::make_unique<Node[]>(kPiece);
         return i;
     }
 
-    /// Whether references make one leaf.
+    /// Whether references form one leaf.
     bool isLeaf(const Range& r) const {
-        if (r.size() == 1) return true; // what comes together has room
+        if (r.size() == 1) return true; // references that belong together fit
         if (r.size() > kLeafTriangles) return false;
         const std::span of(&refs[r.begin], r.size());
         return std::all_of(of.begin(), of.end(), [&](const Ref& ref) { return ref.id() < triangles; }) &&
@@ -82,8 +82,8 @@ struct Tree::Builder {
         return halves;
     }
 
-    /// A range that is divided in two again and again down to its leaves; which of these pieces become the children of nodes is
-    /// chosen by cost: the sum of areas of all nodes (Ylitie et al., section 3.1).
+    /// A range divided recursively down to its leaves; a cost, the sum of areas of all nodes, selects which of these pieces
+    /// become children of nodes (Ylitie et al., section 3.1).
     struct Pieces {
         struct Piece {
             Box box;
@@ -91,8 +91,8 @@ struct Tree::Builder {
             bool leaf;
             size_t begin;
             int left = -1, right = -1; // -1: a leaf. Only right is -1: `size` leaves from `left` on
-            // By a number of children, what it costs at the least when they are this piece or lie below it; and how many of them
-            // lie on its left side then, 0: it is one.
+            // By number of children: smallest cost if they are this piece or below it; and how many of them are then on its left
+            // side, 0: it is a single child.
             float cost[kWide + 1] = {};
             uint8_t lefts[kWide + 1] = {};
         };
@@ -113,7 +113,7 @@ struct Tree::Builder {
             const int left = divide(builder, first, depth + 1);
             return join(at, left, divide(builder, second, depth + 1));
         }
-        /// A range that was divided into groups.
+        /// A range divided into groups.
         int take(Builder& builder, const std::vector<Half>& halves, int half, int depth) {
             const Half& h = halves[size_t(half)];
             if (h.left < 0 || h.range.leaf) return divide(builder, h.range, depth);
@@ -122,7 +122,7 @@ struct Tree::Builder {
             const int left = take(builder, halves, h.left, depth + 1);
             return join(at, left, take(builder, halves, h.right, depth + 1));
         }
-        /// Primitives that make a node: how they could be divided further hardly matters.
+        /// Primitives of one node: their further division hardly matters.
         int fan(Builder& builder, const Range& r, int at) {
             Piece& p = list[size_t(at)];
             p.left = int(list.size());
@@ -148,7 +148,7 @@ struct Tree::Builder {
             const float *l = list[size_t(p.left)].cost, *r = list[size_t(p.right)].cost;
             for (int n = 2; n <= kWide; ++n) {
                 p.cost[n] = INFINITY;
-                p.lefts[n] = 1; // also where areas have no floats
+                p.lefts[n] = 1; // also if areas overflow
                 for (int k = 1; k < n; ++k)
                     if (const float c = l[k] + r[n - k]; c < p.cost[n]) p.cost[n] = c, p.lefts[n] = uint8_t(k);
             }
@@ -196,7 +196,7 @@ struct Tree::Builder {
         if (depth < 12) halves = grouped(all, 24);
         return makeNode({all, halves.empty() ? -1 : 0}, halves, depth);
     }
-    /// A range, and the half that it is or -1: nothing is known of its inside.
+    /// A range, and the index of its half, or -1: not yet divided.
     struct Open {
         Range range;
         int half = -1;
@@ -246,7 +246,7 @@ struct Tree::Builder {
         return at;
     }
 
-    /// Depth first, the children of a node side by side: where rays go next is near.
+    /// Depth first, with adjacent children: rays visit near memory next.
     void arrange(size_t root) {
         std::vector<Node> nodes;
         nodes.reserve(made);
@@ -319,8 +319,7 @@ struct Tree::Builder {
             std::upper_bound(exactShapes.begin(), exactShapes.end(), i, [](size_t at, const Mesh& m) { return at < m.first; });
         return {next[-1].shape, uint32_t(i) - next[-1].first};
     }
-    /// Primitives of exact shapes by some that follow one another in one shape, or by some parts: f(the first of them, from, to),
-    /// on any thread.
+    /// Runs f(first, from, to) for consecutive primitives of one exact shape, or for some parts, on any thread.
     template <class F> void eachExactRun(F f) const {
         parallelFor(size_t(0), (exacts + kExactRun - 1) / kExactRun, [&](size_t run) {
             const size_t end = std::min(exacts, (run + 1) * kExactRun);
@@ -333,7 +332,7 @@ struct Tree::Builder {
         });
     }
 
-    /// All primitives of exact shapes; the first are the parts.
+    /// Lists all primitives of exact shapes; the parts come first.
     void listExact() {
         std::vector<uint8_t> inParts(parts.empty() ? 0 : shapes.size());
         for (const Part& p : parts) inParts[p.shape] = 1;
@@ -348,17 +347,17 @@ struct Tree::Builder {
                 exacts += many;
             }
     }
-    /// Triangles that reach too far, before all others are put into boxes.
+    /// Removes triangles that reach too far, before the others get boxes.
     void leaveOut() {
         Ref* const end = &refs[0] + groups + exacts;
         [[maybe_unused]] const Ref* const kept =
             std::remove_if(&refs[0], end, [&](const Ref& r) { return r.id() < triangles && tooFar(r); });
     }
 
-    /// Triangles of one mesh that are looked at by one thread.
+    /// Triangles of one mesh that one thread handles.
     struct Run {
         uint32_t mesh, from, to;
-        size_t at = 0; ///< of its references
+        size_t at = 0; ///< index of its references
     };
     template <class F> void eachTogether(const Run& run, F f) const {
         const geometry::Shape& shape = *shapes[tree.meshes_[run.mesh].shape];
@@ -449,7 +448,7 @@ struct Tree::Builder {
         tree.exact_.reserve(exacts);
         makeExactRefs();
         const size_t all = groups + exacts;
-        pieces.resize(all / kPiece + 2); // a node has two children at least
+        pieces.resize(all / kPiece + 2); // a node has at least two children
         if (tree.beyond_ > 0) leaveOut();
         const size_t kept = all - tree.beyond_;
         if (!kept) return;

@@ -11,10 +11,10 @@ struct Bin {
     uint32_t n;
 };
 
-/// Numbers as floats are denormal: to multiply them takes long.
+/// Indices are denormal as floats, whose multiplication is slow.
 Four withoutId(Four lo) { return reinterpret_cast<Four>(reinterpret_cast<Whole4>(lo) & Whole4{-1, -1, -1, 0}); }
 
-/// Halves of areas of boxes, measured by the longest side of one that holds them all: those have floats, however large it is.
+/// Half areas of boxes, relative to the longest side of a box around all: these do not overflow.
 struct Areas {
     Four unit;
     explicit Areas(const Box& all) {
@@ -28,7 +28,7 @@ struct Areas {
     }
 };
 
-/// A leaf costs as much for one triangle as for four.
+/// A leaf costs the same for one triangle as for four.
 float leaves(uint32_t n) { return float((n + 3) / 4); }
 
 template <int Bins> void bestOfBins(const Ref* refs, const Range& r, Cut& cut) {
@@ -91,7 +91,7 @@ namespace {
 
 constexpr size_t kFew = 128;
 
-/// partition() of few references, without a branch by where they lie: no processor foresees those.
+/// partition() of few references, without data-dependent branches, which are unpredictable.
 size_t partitionFew(Ref* refs, const Range& r, const Cut& cut, Range& a, Range& b) {
     Ref above[kFew];
     Ref* front = refs + r.begin;

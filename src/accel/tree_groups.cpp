@@ -23,7 +23,7 @@ struct Cell {
     }
 };
 
-/// Cells are about as long along all axes, and hold some fifty references where these lie on surfaces.
+/// Cells are about cubic, and hold about fifty references of a surface.
 struct Grid {
     Four from, scale{}, last{};
     int bits[3] = {};
@@ -49,7 +49,7 @@ struct Grid {
     }
 };
 
-/// The cells, and by reference of the range the one that it lies in.
+/// The cells, and the cell of each reference of the range.
 std::vector<Cell> cellsOf(const Ref* refs, const Range& r, const Grid& grid, std::vector<uint16_t>& cellOf) {
     std::vector<Cell> cells(grid.cells());
     cellOf.resize(r.size());
@@ -82,7 +82,7 @@ std::vector<Cell> cellsOf(const Ref* refs, const Range& r, const Grid& grid, std
     return cells;
 }
 
-/// Divides groups, whose references say which cell they are, and gives their ranges the next places in order.
+/// Divides groups, whose references hold the index of their cell, and assigns consecutive ranges.
 struct Halving {
     std::vector<Ref>& groups;
     const std::vector<Cell>& cells;
@@ -119,7 +119,7 @@ struct Halving {
     }
 };
 
-/// References into the order of their cells, in place.
+/// Sorts references by cell, in place.
 void arrangeByCell(Ref* refs, std::vector<uint16_t>& cellOf, const std::vector<Cell>& cells, const std::vector<uint32_t>& order) {
     std::vector<uint32_t> next(cells.size());
     uint32_t at = 0;

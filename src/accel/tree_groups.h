@@ -1,5 +1,4 @@
-// The upper levels of a tree over a large range: over groups of references, some hundred or thousand, instead of all of them. Not
-// for other rooms.
+// Upper levels of a tree over a large range: splits groups of some hundred or thousand references. Internal to accel.
 #pragma once
 #include "accel/tree_refs.h"
 #include <vector>
@@ -11,9 +10,9 @@ struct Half {
     int left = -1, right = -1; ///< -1: a group
 };
 
-/// Puts the references of a range into the cells of a grid over their centres; the cells that hold some are divided in two again
-/// and again down to single ones. All ranges are in the order of the references then, which is changed; the first of the list is
-/// the whole. Empty: one cell holds all of them. depth: of halves by cost, below they are halves by number.
+/// Puts the references of a range into the cells of a grid over their centres and divides non-empty cells recursively down to
+/// single ones. Reorders the references, so that all ranges are consecutive; the first of the list is the complete range. Empty:
+/// one cell holds all. depth: of halves by cost; deeper ones are halves by number.
 std::vector<Half> inGroups(Ref* refs, const Range&, int depth);
 
 } // namespace alpenglow::accel

@@ -1,10 +1,11 @@
-// What a tree is at several times, and its parts.
+// Trees over several times, and their parts.
 #include "accel/tree_boxes.h"
 #include "base/parallel.h"
 
 namespace alpenglow::accel {
 
-/// The vertices of a leaf at all keys, and its boxes at both ends of the shutter: their blend holds it at each time between.
+/// Stores the vertices of a leaf at all keys, and its boxes at both ends of the shutter: interpolated boxes contain it in
+/// between.
 void Tree::followLeaf(size_t leaf, std::span<const geometry::ShapeRef> keys, std::span<const float> times, Box& first,
                       Box& last) {
     const Leaf& f = leaves_[leaf];

@@ -5,7 +5,7 @@ namespace alpenglow::accel {
 
 namespace {
 
-/// The triangles one by one, until visit(mesh, number there, number) returns false; that is returned then.
+/// Calls visit(mesh, index in mesh, number) for each triangle until it returns false; returns that.
 template <class F> bool eachTriangle(const LeafMaker& of, std::span<const Ref> refs, F visit) {
     uint32_t first = 0, end = 0; // numbers of the mesh
     const geometry::TriMesh* mesh = nullptr;
@@ -24,11 +24,11 @@ template <class F> bool eachTriangle(const LeafMaker& of, std::span<const Ref> r
     return true;
 }
 
-/// Up to as many different numbers as a leaf has corners, no 0xffffffff among them.
+/// A set of vertex indices with the capacity of a leaf, excluding 0xffffffff.
 class Corners {
 public:
     Corners() { std::fill_n(of_, Tree::kLeafVertices, 0xffffffffu); }
-    /// False: it is another one, and there is no room.
+    /// Returns false if the index is new and there is no space.
     bool add(uint32_t i) {
         bool there = false;
         for (const uint32_t k : of_) there |= k == i;
@@ -43,7 +43,7 @@ private:
     int n_ = 0;
 };
 
-/// True says that triangles have few enough corners, by their numbers in one mesh; false says nothing.
+/// Returns true if the triangles certainly have few enough corners, by index in one mesh; false if unknown.
 bool fewCorners(const LeafMaker& of, std::span<const Ref> refs) {
     Corners corners;
     const geometry::TriMesh* first = nullptr;

@@ -1,16 +1,16 @@
-// Leaves of triangles, made of references. Not for other rooms.
+// Makes leaves of triangles from references. Internal to accel.
 #pragma once
 #include "accel/tree_refs.h"
 
 namespace alpenglow::accel {
 
-/// Of a tree whose triangles are numbered. References are to triangles here.
+/// For a tree with numbered triangles. References are to triangles here.
 struct LeafMaker {
     const Tree& tree;
     std::span<const geometry::ShapeRef> shapes;
-    /// Whether they make one leaf: no more triangles and corners than it holds.
+    /// Whether they fit into one leaf, by number of triangles and corners.
     bool fits(std::span<const Ref>) const;
-    /// The leaf of what fits; false: it has more corners than that, and nothing is written. null: only this is asked.
+    /// Makes the leaf; returns false, without writing, if there are too many corners. null: tests only.
     bool make(std::span<const Ref>, Tree::Leaf* out) const;
 };
 

@@ -1,5 +1,4 @@
-// The order of the children of nodes. Rays that ask whether they meet anything go through them from the last to the first, others
-// by distance.
+// Order of the children of nodes. Occlusion rays visit them from last to first, others by distance.
 #include "accel/tree.h"
 #include <algorithm>
 
@@ -7,7 +6,7 @@ namespace alpenglow::accel {
 
 namespace {
 
-/// Half the area of a child's box.
+/// Half the surface area of a child's box.
 double halfAreaOf(const Tree::Node& n, int k) {
     double d[3];
     for (int a = 0; a < 3; ++a) d[a] = double(n.scale[a]) * (n.q[1][a][k] - n.q[0][a][k]);
@@ -35,8 +34,8 @@ void permute(Tree::Node& n, const int* order, int many) {
 } // namespace
 
 void Tree::orderChildren() {
-    // By how much surface there is in a box for its size: as much as a ray through the box meets on average. Of large meshes the
-    // children are alike, and it would take a tenth of the building.
+    // By surface area per box area: expected number of hits of a ray through the box. Children of large meshes are similar, and
+    // sorting would take a tenth of construction.
     constexpr size_t kMost = 65536;
     if (nodes_.size() > kMost) return;
     std::vector<double> area(nodes_.size());

@@ -4,7 +4,7 @@
 namespace alpenglow::accel {
 
 namespace {
-constexpr float kLongest = 3.3f;  // times as long as wide are they at most
+constexpr float kLongest = 3.3f;  // largest ratio of length to width
 constexpr uint32_t kTogether = 6; // triangles of a grid that stay in one leaf
 } // namespace
 
@@ -28,7 +28,7 @@ uint32_t together(const geometry::TriMesh& m, uint32_t from, uint32_t to) {
         }
         if ((t > from && k > 1) || n + k > Tree::kLeafVertices) break;
         if (std::any_of(corner, corner + 3, [&](uint32_t v) { return Tree::reaches(m.P[v]); })) break;
-        if (t > from + 1 && k == 1) { // not where a long strip comes of it
+        if (t > from + 1 && k == 1) { // avoids long strips
             const Vec3 side = m.P[old[0]] - m.P[old[1]], along = m.P[fresh[0]] - m.P[vertex[0]];
             if (dot(along, along) > kLongest * kLongest * dot(side, side)) break;
         }

@@ -1,12 +1,12 @@
-// What trees are built of. Not for other rooms.
+// References during construction of trees. Internal to accel.
 #pragma once
 #include "accel/tree_boxes.h"
 #include <cstring>
 
 namespace alpenglow::accel {
 
-/// Triangles that follow one another, or a primitive of an exact shape; its number, or that of the first of them, lies in the
-/// fourth lane of the lower corner, and how many they are in that of the upper one.
+/// Consecutive triangles, or a primitive of an exact shape; its index, or that of the first triangle, is in the fourth lane of
+/// the lower corner, and their number in that of the upper one.
 struct Ref {
     Four lo, hi;
     uint32_t id() const {
@@ -31,18 +31,18 @@ struct Range {
     size_t size() const { return end - begin; }
 };
 
-/// Of one primitive of an exact shape: what of its box is no number reaches as far as can be.
+/// For one primitive of an exact shape; NaN bounds become infinite.
 Ref refOf(uint32_t id, const geometry::Bounds&);
 inline bool tooFar(const Ref& r) {
     return Tree::reaches({r.lo[0], r.lo[1], r.lo[2]}) || Tree::reaches({r.hi[0], r.hi[1], r.hi[2]});
 }
 
-/// How many triangles from this one on make one reference. Those of a grid come row by row, a quad's two together: as many as
-/// a leaf holds, which are neighbours one after the other. So a tree over a diced surface is built over its leaves.
+/// Number of triangles from this one on for one reference. Triangles of a grid come in rows, two to a quad: takes as many
+/// consecutive neighbours as a leaf holds. So a tree over a diced surface is built over its leaves.
 uint32_t together(const geometry::TriMesh&, uint32_t from, uint32_t to);
 
-/// 2 where this triangle and the next share an edge and fill a box that is hardly larger than that of one of them: halves of a
-/// quad. Otherwise 1.
+/// 2 if this triangle and the next share an edge and their box is hardly larger than that of one of them (halves of a quad), else
+/// 1.
 uint32_t pair(const geometry::TriMesh&, uint32_t from, uint32_t to);
 
 } // namespace alpenglow::accel

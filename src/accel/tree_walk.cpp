@@ -1,4 +1,4 @@
-// Walking the tree, compiled for the processors that there are. Their results agree: see tree.h.
+// Tree traversal, compiled for several processor levels with equal results: see tree.h.
 #include "accel/impl.h"
 #include <algorithm>
 #include <bit>

@@ -59,10 +59,10 @@ const SurfaceBinding* ServiceCall::binding(const WorldImpl& world, int lane) con
 
 void ServiceCall::answer(int lane, const Told& t) const {
     using rsl::ir::Kind;
-    if (d.resultKinds.size() < 2) return; // whether there is one was all that was asked
+    if (d.resultKinds.size() < 2) return; // only its presence was queried
     const bool open = s.open, array = s.array;
     const size_t before = open ? 2 : 1;                             // rows
-    if (open && d.resultKinds.size() == before && t.elements > 0) { // how long it is was all that was asked
+    if (open && d.resultKinds.size() == before && t.elements > 0) { // only its length was queried
         put(1, lane, float(t.elements));
         put(0, lane, 1);
     }
@@ -71,15 +71,15 @@ void ServiceCall::answer(int lane, const Told& t) const {
     if (t.kind && (*t.kind != wanted || (t.elements > 0) != array)) return;
     if (t.varying && wanted != Kind::String && s.uniform) {
         const SourcePlace at = place();
-        diagnostics.reportOnce(
-            "uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" + name(lane),
-            {Severity::Warning,
-             Rie::Consistency,
-             at,
-             d.op + "(): \"" + name(lane) +
-                 "\" is varying and the variable that takes it is uniform: it stays as it is, and the result is 0",
-             "a varying variable takes it",
-             {}});
+        diagnostics.reportOnce("uniform:" + at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ":" +
+                                   name(lane),
+                               {Severity::Warning,
+                                Rie::Consistency,
+                                at,
+                                d.op + "(): \"" + name(lane) +
+                                    "\" is varying and the destination is uniform: it is not changed, and the result is 0",
+                                "a varying variable takes it",
+                                {}});
         return;
     }
     const size_t size = size_t(rsl::ir::components(wanted)), rows = size_t(s.resultRowCount) - before;

@@ -1,4 +1,4 @@
-// bake(), bake3d() and texture3d(): numbers to and from files of points.
+// bake(), bake3d() and texture3d(): writes and reads point data files.
 #include "answers/cloudspace.h"
 #include "shading/grids.h"
 #include "world/cloudsite.h"
@@ -8,7 +8,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Takes the numbers of a channel from one space to another.
+/// Converts the numbers of a channel between spaces.
 void turn(clouds::ChannelType type, const Matrix& m, float* v) {
     const Vec3d from(v[0], v[1], v[2]);
     Vec3 to;
@@ -34,8 +34,7 @@ void turnMatrix(const Matrix& m, float* v) {
     for (int k = 0; k < 16; ++k) v[k] = float(of.m[k / 4][k % 4]);
 }
 
-/// The ray that a lane's point comes from; of a light the ray that met the surface which it lights. Null: none, or a point that
-/// is on no surface.
+/// The ray of a lane's point; for a light, the ray that hit the lit surface. Null: none, or the point is not on a surface.
 const shading::PathRay* rayOfLane(const ServiceCall& call, int lane, const ShadePoint& p) {
     const KernelRun& c = call.c;
     if (c.aside || c.again || c.forShadow || c.between) return nullptr;
@@ -44,14 +43,14 @@ const shading::PathRay* rayOfLane(const ServiceCall& call, int lane, const Shade
     return c.rays.empty() || !c.binding ? nullptr : &c.rays[size_t(call.first + lane)];
 }
 
-/// Lights of one shader are told apart; the parts of a light are not.
+/// A number that differs for lights of different shaders, but not for parts of a light.
 uint32_t numberOf(const WorldImpl& world, const BoundLight& light) {
     const auto first = std::find_if(world.lights_.begin(), world.lights_.end(),
                                     [&](const BoundLight& l) { return &l == &light || (l.source && l.source == light.source); });
     return uint32_t(first - world.lights_.begin()) + 1;
 }
 
-/// Whether the point of a lane is one that bakes, and its place among all. `light`: numberOf() one, 0: none.
+/// Whether the point of a lane bakes, and its position in the order of all. `light`: numberOf() one, 0: none.
 bool keyOf(const shading::PathRay* r, const ShadePoint& p, bool centre, uint32_t light, clouds::BakeKey& key) {
     if (!r || !r->camera() || r->bounces > 0 || !r->sample) return false;
     const shading::GridPoint* g = r->sample->grid;
@@ -66,7 +65,7 @@ bool keyOf(const shading::PathRay* r, const ShadePoint& p, bool centre, uint32_t
     return true;
 }
 
-/// The radius of the disk about a point, and the part of the surface that it stands for. Camera space.
+/// Radius of the disk around a point, and the surface area that the point represents. Camera space.
 std::pair<float, float> extentOf(const shading::PathRay& r, const ShadePoint& p) {
     if (r.sample->grid && !r.sample->grid->micropolygon) return {r.sample->grid->radius, r.sample->grid->area};
     const float edge = r.sample->grid ? float(geometry::diceEdge(p.shape->attributes())) : 1;
@@ -81,7 +80,7 @@ void reportNotBaked(const ServiceCall& call) {
     call.diagnostics.reportOnce("bake:imager", {Severity::Warning,
                                                 Rie::Unimplement,
                                                 call.place(),
-                                                call.d.op + "() of imager shaders writes nothing",
+                                                call.d.op + "() has no effect in imager shaders",
                                                 "surface, displacement, volume and light shaders bake",
                                                 {}});
 }
@@ -135,7 +134,7 @@ void answerTexture3d(Answers& answers, const ServiceCall& call) {
     const CloudSite& s = *call.s.cloud;
     std::vector<float> found;
     CloudSpace space(answers, call, s.space, s.spaceRow);
-    std::vector<std::pair<const clouds::CloudMap*, std::vector<int>>> places; // by map, where its channels begin
+    std::vector<std::pair<const clouds::CloudMap*, std::vector<int>>> places; // by map: index of the first of its channels
     call.each([&](int lane, const ShadePoint& p) {
         const clouds::CloudMap* map =
             answers.cloudOf(s.computed ? std::bit_cast<int32_t>(call.at(0, lane)) : call.s.nameId, call);
@@ -156,7 +155,7 @@ void answerTexture3d(Answers& answers, const ServiceCall& call) {
                                                  call.place(),
                                                  "texture3d(): \"" + call.name(lane) + "\" has no channel \"" + part.name +
                                                      "\" of " + std::to_string(clouds::sizeOf(part.type)) + " numbers; it is 0",
-                                                 "alpenglow ptc info tells what is in a file",
+                                                 "alpenglow ptc info shows the contents of a file",
                                                  {}});
             }
         }

@@ -1,4 +1,4 @@
-// Between the space of a shader and that of a file of points.
+// Conversion between spaces of shaders and of point cloud files.
 #pragma once
 #include "answers/answers.h"
 #include "base/direction.h"
@@ -13,28 +13,28 @@ inline Vec3 tripleAt(const ServiceCall& call, int row, int lane) {
     return row < 0 ? Vec3(0.f) : Vec3(call.at(row, lane), call.at(row + 1, lane), call.at(row + 2, lane));
 }
 
-/// From "current" to a space: of this name, or of the one that the lane has in a row.
+/// From "current" to the named space, or to the space named in a row of the lane.
 inline Matrix toCloudSpace(Answers& answers, const ServiceCall& call, const std::string& name, int row, int lane,
                            const ShadePoint& p) {
     const std::string space = row < 0 ? name : rsl::internedString(std::bit_cast<int32_t>(call.at(row, lane)));
     return spaceAt(answers.world(), "current", space.empty() ? "world" : space, p, call.binding(answers.world(), lane));
 }
 
-/// How much longer lengths are behind a matrix.
+/// Mean scale factor of lengths by a matrix.
 inline float growth(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 1.0 / 3)); }
 
 inline Vec3 unitOr0(const Vec3& n) { return directionOr(n, Vec3(0.f)); }
 
 inline Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(transformNormal(m, Vec3d(n)))); }
 
-/// The way from "current" to the space of a file, for the points of a call: found once where it is the same for all. `straight`:
-/// to one that has the angles of "current" instead, where the file's has others (clouds/shear.h).
+/// Conversion from "current" to the space of a file, for the points of a call; computed once if it is the same for all.
+/// `straight`: to a space with the angles of "current", if the file's differ (clouds/shear.h).
 class CloudSpace {
 public:
     CloudSpace(Answers& answers, const ServiceCall& call, const std::string& name, int row, bool straight = false)
         : answers_(answers), call_(call), name_(name), row_(row), same_(row < 0 && name != "object" && name != "shader"),
           straight_(straight) {}
-    /// For the point of a lane; good until the next call.
+    /// For the point of a lane; valid until the next call.
     const Matrix& at(int lane, const ShadePoint& p) {
         if (!known_ || !same_) {
             to_ = toCloudSpace(answers_, call_, name_, row_, lane, p);
@@ -46,7 +46,7 @@ public:
         return to_;
     }
     float growth() const { return growth_; } ///< of lengths
-    /// Of an area on the way, `n` its unit normal. Not of a straight one.
+    /// Scale factor of an area with unit normal `n`. Not for straight ones.
     float areaGrowth(const Vec3& n) const { return shear_ && dot(n, n) > 0 ? clouds::areaGrowth(to_, n) : growth_ * growth_; }
     const std::optional<clouds::Shear>& shear() const { return shear_; }
     const Matrix& back() {

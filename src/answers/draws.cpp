@@ -3,9 +3,9 @@
 
 namespace alpenglow::transport {
 
-// Keyed by sample, path vertex, call site and how often the point came by: nothing depends on who shares the batch. What a
-// uniform variable gets is keyed by the primitive instead. Lights have keys of their own: their sites count from 0 as those of
-// surfaces do.
+// Keyed by sample, path vertex, call site and number of calls at the point: independent of the other members of the batch. For
+// uniform variables the key has the primitive instead. Lights have keys of their own, because their call sites start from 0 as
+// those of surfaces do.
 void Answers::drawRandom(const ServiceCall& call) {
     const SiteInfo& s = call.s;
     KernelRun& c = call.c;
@@ -22,7 +22,7 @@ void Answers::drawRandom(const ServiceCall& call) {
             const auto shape = world_->numberOfShape_.find(p.shape);
             vertex = childVertex(shape == world_->numberOfShape_.end() ? 0 : world_->keyOfShape(shape->second) + 1, light, 1);
         } else {
-            vertex = r ? r->vertex : uint32_t(at); // no ray: a vertex of a surface that is diced
+            vertex = r ? r->vertex : uint32_t(at); // no ray: a vertex of a diced surface
         }
         if (turn > 0 || light > 0) vertex = childVertex(vertex, light, turn);
         const Random numbers = r && !uniform ? random(*r) : Random(seed_, 0, 0, 0);

@@ -13,7 +13,7 @@ void answerGatherTurn(const ServiceCall& call) {
         const int ray = int(call.at(0, lane)) - g.begins[size_t(lane)];
         if (ray < 0 || ray >= rsl::kGatherRays) return;
         const float* row = g.of(lane, ray);
-        if (row[0] < 0) row = g.of(lane, ray % int(-row[0])); // so many rays come again
+        if (row[0] < 0) row = g.of(lane, ray % int(-row[0])); // rays that serve several iterations
         for (int r = 0; r < std::min(g.width, call.s.resultRowCount); ++r) call.put(r, lane, row[r]);
     });
 }

@@ -1,4 +1,4 @@
-// A kernel that runs over points, as far as what answers it is concerned.
+// A kernel run over points, as services see it.
 #pragma once
 #include "answers/gatherrows.h"
 #include "answers/lightloop.h"
@@ -11,36 +11,35 @@ struct KernelRun {
     const BoundKernel* bound = nullptr;
     const SurfaceBinding* binding = nullptr; ///< of the first point; the light list is the same for all
     std::vector<ShadePoint> points;
-    std::vector<shading::PathRay> rays; ///< of the points: ShadePoint::ray points here
+    std::vector<shading::PathRay> rays; ///< of the points; ShadePoint::ray points here
     std::vector<int> bindings;          ///< by point
-    /// How many points: those of a batch in rows have no structures.
+    /// Number of points; a batch in rows has no point structures.
     size_t size() const { return points.empty() ? rays.size() : points.size(); }
-    const BoundLight* light = nullptr;  ///< whose kernel runs
-    const LitSurface* lit = nullptr;    ///< while a light's kernel runs: what it lights
-    const Medium* volume = nullptr;     ///< while a volume's kernel runs
-    const LightOutput* aside = nullptr; ///< the run gives this output and nothing else
-    bool forShadow = false;             ///< the kernel tells its opacity to shadow rays
-    bool again = false;                 ///< it is no shading of its own: nothing is printed and baked
-    bool dark = false;                  ///< loops over lights find none
-    bool below = false;                 ///< walks below a surface come out at the points: light is gathered; no kernel
-    bool between = false;               ///< the points lie on the way of rays, inside of a medium, on no surface
-    std::shared_ptr<const KernelRun>
-        displaced;                      ///< the displacement shader's run at these points, where its outputs are asked for
-    const KernelRun* surface = nullptr; ///< while an atmosphere's kernel runs: the surface's run that it dims
-    std::vector<int> surfacePoint;      ///< by point: its number in that run
-    // What answers keep with it.
+    const BoundLight* light = nullptr;          ///< whose kernel runs
+    const LitSurface* lit = nullptr;            ///< while a light's kernel runs: the lit surface
+    const Medium* volume = nullptr;             ///< while a volume's kernel runs
+    const LightOutput* aside = nullptr;         ///< the run computes this output only
+    bool forShadow = false;                     ///< the kernel returns opacity for shadow rays
+    bool again = false;                         ///< a repeated run: prints and bakes nothing
+    bool dark = false;                          ///< loops over lights are empty
+    bool below = false;                         ///< exits of subsurface walks: points that gather light, without a kernel
+    bool between = false;                       ///< points on ray segments inside a medium
+    std::shared_ptr<const KernelRun> displaced; ///< run of the displacement shader at these points, if its outputs are queried
+    const KernelRun* surface = nullptr;         ///< while an atmosphere's kernel runs: the run of the surface behind it
+    std::vector<int> surfacePoint;              ///< by point: index in that run
+    // Data of services.
     std::deque<LightLoop> loops;    ///< Answers::lightLoop()
-    std::vector<Color> ambient;     ///< by point: the sum of the ambient lights; empty until it is asked for
-    std::vector<LightSheet> sheets; ///< by turn of all lights; empty until a loop runs
-    std::vector<uint32_t> draws;    ///< by site and point: how often random() was called there; empty until it is
+    std::vector<Color> ambient;     ///< by point: sum of the ambient lights; empty until used
+    std::vector<LightSheet> sheets; ///< by light sample; empty until a loop runs
+    std::vector<uint32_t> draws;    ///< by call site and point: number of random() calls; empty until used
     std::vector<float>
-        lightChannels;      ///< by point, all AOVs: what lights gave by outputchannel(), and atmospheres; empty when none did
-    int lightNow = -1;      ///< whose light it is that the loop over lights has; -1: not known
-    uint32_t lightDraw = 0; ///< drawOf() that loop
-    std::vector<ShadowReach> lightReach; ///< by lane: of the light sample; 1e38 far for distant lights
-    /// By number of the statement and first point of a strip: what its gather loops hold now.
+        lightChannels;      ///< by point, all AOVs: values by outputchannel() of lights, and by atmospheres; empty without any
+    int lightNow = -1;      ///< the light of the current iteration; -1: unknown
+    uint32_t lightDraw = 0; ///< drawOf() of that loop
+    std::vector<ShadowReach> lightReach; ///< by lane: for the light sample; distance 1e38 for distant lights
+    /// Current rays of gather() loops, by index of the statement and first point of a strip.
     std::map<std::pair<int, int>, GatherRows> gathers;
-    /// As new, in the memory that is there; of `points` and `batch` the caller decides.
+    /// Resets the run and keeps its memory; the caller handles `points` and `batch`.
     void forget();
 };
 

@@ -1,4 +1,4 @@
-// Lights that a shader calls by their handles: getlight, getlights, islightcategory, handle->light(), handle->parameter.
+// Lights by handle: getlight, getlights, islightcategory, handle->light(), handle->parameter.
 #include "answers/answers.h"
 #include "answers/lightloop.h"
 #include "base/category.h"
@@ -22,8 +22,7 @@ int32_t Answers::handleOf(int light) {
     return known->second;
 }
 
-/// A parameter, or one element or component of it: of steps[1], of lightcolor[0]. The nearest where the index is outside; -1:
-/// all.
+/// A parameter, or one element or component of it: for steps[1], or lightcolor[0]. Clamps the index; -1: all.
 static std::optional<Told> partTold(const ShaderInstance& light, const std::string& name, int element) {
     std::optional<Told> t = toldBy(light, name);
     if (element < 0 || !t) return t;
@@ -42,13 +41,13 @@ static std::optional<Told> partTold(const ShaderInstance& light, const std::stri
     return t;
 }
 
-/// The surface whose lights a lane means: in a light's own shader that which it lights.
+/// The surface whose lights a lane refers to: for a light's own shader the lit one.
 static const SurfaceBinding* litBinding(const ServiceCall& call, int lane) {
     const KernelRun& c = call.c;
     return !c.light ? c.binding : c.lit ? c.lit->binding(call.first + lane) : nullptr;
 }
 
-/// Its first text, interned.
+/// The first string of a lane, interned.
 static int32_t textOf(const ServiceCall& call, int lane) {
     const auto& kinds = call.d.argKinds;
     return kinds.empty() || kinds[0] != rsl::ir::Kind::String ? call.s.nameId : std::bit_cast<int32_t>(call.in[lane]);
@@ -91,11 +90,11 @@ void Answers::lightHandles(const ServiceCall& call) {
         if (int l = numberOfLight(litBinding(call, lane), textOf(call, lane)); l >= 0) asked[l] |= uint64_t(1) << lane;
     });
     if (op == "lightparameter") return lightParameters(call, asked);
-    if (call.c.light) return; // one light does not run another: they could run each other without end (the builder says so)
+    if (call.c.light) return; // lights cannot run lights, which could recurse without end (the compiler reports it)
     callLights(call, asked);
 }
 
-/// Rows: how many, then the handles.
+/// Result rows: count, then the handles.
 void Answers::getLights(const ServiceCall& call) {
     call.each([&](int lane, const ShadePoint&) {
         const int32_t want = textOf(call, lane);
@@ -105,14 +104,13 @@ void Answers::getLights(const ServiceCall& call) {
             world_->eachLight(surface->lights, [&](int i) {
                 if (!world_->lights_[size_t(i)].kernel || !isOfCategory(want, i)) return false;
                 if (n == limits::kLightHandles) {
-                    diagnostics_.reportOnce("getlights",
-                                            {Severity::Error,
-                                             Rie::Limit,
-                                             {},
-                                             "getlights() gives no more than " + std::to_string(limits::kLightHandles) +
-                                                 " lights; the others are left out",
-                                             {},
-                                             {}});
+                    diagnostics_.reportOnce("getlights", {Severity::Error,
+                                                          Rie::Limit,
+                                                          {},
+                                                          "getlights() returns at most " + std::to_string(limits::kLightHandles) +
+                                                              " lights; the others are dropped",
+                                                          {},
+                                                          {}});
                     return true;
                 }
                 call.put(++n, lane, std::bit_cast<float>(handleOf(i)));
@@ -122,17 +120,17 @@ void Answers::getLights(const ServiceCall& call) {
     });
 }
 
-/// Rows: found, value.
+/// Result rows: found, value.
 void Answers::lightParameters(const ServiceCall& call, const LightsAsked& asked) {
     using rsl::ir::Kind;
     const rsl::ir::Site& d = call.d;
-    const bool element = d.argKinds.back() == Kind::Float; // which one stands last
+    const bool element = d.argKinds.back() == Kind::Float; // the index is last
     for (auto [li, of] : asked) {
         const auto tell = [&](const std::string& name, int part, uint64_t points) {
             std::optional<Told> t = partTold(*world_->lights_[size_t(li)].instance, name, part);
             if (!t) return;
             if (t->kind == Kind::Float && !t->elements && d.resultKinds.size() > 1 && d.resultKinds[1] == Kind::Triple) {
-                t->kind = Kind::Triple; // a float also where a color is wanted
+                t->kind = Kind::Triple; // a float also serves for a color
                 t->numbers.assign(3, t->numbers.empty() ? 0.f : t->numbers[0]);
             }
             for (int lane = 0; lane < call.lanes; ++lane)
@@ -142,7 +140,7 @@ void Answers::lightParameters(const ServiceCall& call, const LightsAsked& asked)
             tell(d.strings.back(), -1, of);
             continue;
         }
-        for (int lane = 0; lane < call.lanes; ++lane) { // a name that is not known stands behind the handle
+        for (int lane = 0; lane < call.lanes; ++lane) { // a name computed at run time follows the handle
             if (!(of >> lane & 1)) continue;
             const std::string& name =
                 d.strings.empty() ? rsl::internedString(std::bit_cast<int32_t>(call.at(1, lane))) : d.strings.back();
@@ -154,14 +152,14 @@ void Answers::lightParameters(const ServiceCall& call, const LightsAsked& asked)
     }
 }
 
-/// Arguments: handle, P. Rows: found, L (light to surface), Cl, Ol, place for the distance.
+/// Arguments: handle, P. Result rows: found, L (light to surface), Cl, Ol, space for the distance.
 void Answers::callLights(const ServiceCall& call, const LightsAsked& asked) {
     KernelRun& c = call.c;
     const size_t width = size_t(call.lanes);
     c.lightReach.assign(width, {});
     c.lightNow = asked.size() == 1 ? int(asked.begin()->first) : -1;
     LightLoop turn;
-    turn.depth = lightLoop(c, call.first, call.lanes).depth + 1; // a call is a loop of its own
+    turn.depth = lightLoop(c, call.first, call.lanes).depth + 1; // a call counts as a loop
     c.lightDraw = drawOf(turn);
     turn.rows.assign(7 * width, 0);
     for (int lane = 0; lane < call.lanes; ++lane) {
@@ -201,7 +199,7 @@ uint64_t Answers::callLight(const ServiceCall& call, LightLoop& turn, int li, ui
         }
         lit |= now;
         if (light.samples == 1) break;
-        // One of the samples, drawn in proportion to what it gives, stands for the sum of all.
+        // One sample, chosen in proportion to its light, represents the sum of all.
         for (int lane = 0; lane < call.lanes; ++lane) {
             if (!(now >> lane & 1)) continue;
             const size_t at = size_t(lane);

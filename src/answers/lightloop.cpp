@@ -1,4 +1,4 @@
-// illuminance loops: which lights take their turns, and what was kept of them.
+// illuminance loops: their iterations, and caches.
 #include "answers/answers.h"
 #include "base/category.h"
 #include "base/exact.h"
@@ -27,7 +27,7 @@ bool sampledAnew(const BoundLight& l, bool path) {
            (path && (l.cone || l.kind == LightKind::Environment));
 }
 
-// Room for limits::kLightTurns turns and more.
+// Bits for limits::kLightTurns iterations and more.
 static constexpr int kTurnBits = 12;
 
 uint32_t drawOf(const LightLoop& loop) { return 1 + (uint32_t(std::max(loop.depth - 1, 0)) << kTurnBits); } // 0 is gather()'s
@@ -38,7 +38,7 @@ uint64_t keptName(const LightLoop& loop, const BoundLight& l, int light, int tur
 }
 
 LightLoop& Answers::lightLoop(KernelRun& c, int first, int lanes) {
-    // Strips that never wait run one after the other: they share one.
+    // Strips that never wait run one after the other and share one.
     const size_t at = c.bound->kernel->facts().suspends ? size_t(first / std::max(lanes, 1)) : 0;
     while (c.loops.size() <= at) c.loops.emplace_back();
     LightLoop& loop = c.loops[at];
@@ -65,14 +65,14 @@ void Answers::lightSetup(KernelRun& c, int site, int first, int lanes, const flo
 int32_t Answers::lightBegin(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* rows) {
     LightLoop& loop = lightLoop(c, first, lanes);
     const SiteInfo& info = c.bound->sites[size_t(site)];
-    // The loop around waits; when this one ends it is as it was.
+    // Saves the outer loop, which is restored at the end of this one.
     if (loop.around.size() <= size_t(loop.depth)) loop.around.emplace_back();
     loop.reach = c.lightReach;
     std::swap(static_cast<LightTurns&>(loop), loop.around[size_t(loop.depth)]);
     ++loop.depth;
     std::swap(static_cast<LightSetup&>(loop), loop.next);
     loop.next.setup = -1;
-    if (!info.setUp) loop.setup = -1; // that of a loop of which nobody wanted the result
+    if (!info.setUp) loop.setup = -1; // of a loop whose result was unused
     loop.lights.clear();
     loop.light = -1;
     loop.rows.assign(rows, rows + size_t(7) * size_t(lanes));
@@ -83,7 +83,7 @@ int32_t Answers::lightBegin(KernelRun& c, int site, int first, uint64_t mask, in
         loop.lights = turnsOf(*c.binding, info.nameId);
         return int32_t(loop.lights.size());
     }
-    // Known only now: each point may have its own.
+    // Names computed at run time may vary over the points.
     std::vector<int32_t> wanted;
     for (int lane = 0; lane < lanes; ++lane)
         if (mask >> lane & 1) wanted.push_back(std::bit_cast<int32_t>(loop.given[size_t(row) * size_t(lanes) + size_t(lane)]));
@@ -104,7 +104,7 @@ bool Answers::isOfCategory(int32_t category, int light) {
 
 const std::vector<std::pair<int, int>>& Answers::turnsOf(const SurfaceBinding& b, int32_t category) {
     TurnsOfList& known = turnsOf_[uint64_t(uint32_t(category)) << 32 | uint32_t(b.lightList)];
-    if (known.lights == b.lights) return known.turns; // numbers of lists are given while the world is made
+    if (known.lights == b.lights) return known.turns; // indices of lists are assigned while the world is built
     known.lights = b.lights;
     known.turns.clear();
     const bool samples = world_->settings_.hider == Hider::Path || rsl::internedString(category) == rsl::kSampleLoop;
@@ -151,7 +151,7 @@ uint64_t Answers::lightFetch(KernelRun& c, int index, int first, uint64_t mask, 
     const auto [li, k] = loop.lights[size_t(index)];
     loop.light = li;
     const int row = loop.setup >= 0 ? c.bound->sites[size_t(loop.setup)].rowCategory : -1;
-    if (row >= 0) // points whose own category leaves this light out
+    if (row >= 0) // points whose category excludes this light
         for (int lane = 0; lane < lanes; ++lane)
             if ((mask >> lane & 1) &&
                 !isOfCategory(std::bit_cast<int32_t>(loop.given[size_t(row) * size_t(lanes) + size_t(lane)]), li))
@@ -162,17 +162,17 @@ uint64_t Answers::lightFetch(KernelRun& c, int index, int first, uint64_t mask, 
 }
 
 namespace {
-/// The cone of a loop at its points. Most loops have one angle.
+/// The cone of a loop at its points. Most loops have a uniform angle.
 class LoopCone {
 public:
     LoopCone(const LightLoop& loop, size_t width) : rows_(loop.rows.data()), width_(width) {}
-    /// Whether light from this way comes through it.
+    /// Whether the cone contains this direction.
     bool has(size_t lane, const Vec3& toLight) {
         const float angle = rows_[6 * width_ + lane];
         if (!(angle < float(kPi))) return true;
         Vec3 axis(rows_[3 * width_ + lane], rows_[4 * width_ + lane], rows_[5 * width_ + lane]);
         const float most = std::max({std::fabs(axis.x), std::fabs(axis.y), std::fabs(axis.z)});
-        if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // its square must be a number
+        if (most > 1e15f || (most > 0 && most < 1e-15f)) axis = axis / most; // keeps its square finite
         const float la = length(axis), ll = length(toLight);
         if (angle != angle_) cosine_ = float(exact::cos(angle_ = angle));
         return !(la > 0 && ll > 0) || dot(axis, toLight) >= la * ll * cosine_;
@@ -212,7 +212,7 @@ uint64_t Answers::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet&
 
 uint64_t Answers::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int first, uint64_t mask, int lanes, float* out) {
     const BoundLight& light = world_->lights_[size_t(li)];
-    // Kept: the same light, sample, P, Ns, sent values and outputs of the surface; of a sky also the same cone.
+    // Cache key: light, sample, P, Ns, sent values and outputs of the surface; for a sky also the cone.
     const uint64_t name = keptName(loop, light, li, k, world_->settings_.hider == Hider::Path);
     LightLoop::Kept passing;
     const bool room = loop.kept.size() < limits::kLightCache || loop.kept.count(name);

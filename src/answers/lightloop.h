@@ -1,4 +1,4 @@
-// illuminance: what a loop over lights remembers between its turns, and what is kept for the next loop of the same points.
+// illuminance loops: state during iterations, and caches for later loops at the same points.
 #pragma once
 #include "world/impl.h"
 #include <deque>
@@ -7,61 +7,61 @@
 
 namespace alpenglow::transport {
 
-/// What a light may ask about the surface that it lights. Indices are those of the queries of evaluateLight().
+/// Queries of a light to the surface that it lights. Indices are those of the queries of evaluateLight().
 struct LitSurface {
     std::function<const SurfaceBinding*(int query)> binding;
-    /// Value of an output parameter as it is now; false: ask the instance.
+    /// Current value of an output parameter; returns false to use the instance's.
     std::function<bool(int query, const std::string& name, std::vector<float>&)> output;
-    /// The run of its displacement shader and the point there; null: ask the instance.
+    /// The run of its displacement shader and the index of the point; null: use the instance.
     std::function<const struct KernelRun*(int query, int& point)> displaced;
 };
 
-/// One run of a light's kernel: what differs from the light as it is bound.
+/// A run of a light's kernel: differences from the bound light.
 struct LightCall {
-    const shading::ParameterBlock* parameters = nullptr; ///< instead of the instance's: with values that a surface has sent
-    const BoundKernel* kernel = nullptr;                 ///< for the strings that it has sent; of a LightGroup, its own
-    std::span<const BoundLight* const> of; ///< by query, lights of one LightGroup, equal ones side by side; empty: all are of one
+    const shading::ParameterBlock* parameters = nullptr; ///< replaces the instance's: with values sent by a surface
+    const BoundKernel* kernel = nullptr;                 ///< for sent strings; for a LightGroup, its own
+    std::span<const BoundLight* const> of; ///< by query: lights of one LightGroup, sorted; empty: all queries are to one light
     const LitSurface* lit = nullptr;
-    const std::vector<char>* inMedium = nullptr; ///< by query: a medium lies before the emitter, and not its atmosphere
-    std::vector<float>* values = nullptr;        ///< gets BoundLight::values: valueWidth numbers a query
+    const std::vector<char>* inMedium = nullptr; ///< by query: a medium, not its atmosphere, is before the emitter
+    std::vector<float>* values = nullptr;        ///< receives BoundLight::values: valueWidth numbers for each query
     std::span<const int> more;                   ///< further outputs of `kernel`,
-    std::vector<float>* moreValues = nullptr;    ///< and their numbers, query by query
+    std::vector<float>* moreValues = nullptr;    ///< their values, by query
 };
 
-/// How far shadow rays go to a light sample, and the radius of the disk there that they go to; 0: to a point.
+/// Distance of shadow rays to a light sample, and radius of the disk that they end on; 0: a point.
 struct ShadowReach {
     float distance = 1e38f, radius = 0;
 };
 
-/// What the setup before a loop gave.
+/// Results of the setup before a loop.
 struct LightSetup {
     int setup = -1;                  ///< its call site; -1: none
     std::vector<float> given;        ///< its arguments
-    std::vector<uint64_t> givenHash; ///< by lane, over what lights can see of them
+    std::vector<uint64_t> givenHash; ///< by lane: hash of those visible to lights
 };
 
-/// One loop that runs, and its turn.
+/// A running loop and its current iteration.
 struct LightTurns : LightSetup {
-    std::vector<std::pair<int, int>> lights; ///< (light, sample) by turn
+    std::vector<std::pair<int, int>> lights; ///< (light, sample) by iteration
     std::vector<float> rows;                 ///< P, axis, angle: seven rows
     bool refresh = false;                    ///< "lightcache" "refresh"
-    // The turn that runs now.
+    // The current iteration.
     int light = -1;                 ///< -1: no loop runs
     std::vector<float> values;      ///< by lane, the light's BoundLight::values
     std::vector<ShadowReach> reach; ///< by lane: KernelRun::lightReach
 };
 
-/// State of the loops of one strip: of the innermost that runs. A strip that waits for rays in the middle of its loop keeps it
-/// while others run theirs.
+/// State of the loops of one strip: of the innermost running one. A strip that waits for rays within a loop keeps it while others
+/// run theirs.
 struct LightLoop : LightTurns {
-    int first = -1;                ///< the strip's first point; -1: unused
-    int depth = 0;                 ///< how many loops run, one in the block of the other
-    std::deque<LightTurns> around; ///< of those the outer ones, outermost first; behind them is memory for others
-    LightSetup next;               ///< of the loop that begins next
+    int first = -1;                ///< first point of the strip; -1: unused
+    int depth = 0;                 ///< number of nested running loops
+    std::deque<LightTurns> around; ///< outer loops, outermost first; entries beyond are spare memory
+    LightSetup next;               ///< of the loop that starts next
 
     /// Results of one light sample for the points of the strip.
     struct Kept {
-        uint64_t have = 0, lit = 0, ran = 0; ///< ran: of a light with many samples, where some may be lit
+        uint64_t have = 0, lit = 0, ran = 0; ///< ran: for a light with many samples, evaluated even where not lit
         std::vector<float> key;              ///< the seven rows
         std::vector<uint64_t> hash;
         std::vector<float> out, values; ///< L, Cl, Ol: nine rows; values by lane
@@ -78,7 +78,7 @@ struct LightLoop : LightTurns {
     }
 };
 
-/// One sample of a light for all points of a batch: what loops find whose P is that of the surface, and that send nothing.
+/// A light sample for all points of a batch: for loops at the surface's P that send no values.
 struct LightSheet {
     bool made = false, refused = false;
     int size = 0;                   ///< points
@@ -88,24 +88,24 @@ struct LightSheet {
     std::vector<char> lit;          ///< by point
 };
 
-/// Lights that are sampled give every depth of loops samples of its own: the product of an outer and of an inner loop has the
-/// mean that it should have.
+/// Whether each nesting depth of loops has light samples of its own, so that products of outer and inner loops have the right
+/// mean.
 bool sampledAnew(const BoundLight&, bool path);
-/// The occurrence of random numbers for a turn of a light.
+/// Occurrence of the random numbers for an iteration.
 uint32_t drawOf(const LightLoop&);
-/// The name of what is kept of a turn of a light.
+/// Cache key of an iteration of a light.
 uint64_t keptName(const LightLoop&, const BoundLight&, int light, int turn, bool path);
 
-/// Whether its samples may be taken for points that do not ask: nothing comes of it but light.
+/// Whether a light may be evaluated for points that do not request it: it has no side effects.
 bool hasSheets(const BoundLight&);
 
 /// The words of a light's __category.
 std::string categoriesOf(const BoundLight&);
 
-/// The length of a parameter of the light that is an array of numbers; 0 when there is none.
+/// Length of an array parameter of the light with numbers; 0 if there is none.
 int elementsOf(const BoundLight&, const std::string& parameter);
 
-/// The numbers that a solar() with an angle makes a direction of: how far from its axis (0: along it), and the turn about it.
+/// Random numbers for the direction of a solar() with an angle: distance from its axis (0: along it), and azimuth.
 Color coneNumbers(Vec2 random);
 
 } // namespace alpenglow::transport

@@ -1,5 +1,4 @@
-// Samples of lights for the points of a loop: where they lie, the light's kernel with what the surface sends, what stands in
-// between.
+// Light samples for the points of a loop: positions on lights, light kernels with sent values, and occlusion.
 #include "answers/answers.h"
 #include "base/direction.h"
 #include "base/exact.h"
@@ -56,14 +55,14 @@ void Answers::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int f
         tracer_->evaluateLight(light, q, out, call);
         return;
     }
-    // Sent values: one run for all points that send the same. Elements of an array go to an array of the same class.
+    // Sent values: one run for all points that send equal values. Elements of an array go to an array of the same class.
     const SiteInfo& s = c.bound->sites[size_t(loop.setup)];
     if (!s.sentKey.empty())
         if (auto v = light.variants.find(s.sentKey); v != light.variants.end()) call.kernel = &v->second;
     struct Sent {
         std::string parameter;
         int row, size, at;
-    }; ///< at: where its numbers begin, of an array's element
+    }; ///< at: start of its numbers, for an element of an array
     std::vector<Sent> sent;
     for (const SiteInfo::Sent& v : s.sent) {
         const auto have = light.instance->parameters.numbers.find(v.parameter);
@@ -118,7 +117,7 @@ void Answers::keepChannels(KernelRun& c, const BoundLight& light, int point, con
     size_t width = 0;
     for (int w : world_->outputWidths_) width += size_t(w);
     c.lightChannels.resize(c.points.size() * width);
-    std::vector<const std::string*> missing; // what it might have given, and did not
+    std::vector<const std::string*> missing; // not written by the light
     const auto given = [&](const rsl::OutputName& name) {
         return std::none_of(missing.begin(), missing.end(), [&](const std::string* m) { return *m == name.name; });
     };
@@ -181,23 +180,23 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
             return false;
         if (world_->accel_->hasSolids() &&
             !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter))
-            return false; // what a solid leaves of a lamp
+            return false; // the part of a lamp outside of its CSG solid
         p.shape = s.shape;
         p.P = meetsAt(p.surface);
         p.N = p.surface.n;
-        // A loop has no lobe of its own: it sees an emitter as wide as diffuse() does.
+        // A loop has no lobe: it sees an emitter with the footprint of diffuse().
         static const LobeKind* const diffuse = findLobe("diffuse");
         if (usesFootprint(light)) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse->spread(LobeParams{})));
         // cosLight A / (pi d^2 n) (docs/light.md)
         *factor = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns));
     } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
-        // One direction, that of the surface: what diffuse() makes of it is what an even sky gives.
+        // A single direction, the surface normal: diffuse() then returns what a uniform sky gives.
         const Vec3 w = directionOr(axis, directionOr(dot(p.N, p.I) > 0 ? -p.N : p.N, Vec3(0, 0, 1)));
         p.shape = nullptr;
         p.P = at + w;
         p.N = -w;
     } else if (light.kind == LightKind::Environment) {
-        // The sky from directions evenly in the cone of the loop, of an uneven sky half of them from where it is bright.
+        // The sky in directions uniform in the cone of the loop; for a sky with a table, half of them by radiance.
         if (!p.ray) return false;
         const Vec3 way = directionOr(axis, {});
         const bool all = !(dot(way, way) > 0) || !(angle < float(kPi));
@@ -208,7 +207,7 @@ bool Answers::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, 
         const Vec3 middle = all ? Vec3(0, 0, 1) : way;
         Vec2 u = rng.pair(p.ray->vertex, use, nth);
         Vec3 w;
-        float density = 0; // of the table, for a half of the directions
+        float density = 0; // density by the table, for half of the directions
         const bool byTable = light.sky && u.x < .5f;
         if (light.sky) u.x = byTable ? 2 * u.x : 2 * u.x - 1;
         if (!byTable) w = Basis(middle).toWorld(sampleCone(cap, u));
@@ -253,7 +252,7 @@ uint64_t Answers::sampleLight(KernelRun& c, const LightLoop& loop, int li, int t
     std::vector<LightValue> v;
     std::vector<float> values;
     const size_t width = size_t(light.valueWidth);
-    // A light that sends many samples gives all of them when it runs for the first.
+    // A light that sends many samples returns all of them in the run for the first.
     const auto ran = light.sentCl >= 0 && turn > 0
                          ? loop.kept.find(keptName(loop, light, li, 0, world_->settings_.hider == Hider::Path))
                          : loop.kept.end();

@@ -1,6 +1,6 @@
-// Light sheets: what a sample of a light gives all points of a batch, found at once when the first strip asks for it. The loops
-// that most shaders write begin at P of the surface and send nothing: what their lights find does not depend on the loop. Strips
-// then only look up their points. The numbers are those that the strips would find one by one.
+// Light sheets: a light sample for all points of a batch, evaluated when the first strip needs it. Most loops start at the
+// surface's P and send no values, so the result does not depend on the loop; strips then look up their points. The numbers equal
+// those that strips would compute one by one.
 #include "answers/answers.h"
 #include "world/cloudsite.h"
 #include <bit>
@@ -8,7 +8,8 @@
 namespace alpenglow::transport {
 
 bool hasSheets(const BoundLight& l) {
-    // A sky depends on the loop's cone; what a light sends, gives to AOVs, traces, prints or bakes is for the points that ask.
+    // A sky depends on the loop's cone; lights that send samples, write AOVs, trace, print or bake run only for points that
+    // request them.
     if (!l.kernel || l.kind == LightKind::Environment || l.sentCl >= 0 || l.channels || l.kernel.kernel->facts().suspends)
         return false;
     return std::none_of(l.kernel.sites.begin(), l.kernel.sites.end(), [](const SiteInfo& s) {
@@ -47,7 +48,7 @@ const LightSheet* Answers::sheetOf(KernelRun& c, const LightLoop& loop, int li, 
     LightSheet& sheet = c.sheets[size_t(number)];
     if (sheet.refused) return nullptr;
     if (!sheet.made) {
-        // Where few points of the strip ask, few of the others will.
+        // If few points of this strip need it, few others will.
         const int asking = std::popcount(mask), all = std::min(lanes, int(c.points.size()) - first);
         sheet.refused = 2 * asking < all;
         if (sheet.refused) return nullptr;

@@ -1,5 +1,5 @@
-// texture(), environment() and shadow() of kernels, and textureinfo(). What a call says about the lookup is known beforehand
-// (TextureSite); per point only the numbers are read.
+// texture(), environment(), shadow() and textureinfo(). Arguments are resolved in advance (TextureSite); only numbers are read
+// for each point.
 #include "answers/answers.h"
 #include "texture/shadow.h"
 #include "world/unknownfilter.h"
@@ -8,7 +8,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// The filter that a point names. A name that no filter has is reported once.
+/// The filter that a point names; reports unknown names once.
 texture::Filter filterOf(const TextureSite& t, const ServiceCall& call, int lane) {
     const std::string& name = rsl::internedString(std::bit_cast<int32_t>(call.at(t.filter, lane)));
     if (const auto known = texture::filterByName(name)) return *known;
@@ -16,7 +16,7 @@ texture::Filter filterOf(const TextureSite& t, const ServiceCall& call, int lane
     return t.options.filter;
 }
 
-/// The options of a lookup at one point.
+/// Reads the options of a lookup for one point.
 void readOptions(const TextureSite& t, const ServiceCall& call, int lane, texture::LookupOptions& o) {
     const auto number = [&](int row, float fallback) { return row < 0 ? fallback : call.at(row, lane); };
     if (t.filter >= 0) o.filter = filterOf(t, call, lane);
@@ -28,7 +28,7 @@ void readOptions(const TextureSite& t, const ServiceCall& call, int lane, textur
     o.fill = number(t.fill, 0);
 }
 
-/// texture(): with one point and its footprint, or with four.
+/// texture(): with one position and its footprint, or with four positions.
 void lookupTexture(const TextureSite& t, const ServiceCall& call, int lane, texture::Handle map, int channel,
                    const texture::LookupOptions& o, float* v, float* g, float* cu) {
     const auto row = [&](size_t k) { return call.at(t.rows[k], lane); };
@@ -44,7 +44,7 @@ void lookupTexture(const TextureSite& t, const ServiceCall& call, int lane, text
     }
 }
 
-/// environment(): likewise with directions.
+/// environment(): the same with directions.
 void lookupEnvironment(const TextureSite& t, const ServiceCall& call, int lane, texture::Handle map,
                        const texture::LatLong& latLong, int channel, const texture::LookupOptions& o, float* v, float* g,
                        float* cu) {
@@ -60,8 +60,8 @@ void lookupEnvironment(const TextureSite& t, const ServiceCall& call, int lane, 
     }
 }
 
-/// What shaders see of a map that cannot be read: the color of Option "texture" "missing", channel by channel; beyond them the
-/// fill value.
+/// Result for a map that cannot be read: the color of Option "texture" "missing", by channel; the fill value for further
+/// channels.
 void answerMissing(const TextureSite& t, const ServiceCall& call, const Color& colour) {
     call.eachLane([&](int lane) {
         const int first = t.channel < 0 ? 0 : int(call.at(t.channel, lane));
@@ -70,7 +70,7 @@ void answerMissing(const TextureSite& t, const ServiceCall& call, const Color& c
     });
 }
 
-/// Points side by side, where none wants slopes: texture() with one place of each, in a map that is the same for all.
+/// texture() with one position for consecutive points, without derivatives, in a map that is the same for all.
 bool lookupTogether(const TextureSite& t, const ServiceCall& call, texture::Handle map) {
     if (t.computed || t.slopes > 0 || t.rows.size() < 6 || t.rows.size() >= 8 || t.count < 1) return false;
     constexpr int kMost = texture::LookupLanes::kLanes;
@@ -95,7 +95,7 @@ bool lookupTogether(const TextureSite& t, const ServiceCall& call, texture::Hand
             for (int i = 0; i < n; ++i)
                 if (l.mask >> i & 1) l.filter[i] = filterOf(t, call, from + i);
         const int channel = t.channel < 0 ? 0 : int(call.at(t.channel, from + leader));
-        if (t.channel >= 0) // points that name other channels take another turn
+        if (t.channel >= 0) // points with other channels are handled in another pass
             for (int i = 0; i < n; ++i)
                 if ((l.mask >> i & 1) && int(call.at(t.channel, from + i)) != channel) return false;
         texture::lookup2DLanes(map, channel, t.count, t.options.asLight, l);
@@ -136,7 +136,7 @@ void answerTexture(Answers& answers, const ServiceCall& call) {
     });
 }
 
-/// Attribute "shadow" of a primitive: its two ends of the bias; negative where it says nothing.
+/// Attribute "shadow" of a primitive: its two biases; negative if not set.
 static std::pair<float, float> biasOf(AnswerMemo& memo, const scene::Attributes* a) {
     if (!a) return {-1.f, -1.f};
     const auto [at, fresh] = memo.shadowBias.try_emplace(a, -1.f, -1.f);
@@ -151,7 +151,7 @@ static std::pair<float, float> biasOf(AnswerMemo& memo, const scene::Attributes*
     return at->second;
 }
 
-/// The options of shadow() at one point.
+/// Options of shadow() for one point.
 static texture::ShadowOptions shadowOptions(const TextureSite& t, const ServiceCall& call, int lane,
                                             std::pair<float, float> ofPrimitive, const Matrix& toWorld) {
     const auto number = [&](int row, float otherwise) {
@@ -183,7 +183,7 @@ static texture::ShadowOptions shadowOptions(const TextureSite& t, const ServiceC
     return o;
 }
 
-/// A picture does not say from where it was seen.
+/// Reports a map without camera matrices, which cannot be a shadow map.
 static void noteNoShadowMap(texture::Handle map, const ServiceCall& call) {
     if (!map || !map->tiles.empty() || (map->worldToCamera && map->worldToNDC)) return;
     call.diagnostics.reportOnce(
@@ -191,7 +191,7 @@ static void noteNoShadowMap(texture::Handle map, const ServiceCall& call) {
         {Severity::Warning,
          Rie::BadFile,
          call.place(),
-         "shadow(): \"" + map->path + "\" is no shadow map: it has no matrices of a camera, and gives no shadow",
+         "shadow(): \"" + map->path + "\" is not a shadow map: it has no camera matrices, so it casts no shadow",
          "Display of type \"zfile\" or \"deepshad\", or MakeShadow of the former, makes one",
          {}});
 }
@@ -200,7 +200,7 @@ void answerShadow(Answers& answers, const ServiceCall& call) {
     const TextureSite& t = *call.s.map;
     const WorldImpl& world = answers.world();
     const auto place = [&] { return call.place(); };
-    if (call.c.light && world.settings_.hider == Hider::Path) { // what rays tell exactly
+    if (call.c.light && world.settings_.hider == Hider::Path) { // traced shadows are exact
         if (t.computed || !t.name.empty())
             call.diagnostics.reportOnce("shadowmaps", {Severity::Info,
                                                        Rie::NoError,
@@ -256,9 +256,10 @@ std::string formatOf(const texture::TextureInfo& t) {
 void answerTextureInfo(Answers& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     const rsl::ir::Site& d = call.d;
-    const Matrix& fromCurrent = answers.world().cameraToWorld_; // maps hold matrices from the world, shaders ask from "current"
+    // Maps store matrices from world space, shaders query from "current"
+    const Matrix& fromCurrent = answers.world().cameraToWorld_;
     call.each([&](int lane, const ShadePoint&) {
-        int32_t asked[2] = {0, 0}; // the map and the field; each point may have its own
+        int32_t asked[2] = {0, 0}; // map and field; both may vary over the points
         const std::string* known[2] = {nullptr, nullptr};
         int row = 0;
         for (size_t k = 0; k < 2; ++k) {

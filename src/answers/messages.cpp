@@ -1,4 +1,4 @@
-// What shaders tell each other: parameters and outputs of the shaders of a primitive, of lights and volumes; attributes.
+// Queries between shaders: parameters and outputs of a primitive's shaders, of lights and volumes; attributes.
 #include "answers/answers.h"
 #include "scene/scene.h"
 #include "world/objectbox.h"
@@ -7,7 +7,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// What the shader has put into one of its outputs, in a run that is over. `t`: of the parameter's type.
+/// Value of a shader's output in a completed run. `t`: of the parameter's type.
 bool writtenBy(const shading::Batch& run, int point, const std::string& parameter, Told& t) {
     rsl::OutputName name = rsl::OutputName::parameterOf(parameter);
     const auto& outputs = run.kernel().outputs();
@@ -27,7 +27,7 @@ bool writtenBy(const shading::Batch& run, int point, const std::string& paramete
     return true;
 }
 
-/// The value that the primitive has for a parameter of one of its shaders, which overrides the scene's.
+/// Value of a primitive variable that overrides a parameter of one of its shaders.
 void overridden(const ShadePoint& p, const std::string& parameter, Told& t) {
     const int v = p.shape ? p.shape->findPrimvar(parameter) : -1;
     if (v < 0) return;
@@ -49,7 +49,7 @@ Asks asked(const std::string& op) {
 
 const InstanceRef& shaderOf(const SurfaceBinding& b, Asks who, const ShadePoint& p) {
     static const InstanceRef none;
-    // A ray that sees the back comes from inside. A light asks about the surface that it lights.
+    // A ray that hits the back comes from inside. For a light: seen from the lit surface.
     const bool back = p.lit ? dot(p.lit->n, p.viewI) > 0 : dot(p.surface.n, p.I) > 0;
     switch (who) {
     case Asks::Surface:
@@ -83,7 +83,7 @@ void answerMessage(Answers& answers, const ServiceCall& q) {
         std::optional<Told> t = known->second;
         const std::string& name = rsl::internedString(q.nameId(lane));
         const int point = q.first + lane;
-        if (c.lit) { // a light asks: its point is not that of the surface
+        if (c.lit) { // a light queries: its point is not on the surface
             if (std::vector<float> now; who == Asks::Surface && c.lit->output(point, name, now)) t->numbers = now;
             int there = -1;
             const KernelRun* displaced = who == Asks::Displacement ? c.lit->displaced(point, there) : nullptr;
@@ -91,7 +91,7 @@ void answerMessage(Answers& answers, const ServiceCall& q) {
             return q.answer(lane, *t);
         }
         if (who == Asks::Surface || who == Asks::Displacement || who == Asks::Atmosphere) overridden(p, name, *t);
-        // An atmosphere comes when the surface has run; the displacement has run before both.
+        // The atmosphere runs after the surface, the displacement before both.
         const KernelRun& run = c.surface ? *c.surface : c;
         const int there = c.surface ? c.surfacePoint[size_t(point)] : point;
         if (who == Asks::Surface && c.surface && run.batch) writtenBy(*run.batch, there, name, *t);
@@ -112,7 +112,7 @@ std::optional<Told> toldAtHit(Answers& answers, const ShadePoint& p, const Insta
             return t;
         }
     }
-    // What the shader sees of the primitive. The rest of a point is not known unless a kernel reads it.
+    // Variables of the primitive as the shader sees them. Other variables of a point are known only if a kernel reads them.
     if (!p.shape || !run || (name != "P" && name != "N" && name != "Cs" && name != "Os" && p.shape->findPrimvar(name) < 0))
         return {};
     std::optional<Told> t = primitiveVariable(*p.shape, p.surface, name);
@@ -143,7 +143,7 @@ const LightParameter& lightParameter(Answers& answers, int32_t id, int light) {
     return *made;
 }
 
-/// What a surface has sent to a parameter of a light.
+/// Value that a surface sends to a parameter of a light.
 void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup, int lane, const std::string& name, Told& t) {
     if (t.kind == rsl::ir::Kind::String) {
         for (const auto& [parameter, text] : setup.sentStrings)
@@ -161,7 +161,7 @@ void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup
                             [&](const SiteInfo::Sent& v) { return v.element == element && v.parameter == name; });
     };
     if (const auto whole = find(-1); whole != setup.sent.end()) sent(whole->row, whole->size);
-    for (int n = 0; t.elements > 0; ++n) { // an array that was sent: what it does not reach stays
+    for (int n = 0; t.elements > 0; ++n) { // a sent array: elements beyond its length are unchanged
         const auto element = find(n);
         if (element == setup.sent.end() || size_t(element->size) != size) break;
         sent(element->row, int(size));
@@ -178,7 +178,7 @@ void answerLightSource(Answers& answers, const ServiceCall& q) {
     const LightParameter* same = q.s.nameId ? &lightParameter(answers, q.s.nameId, loop.light) : nullptr;
     if (same && !same->told) return;
     q.each([&](int lane, const ShadePoint&) {
-        // What the light's shader has written; what was sent to it; what it was given.
+        // In this order: written by the light's shader; sent to it; set by the scene.
         const int32_t name = q.nameId(lane);
         const LightParameter& p = same ? *same : lightParameter(answers, name, loop.light);
         if (!p.told) return;
@@ -196,7 +196,7 @@ namespace {
 
 constexpr char kLight[] = "light:", kOfLight[] = "attribute:light:";
 
-/// In the shader of a light all is about the light: "light:" in front says it once more.
+/// In a light's shader all attributes are the light's; prefix "light:" is optional.
 std::optional<Information> ofTheLightItself(const WorldImpl& w, const scene::Light& light, const std::string& name) {
     if (!light.attributes) return std::nullopt;
     std::optional<Information> i = attributeOf(w, *light.attributes, name, nullptr, nullptr);
@@ -204,8 +204,7 @@ std::optional<Information> ofTheLightItself(const WorldImpl& w, const scene::Lig
     return i;
 }
 
-/// In a loop over lights names with "light:" in front are about the light of the turn; others, and what it does not have, are
-/// not.
+/// In a light loop names with prefix "light:" refer to the current light; other names, and those that it does not have, do not.
 std::optional<Information> ofTheLightOfTheTurn(const WorldImpl& w, const scene::Light& light, const std::string& name) {
     if (!light.attributes) return std::nullopt;
     if (name.rfind(kLight, 0) == 0) return attributeOf(w, *light.attributes, name.substr(sizeof kLight - 1), nullptr, nullptr);
@@ -213,10 +212,10 @@ std::optional<Information> ofTheLightOfTheTurn(const WorldImpl& w, const scene::
     return std::nullopt;
 }
 
-/// Only imagers run without a primitive and without a light.
+/// Whether an imager runs: it has neither primitive nor light.
 bool runsImager(const KernelRun& c) { return !c.light && !c.binding && c.bindings.empty(); }
 
-/// An imager sees what held when the world began (RISpec 3.2, section 4).
+/// An imager sees the attributes at the start of the world (RISpec 3.2, section 4).
 std::optional<Information> ofTheFrame(const WorldImpl& w, const std::string& name) {
     const scene::AttributesRef& a = w.frame().options.attributes;
     return a ? attributeOf(w, *a, name, nullptr, nullptr) : std::nullopt;
@@ -229,7 +228,7 @@ std::optional<Information> ofThePrimitive(const WorldImpl& w, const ShadePoint& 
 
 } // namespace
 
-constexpr size_t kMostAttributes = 1 << 14; // answers that are kept: scenes have attributes by the million
+constexpr size_t kMostAttributes = 1 << 14; // limit of cached answers: scenes have attributes by the million
 
 void answerAttribute(Answers& answers, const ServiceCall& q) {
     const WorldImpl& w = answers.world();
@@ -258,7 +257,7 @@ void answerAttribute(Answers& answers, const ServiceCall& q) {
             if (known->second) q.answer(lane, *known->second);
             return;
         }
-        if (!self && !imager && p.shape && name == kObjectBox) { // one of a million points takes no time for each question
+        if (!self && !imager && p.shape && name == kObjectBox) { // cached by primitive: constant time for each query
             const auto [known, fresh] = memo.boxes.try_emplace(p.shape->source().primitive.get());
             if (fresh)
                 if (const auto box = ofThePrimitive(w, p, name, nullptr)) known->second = Told(*box);
@@ -277,7 +276,7 @@ void answerAttribute(Answers& answers, const ServiceCall& q) {
 void answerShaderName(Answers& answers, const ServiceCall& q) {
     const WorldImpl& w = answers.world();
     KernelRun& c = q.c;
-    const bool own = q.d.strings.empty() && q.d.argKinds.empty(); // of the shader that asks
+    const bool own = q.d.strings.empty() && q.d.argKinds.empty(); // of the querying shader
     q.each([&](int lane, const ShadePoint& p) {
         const SurfaceBinding* b = c.light && own ? nullptr : q.binding(w, lane);
         const std::string kind = own ? "" : q.name(lane);
@@ -295,7 +294,7 @@ void answerShaderName(Answers& answers, const ServiceCall& q) {
 }
 
 void answerPrimitiveVariable(const ServiceCall& q) {
-    q.each([&](int lane, const ShadePoint& p) { // of a light: its own geometry
+    q.each([&](int lane, const ShadePoint& p) { // for a light: its own geometry
         if (!p.shape) return;
         const std::optional<Told> t = primitiveVariable(*p.shape, p.surface, q.name(lane));
         if (!t) return;

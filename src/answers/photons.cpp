@@ -1,4 +1,4 @@
-// photonmap() and caustic(): what photon maps say.
+// photonmap() and caustic(): photon map lookups.
 #include "answers/answers.h"
 #include "base/direction.h"
 
@@ -15,7 +15,7 @@ void answerPhotons(Answers& answers, const ServiceCall& call) {
     const auto count = [&](int row, int lane, int none) {
         if (row < 0) return none;
         const float n = call.at(row, lane);
-        return n >= 0 ? int(std::min(n, 1e6f)) : 0; // what is no number asks for nothing
+        return n >= 0 ? int(std::min(n, 1e6f)) : 0; // not a number: 0
     };
     call.each([&](int lane, const ShadePoint&) {
         const SurfaceBinding* b = s.caustic ? call.binding(world, lane) : nullptr;

@@ -1,4 +1,4 @@
-// occlusion(), indirectdiffuse() and subsurface() of point clouds: no ray is sent.
+// occlusion(), indirectdiffuse() and subsurface() from point clouds, without rays.
 #include "answers/cloudspace.h"
 #include "lobes/dipole.h"
 #include "texture/lookup.h"
@@ -9,7 +9,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// The clouds that the point of a lane names. They live until the next call.
+/// The clouds that a lane names, valid until the next call.
 void cloudsOf(Answers& answers, const ServiceCall& call, int lane, bool light, const std::optional<clouds::Shear>& shear,
               std::vector<const clouds::PointOctree*>& to) {
     const PointSite& s = *call.s.points;
@@ -25,12 +25,13 @@ void cloudsOf(Answers& answers, const ServiceCall& call, int lane, bool light, c
                                     {Severity::Error,
                                      Rie::MissingData,
                                      call.place(),
-                                     call.d.op + "() with \"pointbased\" names no point cloud; it finds nothing",
-                                     "\"filename\" or \"filenames\" says which",
+                                     call.d.op + "() with \"pointbased\" needs the name of a point cloud; it returns 0",
+                                     "set \"filename\" or \"filenames\"",
                                      {}});
 }
 
-/// A query in the space of the clouds. `scale`: of lengths there to those in current space. False: it makes no sense.
+/// Makes a query in the space of the clouds. `scale`: of lengths there relative to current space. Returns false for invalid
+/// arguments.
 bool queryOf(const ServiceCall& call, int lane, const ShadePoint& p, const Matrix& to, float scale, clouds::HemisphereQuery& q) {
     const PointSite& s = *call.s.points;
     const auto number = [&](int row, float fallback) { return row < 0 ? fallback : call.at(row, lane); };
@@ -61,7 +62,7 @@ void put(const ServiceCall& call, int row, int lane, const Color& c) {
     for (int k = 0; k < 3 && row >= 0; ++k) call.put(row + k, lane, c[k]);
 }
 
-/// What is seen between the points: the map, and where it is open.
+/// Light from unoccluded directions: by the environment map; also the mean open direction.
 Color between(Answers& answers, const PointSite& s, const clouds::Hemisphere& h, const Matrix& back, Vec3& towards) {
     Color map(0);
     towards = Vec3(0.f);
@@ -111,7 +112,7 @@ void answerPointHemisphere(Answers& answers, const ServiceCall& call) {
     });
 }
 
-/// Jensen and Buhler, A Rapid Hierarchical Rendering Technique for Translucent Materials (2002).
+/// By Jensen and Buhler, A Rapid Hierarchical Rendering Technique for Translucent Materials (2002).
 void answerPointSubsurface(Answers& answers, const ServiceCall& call) {
     const PointSite& s = *call.s.points;
     SubsurfaceSite site = s.below;
@@ -123,7 +124,7 @@ void answerPointSubsurface(Answers& answers, const ServiceCall& call) {
         if (!p.shape) return;
         const Matrix& to = space.at(lane, p);
         cloudsOf(answers, call, lane, true, space.shear(), from);
-        const double scale = double(space.growth()); // the file's lengths
+        const double scale = double(space.growth()); // lengths of the file
         const Vec3 at(transformPoint(to, Vec3d(tripleAt(call, s.point, lane))));
         if (!std::isfinite(dot(at, Vec3(1))) || !(scale > 0)) return;
         const Below b = belowOf(

@@ -1,4 +1,4 @@
-// ptexture(): lookups in files that have a picture for each face.
+// ptexture(): lookups in files with a picture for each face.
 #include "answers/answers.h"
 #include "geometry/faceplace.h"
 #include "world/ptexsite.h"
@@ -10,7 +10,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// How far a step in space goes along u and v of a face.
+/// Converts a step in space to u and v of a face.
 Vec2 stepOnFace(const geometry::FacePlace& f, const Vec3& step) {
     const double a = dot(f.Pu, f.Pu), b = dot(f.Pu, f.Pv), c = dot(f.Pv, f.Pv), det = double(a) * c - double(b) * b;
     if (!(det > 1e-12 * double(a) * c)) return {0, 0};
@@ -18,7 +18,7 @@ Vec2 stepOnFace(const geometry::FacePlace& f, const Vec3& step) {
     return {float((c * x - b * y) / det), float((a * y - b * x) / det)};
 }
 
-/// Where the lookup is, and how wide: of two steps from point to point, which are half the sides of a box each at most.
+/// Position and width of the lookup: from the differences to the neighbouring points, at most half the sides of a box each.
 void footprint(const PtexSite& s, const ServiceCall& call, int lane, const ShadePoint& p, ptex::Query& q) {
     const auto row = [&](size_t k) { return k < s.rows.size() ? call.at(s.rows[k], lane) : 0.f; };
     if (s.rows.size() >= 8) {
@@ -77,8 +77,8 @@ void answerPtexture(Answers& answers, const ServiceCall& call) {
                                          Rie::Range,
                                          call.place(),
                                          "ptexture(): \"" + call.name(lane) + "\" has " + std::to_string(t->head().faces.size()) +
-                                             " faces, and a face beyond them is asked for; there it is 0",
-                                         "a shader parameter __faceindex gets the number of the face",
+                                             " faces, but the shader requests a face beyond them; the result is 0",
+                                         "a shader parameter __faceindex receives the number of the face",
                                          {}});
         for (int k = 0; k < s.count; ++k) call.put(k, lane, out[k]);
     });

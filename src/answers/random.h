@@ -4,7 +4,7 @@
 
 namespace alpenglow::transport {
 
-/// Dimensions that are not call sites of a shader. Sites of shaders are below 2^20.
+/// Dimensions other than call sites of shaders, which are below 2^20.
 enum RandomUse : uint32_t {
     kChooseLobe = 1u << 20,
     kRoulette,
@@ -27,17 +27,17 @@ public:
     Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get2(vertex, use, occurrence); }
     float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get1(vertex, use, occurrence); }
 
-    /// For asking for many at a time (render::NumberRows).
+    /// For drawing many at once (render::NumberRows).
     const render::SampleNumbers& numbers() const { return numbers_; }
 
-    /// The numbers of draw k of n that are made alike: spread over the draws as over samples (SampleNumbers::draw).
+    /// Numbers of draw k of n equal draws: stratified over the draws as over samples (SampleNumbers::draw).
     Random draw(uint32_t k, uint32_t n) const { return Random(numbers_.draw(k, n)); }
 
 private:
     render::SampleNumbers numbers_;
 };
 
-/// The vertex key of what lies behind a call: a hash of the way there.
+/// Random number key of the next vertex: a hash of the path of calls.
 inline uint32_t childVertex(uint32_t vertex, uint32_t site, uint32_t occurrence) {
     uint64_t h = render::mix64((uint64_t(vertex) << 32 | site) ^ render::mix64(occurrence + 0x9e3779b97f4a7c15ull));
     uint32_t v = uint32_t(h >> 32);

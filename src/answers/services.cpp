@@ -1,4 +1,4 @@
-// What the renderer answers at once: messages, the state of rays and attributes; textures in maps.cpp.
+// Services that answer at once: messages, ray state and attributes; textures are in maps.cpp.
 #include "answers/answers.h"
 #include "rsl/services_basic.h"
 #include "shading/gridpoint.h"
@@ -70,7 +70,7 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
         &c.bound->kernel->files());
 }
 
-/// Not under path: the sum of the ambient lights that are on.
+/// Under the other hiders: sum of the ambient lights that are on.
 void Answers::sumAmbient(const ServiceCall& call) {
     KernelRun& c = call.c;
     if (!c.binding) return;
@@ -115,7 +115,7 @@ void answerOption(Answers& answers, const ServiceCall& call) {
     });
 }
 
-/// rayinfo(), rendererinfo(), raylevel() and its kin.
+/// rayinfo(), rendererinfo(), raylevel() and similar.
 void answerRay(const ServiceCall& call) {
     const KernelRun& c = call.c;
     call.each([&](int lane, const ShadePoint& p) {
@@ -140,7 +140,7 @@ void Answers::answerDepth(const ServiceCall& call) {
         [&](int lane, const ShadePoint&) { call.put(0, lane, range > 0 ? float((double(call.at(2, lane)) - lo) / range) : 0); });
 }
 
-/// transform() and its kin between spaces that are known only now.
+/// transform() and similar between spaces named at run time.
 void Answers::transformBetween(const ServiceCall& call) {
     const rsl::ir::Site& d = call.d;
     const int n = d.op == "mtransform" ? 16 : 3;
@@ -169,7 +169,7 @@ void Answers::transformBetween(const ServiceCall& call) {
     });
 }
 
-/// What printf() has made, for the world's log.
+/// Stores the text of a printf() in the world's log.
 void Answers::print(const ServiceCall& call, int lane, const std::string& text) {
     const KernelRun& c = call.c;
     const rsl::ir::Site& d = call.d;

@@ -1,11 +1,11 @@
-// __skysample() and __skydensity(): directions in proportion to the light of an environment map, for generateSamplesEnv() and
+// __skysample() and __skydensity(): directions in proportion to the radiance of an environment map, for generateSamplesEnv() and
 // evaluateSamplesEnv(), which are written in RSL.
 #include "answers/answers.h"
 
 namespace alpenglow::transport {
 
-/// Arguments: the map, then two numbers from 0 to 1, or a direction in the map's space. Results: the density per steradian, the
-/// direction of the former, the light there.
+/// Arguments: the map, then two numbers in [0, 1), or a direction in the map's space. Results: density per steradian; for
+/// __skysample() the direction; radiance there.
 void answerSky(Answers& answers, const ServiceCall& call) {
     const bool draws = call.d.op == "__skysample";
     const size_t numbers = draws ? 2 : 1;

@@ -8,7 +8,7 @@ namespace alpenglow::transport {
 struct WithoutScene::State {
     std::shared_ptr<WorldImpl> world;
     std::unique_ptr<Answers> answers;
-    const rsl::CompiledKernel* kernel = nullptr; ///< that `bound` is of
+    const rsl::CompiledKernel* kernel = nullptr; ///< the kernel of `bound`
     BoundKernel bound;
     KernelRun context;
 };

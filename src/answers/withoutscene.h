@@ -1,4 +1,4 @@
-// What kernels ask where there is no scene: `alpenglow eval` and `alpenglow shade`.
+// Services for kernels without a scene: `alpenglow eval` and `alpenglow shade`.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/vec.h"
@@ -10,18 +10,18 @@
 
 namespace alpenglow::transport {
 
-/// Answers texture(), environment() and textureinfo() from maps on disk, rayinfo() and its kin as for a camera ray, and
-/// rendererinfo(), by the code that answers in a scene. A missing map is one error with its place. For one thread.
+/// Answers texture(), environment() and textureinfo() from maps on disk, rayinfo() and similar as for a camera ray, and
+/// rendererinfo(), with the same code as in a scene. A missing map is reported once with its place. For one thread.
 class WithoutScene {
 public:
-    /// `texturePaths`: folders in which maps are looked for, in order.
+    /// `texturePaths`: search path of maps, in order.
     WithoutScene(std::vector<std::string> texturePaths, Diagnostics&);
     ~WithoutScene();
     WithoutScene(const WithoutScene&) = delete;
     WithoutScene& operator=(const WithoutScene&) = delete;
-    /// The points of the batch that runs next, in "current" space, and the eye that sees them.
+    /// Sets the points of the next batch in "current" space, and the eye position.
     void setPoints(const Vec3& eye, std::span<const Vec3> points);
-    /// As rsl::ServiceFn. False: it asks for something else, and nothing was written.
+    /// As rsl::ServiceFn. Returns false, without writing results, for other calls.
     bool answer(const rsl::CompiledKernel&, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in,
                 float* out);
 

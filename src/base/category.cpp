@@ -20,7 +20,7 @@ bool hasWord(std::string_view list, std::string_view word) {
     }
 }
 
-/// Reads and answers in one go: expressions are short, and there is nothing to keep.
+/// Parses and evaluates in one pass: expressions are short.
 struct Reader {
     std::string_view text, categories;
     std::string error;
@@ -82,7 +82,7 @@ struct Reader {
     bool all() {
         if (!next()) return true; // no restriction
         const bool in = list();
-        if (error.empty() && next()) fail(std::string("'") + text.front() + "' is not expected there");
+        if (error.empty() && next()) fail(std::string("'") + text.front() + "' is unexpected there");
         return in;
     }
 };

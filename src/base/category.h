@@ -5,13 +5,13 @@
 
 namespace alpenglow {
 
-/// Whether a shader of these categories (words between commas) fits the expression (3Delight manual, 6.3). "": all; "a": those
-/// of category a, "-a" all others, "a|b" both, "a&b" those that are of both, with parentheses where needed; "-" binds before "&",
-/// and "&" before "|". A list "a,b,-c" means those of any of its words without "-", and of none with "-". An expression that
-/// cannot be read means all: ask categoryError() first.
+/// Whether a shader with these categories (words separated by commas) matches the expression (3Delight manual, 6.3). "": all;
+/// "a": category a; "-a": all others; "a|b": either; "a&b": both; parentheses group; "-" binds tighter than "&", and "&" tighter
+/// than "|". A list "a,b,-c" matches any of its words without "-", and none with "-". Invalid expressions match all: check
+/// categoryError() first.
 bool inCategory(std::string_view expression, std::string_view categories);
 
-/// What is wrong with an expression, or "".
+/// The error in an expression, or "".
 std::string categoryError(std::string_view expression);
 
 } // namespace alpenglow

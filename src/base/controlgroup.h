@@ -1,4 +1,4 @@
-// Control groups of Linux: how containers and batch systems bound memory and processors.
+// Linux control groups: memory and processor limits of containers and batch systems.
 #pragma once
 #include <string>
 #include <string_view>
@@ -6,8 +6,8 @@
 
 namespace alpenglow {
 
-/// The folders whose files bound this process, from its own group up to the root: those of version 2, and those of version 1 for
-/// the controller ("memory", "cpu"). Empty where there are no control groups. Source: cgroups(7).
+/// The folders whose files limit this process, from its own group up to the root: of version 2, and of version 1 for the
+/// controller ("memory", "cpu"). Empty without control groups. Source: cgroups(7).
 std::vector<std::string> controlGroupFolders(std::string_view controller);
 
 } // namespace alpenglow

@@ -9,15 +9,15 @@ namespace {
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; } ///< a later byte of a character in UTF-8
 
-/// The line, or of a long one what stands around the column, and below it the caret and its range.
+/// The line, or for long lines the part around the column, with a caret and range below it.
 std::string excerpt(const Diagnostic& d) {
     std::string_view line = d.sourceLine;
-    if (line.ends_with('\r')) line.remove_suffix(1); // of a file whose lines end with two characters
+    if (line.ends_with('\r')) line.remove_suffix(1); // of a file with CRLF line ends
     const size_t room = limits::kExcerptColumns, at = d.place.column > 0 ? std::min(size_t(d.place.column) - 1, line.size()) : 0;
     size_t begin = 0, end = line.size();
     if (line.size() > room) {
         const size_t caret = std::min(at, line.size());
-        // A range that fits is shown whole, with some of what stands before it.
+        // A range that fits is shown completely, with some text before it.
         const size_t before = d.length > 0 && size_t(d.length) < room / 2 ? room / 2 : room / 4;
         begin = caret > before ? caret - before : 0;
         if (begin + room >= line.size()) begin = line.size() - room;
@@ -27,7 +27,7 @@ std::string excerpt(const Diagnostic& d) {
     }
     const std::string head = begin > 0 ? "... " : "";
     std::string shown, below;
-    for (size_t i = begin; i < end;) { // below: one place for one character, more for one that is shown by its bytes
+    for (size_t i = begin; i < end;) { // below: one column for one character, or more if its bytes are shown
         const size_t from = shown.size(), n = appendPrintable(line, i, shown);
         const bool caret = i <= at && at<i + n, under = i> at && i < at + size_t(std::max(d.length, 0));
         const bool bytes = shown[from] == '\\' && line[i] != '\\';
@@ -106,7 +106,7 @@ void Diagnostics::setHandler(Handler h) {
 
 std::string nearestName(std::string_view word, const std::vector<std::string>& candidates) {
     std::string best;
-    size_t bestCost = (word.size() + 1) / 3 + 1; // strictly less wins: one slip in three letters, none in one
+    size_t bestCost = (word.size() + 1) / 3 + 1; // strictly less wins: one edit per three letters, none in one letter
     for (const auto& c : candidates) {
         if (c.size() > word.size() + bestCost || word.size() > c.size() + bestCost) continue;
         std::vector<size_t> row(c.size() + 1);

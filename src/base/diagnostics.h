@@ -1,4 +1,4 @@
-// The one type of diagnostic and its sink. Errors are values that reach the user once (docs/design/decisions.md, "Diagnostics").
+// The diagnostic type and its sink. Errors are values that are reported once (docs/design/decisions.md, "Diagnostics").
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -44,13 +44,13 @@ enum class Rie : int {
     Math = 61
 };
 
-/// A place in a text; line and column count from 1, 0 = unknown. Columns count bytes.
+/// A position in a text; line and column count from 1, 0 = unknown. Columns count bytes.
 struct SourcePlace {
     std::string file;
     int line = 0, column = 0;
 };
 
-/// A change of the text that removes a fault: `length` bytes from the place on, on its line, become `text`.
+/// A change that fixes an error: replaces `length` bytes from the place on, on its line, by `text`.
 struct FixIt {
     SourcePlace place;
     int length = 0;
@@ -62,29 +62,29 @@ struct Diagnostic {
     Rie code = Rie::NoError;
     SourcePlace place;
     std::string message;
-    std::string hint;                 ///< "did you mean ...", or empty
-    std::string sourceLine;           ///< the offending line, for the caret; or empty
-    std::string id{};                 ///< stable name of this kind of message ("no-matching-call"), whatever its words; or empty
-    int length = 0;                   ///< bytes of the line, from the column on, that the message is about; 0 = unknown
-    std::vector<std::string> notes{}; ///< candidates and why they were rejected, one a line
+    std::string hint;       ///< "did you mean ...", or empty
+    std::string sourceLine; ///< the offending line, for the caret; or empty
+    std::string id{};       ///< stable identifier of the message ("no-matching-call"), independent of its text; or empty
+    int length = 0;         ///< bytes of the line that the message is about, from the column on; 0 = unknown
+    std::vector<std::string> notes{}; ///< candidates and why they were rejected, one per line
     std::vector<FixIt> fixes{};
-    bool always = false; ///< a note that users see without asking for notes (-v)
-    std::string once{};  ///< the key of Diagnostics::reportOnce(), which sets it; empty: report()
+    bool always = false; ///< a note that is shown without -v
+    std::string once{};  ///< key of Diagnostics::reportOnce(), which sets it; empty: report()
 };
 
 /// "file:line:column: error: message [id]", then the line, a caret and its range, then "  note: ..." and "  hint: ...", as far as
-/// they are there. Ends with a newline.
+/// available. Ends with a newline.
 std::string toString(const Diagnostic&);
 
 /// Collects diagnostics, counts them, and passes each to a handler. Thread safe.
 class Diagnostics {
 public:
     using Handler = std::function<void(const Diagnostic&)>;
-    /// Without a handler they are only stored.
+    /// Without a handler diagnostics are only stored.
     explicit Diagnostics(Handler h = {});
     void report(Diagnostic d);
     void report(Severity s, Rie code, SourcePlace place, std::string message, std::string hint = {});
-    /// Reports only the first time this key is seen ("unknown things are reported once each").
+    /// Reports only the first diagnostic with this key ("unknown things are reported once each").
     void reportOnce(const std::string& key, Diagnostic d);
     int errors() const; ///< Error and Severe
     int warnings() const;
@@ -99,7 +99,7 @@ private:
     int errors_ = 0, warnings_ = 0;
 };
 
-/// The candidate nearest to word by edit distance, or "" when none is near enough for a hint.
+/// The candidate nearest to word by edit distance, or "" if none is near enough for a hint.
 std::string nearestName(std::string_view word, const std::vector<std::string>& candidates);
 
 } // namespace alpenglow

@@ -21,7 +21,7 @@ Digest::Digest() {
 }
 
 void Digest::add(const void* data, size_t bytes) {
-    if (bytes > 0) XXH3_64bits_update(stateOf(state_.data()), data, bytes); // of nothing there may be no address
+    if (bytes > 0) XXH3_64bits_update(stateOf(state_.data()), data, bytes); // an empty range may have no address
 }
 
 uint64_t Digest::value() const { return XXH3_64bits_digest(stateOf(state_.data())); }

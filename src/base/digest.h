@@ -1,5 +1,5 @@
-// Digests of data against accidents such as damaged files: XXH3 of xxHash. It does not resist people who look for two texts of
-// the same digest. The keys of compiled shaders, whose text may be a stranger's, are SHA-256 (rsl/jit/sha256.h).
+// Digests against accidental damage of files: XXH3 of xxHash. Not cryptographic. The keys of compiled shaders, whose text may be
+// untrusted, are SHA-256 (rsl/jit/sha256.h).
 #pragma once
 #include <array>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace alpenglow {
 
-/// Of bytes that come in pieces: the same as that of all of them at once.
+/// A digest of data in pieces: equal to that of the complete data.
 class Digest {
 public:
     Digest();

@@ -12,7 +12,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = st
 // ln 2 in two parts.
 constexpr double kLn2 = 0x1.62e42feep-1, kLn2Lo = 0x1.a39ef35793c76p-33;
 
-/// atan(small / large) for 0 <= small <= large, large > 0: from the nearest of the table, with the angle between by its series.
+/// atan(small / large) for 0 <= small <= large, large > 0: nearest table entry plus the remaining angle by series.
 double atanOfQuotient(double small, double large) {
     const double ratio = small / large;
     const int k = int(16 * ratio + 0.5);
@@ -69,7 +69,7 @@ double exp(double x) {
     if (x < -745.2) return 0;
     const double k = std::nearbyint(x * (1 / (kLn2 + kLn2Lo)));
     const double r = (x - k * kLn2) - k * kLn2Lo;
-    // Of the series from r^2 / 2 on, four chains side by side.
+    // Series from r^2 / 2 on, in four parallel chains.
     const double q = r * r, w = q * q, v = w * w;
     const double a = (0.5 + r * (1 / 6.)) + q * (1 / 24. + r * (1 / 120.)),
                  b = (1 / 720. + r * (1 / 5040.)) + q * (1 / 40320. + r * (1 / 362880.));

@@ -1,7 +1,7 @@
-// Elementary functions with the same bits on every machine: a library's differ from one version to the next and from one
-// processor to the next, and would show in pictures. Plain additions, multiplications, divisions and roots, which IEEE 754 rounds
-// exactly; no fused ones. Where these decide what a picture shows, use them; shadeops/elementary.h has the like over lanes.
-// Errors: tests/base/exact_test.cpp, against a longer type. Not a number gives not a number.
+// Elementary functions with the same bits on every machine. Those of libraries differ between versions and processors, which
+// would show in pictures. They use additions, multiplications, divisions and roots only, which IEEE 754 rounds exactly, without
+// fused operations. Use them where the result affects pictures; shadeops/elementary.h has versions for lanes. Error bounds:
+// tests/base/exact_test.cpp, against a longer type. NaN gives NaN.
 #pragma once
 #include <cmath>
 
@@ -10,26 +10,26 @@ namespace alpenglow::exact {
 struct SinCos {
     double sin, cos;
 };
-/// Radians. Error below 1.5 ulp for |x| <= 1e3, 2.5 ulp for |x| <= 1e6; beyond, that of x reduced by 2 pi as it is rounded.
-/// Infinity gives not a number.
+/// Radians. Error below 1.5 ulp for |x| <= 1e3, 2.5 ulp for |x| <= 1e6; beyond, that of x reduced by the rounded 2 pi. Infinity
+/// gives NaN.
 SinCos sinCos(double x);
 double sin(double x);
 double cos(double x);
 /// 3 ulp for |x| <= 1e3, 4 ulp for |x| <= 1e6.
 double tan(double x);
-/// 1.5 ulp, -pi..pi; the signs of zeros count, as in the C library. Not for infinities.
+/// 1.5 ulp, -pi..pi; signed zeros as in the C library. Arguments must be finite.
 double atan2(double y, double x);
 double atan(double x);
-/// 3 ulp of the larger of result and 1; not a number outside [-1, 1].
+/// 3 ulp of the larger of result and 1; NaN outside [-1, 1].
 double asin(double x);
 double acos(double x);
 /// 1.5 ulp; 0 below -745, infinity above 709.78.
 double exp(double x);
-/// 1.5 ulp; -infinity for 0, not a number below.
+/// 1.5 ulp; -infinity for 0, NaN for negative x.
 double log(double x);
 /// x >= 0; (2 + |y log x|) ulp. 0 to the power of 0 is 1.
 double pow(double x, double y);
-/// For lengths that pictures have: squares must neither overflow nor vanish.
+/// For lengths in pictures: squares must neither overflow nor underflow.
 inline double hypot(double x, double y) { return std::sqrt(x * x + y * y); }
 
 } // namespace alpenglow::exact

@@ -1,18 +1,18 @@
-// Functions of base/exact.h over vectors of doubles (V: an ext_vector_type), lane by lane with the same bits. No standard header,
-// as exactseries.h.
+// Functions of base/exact.h over vectors of doubles (V: an ext_vector_type), with the same bits in each lane. No standard header,
+// as in exactseries.h.
 #pragma once
 #include "base/exactseries.h"
 
 namespace alpenglow::exact {
 
-template <class V> using MaskOf = decltype(V() < V()); ///< -1 or 0 by lane; also whole numbers of 64 bits
+template <class V> using MaskOf = decltype(V() < V()); ///< -1 or 0 by lane; also 64-bit integers
 
-/// Whole numbers |x| < 2^31 as integers: added to 1.5 x 2^52 they stand in the low bits.
+/// Converts integral |x| < 2^31: after adding 1.5 x 2^52 they are in the low bits.
 template <class V> AL_EXACT MaskOf<V> wholeLanes(V x) { return __builtin_bit_cast(MaskOf<V>, x + 0x1.8p52) & 0xffffffffll; }
 template <class V> AL_EXACT V absoluteLanes(V x) {
     return __builtin_bit_cast(V, __builtin_bit_cast(MaskOf<V>, x) & 0x7fffffffffffffffll);
 }
-/// x with its sign changed where the top bit of `bits` is set.
+/// x with the opposite sign where the top bit of `bits` is set.
 template <class V> AL_EXACT V flippedLanes(V x, MaskOf<V> bits) {
     return __builtin_bit_cast(V, __builtin_bit_cast(MaskOf<V>, x) ^ (bits & MaskOf<V>(-0x7fffffffffffffffll - 1)));
 }
@@ -39,7 +39,7 @@ template <class V> AL_EXACT V atan2Lanes(V y, V x) {
     const MaskOf<V> k = wholeLanes(steps);
     V high, low;
     for (unsigned i = 0; i < sizeof(V) / sizeof(double); ++i) high[i] = kAtan[k[i]], low[i] = kAtanLo[k[i]];
-    const V c = steps / 16., z = (small - c * large) / (large + c * small); // the ratio itself where c is 0
+    const V c = steps / 16., z = (small - c * large) / (large + c * small); // the ratio itself if c is 0
     V r = high + (z + (low - z * atanSeries(z)));
     r = steep ? kHalfPi - (r - kHalfPiLo) : r;
     r = __builtin_bit_cast(MaskOf<V>, x) < 0 ? 2 * kHalfPi - (r - 2 * kHalfPiLo) : r;

@@ -1,16 +1,16 @@
-// What exact.cpp and exactlanes.h share: constants, and series over a number or a vector of them. No standard header: it is
-// compiled for newer processors too, which must not leave a copy of a library's inline function behind for others.
+// Shared by exact.cpp and exactlanes.h: constants, and series over numbers or vectors. No standard header: code for newer
+// processors must not leave a copy of a library's inline function for others.
 #pragma once
 #define AL_EXACT static inline __attribute__((always_inline))
 
 namespace alpenglow::exact {
 
-// pi / 2 in parts of 33 bits, so that products with whole numbers below 2^20 are exact.
+// pi / 2 in parts of 33 bits, so that products with integers below 2^20 are exact.
 inline constexpr double kHalfPi1 = 0x1.921fb544p+0, kHalfPi2 = 0x1.0b4611a6p-34, kHalfPi3 = 0x1.3198a2e037073p-69;
 inline constexpr double kHalfPi = 0x1.921fb54442d18p+0, kHalfPiLo = 0x1.1a62633145c07p-54;
 
-/// sin and cos for |r| <= pi / 4 by their series, as exact as the type is; their even and odd terms apart, so that they run side
-/// by side.
+/// sin and cos for |r| <= pi / 4 by series, to the precision of the type; even and odd terms are separate, so that they run in
+/// parallel.
 template <class V> AL_EXACT V sineNear(V r) {
     const V q = r * r, w = q * q;
     const V even = 1 / 120. + w * (1 / 362880. + w * (1 / 6227020800. + w * (1 / 355687428096000.)));
@@ -25,7 +25,7 @@ template <class V> AL_EXACT V cosineNear(V r) {
     return c + (((1 - c) - h) + w * (even - q * odd));
 }
 
-/// atan(k / 16), rounded, and what is missing.
+/// atan(k / 16), rounded, and the rounding error.
 inline constexpr double kAtan[17] = {0,
                                      0x1.ff55bb72cfdeap-5,
                                      0x1.fd5ba9aac2f6ep-4,

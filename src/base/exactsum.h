@@ -1,4 +1,4 @@
-// Sums that do not depend on the order of their terms: fixed point, 128 bits, so that any order, split, merge or resume gives the
+// Sums that do not depend on the order of their terms: 128-bit fixed point, so that any order, split, merge or resume gives the
 // same bits (docs/design/sampling.md). The scheduler adds radiance in units of 2^-64, the film samples in units of 2^-40.
 #pragma once
 #include <cmath>
@@ -9,7 +9,7 @@ namespace alpenglow {
 using Int128 = __int128;
 using UInt128 = unsigned __int128;
 
-/// One term reaches +-2^60.
+/// Largest absolute value of a term.
 inline constexpr double kFixedMost = 0x1p60;
 
 /// v in units of 2^-Bits (Bits <= 64), rounded to the nearest, ties to even. v must be finite; beyond +-2^60 it is clamped and
@@ -20,8 +20,8 @@ template <int Bits> Int128 toFixed(double v, bool* saturated) {
         *saturated = true;
         v = v > 0 ? kFixedMost : -kFixedMost;
     }
-    // Every step but the rounding is exact: the power of two, and the cut into a multiple of 2^62 and a rest, both 64-bit
-    // integers.
+    // Every step except the rounding is exact: the power of two, and the division into a multiple of 2^62 and a remainder, both
+    // 64-bit integers.
     constexpr double kUnits = double(uint64_t(1) << (Bits / 2)) * double(uint64_t(1) << (Bits - Bits / 2));
     double units = std::nearbyint(v * kUnits);
     int64_t high = int64_t(units * 0x1p-62);
@@ -36,8 +36,8 @@ template <int Bits> double fromFixed(Int128 v) {
     return double(v) / kUnits;
 }
 
-/// A sum in units of 2^-64. Terms beyond +-2^60 are clamped there and make saturated() true; the sum itself has 192 bits, so that
-/// no number of them overflows. Non-finite terms must be kept out by the caller.
+/// A sum in units of 2^-64. Terms beyond +-2^60 are clamped, and saturated() becomes true; the sum has 192 bits, so it cannot
+/// overflow. The caller must exclude non-finite terms.
 class ExactSum {
 public:
     void add(double d) {
@@ -63,7 +63,7 @@ private:
     }
 
     UInt128 low_ = 0;
-    int64_t top_ = 0; ///< with low_ one number of 192 bits, two's complement
+    int64_t top_ = 0; ///< with low_ one 192-bit number in two's complement
     bool saturated_ = false;
 };
 

@@ -42,7 +42,7 @@ bool climbs(const std::string& s) {
     return false;
 }
 
-/// Whether a path below root stays there once symbolic links are followed.
+/// Whether a path below root stays there after resolving symbolic links.
 bool staysBelow(const fs::path& root, const fs::path& path) {
     std::error_code e;
     fs::path r = fs::weakly_canonical(root, e);
@@ -58,7 +58,7 @@ bool isRegular(const fs::path& p) {
     return fs::is_regular_file(p, e);
 }
 
-/// Whether a component of a path is hidden: ".ssh", "a/.git/config". Not "." and "..".
+/// Whether a component of a path is hidden: ".ssh", "a/.git/config". Excludes "." and "..".
 bool hidden(const std::string& s) {
     for (size_t i = 0; i <= s.size();) {
         size_t j = i;
@@ -69,8 +69,8 @@ bool hidden(const std::string& s) {
     return false;
 }
 
-/// Whether a scene may replace the file that is there: one of ours or of our kind, by its first bytes, or an empty one. Scenes,
-/// shaders, programs and notes are none.
+/// Whether a scene may replace an existing file: one of a kind that the renderer writes, by its first bytes, or an empty one.
+/// Scenes, shaders, programs and notes are protected.
 bool replaceable(const fs::path& p) {
     using namespace std::string_view_literals;
     constexpr std::string_view kKnown[] = {
@@ -92,8 +92,8 @@ bool replaceable(const fs::path& p) {
         "ALPGBRIC"sv,
         "# bake 1"sv,
         "ALPGBAKE"sv,
-        "ply\nformat binary_little_endian 1.0\ncomment point cloud of Alpenglow\n"sv}; // what shaders bake
-    if (!isRegular(p)) return true; // nothing, or what open() has a message for
+        "ply\nformat binary_little_endian 1.0\ncomment point cloud of Alpenglow\n"sv}; // baked by shaders
+    if (!isRegular(p)) return true;                                                    // nothing, or open() reports it
     int fd = ::open(p.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) return errno == ENOENT;
     char head[80];
@@ -106,7 +106,7 @@ bool replaceable(const fs::path& p) {
 
 constexpr const char* kTemporary = ".alpenglow-";
 
-/// Eight digits for this machine and its table of processes: on a folder that several share, a process number alone says nothing.
+/// Eight digits for this machine and process namespace: in a folder shared by machines a process number is not unique.
 std::string machineName() {
     char host[256] = "";
     gethostname(host, sizeof host - 1);
@@ -115,8 +115,7 @@ std::string machineName() {
     return digestText(digest(std::string(host) + space)).substr(0, 8);
 }
 
-/// Removes temporaries that killed renders left in a folder: those of a process of this machine that is gone, and any of a day
-/// ago.
+/// Removes temporary files of killed renders from a folder: those of ended processes of this machine, and any older than a day.
 void removeAbandoned(const fs::path& dir) {
     constexpr auto kOld = std::chrono::hours(24);
     const std::string mine = kTemporary + machineName() + "-";
@@ -139,7 +138,7 @@ std::string lower(std::string s) {
     return s;
 }
 
-/// The entry of a directory whose name equals `name` but for case; of several the first in byte order.
+/// The directory entry whose name equals `name` without regard to case; the first in byte order.
 std::optional<std::string> entryIgnoringCase(const fs::path& dir, const std::string& name) {
     std::optional<std::string> best;
     std::string want = lower(name);
@@ -185,7 +184,7 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
     if (last.empty() || last == "." || last == "..")
         return refuse("cannot write \"" + name + "\": it is the name of a folder", "");
 
-    // What lies where is decided on canonical paths: links and ".." may lead out, an absolute name may lead in.
+    // Decided on canonical paths: links and ".." may lead out, an absolute name may lead in.
     std::error_code e;
     const std::string folder = fs::weakly_canonical(root, e).string();
     const fs::path given = absolute ? fs::path(name) : root / name;
@@ -198,7 +197,7 @@ std::optional<std::string> resolveOutputPath(const std::string& name, const Outp
     const bool plain = policy.root.empty() || policy.root == ".";
     std::string path = climbs(name) ? real.string() : absolute || plain ? name : given.string();
     if (!replaceable(path))
-        return refuse("\"" + path + "\" is there and is no picture; a scene may not replace it",
+        return refuse("\"" + path + "\" exists and is not a picture; a scene may not replace it",
                       "choose another name, or permit it by --allow-write");
     return path;
 }
@@ -208,7 +207,7 @@ std::optional<OutputFile> OutputFile::openStandardOutput(Diagnostics& diags, con
     f.path_ = "-";
     f.place_ = place;
     f.standardOutput_ = true;
-    const int fd = memfd_create("alpenglow", MFD_CLOEXEC); // formats seek in what they write; a pipe cannot
+    const int fd = memfd_create("alpenglow", MFD_CLOEXEC); // formats seek in their output, which a pipe cannot do
     f.file_ = fd < 0 ? nullptr : fdopen(fd, "w+b");
     if (f.file_) return f;
     diags.report(Severity::Error, codeOf(errno), place, std::string("cannot write to standard output: ") + std::strerror(errno));
@@ -256,11 +255,11 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
     fs::path dir = target.parent_path();
     if (!dir.empty() && !fs::exists(dir, e) && !fs::create_directories(dir, e) && e) {
         diags.report(Severity::Error, codeOf(e.value()), place,
-                     "cannot write \"" + f.path_ + "\": its folder cannot be made: " + e.message());
+                     "cannot write \"" + f.path_ + "\": cannot create its folder: " + e.message());
         return {};
     }
     removeAbandoned(dir);
-    // The name holds the machine and the process, so that two processes never share one; O_EXCL settles threads.
+    // The name contains machine and process, so that two processes never share one; O_EXCL separates threads.
     int fd = -1;
     const std::string own = kTemporary + machineName() + "-" + std::to_string(getpid()) + "-";
     for (int n = 0; n < 10000 && fd < 0; ++n) {
@@ -285,7 +284,7 @@ std::optional<OutputFile> OutputFile::open(const std::string& name, const Output
 bool OutputFile::canBeWritten(const std::string& name, const OutputPolicy& policy, Diagnostics& diags, const SourcePlace& place) {
     auto file = open(name, policy, diags, place);
     if (!file) return false;
-    constexpr char kBlock[4096] = {}; // less than any picture's file takes on a disk
+    constexpr char kBlock[4096] = {}; // smaller than any picture file on disk
     file->write(kBlock, sizeof kBlock);
     if (file->file_ && std::fflush(file->file_) != 0) file->fail(errno);
     if (file->ok()) return true;
@@ -316,7 +315,7 @@ void OutputFile::fail(int error) {
 
 bool OutputFile::write(const void* bytes, size_t n) {
     if (!file_ || error_) return false;
-    // stdio wants a seek between reading and writing.
+    // stdio requires a seek between reading and writing.
     if (lastWasRead_ && std::fseek(file_, 0, SEEK_CUR) != 0) {
         fail(errno);
         return false;
@@ -397,7 +396,7 @@ std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_
         diags.report(Severity::Error, code, place, "cannot read \"" + path + "\": " + why);
         return std::nullopt;
     };
-    // O_NONBLOCK: opening a pipe that nobody writes must not wait.
+    // O_NONBLOCK: opening a pipe without a writer must not block.
     int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) return refuse(Rie::NoFile, std::strerror(errno));
     struct Closer {

@@ -1,5 +1,5 @@
-// Files: the one door for everything the renderer writes (reliability: no write outside what was asked for, no torn files),
-// bounded reading of whole files, and looking names up along search paths.
+// Files: the single interface for everything that the renderer writes (no writes outside of the permitted folders, no partial
+// files), bounded reading of complete files, and lookup of names along search paths.
 #pragma once
 #include "base/diagnostics.h"
 #include <cstdint>
@@ -11,49 +11,49 @@
 
 namespace alpenglow {
 
-/// Where files may be written.
+/// Restricts where files may be written.
 struct OutputPolicy {
-    std::string root = ".";      ///< relative names are below it
-    bool allowWrite = false;     ///< --allow-write: any name is taken as it is, "-" is standard output
-    int64_t failAfterBytes = -1; ///< fault injection for tests: the write that passes this many bytes fails as a full disk
+    std::string root = ".";      ///< relative names are resolved against it
+    bool allowWrite = false;     ///< --allow-write: any name is accepted, "-" is standard output
+    int64_t failAfterBytes = -1; ///< fault injection for tests: the write beyond this many bytes fails like a full disk
 };
 
-/// The path that a file called `name` will be written to. Without allowWrite it must lie below the root, whether the name is
-/// absolute or not and wherever ".." and symbolic links in it lead; names of Windows drives and hosts lie outside. Hidden names
-/// (".bashrc", ".git/config") and files that are there and are no pictures, maps or part files are refused as well. Nothing: an
-/// error was reported.
+/// The path for writing a file `name`. Without allowWrite it must be below the root, absolute or not, after resolving ".." and
+/// symbolic links; names of Windows drives and hosts are outside. Rejects hidden names (".bashrc", ".git/config") and existing
+/// files that are not pictures, maps or part files. Returns nothing after an error, which is reported.
 std::optional<std::string> resolveOutputPath(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
 
-/// The same text for all names of one file that differ in "./", "..", links of folders, or in being absolute. The last part is
-/// taken as it is, because a file that is written replaces a link of its name.
+/// An equal text for all names of one file that differ in "./", "..", folder links, or in being absolute. The last component is
+/// not resolved, because writing a file replaces a link of its name.
 std::string fileIdentity(const std::string& path);
 
-/// A file under a temporary name in the directory of its target, renamed to it when whole. Until commit() succeeds the old
-/// file stays as it is; the destructor removes the temporary.
+/// A file under a temporary name in the folder of its target, renamed when complete. Until commit() succeeds the old file is
+/// unchanged; the destructor removes the temporary file.
 class OutputFile {
 public:
-    /// Resolves the name by the policy, makes missing directories below the root, opens. Nothing: an error was reported.
-    /// Temporaries that killed processes left in the folder are removed. "-" under allowWrite is standard output: commit()
-    /// sends all.
+    /// Resolves the name by the policy, makes missing folders below the root, opens the file. Returns nothing after an error,
+    /// which is reported. Removes temporary files of killed processes from the folder. "-" with allowWrite is standard output,
+    /// written by commit().
     static std::optional<OutputFile> open(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
-    /// Whether such a file can be written now: opens it, writes a block of the disk and leaves no trace but missing directories.
-    /// False: an error was reported.
+    /// Whether such a file can be written now: opens it, writes a disk block and removes it; missing folders remain. Returns
+    /// false after an error, which is reported.
     static bool canBeWritten(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
     OutputFile(OutputFile&&) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
     ~OutputFile();
 
-    /// False once any write, read or seek has failed; the reason is kept for commit().
+    /// Returns false after any write, read or seek has failed; commit() reports the reason.
     bool write(const void* bytes, size_t n);
-    /// Number of bytes read (for formats that patch what they wrote).
+    /// Returns the number of bytes read (for formats that patch their output).
     size_t read(void* bytes, size_t n);
     bool seek(uint64_t position);
     uint64_t tell();
     uint64_t size();
     bool ok() const { return error_ == 0; }
-    /// Flushes, syncs, renames. False: an error was reported, the old file is intact, the temporary gone.
+    /// Flushes, syncs, renames. Returns false after an error, which is reported; the old file is then intact and the temporary
+    /// file removed.
     bool commit(Diagnostics&);
-    const std::string& path() const { return path_; } ///< where it will be
+    const std::string& path() const { return path_; } ///< final path
 
 private:
     OutputFile() = default;
@@ -61,7 +61,7 @@ private:
     void report(Diagnostics&) const;
     void discard();
     static std::optional<OutputFile> openStandardOutput(Diagnostics&, const SourcePlace&);
-    /// The whole of file_ to standard output.
+    /// Copies file_ to standard output.
     void copyOut();
     std::FILE* file_ = nullptr;
     std::string path_, temporary_;
@@ -73,40 +73,40 @@ private:
     bool lastWasRead_ = false;
 };
 
-/// The whole of a regular file of at most maxBytes. Nothing: an error was reported (NoFile when it is not there).
+/// Reads a regular file of at most maxBytes. Returns nothing after an error, which is reported (NoFile if it does not exist).
 std::optional<std::vector<uint8_t>> readWholeFile(const std::string& path, size_t maxBytes, Diagnostics&,
                                                   const SourcePlace& = {});
 
-/// Directories of a search path: separated by ':' (or ';'; a drive letter's colon does not separate). "@" stands for
-/// `defaults`, "&" for `previous`; nothing else is expanded.
+/// Folders of a search path, separated by ':' (or ';'; the colon of a drive letter does not separate). "@" is replaced by
+/// `defaults`, "&" by `previous`; nothing else is expanded.
 std::vector<std::string> splitSearchPath(const std::string& path, const std::vector<std::string>& defaults = {},
                                          const std::vector<std::string>& previous = {});
 
-/// How a name was found, when not simply.
+/// Result of a lookup, and how it differs from the name.
 struct FoundFile {
     std::string path;
     bool otherCase = false;    ///< letters differ from the name on disk
-    bool baseNameOnly = false; ///< the directories of the name were dropped
+    bool baseNameOnly = false; ///< the folders of the name were ignored
 };
-/// Looks for a name: as it is when absolute, else below each directory in order ("" = the working directory). Backslashes count
-/// as slashes. Then again without regard to case, then the base name alone (absolute paths of other machines).
+/// Finds a file: an absolute name as given, else below each folder in order ("" = the current folder). Backslashes count as
+/// slashes. Then tries again without regard to case, then the base name only (absolute paths of other machines).
 std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories);
 
-/// Where names that a scene or a shader gives may lead, once links are followed: a link may have come with the scene.
+/// Restricts files that scenes and shaders may read, after resolving links: a link may have come with the scene.
 struct ReadPolicy {
     bool anywhere = true;               ///< --allow-read; or the user gave the name
-    std::vector<std::string> folders{}; ///< what is below them may be read, beside what is below the folders that are searched
-    /// Called with each name before it is looked for, by any thread; may wait until the file is written. May be empty.
+    std::vector<std::string> folders{}; ///< readable folders, with their subfolders, in addition to the search path
+    /// Called with each name before it is looked up, by any thread; may wait until the file is written. May be empty.
     std::function<void(const std::string& name)> before{};
 };
-/// The policy of a scene in this folder: below it, and below the folder that holds it ("../textures" is how old projects lie).
+/// The policy for a scene in this folder: includes the folder and its parent ("../textures" is common in old projects).
 ReadPolicy readPolicyOf(const std::string& sceneFolder, bool anywhere);
-/// Whether a path leads to something below one of the folders, once the links in both are followed.
+/// Whether a path is below one of the folders, after resolving links in both.
 bool liesBelow(const std::string& path, const std::vector<std::string>& folders);
-/// As above, but what lies elsewhere counts as missing; *outside is then its path, else "".
+/// As above, but files elsewhere count as missing; *outside is then their path, else "".
 std::optional<FoundFile> findFile(const std::string& name, const std::vector<std::string>& directories, const ReadPolicy&,
                                   std::string* outside);
-/// The message about a file that is there and may not be read; what: "texture", "archive".
+/// Message for an existing file that may not be read; what: "texture", "archive".
 Diagnostic outsideMessage(const std::string& what, const std::string& name, const std::string& path, const SourcePlace&);
 
 } // namespace alpenglow

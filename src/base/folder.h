@@ -1,4 +1,4 @@
-// What lies in a folder.
+// Contents of a folder.
 #pragma once
 #include <limits>
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace alpenglow {
 
-/// The names in a folder ("" = the working directory) in the order of the disk, at most so many, without "." and "..". None when
-/// it cannot be read. Runs out of memory by an exception: std::filesystem's iterators without exceptions end the program there.
+/// At most `most` names in a folder ("" = the current folder), in disk order, without "." and "..". Empty if it cannot be read.
+/// Throws if memory is short, whereas the non-throwing iterators of std::filesystem would end the program.
 std::vector<std::string> namesIn(const std::string& folder, int most = std::numeric_limits<int>::max());
 
 } // namespace alpenglow

@@ -1,6 +1,6 @@
-// Half floats, by Imath: to the nearest, ties to even.
+// Half floats by Imath: rounded to nearest, ties to even.
 #pragma once
-#define IMATH_HALF_NO_LOOKUP_TABLE // then nothing is linked
+#define IMATH_HALF_NO_LOOKUP_TABLE // avoids linking a table
 #include <Imath/half.h>
 #include <cstdint>
 

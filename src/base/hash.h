@@ -1,11 +1,11 @@
-// The one integer mixing function of the samples and dithers.
+// The integer hash of samples and dither.
 #pragma once
 #include <cstdint>
 
 namespace alpenglow::render {
 
-/// A bijection of the 64-bit integers (so distinct inputs never collide) whose every output bit depends on every input bit.
-/// The finaliser called "Mix13" in D. Stafford, "Better Bit Mixing" (2011).
+/// A bijection of 64-bit integers (no collisions) in which every output bit depends on every input bit. The finaliser "Mix13" of
+/// D. Stafford, "Better Bit Mixing" (2011).
 constexpr uint64_t mix64(uint64_t v) {
     v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;
     v = (v ^ (v >> 27)) * 0x94d049bb133111ebull;

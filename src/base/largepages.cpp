@@ -16,7 +16,7 @@ void adviseLargePages(void* from, size_t bytes) {
 #ifdef MADV_HUGEPAGE
     const uintptr_t first = (reinterpret_cast<uintptr_t>(from) + kPage - 1) & ~(kPage - 1);
     const uintptr_t last = (reinterpret_cast<uintptr_t>(from) + bytes) & ~(kPage - 1);
-    if (first < last) (void)madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); // a wish: errors change nothing
+    if (first < last) (void)madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); // a hint: errors have no effect
 #else
     (void)from, (void)bytes;
 #endif
@@ -27,8 +27,8 @@ void adviseLargePages(void* from, size_t bytes) {
 #if !defined(__SANITIZE_ADDRESS__) && !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)
 namespace {
 
-/// As operator new: asks its handler until there is memory. Blocks lie where malloc() puts them: to begin them at large pages
-/// would take two more megabytes of address space each, which --memory-limit counts.
+/// As operator new: calls its handler until there is memory. Blocks start where malloc() puts them: aligning to large pages would
+/// take two more megabytes of address space each, which --memory-limit counts.
 void* allocated(size_t bytes, size_t alignment) {
     if (bytes > PTRDIFF_MAX - alignment) throw std::bad_alloc();
     for (;;) {
@@ -45,7 +45,7 @@ void* allocated(size_t bytes, size_t alignment) {
 
 } // namespace
 
-// As the library's, of which operator delete stays: it calls free().
+// operator delete remains the library's: it calls free().
 void* operator new(size_t bytes) { return allocated(bytes, alignof(max_align_t)); }
 void* operator new(size_t bytes, std::align_val_t alignment) { return allocated(bytes, size_t(alignment)); }
 #endif

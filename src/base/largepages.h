@@ -1,12 +1,12 @@
-// Large blocks of memory in large pages. A page of four kilobytes that is touched first costs microseconds on virtual machines:
-// a tenth of a simple frame, a fifth of one whose surfaces are diced. So operator new asks for pages of two megabytes for blocks
-// that hold some (largepages.cpp); what malloc() hands out otherwise, and memory under sanitizers, is as the system has it.
+// Large memory blocks in large pages. The first touch of a 4 KiB page costs microseconds on virtual machines: a tenth of a simple
+// frame, a fifth of one with diced surfaces. So operator new requests 2 MiB pages for blocks that contain some (largepages.cpp).
+// Other memory, and memory under sanitizers, is not affected.
 #pragma once
 #include <cstddef>
 
 namespace alpenglow {
 
-/// Asks the system for large pages in a range that nobody has written to yet. Where it has none nothing changes.
+/// Requests large pages for a range that has not been written to. No effect if the system has none.
 void adviseLargePages(void* from, size_t bytes);
 
 } // namespace alpenglow

@@ -25,7 +25,7 @@ size_t numberIn(const std::string& file) {
     return in >> n ? n : 0;
 }
 
-/// The least bound of the control groups; 0: none.
+/// The smallest limit of the control groups; 0: none.
 size_t groupMemory() {
     size_t least = 0;
     for (const std::string& folder : controlGroupFolders("memory"))
@@ -74,7 +74,7 @@ MemoryLimit::MemoryLimit([[maybe_unused]] size_t bytes, [[maybe_unused]] int thr
 #ifndef ALPENGLOW_SHADOW_MEMORY
     rlimit stack{}, data{};
     if (!bytes || getrlimit(RLIMIT_STACK, &stack) != 0 || getrlimit(RLIMIT_DATA, &data) != 0) return;
-    // The stack of a thread is as large as RLIMIT_STACK says, 2 MiB where that is unlimited; twice, for the threads of libraries.
+    // The stack of a thread has the size RLIMIT_STACK, or 2 MiB if that is unlimited; twice, for threads of libraries.
     const size_t each = stack.rlim_cur == RLIM_INFINITY ? size_t(2) << 20 : std::min(size_t(stack.rlim_cur), size_t(64) << 20);
     const rlim_t most = rlim_t(bytes) + rlim_t(2 * each * size_t(std::max(1, threads))), before = data.rlim_cur;
     data.rlim_cur = std::min({most, data.rlim_cur, data.rlim_max}); // RLIM_INFINITY is the largest

@@ -1,4 +1,4 @@
-// How much memory a run may take (reliability: bounded memory).
+// Memory limits of a run.
 #pragma once
 #include <cstddef>
 #include <new>
@@ -7,29 +7,29 @@
 
 namespace alpenglow {
 
-/// Bytes of memory that this process can have: the machine's, or less where a control group (a container, a batch system) bounds
-/// it. 0: not known.
+/// Memory in bytes available to this process: the machine's, or less if a control group (a container, a batch system) limits it.
+/// 0: unknown.
 size_t machineMemory();
 
-/// One of the renderer's own limits (base/limits.h) was reached, not the end of the machine's memory. Who throws it, or gives up
-/// because of it, has reported what reached it.
+/// One of the renderer's own limits (base/limits.h) was reached, as opposed to the machine's memory. The thrower, or a caller
+/// that gives up because of it, has reported it.
 class LimitReached : public std::bad_alloc {
 public:
     const char* what() const noexcept override { return "a limit was reached"; }
 };
 
-/// "512M", "4G", "1.5G", "300000K" or bytes; powers of 1024. Nothing: no size, or none above zero.
+/// Parses "512M", "4G", "1.5G", "300000K" or bytes; powers of 1024. Returns nothing if it is not a size above zero.
 std::optional<size_t> parseMemorySize(const std::string&);
 
 /// "3.6 GiB", for messages.
 std::string memorySizeText(size_t bytes);
 
-/// What a run may take when the user does not say: nine tenths of machineMemory(), which leave room for the system. 0: unlimited.
+/// Default memory limit of a run: nine tenths of machineMemory(), to leave room for the system. 0: unlimited.
 size_t defaultMemoryLimit();
 
-/// Bounds the data of this process (heap and private mappings, of all libraries) while it lives: what goes beyond fails as
-/// std::bad_alloc. Stacks of `threads` threads, of which most is never touched, are not counted. A bound that is there already
-/// (ulimit -d) is never raised. 0 bytes: no bound.
+/// Limits the data of this process (heap and private mappings, of all libraries) during its lifetime: larger allocations fail
+/// with std::bad_alloc. Stacks of `threads` threads, which are mostly untouched, are excluded. Never raises an existing limit
+/// (ulimit -d). 0 bytes: no limit.
 class MemoryLimit {
 public:
     MemoryLimit(size_t bytes, int threads);
@@ -38,7 +38,7 @@ public:
     MemoryLimit& operator=(const MemoryLimit&) = delete;
 
 private:
-    std::optional<unsigned long> before_; ///< the bound that comes back
+    std::optional<unsigned long> before_; ///< the limit to restore
 };
 
 } // namespace alpenglow

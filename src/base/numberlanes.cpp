@@ -2,7 +2,7 @@
 
 namespace alpenglow::render {
 
-// One for each file made from lanes/numbers.inc.
+// One for each file compiled from lanes/numbers.inc.
 void drawNumbers4(NumberBlock*, uint64_t);
 void drawNumbers8(NumberBlock*, uint64_t);
 void drawNumbers16(NumberBlock*, uint64_t);

@@ -1,5 +1,5 @@
-// The numbers of many samples at a time: what SampleNumbers gives one by one, with the same bits, from one call over lanes.
-// Compiled at 4, 8 and 16 lanes and chosen once by the processor.
+// Random numbers of many samples at once: the numbers of SampleNumbers with the same bits, in one call over lanes. Compiled for
+// 4, 8 and 16 lanes and selected once by processor.
 #pragma once
 #include "base/numberblock.h"
 #include "base/sampler.h"
@@ -8,15 +8,14 @@
 
 namespace alpenglow::render {
 
-/// Requests for numbers. First all are asked for, then draw() makes them, then they are read; clear() begins anew in the same
-/// memory.
+/// A list of requests for random numbers: first request all, then draw(), then read; clear() starts again in the same memory.
 class NumberRows {
 public:
-    /// Asks for what s.get2(vertex, site, occurrence) gives: pair(i) for the i-th request since clear().
+    /// Requests s.get2(vertex, site, occurrence): pair(i) for the i-th request since clear().
     void askPair(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) {
         ask(s, vertex, site << 1, occurrence);
     }
-    /// Asks for what s.get1(vertex, site, occurrence) gives: one(i).
+    /// Requests s.get1(vertex, site, occurrence): one(i).
     void askOne(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) {
         ask(s, vertex, site << 1 | SampleNumbers::kSingle, occurrence);
     }
@@ -39,7 +38,7 @@ private:
     size_t count_ = 0;
 };
 
-/// Draws the numbers of whole blocks, by the widest lanes that this processor has.
+/// Draws the numbers of complete blocks, with the widest lanes that this processor has.
 void drawBlocks(std::span<NumberBlock>);
 
 } // namespace alpenglow::render

@@ -21,8 +21,8 @@ template <class U> constexpr U reverseBits(U v) {
     return ((v & U(0xaaaaaaaau)) >> 1) | ((v & U(0x55555555u)) << 1);
 }
 
-/// A nested scramble of a reversed value: seed and factor are random words. Constants of N. Vegdahl, "Building a Better LK Hash"
-/// (2021); the factor is a word of its own, there the upper half of the seed.
+/// A nested scramble of a reversed value: seed and factor are random words. Constants by N. Vegdahl, "Building a Better LK Hash"
+/// (2021), where the factor is the upper half of the seed; here it is a separate word.
 template <class U> constexpr U owenReversed(U v, U seed, U factor) {
     v = v ^ v * U(0x3d20adeau);
     v = v + seed;
@@ -31,8 +31,8 @@ template <class U> constexpr U owenReversed(U v, U seed, U factor) {
     return v ^ v * U(0x53a22864u);
 }
 
-/// A reversed value whose first five digits are flipped by coins of their own: the 1, 2, 4, 8 and 16 nodes of these digits have a
-/// bit of `coins` each (bit 31 is not used). So the first 32 points of a sequence are scrambled exactly.
+/// Flips the first five digits of a reversed value by independent bits: the 1, 2, 4, 8 and 16 nodes of these digits have one bit
+/// of `coins` each (bit 31 is unused). So the first 32 points of a sequence are scrambled exactly.
 template <class U> constexpr U coinsReversed(U v, U coins) {
     const U one(1u);
     return v ^ (coins & one) ^ (((coins >> 1) >> (v & U(1u)) & one) << 1) ^ (((coins >> 3) >> (v & U(3u)) & one) << 2) ^
@@ -44,9 +44,9 @@ template <class U> constexpr U scrambleReversed(U v, U coins, U seed, U factor) 
     return (coinsReversed(v, coins) & U(31u)) | (owenReversed(v, seed, factor) & U(~31u));
 }
 
-/// Point i of the second Sobol dimension, reversed; of the first it is i itself. Digit j is the sum over the digits k of i of the
-/// binomial coefficient (k over j) mod 2, which is 1 where the bits of j are among those of k (Lucas): a sum over supersets,
-/// which takes one step for each of the five bits of a digit's number.
+/// Point i of the second Sobol dimension, reversed; the first dimension is i itself. Digit j is the sum over the digits k of i of
+/// the binomial coefficient (k over j) mod 2, which is 1 if the bits of j are a subset of those of k (Lucas): a sum over
+/// supersets, in one step for each of the five bits of a digit's index.
 template <class U> constexpr U sobol1Reversed(U i) {
     i = i ^ ((i >> 16) & U(0x0000ffffu));
     i = i ^ ((i >> 8) & U(0x00ff00ffu));
@@ -72,22 +72,22 @@ template <class U> constexpr Words4<U> moreWords(const Words4<U>& v) {
     return roundOfWords<U>({v.x ^ (v.x >> 16), v.y ^ (v.y >> 16), v.z ^ (v.z >> 16), v.w ^ (v.w >> 16)});
 }
 
-/// A one-to-one map of 128 bits each of whose output bits depends on all inputs: pcg4d of Jarzynski and Olano, "Hash Functions
-/// for GPU Rendering" (2020), with one round more. A round carries a bit upward only and the shift behind it 16 places down:
-/// after two rounds the lowest bits do not know the highest of the inputs.
+/// A bijection of 128 bits in which each output bit depends on all inputs: pcg4d of Jarzynski and Olano, "Hash Functions for GPU
+/// Rendering" (2020), with one more round. A round carries bits upward only and shifts down by 16: after two rounds the lowest
+/// bits do not yet depend on the highest input bits.
 template <class U> constexpr Words4<U> mixWords(Words4<U> v) {
     const U a(1664525u), c(1013904223u);
     v = roundOfWords<U>({v.x * a + c, v.y * a + c, v.z * a + c, v.w * a + c});
     return moreWords<U>(moreWords<U>(v));
 }
 
-/// The words that scramble one stream: key of pixel and replica (two random words), vertex, site, occurrence. For one key
-/// distinct (vertex, site, occurrence) give distinct inputs to mixWords(), so distinct words.
+/// The words that scramble one stream, from the key of pixel and replica (two random words), vertex, site and occurrence. For one
+/// key distinct (vertex, site, occurrence) are distinct inputs of mixWords(), so the words are distinct.
 template <class U> constexpr Words4<U> streamWords(U low, U high, U vertex, U site, U occurrence) {
     return mixWords<U>({low + occurrence * U(0x9e3779b9u), high ^ (occurrence * U(0x85ebca6bu)), vertex, site});
 }
 
-/// What scrambles one stream: the words of its key, and four more made of them.
+/// Scrambles of one stream: the words of its key, and four more derived from them.
 template <class U> struct Scrambles {
     Words4<U> s, more;
     constexpr explicit Scrambles(const Words4<U>& words) : s(words), more(moreWords<U>(words)) {}

@@ -1,5 +1,4 @@
-// Loops and groups of tasks: on oneTBB's threads, or on plain threads where ThreadSanitizer is to follow what they hand each
-// other, because libtbb is not instrumented.
+// Parallel loops and task groups: on oneTBB, or on plain threads under ThreadSanitizer, because libtbb is not instrumented.
 #pragma once
 #if __has_feature(thread_sanitizer)
 #include "base/plainthreads.h"
@@ -10,7 +9,7 @@
 
 namespace alpenglow {
 
-/// Tasks that may run on other threads until wait() returns, which throws what one of them threw.
+/// Tasks that may run on other threads until wait() returns, which rethrows an exception of a task.
 class TaskGroup {
 public:
     template <class Task> void run(Task task) { group_.run(std::move(task)); }
@@ -20,7 +19,8 @@ private:
     tbb::task_group group_;
 };
 
-/// body(i) for first <= i < last, in any order and on any thread; returns when all have ended. Throws what one of them threw.
+/// Calls body(i) for first <= i < last, in any order and on any thread; returns when all have ended. Rethrows an exception of a
+/// body.
 template <class Index, class Body> void parallelFor(Index first, Index last, const Body& body) {
     tbb::parallel_for(first, last, body);
 }

@@ -34,7 +34,7 @@ bool classBytes(const std::string& name, Bytes& out) {
     return false;
 }
 
-/// Whether a word begins ('<'), ends ('>'), either ('b') or neither ('B') before byte `at`.
+/// Whether a word starts ('<'), ends ('>'), either ('b') or neither ('B') before byte `at`.
 bool isEdge(std::string_view text, size_t at, char kind) {
     const bool before = at > 0 && isWordByte(static_cast<unsigned char>(text[at - 1]));
     const bool behind = at < text.size() && isWordByte(static_cast<unsigned char>(text[at]));
@@ -43,7 +43,7 @@ bool isEdge(std::string_view text, size_t at, char kind) {
 
 } // namespace
 
-/// Recursive descent over the text. A piece of the automaton has one way in, and one state with a way out that is not set yet.
+/// Recursive descent parser. A piece of the automaton has one entry, and one state whose exit is not yet set.
 class PatternParser {
 public:
     PatternParser(const std::string& text, Pattern& p) : text_(text), p_(p) {}
@@ -60,7 +60,7 @@ public:
 
 private:
     using Op = Pattern::Op;
-    /// `out` is a Split whose ways are not set.
+    /// `out` is a Split with unset exits.
     struct Piece {
         uint32_t in, out;
     };
@@ -73,7 +73,7 @@ private:
     char peek() const { return text_[at_]; }
 
     uint32_t state(Pattern::State s) {
-        if (p_.states_.size() >= limits::kPatternStates) fail("the pattern is too large once its repetitions are written out");
+        if (p_.states_.size() >= limits::kPatternStates) fail("the pattern is too large after expanding repetitions");
         else p_.states_.push_back(s);
         return uint32_t(p_.states_.size() - 1);
     }
@@ -139,13 +139,13 @@ private:
         return p;
     }
 
-    /// The text from begin to sign, `least` times and then at most to `most` times (-1: without end).
+    /// The text from begin to sign, `least` times, then optionally up to `most` times (-1: unlimited).
     Piece times(size_t begin, size_t sign, size_t end, int depth, int least, int most) {
         Piece all = nothing();
         const auto copy = [&]() {
             at_ = begin;
             if (sign == end) return atom(depth);
-            // Signs one behind the other, a*{2}: what stands before the last of them is repeated.
+            // Consecutive repetition signs, as in a*{2}: repeats everything before the last one.
             const std::string saved = text_.substr(sign);
             text_.resize(sign);
             const Piece p = repeated(depth);
@@ -194,10 +194,10 @@ private:
             if (!number(most)) most = -1;
             else if (!from) least = 0;
         } else if (!from) {
-            return fail("between '{' and '}' stand one or two numbers"), false;
+            return fail("expected one or two numbers between '{' and '}'"), false;
         }
         if (at_ >= text_.size()) return fail("there is a '{' without its '}'"), false;
-        if (peek() != '}') return fail("between '{' and '}' stand one or two numbers"), false;
+        if (peek() != '}') return fail("expected one or two numbers between '{' and '}'"), false;
         ++at_;
         if (least > kMostRepeats || most > kMostRepeats) return fail("a repetition is too large"), false;
         if (most >= 0 && most < least) return fail("the second number of a repetition is less than the first"), false;
@@ -227,7 +227,7 @@ private:
         case '+':
         case '?':
         case '{':
-            fail("there is nothing before a sign of repetition");
+            fail("nothing to repeat before a repetition sign");
             return {0, 0};
         case '\\':
             return escaped();
@@ -245,7 +245,7 @@ private:
             return {0, 0};
         }
         const auto c = static_cast<unsigned char>(text_[at_++]);
-        if (c >= '1' && c <= '9') fail("back-references such as \\1 are not understood");
+        if (c >= '1' && c <= '9') fail("back-references such as \\1 are not supported");
         switch (c) {
         case 'b':
         case 'B':
@@ -298,7 +298,7 @@ private:
         if (text_.compare(at_, 2, "[:") == 0) {
             const size_t end = text_.find(":]", at_ + 2);
             if (end == std::string::npos) return fail("there is a '[:' without its ':]'");
-            if (!classBytes(text_.substr(at_ + 2, end - at_ - 2), b)) fail("there is no such class of characters");
+            if (!classBytes(text_.substr(at_ + 2, end - at_ - 2), b)) fail("unknown character class");
             at_ = end + 2;
             return;
         }
@@ -308,7 +308,7 @@ private:
         if (at_ + 1 < text_.size() && peek() == '-' && text_[at_ + 1] != ']') {
             ++at_;
             if (!element(high)) return;
-            if (high < low) return fail("a range of characters ends before it begins");
+            if (high < low) return fail("a range of characters ends before it starts");
         }
         for (int c = low; c <= high; ++c) b[size_t(c)] = true;
     }
@@ -318,7 +318,7 @@ private:
         for (const char* form : {"[.", "[="}) {
             if (text_.compare(at_, 2, form) != 0) continue;
             if (at_ + 5 > text_.size() || text_[at_ + 3] != form[1] || text_[at_ + 4] != ']')
-                return fail("between '[.' and '.]' stands one character"), false;
+                return fail("expected one character between '[.' and '.]'"), false;
             c = static_cast<unsigned char>(text_[at_ + 2]);
             at_ += 5;
             return true;
@@ -341,7 +341,7 @@ std::shared_ptr<const Pattern> Pattern::make(const std::string& text, std::strin
 }
 
 bool Pattern::occurs(std::string_view text) const {
-    // The set of states that the automaton can be in, advanced a byte at a time; a new attempt begins at every byte.
+    // The set of active states of the automaton, advanced byte by byte; a new match may start at every byte.
     std::vector<uint32_t> now, next, open;
     std::vector<uint32_t> seen(states_.size(), 0);
     uint32_t round = 0;

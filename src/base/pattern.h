@@ -16,7 +16,8 @@ namespace alpenglow {
 /// locale.
 class Pattern {
 public:
-    /// Null for what is no pattern, is too large (limits::kPatternStates), or has back-references; `error` says what is wrong.
+    /// Returns null for invalid patterns, patterns that are too large (limits::kPatternStates), and back-references; `error`
+    /// explains.
     static std::shared_ptr<const Pattern> make(const std::string& text, std::string& error);
     /// Whether it occurs anywhere in the text.
     bool occurs(std::string_view text) const;

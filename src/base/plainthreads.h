@@ -1,4 +1,4 @@
-// base/parallel.h for ThreadSanitizer: the same on std::thread, whose order it knows.
+// base/parallel.h for ThreadSanitizer: the same on std::thread, whose synchronisation it tracks.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 
 namespace alpenglow {
 
-/// As TaskGroup of base/parallel.h. A task runs on a thread of its own, or at once where as many run as oneTBB may use.
+/// As TaskGroup of base/parallel.h. A task runs on its own thread, or immediately if as many threads run as oneTBB would use.
 class TaskGroup {
 public:
     ~TaskGroup() { join(); }
@@ -69,7 +69,7 @@ private:
     std::exception_ptr thrown_;
 };
 
-/// As parallelFor() of base/parallel.h. Nothing more is begun once a body has thrown.
+/// As parallelFor() of base/parallel.h. Starts no further iterations once a body has thrown.
 template <class Index, class Body> void parallelFor(Index first, Index last, const Body& body) {
     std::atomic<Index> next = first;
     std::atomic<bool> failed = false;

@@ -1,5 +1,5 @@
-// What nearly every file includes, compiled once (cmake/quick.cmake). Files still include what they use themselves.
-// Only headers of the standard library and fmt: a change of ours must not compile everything again.
+// Headers that nearly every file includes, compiled once (cmake/quick.cmake). Files still include what they use. Only headers of
+// the standard library and fmt, so that changes of the sources do not recompile everything.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@ void escape(unsigned char c, std::string& out) {
     out += kDigits[c & 15];
 }
 
-/// Bytes of the character of UTF-8 that begins here; 0: none does.
+/// Length in bytes of the UTF-8 character that starts here; 0: none.
 size_t utf8Length(std::string_view text, size_t at) {
     const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char c = byte(at);

@@ -10,7 +10,7 @@
 namespace alpenglow {
 namespace {
 
-/// Processors' worth of time that a group has; 0: no bound.
+/// Processor quota of a group, in processors; 0: none.
 double quotaOf(const std::string& folder) {
     double quota = 0, period = 0;
     if (std::ifstream in(folder + "/cpu.max"); in >> quota >> period)

@@ -1,4 +1,4 @@
-// A file that is read at any place of it.
+// A file with random access.
 #pragma once
 #include <cstdint>
 #include <fcntl.h>
@@ -9,7 +9,7 @@
 
 namespace alpenglow {
 
-/// Open for reading while it lives. Pipes, devices and folders are not opened for what they give: regular() is false of them.
+/// Open for reading during its lifetime. Pipes, devices and folders are not read: regular() is false for them.
 class RandomFile {
 public:
     explicit RandomFile(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
@@ -23,8 +23,8 @@ public:
     RandomFile& operator=(const RandomFile&) = delete;
     bool regular() const { return regular_; }
     uint64_t size() const { return size_; } ///< bytes, when it was opened
-    /// The `n` bytes behind the first `at`. False: they are not there, also where the file became shorter since; no memory is
-    /// taken for bytes beyond its size. Thread safe.
+    /// Reads the `n` bytes from offset `at`. Returns false if they do not exist, also if the file has become shorter; allocates
+    /// no memory beyond the file's size. Thread safe.
     bool read(uint64_t at, uint64_t n, std::vector<uint8_t>& to) const {
         if (at > size_ || n > size_ - at) return false;
         to.resize(size_t(n));

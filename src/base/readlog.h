@@ -1,4 +1,4 @@
-// The files that a render reads: what `render --watch` waits for.
+// The files that a render reads, for `render --watch`.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -9,15 +9,15 @@
 
 namespace alpenglow {
 
-/// Thread safe. A path keeps the state that its file had when it was first added, so that what changes while the render still
-/// runs is noticed, and what the render itself wrote before it read it is not.
+/// Thread safe. Stores the state of each file when it was first added, so that changes during the render are noticed, but not
+/// files that the render itself wrote before reading them.
 class ReadLog {
 public:
     /// A file that is about to be read, or one that was looked for and is not there.
     void add(const std::string& path);
     /// For a name that was not found: the places where it would have been, one in each folder.
     void addMissing(const std::string& name, const std::vector<std::string>& folders);
-    /// Whether any of the files is another now: its time or size changed, it went, or it came.
+    /// Whether any of the files has changed: its time or size differs, it was removed, or created.
     bool changed() const;
 
 private:

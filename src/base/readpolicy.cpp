@@ -48,7 +48,7 @@ Diagnostic outsideMessage(const std::string& what, const std::string& name, cons
     d.message = what + " \"" + name + "\" is not read: it " +
                 (real == plain ? "lies outside" : "leads by a link to \"" + real.string() + "\", outside") +
                 " the folders that a scene may read";
-    d.hint = "--searchpath " + real.parent_path().string() + " adds its folder, --allow-read permits any";
+    d.hint = "--searchpath " + real.parent_path().string() + " adds its folder, --allow-read permits all";
     return d;
 }
 

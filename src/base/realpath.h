@@ -4,9 +4,9 @@
 
 namespace alpenglow {
 
-/// The path without links, absolute. What is missing of it is taken by its letters.
+/// The absolute path with links resolved. Missing components are appended literally.
 std::string followedPath(const std::string& path);
-/// Whether two names are of one file that is there, through links as well, or of one that will be.
+/// Whether two names refer to one file, existing (also through links) or not yet existing.
 bool sameFile(const std::string& a, const std::string& b);
 
 } // namespace alpenglow

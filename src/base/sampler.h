@@ -20,7 +20,7 @@ namespace alpenglow::render {
 
 inline constexpr uint32_t kReplicas = 2;
 
-/// A seed, mixed once for all pixels.
+/// A seed, hashed once for all pixels.
 struct SeedKey {
     explicit SeedKey(uint64_t seed) : key(mix64(seed + 0x6a09e667f3bcc909ull)) {}
     uint64_t key;
@@ -38,13 +38,13 @@ public:
         : seed_(seed.key),
           pixel_(uint64_t(uint32_t(x + (1 << 29)) & 0x3fffffffu) << 34 | uint64_t(uint32_t(y + (1 << 29)) & 0x3fffffffu) << 4) {}
 
-    /// Two numbers in [0,1). vertex: path vertex, 0 = camera; site: call site, below 2^31; occurrence: how often that site has
-    /// asked already at this vertex. sampleIndex counts the samples of the pixel from 0.
+    /// Two numbers in [0,1). vertex: path vertex, 0 = camera; site: call site, below 2^31; occurrence: number of earlier requests
+    /// of that site at this vertex. sampleIndex counts the samples of the pixel from 0.
     Vec2 get2(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const;
-    /// One number in [0,1), stratified by itself and independent of get2 with the same arguments.
+    /// One number in [0,1), stratified, and independent of get2 with the same arguments.
     float get1(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_t sampleIndex) const;
 
-    /// The key of one stream: what get2 and get1 hash. Public so that the absence of collisions can be tested.
+    /// The key of one stream, which get2 and get1 hash. Public for testing the absence of collisions.
     uint64_t streamKey(uint32_t replica, uint32_t vertex, uint32_t site, uint32_t occurrence) const;
 
 private:
@@ -52,7 +52,7 @@ private:
     uint64_t seed_ = 0, pixel_ = 0;
 };
 
-/// The numbers of one sample of a pixel: what Sampler gives for that sampleIndex, with what they have in common worked out once.
+/// The numbers of one sample of a pixel: equal to Sampler's for that sampleIndex, with common parts computed once.
 class SampleNumbers {
 public:
     SampleNumbers(const Sampler& s, uint32_t sampleIndex) : index_(sampleIndex / kReplicas) {
@@ -66,7 +66,7 @@ public:
         return {unitFloat(s.first(i)), unitFloat(s.second(i))};
     }
     float get1(uint32_t vertex, uint32_t site, uint32_t occurrence) const {
-        // Words of its own: the order of get1's points must not be that of get2's.
+        // Separate words, so that the order of get1's points differs from get2's.
         const Scrambles<uint32_t> s(streamWords<uint32_t>(low_, high_, vertex, site << 1 | kSingle, occurrence));
         return unitFloat(s.first(s.shuffledIndex(reverseBits<uint32_t>(index_))));
     }

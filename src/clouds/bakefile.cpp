@@ -34,7 +34,7 @@ std::string readBinary(std::span<const uint8_t> b, Baked& to) {
     const size_t width = 2 + size_t(sizeOf(to.type));
     if (count > limits::kCloudPoints) return "it has more than " + std::to_string(limits::kCloudPoints) + " points";
     if (const uint64_t want = kHeader + count * width * 4 + 4; b.size() != want)
-        return b.size() < want ? "it is cut short" : "something follows its points";
+        return b.size() < want ? "it is cut short" : "there is extra data after its points";
     if (checksum(b.first(b.size() - 4)) != takeNumber<uint32_t>(b.data() + b.size() - 4)) return "it is damaged";
     to.rows.resize(size_t(count) * width);
     for (size_t i = 0; i < to.rows.size(); ++i) to.rows[i] = takeFloat(&b[kHeader + 4 * i]);
@@ -50,7 +50,7 @@ std::string readText(std::span<const uint8_t> b, Baked& to) {
     bool known = false;
     for (int t = 0; t <= int(ChannelType::Normal); ++t)
         if (type == nameOf(ChannelType(t))) known = true, to.type = ChannelType(t);
-    if (!known) return "its first line does not say of what type its values are";
+    if (!known) return "its first line does not name the type of its values";
     const size_t width = 2 + size_t(sizeOf(to.type));
     size_t number = 1, inLine = 0;
     for (at = line; at < end;) {
@@ -71,10 +71,10 @@ std::string readText(std::span<const uint8_t> b, Baked& to) {
             at = r.ptr;
         }
     }
-    return inLine == 0 ? "" : "its last line does not end";
+    return inLine == 0 ? "" : "its last line is incomplete";
 }
 
-/// Solves the normal equations of a plane a + b x + c y; gives a, or the mean where the points do not span a plane.
+/// Solves the normal equations of a plane a + b x + c y; returns a, or the mean if the points do not span a plane.
 struct Plane {
     double w = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
     double v[3] = {}, vx[3] = {}, vy[3] = {};
@@ -205,7 +205,7 @@ BakedPicture pictureOf(const Baked& baked) {
         if (inside(i)) points.push_back(uint32_t(i));
     p.outside = baked.size() - points.size();
     for (p.side = 1; p.side < limits::kBakedSide && double(p.side) * p.side * 2 < double(points.size()); p.side *= 2) {}
-    // Points by the pixel in which they lie, in their order.
+    // Points by pixel, in their order.
     const auto pixelOf = [&](float x) { return std::clamp(int(x * float(p.side)), 0, p.side - 1); };
     const size_t count = size_t(p.side) * size_t(p.side);
     std::vector<uint32_t> first(count + 1), by(points.size());

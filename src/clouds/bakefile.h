@@ -25,15 +25,15 @@ struct Baked {
 
 /// The name of a file without "&binary". *binary: whether that was there.
 std::string bakeFileName(const std::string& name, bool* binary);
-/// False: an error was reported, and what was there before still is.
+/// Returns false after an error, which is reported; an existing file is then unchanged.
 bool saveBaked(const std::string& name, const Baked&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
-/// Whether a file begins as one of these does.
+/// Whether the first bytes of a file are those of this format.
 bool isBaked(const std::string& path);
 std::optional<Baked> loadBaked(const std::string& path, Diagnostics&, const SourcePlace& = {});
 
-/// A picture of the points with s and t of 0 to 1, t downward: as many pixels as points, about, a power of two on each side. A
-/// pixel is the plane that fits the points within two pixels of its middle best, there (weights (1 - d^2 / 4)^2): linear
-/// functions of s and t come back as they are. Where points are missing coarser pictures fill in.
+/// A picture of the points with s and t in [0, 1], t downward: about as many pixels as points, each side a power of two. A pixel
+/// is the value of the plane that best fits the points within two pixels of its centre (weights (1 - d^2 / 4)^2), so linear
+/// functions of s and t are preserved. Gaps are filled from coarser pictures.
 struct BakedPicture {
     int side = 0, channels = 0;
     std::vector<float> pixels; ///< row by row

@@ -20,8 +20,8 @@ constexpr size_t kFew = 16;
 
 size_t rowOf(const BakeLayout& l) { return size_t(l.width) + (l.flat ? 2 : 7); }
 
-/// The points of a cloud. Where several calls bake at one point, what is new goes to the point that is there, unless it has
-/// something else of that already.
+/// The points of a cloud. If several calls bake at one point, new channels are added to the existing point, unless it already has
+/// other values for them.
 struct Joined {
     PointCloud& cloud;
     std::vector<size_t> counts; ///< of each number: points that have it
@@ -92,13 +92,14 @@ void BakeLog::settle() {
     count();
 }
 
-/// What is settled: many samples have become one.
+/// Counts records after averaging samples.
 void BakeLog::count() {
     bytes_ = 0;
     for (const auto& [name, f] : files_) bytes_ += f.settled.size() * sizeof(float) + f.rows.size() * sizeof(Row);
 }
 
-/// Entries of one point and call stand together, sample by sample. Where every sample has as many, they are averaged one by one.
+/// Records of one point and call are consecutive, sample by sample. If all samples have equally many, they are averaged one by
+/// one.
 void BakeLog::settle(File& f) {
     const auto less = [&](const Entry& a, const Entry& b) {
         const auto x = pointOf(a.key, *a.layout), y = pointOf(b.key, *b.layout);
@@ -115,10 +116,10 @@ void BakeLog::settle(File& f) {
         while (end < f.entries.size() && pointOf(f.entries[end].key, *f.entries[end].layout) == pointOf(first.key, *first.layout))
             ++end;
         std::vector<size_t> begins;                  // of samples, in group
-        for (size_t k = i, from = 0; k < end; ++k) { // twice, bit by bit: once
+        for (size_t k = i, from = 0; k < end; ++k) { // bitwise duplicates count once
             if (k == i || f.entries[k].key.sample != f.entries[k - 1].key.sample) {
                 begins.push_back(from = group.size());
-                if (!known.empty()) known = {}; // to clear it takes as long as its largest loop did
+                if (!known.empty()) known = {}; // clear() would take as long as the largest loop did
             }
             const auto bits = [&](const Entry& e) {
                 return std::string_view(reinterpret_cast<const char*>(&f.pending[e.at]), width * sizeof(float));
@@ -211,14 +212,14 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
             d.report(Severity::Error, Rie::Consistency, l->place,
                      "bake3d(): \"" + name + "\" has " +
                          (l->flat ? "points of bake() as well" : "channels of these names and other types already") +
-                         "; these points are left out");
+                         "; these points are dropped");
         k.fits &= !l->flat;
         for (const Channel& c : l->channels)
             for (int n = 0, at = cloud.offsetOf(c.name); n < sizeOf(c.type); ++n) k.to.push_back(at + n);
     }
     Joined joined{cloud, std::vector<size_t>(size_t(cloud.width())), {}};
     cloud.reserve(f.rows.size());
-    bool several = false; // calls that give different channels
+    bool several = false; // calls with different channels
     for (const auto& [layout, k] : known) several |= k.fits && k.to.size() < size_t(cloud.width());
     for (const Row& r : f.rows)
         if (const Known& k = known[r.layout]; k.fits) joined.add(&f.settled[r.at], k.to, several);
@@ -227,7 +228,7 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
             d.report(Severity::Warning, Rie::Consistency, order.front()->place,
                      "bake3d(): " + std::to_string(cloud.size() - n) + " of " + std::to_string(cloud.size()) + " points of \"" +
                          name + "\" have no channel \"" + c.name + "\"; it is 0 there",
-                     "all calls that bake into a file give the same channels, or others at the same points");
+                     "all calls that bake into one file must write the same channels, or other channels at the same points");
     return saveCloud(name, cloud, policy, d, f.rows.front().layout->place);
 }
 
@@ -238,7 +239,7 @@ bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d, FileOwners owner
         if (f.notFinite)
             d.report(Severity::Warning, Rie::Math, {},
                      "\"" + name + "\": " + std::to_string(f.notFinite) +
-                         " baked points have numbers that are not finite; they are left out");
+                         " baked points have numbers that are not finite; they are dropped");
         if (f.rows.empty()) continue;
         const BakeLayout& first = *f.rows.front().layout;
         const std::string call = first.flat ? "bake()" : "bake3d()";

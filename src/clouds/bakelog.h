@@ -1,5 +1,5 @@
-// What shaders bake, collected while they run, in an order that no thread and no batch decides, and written when the frame is
-// done.
+// Baked data of shaders, collected while they run in an order that does not depend on threads or batches, and written after the
+// frame.
 #pragma once
 #include "base/diagnostics.h"
 #include "clouds/pointcloud.h"
@@ -12,7 +12,7 @@ struct OutputPolicy;
 
 namespace alpenglow::clouds {
 
-/// What one call of bake() or bake3d() writes.
+/// Layout of the records of one bake() or bake3d() call.
 struct BakeLayout {
     bool flat = false; ///< bake(): s, t and the one channel; else bake3d(): P, N, radius and channels
     std::vector<Channel> channels;
@@ -21,7 +21,7 @@ struct BakeLayout {
     SourcePlace place;
 };
 
-/// To which point a record belongs: points of grids by shape and number, points that camera rays meet by pixel.
+/// Identifies the point of a record: grid points by shape and index, hits of camera rays by pixel.
 struct BakeKey {
     bool camera = false;
     int32_t y = 0, x = 0; ///< grids: shape, point
@@ -35,21 +35,21 @@ using FileOwners = std::map<std::string, std::string>;
 
 class BakeLog {
 public:
-    /// The numbers of one call: s, t and the value; or P (3), N (3), radius and the channels, in the space of the file. Layouts
-    /// outlive the log. False: nothing is kept any more, which is reported when it is written. Thread safe.
+    /// Adds the numbers of one call: s, t and the value; or P (3), N (3), radius and the channels, in the space of the file.
+    /// Layouts must outlive the log. Returns false if the log is full, which is reported when it is written. Thread safe.
     bool add(const std::string& file, const BakeLayout&, const BakeKey&, std::span<const float> numbers);
-    /// Puts what was added since the last call behind what was there, in the order of the keys. Of points of grids the samples
-    /// are averaged. What was added twice, bit by bit, is kept once: points may be shaded again. Nobody adds meanwhile.
+    /// Appends records added since the last call to the earlier ones, in order of keys. Averages the samples of grid points.
+    /// Removes bitwise duplicates, because points may be shaded again. Call while no thread adds.
     void settle();
     /// Whether anything was added since the last settle(). Nobody adds meanwhile.
     bool pending() const;
-    /// Forgets what was added since the last settle(): the samples were void.
+    /// Discards records added since the last settle(), because the samples were void.
     void discard();
-    /// Settles, and writes all files but those that somebody else writes; then the log is empty. False: an error was reported for
-    /// each that was not written.
+    /// Calls settle(), writes all files except those of other owners, and empties the log. Returns false if a file could not be
+    /// written; each is reported.
     bool write(const OutputPolicy&, Diagnostics&, FileOwners = {});
     bool empty() const { return files_.empty(); }
-    /// Of what is kept, in memory.
+    /// Size of the records in memory.
     size_t bytes() const { return bytes_; }
 
 private:

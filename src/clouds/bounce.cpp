@@ -15,7 +15,7 @@ const Channel* colourNamed(const PointCloud& c, const std::string& name) {
     return nullptr;
 }
 
-/// What arrives at points from `begin` on, where they are disks.
+/// Computes the light that arrives at disks from index `begin` on.
 void arrive(const PointCloud& cloud, const PointOctree& octree, float solidAngle, size_t begin, size_t end,
             std::vector<Color>& to) {
     Hemisphere h;
@@ -37,10 +37,9 @@ void arrive(const PointCloud& cloud, const PointOctree& octree, float solidAngle
 
 std::string bounce(PointCloud& cloud, const BounceOptions& o) {
     const Channel* light = colourNamed(cloud, "_radiosity");
-    if (!light || light->type != ChannelType::Color) return "there is no colour \"_radiosity\" in it";
+    if (!light || light->type != ChannelType::Color) return "it has no color channel \"_radiosity\"";
     const Channel* albedo = o.albedoChannel.empty() ? nullptr : colourNamed(cloud, o.albedoChannel);
-    if (!albedo && !o.albedoChannel.empty())
-        return "there is no channel \"" + o.albedoChannel + "\" in it that is a colour or a float";
+    if (!albedo && !o.albedoChannel.empty()) return "it has no color or float channel \"" + o.albedoChannel + "\"";
     const size_t at = size_t(cloud.offsetOf("_radiosity")), width = size_t(cloud.width());
     const std::vector<float> before = cloud.values;
     std::vector<Color> arrived(cloud.size());

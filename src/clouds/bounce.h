@@ -1,4 +1,4 @@
-// Light that goes to and fro between the points of a cloud: "_radiosity" with what other points send added, bounce by bounce.
+// Diffuse interreflection between the points of a cloud: adds light of other points to "_radiosity", bounce by bounce.
 #pragma once
 #include "clouds/pointcloud.h"
 
@@ -12,9 +12,9 @@ struct BounceOptions {
     int threads = 1;
 };
 
-/// Every point gets radiosity + albedo times what arrives from the others, `bounces` times, each with the light of the one
-/// before. Disks get and send on the side to which their normal looks; balls are left as they are. "": done; else what is
-/// missing. The same bits for any number of threads. An estimate with a bias, as hemisphere.h is.
+/// Each point gets radiosity + albedo times light from the others, `bounces` times, each with the light of the previous one.
+/// Disks receive and send on the side of their normal; spheres are unchanged. Returns "", or what is missing. The same bits for
+/// any number of threads. Biased, as hemisphere.h is.
 std::string bounce(PointCloud&, const BounceOptions&);
 
 } // namespace alpenglow::clouds

@@ -25,7 +25,7 @@ class BrickMap final : public CloudMap {
 public:
     BrickMap(const std::string& path, Diagnostics& d, SourcePlace place, size_t cacheBytes)
         : path_(path), diagnostics_(d), place_(std::move(place)), file_(path), most_(cacheBytes) {}
-    /// "": fine, else what is wrong.
+    /// Returns "", or an error message.
     std::string readDirectory();
     BrickFacts facts() const;
     const std::vector<Channel>& channels() const override { return channels_; }
@@ -77,7 +77,7 @@ private:
     };
     mutable std::mutex mutex_;
     mutable std::map<uint32_t, Kept> kept_;
-    mutable std::list<uint32_t> used_; ///< the last one met first
+    mutable std::list<uint32_t> used_; ///< most recently used first
     mutable size_t bytes_ = 0;
 };
 
@@ -106,7 +106,7 @@ std::string BrickMap::readDirectory() {
     size_t at = kBrickFixed;
     if (std::string fault = unpackChannels(head, channels, &at, channels_); !fault.empty()) return fault;
     width_ = width();
-    if (head.size() != at + levels * 4 + uint64_t(bricks) * kOfBrick) return "its header does not say what its bricks are";
+    if (head.size() != at + levels * 4 + uint64_t(bricks) * kOfBrick) return "its header does not match its bricks";
     for (uint32_t i = 0; i < levels; ++i, at += 4) largest_.push_back(takeFloat(&b[at]));
     for (const float r : largest_)
         if (!(r >= 0) || !std::isfinite(r)) return "its header is damaged";
@@ -138,13 +138,13 @@ std::shared_ptr<const PointTree> BrickMap::load(const Brick& k) const {
         {Severity::Error,
          Rie::BadFile,
          place_,
-         "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; there is nothing in them",
-         "alpenglow ptc brick makes it anew",
+         "brick map \"" + path_ + "\": some of its bricks are damaged, or the file has changed; these bricks are empty",
+         "alpenglow ptc brick makes it again",
          {}});
     return std::make_shared<const PointTree>();
 }
 
-/// Null: there is none at this place.
+/// Returns null if there is none at this position.
 std::shared_ptr<const PointTree> BrickMap::brick(const BrickPlace& at) const {
     const auto found =
         std::lower_bound(bricks_.begin(), bricks_.end(), at, [](const Brick& b, const BrickPlace& p) { return b.at < p; });
@@ -185,7 +185,7 @@ std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostic
     const std::string fault = map->readDirectory();
     if (fault.empty()) return map;
     d.report(Severity::Error, Rie::BadFile, place, "brick map \"" + path + "\" cannot be read: " + fault,
-             "alpenglow ptc brick makes it anew");
+             "alpenglow ptc brick makes it again");
     return nullptr;
 }
 
@@ -194,7 +194,7 @@ std::optional<BrickFacts> brickFacts(const std::string& path, Diagnostics& d) {
     const std::string fault = map.readDirectory();
     if (fault.empty()) return map.facts();
     d.report(Severity::Error, Rie::BadFile, {}, "brick map \"" + path + "\" cannot be read: " + fault,
-             "alpenglow ptc brick makes it anew");
+             "alpenglow ptc brick makes it again");
     return {};
 }
 

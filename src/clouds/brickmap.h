@@ -27,18 +27,18 @@ namespace alpenglow::clouds {
 
 inline constexpr int kDeepest = 16; ///< levels, at most: cells are 2^-15 of the cube
 
-/// The level whose cells are no more than half as wide as a filter.
+/// The level whose cells are at most half as wide as a filter.
 int depthFor(float side, float radius);
 /// The cube that levels cut.
 void cubeAbout(const PointCloud&, Vec3* corner, float* side);
-/// Sums of a lookup as their mean. False: nothing was found.
+/// Divides the sums of a lookup by the weight. Returns false if nothing was found.
 bool meanOf(double weight, std::span<const double> sums, std::span<float> out);
 
-/// Writes a brick map of a cloud: down to the level whose cells are as wide as the middle one of the disks. False: an error was
+/// Writes a brick map of a cloud, down to the level with cells as wide as the median disk. Returns false after an error, which is
 /// reported.
 bool saveBrickMap(const std::string& name, const PointCloud&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
 bool isBrickMap(const std::string& path);
-/// What the directory of one says.
+/// The directory of a brick map.
 struct BrickFacts {
     std::vector<Channel> channels;
     size_t levels = 0, bricks = 0; ///< bricks: of all levels
@@ -46,10 +46,10 @@ struct BrickFacts {
     Vec3 corner;                   ///< of the cube about the cloud
     float side = 0;
 };
-/// Nothing: an error was reported.
+/// Returns nothing after an error, which is reported.
 std::optional<BrickFacts> brickFacts(const std::string& path, Diagnostics&);
-/// Opens one: reads what lies before the bricks. These are read when lookups meet them, and those longest not met are forgotten
-/// beyond `cacheBytes`. Null: an error was reported.
+/// Opens a brick map and reads its head. Bricks are read at first use, and the least recently used ones dropped beyond
+/// `cacheBytes`. Returns null after an error, which is reported.
 std::shared_ptr<const CloudMap> openBrickMap(const std::string& path, Diagnostics&, const SourcePlace& = {},
                                              size_t cacheBytes = size_t(256) << 20);
 

@@ -1,4 +1,4 @@
-// What the makers and the reader of brick maps share (brickmap.h has the format).
+// Shared by makers and reader of brick maps (format: brickmap.h).
 #pragma once
 #include "clouds/brickmap.h"
 #include <algorithm>
@@ -32,7 +32,7 @@ inline uint32_t cellOf(double x, float corner, float side, int depth) {
 }
 inline uint32_t brickOf(double x, float corner, float side, int depth) { return cellOf(x, corner, side, depth) / kBrickSide; }
 
-/// The level whose cells are as wide as the middle one of the disks.
+/// The level with cells as wide as the median disk.
 inline int deepestOf(std::vector<float> radii, float side) {
     if (radii.empty()) return 0;
     std::nth_element(radii.begin(), radii.begin() + long(radii.size() / 2), radii.end());

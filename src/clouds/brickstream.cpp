@@ -14,7 +14,7 @@ namespace alpenglow::clouds {
 
 namespace {
 
-constexpr size_t kSlice = size_t(1) << 20; ///< bytes that are read or written at once
+constexpr size_t kSlice = size_t(1) << 20; ///< bytes read or written at once
 constexpr int kDeepestCubes = 7;           ///< of the cubes that the cloud is sorted into
 
 struct Close {
@@ -44,7 +44,7 @@ private:
 class Stream {
 public:
     explicit Stream(std::span<const std::string> paths) : paths_(paths.begin(), paths.end()) {}
-    /// "": fine, else which cloud is wrong, and what.
+    /// Returns "", or an error message that names the cloud.
     std::string open();
     const std::vector<Channel>& channels() const { return all_.channels; }
     size_t record() const { return 28 + 4 * size_t(all_.width()); } ///< bytes of a point
@@ -54,8 +54,8 @@ public:
 private:
     std::vector<std::string> paths_;
     std::vector<Part> parts_;
-    std::vector<std::vector<size_t>> places_; ///< by part and number of a point: where it goes
-    PointCloud all_;                          ///< channels alone
+    std::vector<std::vector<size_t>> places_; ///< by part and index of a point: its destination
+    PointCloud all_;                          ///< channels only
 };
 
 /// The header as loadCloud() checks it.
@@ -75,7 +75,7 @@ std::string Part::open() {
         return f;
     int width = 0;
     for (const Channel& c : channels_) width += sizeOf(c.type);
-    if (at != header_ - 4 || record_ != 28 + 4 * size_t(width)) return "its header does not say what its points are";
+    if (at != header_ - 4 || record_ != 28 + 4 * size_t(width)) return "its header does not match its points";
     if (count_ > limits::kCloudPoints) return "it has more than " + std::to_string(limits::kCloudPoints) + " points";
     return "";
 }
@@ -161,11 +161,11 @@ private:
     uint64_t written_ = 0;
     std::vector<Brick> bricks_; ///< offset: in bricksOut_
     std::vector<float> largest_;
-    PointCloud top_; ///< of the coarsest level that cubes have whole bricks of
+    PointCloud top_; ///< of the coarsest level for which cubes have complete bricks
 };
 
 std::string Maker::measure() {
-    if (!scratch_ || !bricksOut_) return "there is no room for files in between";
+    if (!scratch_ || !bricksOut_) return "there is no disk space for temporary files";
     Vec3 lo(INFINITY), hi(-INFINITY);
     std::vector<float> radii;
     bool finite = true;
@@ -233,7 +233,7 @@ std::string Maker::sort() {
     });
     for (size_t k = 0; k < waiting.size(); ++k)
         if (!waiting[k].empty()) put(k);
-    return !fault.empty() ? fault : fine ? "" : "there is no room for files in between";
+    return !fault.empty() ? fault : fine ? "" : "there is no disk space for temporary files";
 }
 
 void Maker::level(const PointCloud& points, int depth) {
@@ -247,7 +247,7 @@ void Maker::level(const PointCloud& points, int depth) {
     }
 }
 
-/// The levels of a cube down to the one whose bricks are as large as it.
+/// Writes the levels of a cube down to the one whose bricks have its size.
 void Maker::cube(const Cube& c) {
     std::vector<uint8_t> b(stream_.record());
     std::vector<float> room((stream_.record() - 28) / 4);
@@ -287,8 +287,8 @@ bool Maker::write(const std::string& name, const OutputPolicy& policy, Diagnosti
         b.resize(k.points * stream_.record());
         if (std::fseek(bricksOut_.get(), long(k.offset), SEEK_SET) != 0 ||
             std::fread(b.data(), 1, b.size(), bricksOut_.get()) != b.size()) {
-            d.report(Severity::Error, Rie::System, place, "brick map \"" + name + "\": there is no room for files in between",
-                     "TMPDIR has too little");
+            d.report(Severity::Error, Rie::System, place,
+                     "brick map \"" + name + "\": there is no disk space for temporary files", "TMPDIR has too little");
             return false;
         }
         if (!file->write(b.data(), b.size())) break;

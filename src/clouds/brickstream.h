@@ -13,9 +13,10 @@ struct OutputPolicy;
 
 namespace alpenglow::clouds {
 
-/// The map of these clouds together, as of merge() and saveBrickMap(), but that means of the coarsest levels may differ in their
-/// last bits. `memory`: bytes that points take at a time, about; more where very many lie in one place. Clouds that fit, and PLY
-/// files, are read whole. False: an error was reported, and what was there before still is.
+/// Makes one map of several clouds, as merge() and saveBrickMap() would, except that means in the coarsest levels may differ in
+/// the last bits. `memory`: approximate size of the points held at once, in bytes; more if very many are at one position. Clouds
+/// that fit, and PLY files, are read completely. Returns false after an error, which is reported; an existing file is then
+/// unchanged.
 bool brickMapOfFiles(std::span<const std::string> clouds, const std::string& name, const OutputPolicy&, Diagnostics&,
                      const SourcePlace& = {}, size_t memory = limits::kBrickMemory);
 

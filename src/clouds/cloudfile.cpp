@@ -37,10 +37,10 @@ std::string readCloud(std::span<const uint8_t> b, PointCloud& to) {
         !fault.empty())
         return fault;
     const int width = to.width();
-    if (at != header - kEnd || record != kOfPoint + 4 * uint64_t(width)) return "its header does not say what its points are";
+    if (at != header - kEnd || record != kOfPoint + 4 * uint64_t(width)) return "its header does not match its points";
     if (count > limits::kCloudPoints) return "it has more than " + std::to_string(limits::kCloudPoints) + " points";
     if (const uint64_t want = header + count * record + kEnd; b.size() != want)
-        return b.size() < want ? "it is cut short" : "something follows its points";
+        return b.size() < want ? "it is cut short" : "there is extra data after its points";
     const auto points = b.subspan(size_t(header), size_t(count * record));
     if (checksum(points) != takeNumber<uint32_t>(b.data() + b.size() - kEnd)) return "its points are damaged";
     to.reserve(size_t(count));

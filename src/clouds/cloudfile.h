@@ -22,23 +22,24 @@ struct OutputPolicy;
 
 namespace alpenglow::clouds {
 
-/// Writes a cloud; as PLY where the name ends in ".ply". False: an error was reported, and what was there before still is.
+/// Writes a cloud; as PLY if the name ends in ".ply". Returns false after an error, which is reported; an existing file is then
+/// unchanged.
 bool saveCloud(const std::string& name, const PointCloud&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
-/// Reads either, by its first bytes. Nothing: an error was reported, with what is wrong with the file.
+/// Reads either format, by its first bytes. Returns nothing after an error, which is reported.
 std::optional<PointCloud> loadCloud(const std::string& path, Diagnostics&, const SourcePlace& = {});
 
 /// The parts of it, for files of other kinds that hold points (brickmap.h).
 std::vector<uint8_t> packChannels(std::span<const Channel>);
-/// Reads `count` channels, moving *at. "": fine, else what is wrong.
+/// Reads `count` channels and advances *at. Returns "", or an error message.
 std::string unpackChannels(std::span<const uint8_t> bytes, uint32_t count, size_t* at, std::vector<Channel>& to);
 void packPoint(const PointCloud&, size_t point, std::vector<uint8_t>& to);
-/// Adds a point of 28 + 4 width bytes. False: it is no point.
+/// Adds a point of 28 + 4 width bytes. Returns false for invalid points.
 bool unpackPoint(const uint8_t* from, int width, std::vector<float>& room, PointCloud& to);
 
 // ply.cpp
 bool savePly(const std::string& name, const PointCloud&, const OutputPolicy&, Diagnostics&, const SourcePlace&);
-/// "": fine, else what is wrong. ASCII, and binary of both orders. The element "vertex" with x, y, z; nx, ny, nz, radius where
-/// they are there; other properties are channels (docs/pointclouds.md).
+/// Reads a PLY file, ASCII or binary in both byte orders. The element "vertex" has x, y, z; optional nx, ny, nz, radius; other
+/// properties become channels (docs/pointclouds.md). Returns "", or an error message.
 std::string readPly(std::span<const uint8_t> bytes, PointCloud& to);
 
 } // namespace alpenglow::clouds

@@ -10,16 +10,17 @@ namespace {
 constexpr int kLeastSide = 16, kMostSide = 64;
 /// Pixels are as much smaller than the largest cluster that its shape is not all that is seen.
 constexpr float kPixelsOfCluster = 7.6f;
-/// A disk that P lies on is not met.
+/// A disk that contains P is ignored, within this tolerance.
 constexpr float kOwnDisk = .02f;
-/// Of a part this far below the plane of a disk, in its radii, nothing of it is seen.
+/// A part so far below the plane of a disk, in disk radii, sees nothing of it.
 constexpr float kEdgeOn = 1e-4f;
 
-/// Of a disk no farther above P than this part of its radius, whose normal is like that at P.
+/// Largest height of P above a disk, in disk radii, and smallest cosine between the normals, for the disk to count as P's own
+/// surface.
 constexpr float kSame = .3f, kAlike = .7f;
 
-/// How much of a pixel is covered, where this much of it is: squares of clusters do not fit together exactly, so that what covers
-/// most of a pixel covers it; less stays as it is.
+/// Coverage of a pixel: squares of clusters do not fit together exactly, so a mostly covered pixel counts as covered; smaller
+/// values are unchanged.
 float closed(float part) { return part <= .4f ? part : std::min(1.f, .4f + 2 * (part - .4f)); }
 } // namespace
 
@@ -96,7 +97,7 @@ void Hemisphere::cover(uint32_t i, float part, float distance, float kept, const
 void Hemisphere::splat(const Vec3& d, float solidAngle, float distance, const Color& light) {
     const Vec3 a(std::fabs(d.x), std::fabs(d.y), std::fabs(d.z));
     const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2, ku = (axis + 1) % 3, kv = (axis + 2) % 3;
-    if (!(a[axis] > 0)) return; // so far away that floats have no direction to it
+    if (!(a[axis] > 0)) return; // too far away for a direction in float
     const float sign = d[axis] < 0 ? -1.f : 1.f, u = d[ku] / a[axis], v = d[kv] / a[axis];
     const float q = 1 + u * u + v * v, pixel = 4 / (float(side_ * side_) * q * std::sqrt(q));
     const float side = std::clamp(std::sqrt(solidAngle / pixel), 1.f, float(side_));
@@ -153,7 +154,7 @@ void Hemisphere::draw(const PointOctree::Point& p, const Vec3& to) {
     if (dot(p.N, p.N) > 0) {
         const float r = p.radius(), height = std::fabs(dot(to, p.N));
         if (height < kEdgeOn * r) return;
-        // On a curved surface P lies below the disks about it, which are part of the same surface.
+        // On a curved surface P is below the surrounding disks of the same surface.
         if (height < kSame * r && dot(to, to) < 4 * r * r && std::fabs(dot(p.N, q_.N)) > kAlike) return;
     }
     for (int face = 0; face < 6; ++face) drawOnFace(p, to, face);
@@ -162,7 +163,7 @@ void Hemisphere::draw(const PointOctree::Point& p, const Vec3& to) {
 void Hemisphere::drawOnFace(const PointOctree::Point& p, const Vec3& to, int face) {
     const int axis = face / 2, ku = (axis + 1) % 3, kv = (axis + 2) % 3;
     const float r = p.radius(), depth = face & 1 ? -to[axis] : to[axis];
-    if (depth + r <= 0 || std::fabs(to[ku]) - r > depth + r || std::fabs(to[kv]) - r > depth + r) return; // beside the face
+    if (depth + r <= 0 || std::fabs(to[ku]) - r > depth + r || std::fabs(to[kv]) - r > depth + r) return; // outside of the face
     const auto range = [&](float at, int& first, int& last) {
         first = 0, last = side_ - 1;
         if (depth - r <= 0) return; // it may be anywhere on the face
@@ -223,8 +224,8 @@ void Hemisphere::sortFragments() {
     });
 }
 
-/// What lies behind a full pixel goes, as far as it is over the brim: whatever comes in front later, it is never seen. Where that
-/// leaves many, each covers little of its pixel; there neighbours become one, two by two.
+/// Removes fragments behind a full pixel, which nothing can make visible. If many remain, each covers little of its pixel;
+/// neighbours are then merged in pairs.
 void Hemisphere::thin() {
     constexpr size_t kMany = 32;
     static_assert(kMany * 6 * kMostSide * kMostSide <= limits::kCloudFragments * 3 / 4);
@@ -257,7 +258,7 @@ void Hemisphere::thin() {
     fragments_.resize(to);
 }
 
-/// What lies in each pixel, the nearest first, until it is full.
+/// Composites the fragments of each pixel, nearest first, until it is full.
 void Hemisphere::compose() {
     for (const uint32_t i : used_)
         if (pixels_[i].near < 1e38f) fragments_.push_back({i, pixels_[i].near, 1, pixels_[i].nearLight});
@@ -277,7 +278,7 @@ void Hemisphere::finish() {
     double blocked = 0, light[3] = {};
     for (const uint32_t i : used_) {
         Pixel& p = pixels_[i];
-        if (!q_.sort && p.near < 1e38f) { // it hides what is behind
+        if (!q_.sort && p.near < 1e38f) { // it hides fragments behind it
             const float kept = fade(p.near);
             if (q_.clamp) p.geometric = 1, p.blocked = kept, p.light = p.nearLight * kept;
             else p.blocked += kept, p.light += p.nearLight * kept;

@@ -1,6 +1,6 @@
-// What a point sees of point clouds: a cube of pixels about it. Clusters far away cover as much of the pixels as they are seen,
-// disks nearby are drawn, the nearest in each pixel. An approximation: its errors do not go away with more samples.
-// Source: Christensen, Point-Based Approximate Color Bleeding, Pixar Technical Memo 08-01 (2008).
+// Visibility from a point in point clouds: rasterises them onto a cube of pixels around it. Distant clusters cover the solid
+// angle that they subtend, near disks are drawn, nearest first. Approximate: errors do not vanish with more samples. Source:
+// Christensen, Point-Based Approximate Color Bleeding, Pixar Technical Memo 08-01 (2008).
 #pragma once
 #include "clouds/octree.h"
 
@@ -12,26 +12,26 @@ struct HemisphereQuery {
     float cone = 1.57079633f;  ///< half angle about N
     Vec3 axis;                 ///< only directions towards it; 0: all
     bool uniform = false;      ///< directions count alike, else by the cosine
-    float maxDistance = 1e38f; ///< nothing beyond
-    float bias = 0;            ///< nothing nearer
+    float maxDistance = 1e38f; ///< ignores farther points
+    float bias = 0;            ///< ignores nearer points
     float maxSolidAngle = .1f; ///< steradians: a cluster that looks larger is taken apart
-    bool clamp = true;         ///< what covers a pixel more than once counts once
-    bool sort = false;         ///< and what is nearest comes first
+    bool clamp = true;         ///< multiple coverage of a pixel counts once
+    bool sort = false;         ///< nearer fragments hide farther ones
     DiskSides sides = DiskSides::Both;
     bool colours = true; ///< light is wanted
-    /// How much of what is there at a distance counts: exp(-fall d), or (1 - d / maxDistance)^fall.
+    /// Attenuation by distance: exp(-fall d), or (1 - d / maxDistance)^fall.
     float fall = 0;
     bool polynomial = false;
 };
 
-/// One a thread: it keeps its room.
+/// Use one for each thread: it reuses its memory.
 class Hemisphere {
 public:
     void begin(const HemisphereQuery&);
     void add(const PointOctree&);
     void finish();
-    /// Behind finish(). Means over the directions of the query: how much is blocked, 0 to 1 where it is clamped; what light
-    /// comes.
+    /// After finish(): means over the directions of the query. blocked(): covered fraction, 0 to 1 if clamped; then the arriving
+    /// light.
     float blocked() const { return blocked_; }
     const Color& light() const { return light_; }
     /// f(direction, part of all directions that is open there), for each pixel in which something is; the parts add up to 1 -

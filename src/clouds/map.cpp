@@ -43,7 +43,7 @@ int depthFor(float side, float radius) {
 
 namespace {
 
-/// A cloud in memory; coarser levels are made when they are first asked for.
+/// A cloud in memory; coarser levels are made at first use.
 class MemoryMap final : public CloudMap {
 public:
     explicit MemoryMap(PointCloud cloud) : whole_(std::move(cloud)) { cubeAbout(whole_.cloud(), &corner_, &side_); }

@@ -1,4 +1,4 @@
-// Looking up in point clouds and brick maps: what texture3d() answers.
+// Lookups in point clouds and brick maps, for texture3d().
 #pragma once
 #include "base/diagnostics.h"
 #include "clouds/pointcloud.h"
@@ -19,10 +19,10 @@ public:
     virtual const std::vector<Channel>& channels() const = 0;
     int width() const;
     int offsetOf(const std::string& name) const;
-    /// The mean about a point, width() numbers. False: nothing is there, and `out` is as it was. A point of the cloud with radius
-    /// r counts within h = radius + 2 r of P by (1 - d^2 / h^2)^2 and by how its normal fits: by 1 - (1 - N.n) (1 + 2 r / (r +
-    /// radius)), not below 0, so that large disks are choosier. Filters wider than the points are dense read coarser levels.
-    /// Thread safe; the same bits whoever asks.
+    /// Weighted mean around a point, width() numbers. Returns false, with `out` unchanged, if there are no points. A point with
+    /// disk radius r within h = radius + 2 r of P has weight (1 - d^2 / h^2)^2 times max(0, 1 - (1 - N.n) (1 + 2 r / (r +
+    /// radius))), so large disks are more selective by normal. Filters wider than the spacing of points read coarser levels.
+    /// Thread safe; the same bits for any caller.
     virtual bool lookup(const Query&, std::span<float> out) const = 0;
 };
 

@@ -29,7 +29,7 @@ PointOctree::Harmonics harmonics(const Vec3& d) {
 constexpr float kBand[9] = {kFloatPi,     2 * kFloatPi / 3, 2 * kFloatPi / 3, 2 * kFloatPi / 3, kFloatPi / 4,
                             kFloatPi / 4, kFloatPi / 4,     kFloatPi / 4,     kFloatPi / 4};
 
-/// Length of the mean of unit normals: from here on a node begins to be, and is, a piece of a plane.
+/// Lengths of the mean of unit normals at which a node starts to count as planar, and fully does.
 constexpr float kCurved = .85f, kFlat = .97f;
 
 /// Bits of a coordinate, two zeros behind each.

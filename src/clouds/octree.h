@@ -1,5 +1,5 @@
-// A point cloud as points far away see it: an octree whose nodes know how much of them is seen, and what it sends, by direction.
-// Source: Christensen, Point-Based Approximate Color Bleeding, Pixar Technical Memo 08-01 (2008).
+// A point cloud for distant receivers: an octree whose nodes store projected area and emitted light by direction. Source:
+// Christensen, Point-Based Approximate Color Bleeding, Pixar Technical Memo 08-01 (2008).
 #pragma once
 #include "base/diagnostics.h"
 #include "clouds/pointcloud.h"
@@ -16,15 +16,15 @@ public:
     struct Point {
         Vec3 P, N;      ///< N: unit, or 0: a ball
         float area = 0; ///< > 0
-        Color light;    ///< what the surface sends, radiance; for subsurface() what enters it over PI
-        /// The disk without gaps between the squares that points stand for; a ball of this area seen from anywhere.
+        Color light;    ///< radiance of the surface; for subsurface() entering irradiance over PI
+        /// Radius of a disk with the area of the point, without gaps; a sphere of this projected area.
         float radius() const;
     };
     /// A function of the direction from which the node is seen, by real spherical harmonics of bands 0 to 2.
     using Harmonics = std::array<float, 9>;
     struct Node {
         Vec3 centre;                   ///< mean by area
-        float reach = 0;               ///< no disk in it goes farther from the centre
+        float reach = 0;               ///< largest distance of its disks from the centre
         float area = 0;                ///< of all
         Color power;                   ///< area times light, of all
         Harmonics seen;                ///< of disks: projected area of their front sides
@@ -34,19 +34,18 @@ public:
         uint32_t begin = 0, end = 0;      ///< points
         uint32_t first = 0, children = 0; ///< nodes; none: a leaf
     };
-    /// `lightChannel`: of a colour or float; "": none. Points without area, which nothing sees, are left out, and those
-    /// whose area is beyond all scenes.
+    /// `lightChannel`: a color or float; "": none. Excludes points without area, and those with absurdly large area.
     PointOctree(const PointCloud&, const std::string& lightChannel);
     const std::vector<Node>& nodes() const { return nodes_; } ///< the root first; none: no points
     const std::vector<Point>& points() const { return points_; }
     size_t leftOut() const { return leftOut_; } ///< points
-    bool lit() const { return lit_; }           ///< the channel is there
+    bool lit() const { return lit_; }           ///< the channel exists
     size_t bytes() const { return points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
-    /// How much of a node is seen from where `towards`, unit, points; and what it sends there.
+    /// Projected area of a node in direction `towards` (unit), and the light that it sends there.
     static float seenFrom(const Node&, const Vec3& towards, DiskSides, Color* sent);
 
-    /// Calls f(distance, point or node area times light, radius or 0) for all points as they are seen from P: alone where the
-    /// node's solid angle is above the limit.
+    /// Calls f(distance, point or node area times light, radius or 0) for all points as seen from P; nodes above the solid angle
+    /// limit are opened.
     template <class F> void each(const Vec3& P, float maxSolidAngle, F&& f) const;
 
 private:
@@ -58,7 +57,7 @@ private:
     bool lit_ = false;
 };
 
-/// A square on the view's sphere is about as large as what is within `reach` from `distance` away. Steradians.
+/// Solid angle, in steradians, of a square around everything within `reach` at a distance.
 inline float solidAngleOf(float reach, float distance2) { return 3.14159265f * reach * reach / distance2; }
 
 template <class F> void PointOctree::each(const Vec3& P, float maxSolidAngle, F&& f) const {

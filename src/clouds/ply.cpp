@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kHeaderBytes = 1u << 20;
 
-/// What the names of a channel's properties end in.
+/// Suffixes of the property names of a channel.
 std::vector<std::string> endingsOf(ChannelType t) {
     switch (t) {
     case ChannelType::Float:
@@ -37,7 +37,7 @@ std::vector<std::string> endingsOf(ChannelType t) {
 }
 
 constexpr const char* kReserved[] = {"x", "y", "z", "nx", "ny", "nz", "radius", "red", "green", "blue"};
-constexpr std::string_view kPrefix = "channel_"; ///< of channels that have such a name, or begin so
+constexpr std::string_view kPrefix = "channel_"; ///< prefix of channels whose names conflict, or start with it
 
 enum class Number : uint8_t { I8, U8, I16, U16, I32, U32, F32, F64 };
 constexpr size_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
@@ -58,10 +58,10 @@ struct Header {
     enum class Form { Text, Little, Big } form = Form::Text;
     std::vector<Property> properties;
     uint64_t count = 0;
-    size_t data = 0; ///< where the numbers begin
+    size_t data = 0; ///< start of the numbers
 };
 
-/// One line of the header; "" or what is wrong.
+/// Parses one line of the header; returns "" or an error message.
 std::string readLine(const std::string& line, Header& h, std::string& element, bool& seen) {
     std::istringstream in(line);
     std::string word, a, b;
@@ -75,7 +75,7 @@ std::string readLine(const std::string& line, Header& h, std::string& element, b
         const auto end = std::from_chars(b.data(), b.data() + b.size(), n);
         if (end.ec != std::errc() || end.ptr != b.data() + b.size()) return "its element \"" + a + "\" has no count";
         if (a == "vertex" && !seen) seen = true, h.count = n;
-        else if (!seen && n > 0) return "its element \"" + a + "\" stands before the vertices";
+        else if (!seen && n > 0) return "its element \"" + a + "\" precedes the vertices";
     } else if (word == "property" && element == "vertex") {
         const auto type = numberByName(a);
         if (!type) return "the type \"" + a + "\" of a property of its vertices is no number";
@@ -103,7 +103,7 @@ std::string readHeader(std::span<const uint8_t> bytes, Header& h) {
         }
         if (std::string fault = readLine(line, h, element, seen); !fault.empty()) return fault;
     }
-    return "its header does not end";
+    return "its header is incomplete";
 }
 
 double numberAt(const uint8_t* from, Number type, bool big) {
@@ -131,7 +131,7 @@ double numberAt(const uint8_t* from, Number type, bool big) {
     return std::bit_cast<double>(takeNumber<uint64_t>(b));
 }
 
-/// Where the numbers of a point lie among the properties; -1: nowhere.
+/// Positions of a point's numbers among the properties; -1: missing.
 struct Places {
     int P[3] = {-1, -1, -1}, N[3] = {-1, -1, -1}, radius = -1;
     std::vector<int> values;
@@ -213,7 +213,7 @@ public:
         }
         return true;
     }
-    /// The least bytes of a vertex.
+    /// Minimum size of a vertex in bytes.
     size_t record() const { return h_.form == Header::Form::Text ? 2 * h_.properties.size() - 1 : record_; }
 
 private:

@@ -94,7 +94,7 @@ struct Cell {
     uint32_t point;
 };
 
-/// The points begin to end, of one cell, as one.
+/// Merges the points begin to end, of one cell, into one.
 void addMean(const PointCloud& from, std::span<const Cell> cell, std::vector<double>& sums, std::vector<float>& row,
              PointCloud& to) {
     const size_t width = size_t(from.width());

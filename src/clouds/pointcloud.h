@@ -1,5 +1,4 @@
-// Point clouds: points of surfaces with what shaders wrote there (bake3d), in the order in which they were written
-// (3Delight manual, 6.4.6, tables 6.17 and 6.18).
+// Point clouds: surface points with baked values (bake3d), in order of writing (3Delight manual, 6.4.6, tables 6.17 and 6.18).
 #pragma once
 #include "base/vec.h"
 #include <cstdint>
@@ -9,7 +8,7 @@
 
 namespace alpenglow::clouds {
 
-/// What the numbers of a channel mean: it decides what spaces do to them.
+/// Type of a channel: determines how spaces transform it.
 enum class ChannelType : uint8_t { Float = 0, Color = 1, Point = 2, Vector = 3, Normal = 4, Matrix = 5 };
 const char* nameOf(ChannelType);
 inline int sizeOf(ChannelType t) { return t == ChannelType::Float ? 1 : t == ChannelType::Matrix ? 16 : 3; }
@@ -27,7 +26,7 @@ struct PointCloud {
     std::vector<float> values; ///< width() a point
     size_t size() const { return P.size(); }
     int width() const; ///< numbers of the channels of one point
-    /// Where the numbers of a channel begin; -1: there is none.
+    /// Index of a channel's first number; -1: no such channel.
     int offsetOf(const std::string& name) const;
     std::span<const float> valuesOf(size_t point) const { return {values.data() + point * size_t(width()), size_t(width())}; }
     void reserve(size_t points);
@@ -37,13 +36,13 @@ struct PointCloud {
     void bounds(Vec3& lo, Vec3& hi) const;
 };
 
-/// All points of several clouds one behind the other. Channels of any; where a cloud has none its numbers are 0. A name that has
-/// two types: "", else what is wrong.
+/// Concatenates several clouds with the union of their channels; missing numbers are 0. Returns "", or an error if a name has two
+/// types.
 std::string merge(std::span<const PointCloud> from, PointCloud& into);
 
-/// The points of a cloud that stand for those in each cell of a cube about it that is cut 2^depth times along each side: by cell
-/// and by the side to which normals look (six, and none). Positions, normals and channels are means by area; the disk has the
-/// area of all. Cells in the order x, y, z.
+/// Merges the points of a cloud in each cell of a cube divided 2^depth times along each side: one point by cell and orientation
+/// of the normal (six, and none). Positions, normals and channels are means by area; the disk has the total area. Cells in order
+/// x, y, z.
 PointCloud coarser(const PointCloud&, const Vec3& corner, float side, int depth);
 
 } // namespace alpenglow::clouds

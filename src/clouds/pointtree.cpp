@@ -43,7 +43,7 @@ void PointTree::build(std::vector<uint32_t>& order, const PointCloud& from, uint
         const float x = from.P[a][axis], y = from.P[b][axis];
         return x != y ? x < y : a < b;
     });
-    // What lies on either side of the middle is decided; its order is not, which a sort by number mends in the leaves.
+    // The partition at the median is unique; its internal order is not, so leaves are sorted by index.
     std::sort(order.begin() + begin, order.begin() + middle);
     std::sort(order.begin() + middle, order.begin() + end);
     build(order, from, begin, middle);

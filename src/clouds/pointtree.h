@@ -1,4 +1,4 @@
-// Points found within the reach that each has: boxes that know the largest radius in them. The same points give the same tree.
+// Finds points within each point's own radius: boxes store the largest radius inside. The same points give the same tree.
 #pragma once
 #include "clouds/map.h"
 

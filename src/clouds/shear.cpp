@@ -8,7 +8,7 @@ namespace alpenglow::clouds {
 
 namespace {
 constexpr double kShearUnit = 0x1p-14;
-constexpr double kSameAngles = 1e-3; ///< of the entries of a metric whose determinant is 1
+constexpr double kSameAngles = 1e-3; ///< tolerance for the entries of a metric with determinant 1
 constexpr double kMostShear = 0x1p20;
 } // namespace
 

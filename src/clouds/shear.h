@@ -1,4 +1,4 @@
-// Point clouds in a space that is no turned and scaled copy of the scene's: what is seen of them goes by angles of the scene.
+// Point clouds in a space that is not a similarity transform of the scene's: visibility uses angles of the scene.
 #pragma once
 #include "base/matrix.h"
 #include "clouds/pointcloud.h"
@@ -14,7 +14,7 @@ struct Shear {
     auto operator<=>(const Shear&) const = default;
 };
 
-/// Of a way from the scene to a cloud's space. Unset: angles are the same in both, or the way has no inverse.
+/// For the transformation from the scene to a cloud's space. Unset: it preserves angles, or has no inverse.
 std::optional<Shear> shearOf(const Matrix& toCloud);
 
 /// How much larger the area of a surface is behind a matrix; `n`: its unit normal.

@@ -23,7 +23,7 @@ void meanStairs(std::vector<DeepChange>& all, size_t count, float tolerance, std
             for (int k = 0; k < 3; ++k) sum[k] += double(all[j].after[k]) - double(all[j].before[k]);
         DeepStep s{all[i].z, {}};
         for (int k = 0; k < 3; ++k) s.left[k] = float(std::clamp(sum[k] / double(count), 0.0, 1.0));
-        // Below the tolerance away from the step before it a step waits for the next: that one stands for both.
+        // A step closer than the tolerance to the previous one is merged with the next.
         const DeepStep before = out.size() > begin ? out.back() : DeepStep{};
         float most = 0;
         for (int k = 0; k < 3; ++k) most = std::max(most, std::fabs(s.left[k] - before.left[k]));

@@ -13,12 +13,12 @@ struct DeepStep {
     float left[3] = {1, 1, 1};
 };
 
-/// Staircases over depth, pixel by pixel in rows from the top. Before its first step a pixel has all light, behind its last what
-/// that leaves.
+/// Transmittance over depth as a staircase, pixel by pixel in rows from the top: 1 before the first step, constant after the
+/// last.
 struct DeepSamples {
     std::vector<uint64_t> first; ///< of each pixel, and behind the last one the number of all steps
     std::vector<DeepStep> steps; ///< of a pixel by increasing z
-    /// What is left at a depth: surfaces nearer than that have taken theirs.
+    /// Transmittance at a depth, including surfaces nearer than it.
     void leftAt(size_t pixel, double z, double out[3]) const;
 };
 
@@ -27,8 +27,8 @@ struct DeepChange {
     float z;
     float before[3], after[3];
 };
-/// Appends the mean of `count` staircases, given by all their steps in any order, as one staircase that lies nowhere more than
-/// `tolerance` (>= 0) above or below it, and ends where it does. `all` is sorted.
+/// Appends the mean of `count` staircases, given by all their steps in any order, as one staircase that deviates from it by at
+/// most `tolerance` (>= 0), and ends at its final value. Sorts `all`.
 void meanStairs(std::vector<DeepChange>& all, size_t count, float tolerance, std::vector<DeepStep>& out);
 
 } // namespace alpenglow::display

@@ -21,12 +21,12 @@ struct DiffResult {
     std::vector<ChannelDiff> channels;
     ChannelDiff all;  ///< over every sample; its name is "all"
     Image difference; ///< absolute difference per sample; infinity where it is counted in nonFinite
-    /// Whether the largest error is at most `tolerance` and nothing is counted in nonFinite.
+    /// Whether the largest error is at most `tolerance` and nonFinite is 0.
     bool within(double tolerance) const { return all.nonFinite == 0 && all.max <= tolerance; }
 };
 
-/// Channels are matched by name when both pictures have the same set of names, else by position when they have equally many.
-/// Nothing: sizes or channel counts differ, and an error was reported.
+/// Matches channels by name if both pictures have the same names, else by position if they have equally many. Returns nothing,
+/// with an error reported, if sizes or channel counts differ.
 std::optional<DiffResult> compareImages(const Image& a, const Image& b, Diagnostics&);
 
 /// One line per channel and one for all: name, mean absolute, RMSE, maximum and its pixel.

@@ -45,7 +45,7 @@ bool writeDisplay(const DriverSetup& setup, const Image& image, Diagnostics& dia
     if (image.channels != setup.channels || image.width != setup.width || image.height != setup.height ||
         image.data.size() != image.sampleCount()) {
         diags.report(Severity::Error, Rie::Bug, setup.place,
-                     "display \"" + setup.name + "\": the picture does not fit what was announced");
+                     "display \"" + setup.name + "\": the picture does not match its announced size and channels");
         return false;
     }
     auto driver = makeDriver(setup.type, diags, setup.place);

@@ -1,5 +1,5 @@
-// Display drivers: what becomes of the pixels of a Display request. A driver is one file in drivers/, described by one object
-// that holds its names, its manual text and its factory; drivers() lists them.
+// Display drivers: output of the pixels of a Display request. A driver is one file in drivers/, described by one object with its
+// names, manual text and factory; drivers() lists them.
 #pragma once
 #include "display/imageio.h"
 #include "display/quantize.h"
@@ -7,11 +7,11 @@
 
 namespace alpenglow::display {
 
-/// What a driver is told before the first pixel.
+/// Parameters of a driver, set before the first pixel.
 struct DriverSetup {
     std::string name;                  ///< of the Display request: a file name, or a window title
     std::string type;                  ///< as the request named it
-    int width = 0, height = 0;         ///< of what is delivered (the crop window), pixels
+    int width = 0, height = 0;         ///< of the delivered pixels (the crop window)
     int originX = 0, originY = 0;      ///< of its first pixel in the full picture
     int fullWidth = 0, fullHeight = 0; ///< of the full picture; 0 = the same
     float pixelAspect = 1;
@@ -26,16 +26,17 @@ struct DriverSetup {
     SourcePlace place; ///< of the Display request
 };
 
-/// Receives one picture. Calls come from one thread, in the order open, rows..., close. Nothing becomes visible under the final
-/// name before close() succeeds, and then all of it; destroying an unclosed driver leaves no trace.
+/// Receives one picture. Calls come from one thread, in the order open, rows..., close. The final file appears when close()
+/// succeeds, complete; destroying an unclosed driver leaves no file.
 class Driver {
 public:
     virtual ~Driver() = default;
-    /// False: the driver cannot show this; an error was reported.
+    /// Returns false, with an error reported, if the driver cannot show this.
     virtual bool open(const DriverSetup&, Diagnostics&) = 0;
     /// `count` rows from row y (0 = top), each width * channels floats, in any order of y. Unquantised, after exposure.
     virtual bool rows(int y, int count, const float* data) = 0;
-    /// Publishes. May be called again after further rows() (progressive renders): each call publishes a whole picture.
+    /// Publishes the picture. May be called again after further rows() (progressive renders): each call publishes a complete
+    /// picture.
     virtual bool close(Diagnostics&) = 0;
 };
 
@@ -52,7 +53,8 @@ const std::vector<const DriverDescriptor*>& drivers();
 const DriverDescriptor* findDriver(const std::string& type);
 /// The driver of a display type. An unknown type gets a picture driver that chooses by the name's extension, and one warning.
 std::unique_ptr<Driver> makeDriver(const std::string& type, Diagnostics&, const SourcePlace& = {});
-/// open, all rows, close of a finished picture. The image's channels must be setup.channels. False: an error was reported.
+/// open, all rows, close for a finished picture. The image's channels must be setup.channels. Returns false after an error, which
+/// is reported.
 bool writeDisplay(const DriverSetup&, const Image&, Diagnostics&);
 
 } // namespace alpenglow::display

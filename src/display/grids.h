@@ -6,7 +6,8 @@
 
 namespace alpenglow::display {
 
-/// Slices one below the other; "depth" in the metadata says how many. Nothing: an error was reported.
+/// Reads the slices, below each other; "depth" in the metadata is their number. Returns nothing after an error, which is
+/// reported.
 std::optional<Image> readGrids(const std::string& path, Diagnostics&, const SourcePlace& = {});
 
 } // namespace alpenglow::display

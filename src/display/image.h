@@ -1,4 +1,4 @@
-// A picture in memory: what codecs read and write, drivers fill and textures are built from.
+// A picture in memory, shared by codecs, drivers and textures.
 #pragma once
 #include "base/matrix.h"
 #include "display/deep.h"
@@ -12,8 +12,8 @@
 
 namespace alpenglow::display {
 
-/// Pixels are floats, interleaved, row by row from the top, as the file or the film gave them (no colour space is implied; alpha
-/// stays as it was). Channel names: "r" "g" "b" "a" "z" "y" (luminance), or "layer.r", "N.x", a bare name for float AOVs.
+/// Interleaved float pixels, row by row from the top, unconverted from file or film (any colour space; alpha unchanged). Channel
+/// names: "r" "g" "b" "a" "z" "y" (luminance), or "layer.r", "N.x", a plain name for float AOVs.
 struct Image {
     int width = 0, height = 0;
     std::vector<std::string> channels;
@@ -27,11 +27,11 @@ struct Image {
     int originX = 0, originY = 0;      ///< of the first pixel in the full picture (crop window)
     int fullWidth = 0, fullHeight = 0; ///< of the full picture; 0 = not cropped
     float pixelAspect = 1;
-    int bits = 32;        ///< per channel in the file it came from
+    int bits = 32;        ///< per channel in the source file
     bool floating = true; ///< that file held floating point
-    /// Of a deep shadow map: what is behind the first surfaces, which `data` holds as "z". Null: a flat picture.
+    /// For a deep shadow map: layers behind the first surfaces, which `data` holds as "z". Null: a flat picture.
     std::shared_ptr<const DeepSamples> deep;
-    std::vector<Image> levels; ///< reduced MIP-map levels 1, 2, ... when the file has them and they were asked for
+    std::vector<Image> levels; ///< reduced MIP-map levels 1, 2, ... if the file has them and they were requested
 
     int channelCount() const { return int(channels.size()); }
     size_t sampleCount() const { return size_t(width) * size_t(height) * channels.size(); }

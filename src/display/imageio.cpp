@@ -62,7 +62,7 @@ void sayLeftOut(const char* format, const Image& m, const std::vector<int>& writ
             left += (left.empty() ? "" : ", ") + m.channels[size_t(c)];
     if (left.empty()) return;
     diags.report(left == "a" ? Severity::Info : Severity::Warning, Rie::Incapable, o.place,
-                 std::string(format) + " holds no more than one picture" + (left == "a" ? " without alpha" : "") +
+                 std::string(format) + " holds a single picture only" + (left == "a" ? " without alpha" : "") +
                      "; left out of \"" + path + "\": " + left,
                  left == "a" ? "PNG, TIFF and OpenEXR hold alpha" : "OpenEXR holds any channels");
 }
@@ -93,7 +93,7 @@ static std::optional<Image> decodeAs(std::span<const uint8_t> b, const DecodeCon
         if (starts({'#', '?'})) return decodeRadiance(b, ctx);
         if (starts({0xfa, 0xce}) || starts({0xce, 0xfa})) return decodePixar(b, ctx);
         if (looksLikeKtx(b)) return decodeKtx(b, ctx);
-        if (looksLikeTarga(b)) return decodeTarga(b, ctx); // last: it has nothing of its own to be known by
+        if (looksLikeTarga(b)) return decodeTarga(b, ctx); // last, because it has no magic number
         if (ctx.file) return readForeign(pictureModule(), ctx.name, ctx);
     } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);

@@ -20,16 +20,16 @@ struct ReadOptions {
     SourcePlace place;   ///< where the file was named
 };
 
-/// The picture in a file, recognised by its first bytes, not by its name. Nothing: an error was reported. Damaged, truncated and
-/// oversized files are errors (limits.h); they never crash and never allocate beyond what their size makes plausible.
+/// Reads a picture, recognised by its first bytes rather than its name. Returns nothing after an error, which is reported.
+/// Damaged, truncated and oversized files are errors (limits.h); memory use is limited by file size.
 std::optional<Image> readImage(const std::string& path, Diagnostics&, const ReadOptions& = {});
 /// The same from memory; `name` is for messages.
 std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::string& name, Diagnostics&, const ReadOptions& = {});
 
 struct WriteOptions {
     Format format = Format::Exr;
-    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. JPEG: UInt8. Others fall to the nearest the format
-    /// has: nothing is lost silently, drivers decide before.
+    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. JPEG: UInt8. Other types are converted to the nearest
+    /// that the format has; drivers report that before.
     Sample sample = Sample::Float;
     bool quantised = false; ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
     std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw packbits
@@ -38,7 +38,7 @@ struct WriteOptions {
     SourcePlace place;
 };
 
-/// Writes a picture whole or not at all (base/file.h). False: an error was reported.
+/// Writes a complete picture or nothing (base/file.h). Returns false after an error, which is reported.
 bool writeImage(const std::string& path, const Image&, const WriteOptions&, Diagnostics&);
 
 /// The format of a name's extension (kPictureExtensions, any case); nothing for others.

@@ -67,7 +67,7 @@ bool isElement(const std::string& s) {
            std::all_of(s.begin() + 1, s.end() - 1, [](unsigned char c) { return std::isdigit(c); });
 }
 
-/// Of "list[1]" what stands before the bracket.
+/// Removes the index from "list[1]".
 std::string withoutElement(const std::string& s) { return s.substr(0, s.find('[')); }
 
 void nameChannels(ModeVariable& v) {
@@ -98,7 +98,7 @@ bool standardMode(const std::string& m, std::vector<ModeVariable>& out) {
 } // namespace
 
 bool parseDeclaration(const std::string& text, ModeVariable& v) {
-    // "color[2] c" and "color [2] c" are both seen: brackets become words of their own.
+    // Both "color[2] c" and "color [2] c" occur: brackets become separate words.
     std::string spaced;
     for (char c : text) spaced += c == '[' ? std::string(" [") : c == ']' ? std::string("] ") : std::string(1, c);
     std::vector<std::string> w = words(spaced, " \t\r\n");
@@ -131,7 +131,7 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
     std::vector<ModeVariable> out;
     std::set<std::string> seen;
     auto add = [&](ModeVariable v) {
-        // Ci is known both as "rgb" and by name; what may not repeat is a channel.
+        // Ci may be "rgb" or a name; channels must be unique.
         for (const std::string& c : v.channels)
             if (!seen.insert(c).second) {
                 diags.report(Severity::Warning, Rie::Consistency, place,
@@ -193,8 +193,7 @@ std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics& diags,
     }
     if (out.empty()) {
         if (!words(mode, " ,\t\r\n").empty())
-            diags.report(Severity::Error, Rie::BadToken, place,
-                         "display mode \"" + mode + "\" names nothing to show; rgba is used");
+            diags.report(Severity::Error, Rie::BadToken, place, "display mode \"" + mode + "\" names no variable; rgba is used");
         standardMode("rgba", out);
     }
     return out;

@@ -1,4 +1,4 @@
-// The mode of a Display request: which variables it shows and what its channels are called (RISpec 3.2, 4.1.2).
+// The mode of a Display request: its variables and the names of its channels (RISpec 3.2, 4.1.2).
 #pragma once
 #include "base/diagnostics.h"
 #include "scene/param.h"
@@ -14,14 +14,14 @@ struct ModeVariable {
     std::string name;
     scene::Type type = scene::Type::Float;
     int arrayLength = 0;   ///< 0 = not an array
-    bool declared = false; ///< false: nothing said the type; taken as color, the shader's own declaration decides
+    bool declared = false; ///< false: the type is undeclared; treated as color, the shader's declaration decides
     std::vector<std::string> channels;
 };
 
-/// Variables of rgb rgba rgbz rgbaz a z az, of a variable's name ("list[1]": an element of an array), of an inline declaration
-/// ("varying color mycolor"), or of a comma separated list of these. Types come from the declaration, else from DisplayChannel
-/// (keys are names), else from RSL's predefined variables. A mode that is not understood is an error, and its parts that are
-/// understood remain; an empty mode means rgba. A variable named twice is kept once, with a warning.
+/// Parses the variables: rgb rgba rgbz rgbaz a z az, a variable's name ("list[1]": an element of an array), an inline declaration
+/// ("varying color mycolor"), or a comma separated list of these. Types are from the declaration, else from DisplayChannel (keys
+/// are names), else RSL's predefined variables. Unknown parts are errors, and the other parts remain; an empty mode means rgba.
+/// Duplicate variables are dropped with a warning.
 std::vector<ModeVariable> parseMode(const std::string& mode, Diagnostics&, const SourcePlace& = {},
                                     const std::map<std::string, scene::Param>& displayChannels = {});
 

@@ -12,9 +12,8 @@ float quantise(const Quantization& q, float value, float noise) {
 }
 
 float ditherNoise(int x, int y, int channel) {
-    // A 64-bit finaliser (xor-shift, multiply) over the packed coordinates; 14 bits of it choose the middle of
-    // one of 16384 equal steps, so that noise stays clear of +-1 by more than the rounding of a value that stands for an 8-bit
-    // code.
+    // A 64-bit finaliser (xor-shift, multiply) over the packed coordinates; 14 bits of it select the centre of one of 16384 equal
+    // steps, so that noise stays further from +-1 than the rounding error of a value for an 8-bit code.
     uint64_t h = uint64_t(uint32_t(x)) << 32 | uint32_t(y);
     h += uint64_t(uint32_t(channel)) * 0x9e3779b97f4a7c15ull + 0x632be59bd9b4e019ull;
     for (int i = 0; i < 2; ++i) {

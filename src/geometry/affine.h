@@ -18,7 +18,7 @@ struct Affine {
     /// v times the transpose of the 3x3 part. Of the inverse: a normal.
     Vec3d across(const Vec3d& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
     double determinant() const { return dot(cross(x, y), z); }
-    /// False where there is none.
+    /// Returns false if there is none.
     bool inverse(Affine& out) const {
         const Vec3d a = cross(y, z), b = cross(z, x), c = cross(x, y);
         const double i = 1 / dot(a, x);
@@ -38,7 +38,7 @@ struct Affine {
         r.o = a.o * v + b.o * w;
         return r;
     }
-    /// The largest sum of the sizes of what a component becomes made of: bounds |vector(v)| by it times the largest of |v|.
+    /// Largest column sum of absolute values: |vector(v)| is at most this times the largest |v| component.
     double stretch() const {
         const auto sum = [&](int k) { return std::fabs(x[k]) + std::fabs(y[k]) + std::fabs(z[k]); };
         return std::fmax(sum(0), std::fmax(sum(1), sum(2)));

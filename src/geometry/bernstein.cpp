@@ -19,7 +19,7 @@ double valueAt(const double* c, int degree, double x, double* slope) {
     return p[0] + (p[1] - p[0]) * x;
 }
 
-/// The only root of a part whose values are below nought (times sign) before it and above behind it.
+/// The only root in an interval where the values (times sign) are negative before it and positive after it.
 double onlyRoot(const double* c, int degree, double sign) {
     double lo = 0, hi = 1, x = 0.5;
     if (c[0] * c[degree] < 0) x = c[0] / (c[0] - c[degree]);
@@ -74,7 +74,7 @@ int bernsteinRoots(const double* c, int degree, double out[8]) {
             add(p.from + p.wide * onlyRoot(p.c, degree, first < 0 ? 1 : -1));
             continue;
         }
-        if (p.wide < 0x1p-38) { // roots as close as double can tell
+        if (p.wide < 0x1p-38) { // roots as close as double can distinguish
             if (std::signbit(first) != std::signbit(last)) add(p.from);
             continue;
         }

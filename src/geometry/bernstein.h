@@ -1,4 +1,4 @@
-// Polynomials in Bernstein form over 0..1, in double: what curves are met with. Source: Farin, "Curves and Surfaces for CAGD", 5.
+// Polynomials in Bernstein form over 0..1, in double, for intersecting curves. Source: Farin, "Curves and Surfaces for CAGD", 5.
 #pragma once
 #include "base/vec.h"
 #include <array>
@@ -62,10 +62,9 @@ template <int A, int B> void bernsteinAddProduct(double* sum, const double* a, c
         for (int k = 0; k <= B; ++k) sum[i + k] += sign * binomial(A, i) * binomial(B, k) / binomial(A + B, i + k) * a[i] * b[k];
 }
 
-/// Where the polynomial changes its sign within 0..1, by increasing parameter, at most 8; ends where it is as good as nought
-/// count too, so that of two polynomials that continue each other at least one has the root between them. A root of even
-/// multiplicity is none. Cut in halves until the coefficients change their sign once (Descartes), then a bracketed Newton
-/// iteration to the last bits.
+/// Sign changes of the polynomial in 0..1, by increasing parameter, at most 8; ends where it nearly vanishes count too, so that
+/// of two adjacent polynomials at least one has a root at the joint. Excludes roots of even multiplicity. Bisects until the
+/// coefficients change sign once (Descartes), then iterates by bracketed Newton steps to the last bits.
 int bernsteinRoots(const double* c, int degree, double out[8]);
 
 } // namespace alpenglow::geometry

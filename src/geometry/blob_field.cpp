@@ -87,7 +87,7 @@ double BlobGround::above(const Vec3d& p) const {
 
 namespace {
 
-/// The application note's: a wall at height 0, a bulge about height c, nothing from a on.
+/// As in the application note: a wall at height 0, a bulge around height c, zero from a on.
 double repulsion(double z, const BlobGround& g) {
     if (!(z < g.a)) return 0;
     z = std::max(z, 1e-6);
@@ -98,7 +98,7 @@ double repulsion(double z, const BlobGround& g) {
 
 double groundField(const BlobGround& g, const Vec3d& p) { return repulsion(g.above(p), g); }
 
-/// By differences over a step that is small against what the map shows: depth maps have no derivatives of their own.
+/// By differences with a step smaller than the map's detail: depth maps have no derivatives.
 BlobJet groundJet(const BlobGround& g, const Vec3d& p) {
     BlobJet j;
     j.f = groundField(g, p);
@@ -276,7 +276,7 @@ BlobJet BlobField::jet(const BlobTape& tape, const Vec3d& p) const {
 
 void BlobField::shares(const BlobTape& tape, const Vec3d& p, std::vector<Share>& out) const {
     out.clear();
-    // A maximum shows its greater side, a difference or quotient its first: what is taken away colours nothing.
+    // A maximum has the colour of its larger side, a difference or quotient of its first: subtracted blobs have none.
     Results<double> v(tape.size());
     std::vector<bool> shown(tape.size());
     stepValues(tape, v, [&](uint32_t leaf) { return leafJet(leaves_[leaf], p).f; });
@@ -328,7 +328,7 @@ Interval multiply(const Interval& a, const Interval& b) {
     const double x[4] = {a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi};
     Interval r{INFINITY, -INFINITY};
     for (double v : x) {
-        if (std::isnan(v)) v = 0; // 0 times infinity, of a bound that is none
+        if (std::isnan(v)) v = 0; // 0 times infinity, for an unbounded value
         r.lo = std::min(r.lo, v);
         r.hi = std::max(r.hi, v);
     }
@@ -551,8 +551,8 @@ public:
             if (crosses) out_[found++] = refined(t0, f0, t1, f1);
             return;
         }
-        // A line in the surface (along a tube, through a point of it) is at the threshold all along, and no piece of it is
-        // decided: what is there to find is where it leaves. Whatever else may take so long, no ray takes more than kPieces.
+        // A line in the surface (along a tube, or through a point of it) is at the threshold everywhere, so that no interval is
+        // decided: the result is where it leaves. In other slow cases a ray is limited to kPieces intervals.
         constexpr int kDeepest = 46, kCoarse = 6, kPieces = 1 << 16;
         constexpr double kTouch = 1e-10;
         const bool along = depth >= kCoarse && std::fabs(f0) < kTouch && std::fabs(f1) < kTouch;
@@ -588,7 +588,7 @@ private:
         }
         return courses_[tape_.size() - 1];
     }
-    /// One root between ends of different signs: regula falsi (Illinois) kept in by bisection.
+    /// The root between ends of different signs: regula falsi (Illinois), safeguarded by bisection.
     double refined(double lo, double flo, double hi, double fhi) const {
         double t = lo;
         int side = 0;

@@ -16,7 +16,7 @@
 
 namespace alpenglow::geometry {
 
-/// The surface lies where the field is this: 0.75 cubed, so that a lone unit ellipsoid has radius 1/2.
+/// Threshold of the surface: 0.75 cubed, so that a single unit ellipsoid has radius 1/2.
 inline constexpr double kBlobThreshold = 0.421875;
 
 struct Interval {
@@ -38,26 +38,26 @@ struct BlobGround {
     Matrix toCamera, toScreen; ///< from object space; screen is -1 to 1
     float least = 0, most = 0;
     double a = 0, b = 0, c = 0, d = 0; ///< height where it ends, sharpness, height and strength of the bulge
-    /// How far above the ground a point is, along its depth; INFINITY beside the map.
+    /// Height of a point above the ground, along its depth; INFINITY outside of the map.
     double above(const Vec3d& p) const;
 };
 
 struct BlobLeaf {
     enum class Kind { Ellipsoid, Segment, Ground } kind = Kind::Ellipsoid;
     double m[3][4] = {}; ///< from object space to that of the unit sphere, or of the segment over its radius
-    Vec3d from, along;   ///< segment: its begin and direction there
+    Vec3d from, along;   ///< segment: its start and direction in leaf space
     double length = 0;
     uint32_t number = 0;    ///< among all leaves of the request: of its vertex values
-    uint32_t at = 0;        ///< where its floats begin in those of the request
-    bool bySegment = false; ///< these are two ends and a radius, then the matrix; else the matrix alone
+    uint32_t at = 0;        ///< start of its floats in those of the request
+    bool bySegment = false; ///< the floats are two ends and a radius, then the matrix; else the matrix only
     double thin = 0;        ///< its smallest half axis, object space
     Vec3d lo, hi;           ///< it is 0 outside, object space
     std::shared_ptr<const BlobGround> ground;
     Vec3d inside(const Vec3d& p) const;
 };
 
-/// Makes of the floats of a leaf its shape, at and number left alone. segment: two ends and a radius, or null. False: the matrix
-/// has no inverse, or there is no radius.
+/// Computes the shape of a leaf from its floats; `at` and number are unchanged. segment: two ends and a radius, or null. Returns
+/// false if the matrix has no inverse, or the radius is 0.
 bool shapeBlobLeaf(const double matrix[16], const double segment[7], BlobLeaf&);
 /// The shape of a leaf that is 0 everywhere.
 void emptyBlobLeaf(BlobLeaf&);
@@ -77,8 +77,8 @@ public:
     BlobField() = default;
     /// For tapes over these leaves.
     explicit BlobField(std::vector<BlobLeaf> leaves) : leaves_(std::move(leaves)) {}
-    /// code, numbers, strings: those of the request. objectToWorld: depth maps are in world space. False after an error.
-    /// moves: the numbers may be others at other times, so that nothing is left out for what they are.
+    /// code, numbers, strings: as in the request. objectToWorld: depth maps are in world space. Returns false after an error.
+    /// moves: numbers vary over time, so no operation is dropped because of their values.
     bool read(int leaves, const std::vector<int>& code, const std::vector<float>& numbers,
               const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace&, Diagnostics&,
               bool moves = false);
@@ -89,7 +89,7 @@ public:
     BlobJet jet(const BlobTape&, const Vec3d&) const;
     /// Bounds over a box. values: of every operation.
     Interval bounds(const BlobTape&, const Vec3d& lo, const Vec3d& hi, std::vector<Interval>& values) const;
-    /// The tape without what these bounds decide.
+    /// The tape without operations that these bounds decide.
     static BlobTape simplified(const BlobTape&, const std::vector<Interval>& values);
     /// Leaves that colour a point, with their weights (which sum to 1) and the gradients of these.
     struct Share {
@@ -99,7 +99,7 @@ public:
     };
     void shares(const BlobTape&, const Vec3d&, std::vector<Share>& out) const;
 
-    /// Where the field passes the threshold between t0 and t1, by increasing t: all, each once. Stops after `most`.
+    /// Crossings of the threshold between t0 and t1, by increasing t. Stops after `most`.
     int crossings(const BlobTape&, const Vec3d& org, const Vec3d& dir, double t0, double t1, int most, double* out) const;
 
     Interval leafBounds(const BlobLeaf&, const Vec3d& lo, const Vec3d& hi) const;
@@ -110,12 +110,12 @@ private:
     std::vector<BlobLeaf> leaves_;
 };
 
-/// Of an operation, by those of what it is made of.
+/// Bounds of an operation from those of its operands.
 Interval combinedBounds(const BlobOp&, const Interval& a, const Interval& b);
 /// How fast a segment's field changes, per radius: across its axis at most 1.812, along it 35/32. So for either of its ends.
 inline constexpr double kBlobSegmentSlope = 2.12;
 
-/// The leaf's field in its own space, with gradient and second derivatives where asked for.
+/// The leaf's field in its own space, optionally with gradient and second derivatives.
 double blobLeafField(const BlobLeaf&, const Vec3d& q, Vec3d* gradient, double* hessian);
 
 } // namespace alpenglow::geometry

@@ -16,7 +16,7 @@ Vec3d rowTimes(const Vec3d& v, const Matrix3& a) {
     return {v.x * a.m[0][0] + v.y * a.m[1][0] + v.z * a.m[2][0], v.x * a.m[0][1] + v.y * a.m[1][1] + v.z * a.m[2][1],
             v.x * a.m[0][2] + v.y * a.m[1][2] + v.z * a.m[2][2]};
 }
-/// At least the norm of v -> v a.
+/// Bound on the norm of v -> v a.
 double norm(const Matrix3& a) {
     double sum = 0;
     for (const auto& row : a.m)
@@ -26,14 +26,14 @@ double norm(const Matrix3& a) {
 
 } // namespace
 
-/// A leaf in the middle of a span, and half of its change over it; a segment has ends and a radius besides.
+/// A leaf at the centre of a time span, and half of its change over the span; segments also have ends and a radius.
 struct BlobMotion::Change {
     BlobLeaf middle;
     Matrix3 inverse, linear, by; ///< object to leaf, leaf to object, half the change of the latter
     Vec3d origin{0.0}, originBy{0.0};
     Vec3d end[2]{Vec3d(0.0), Vec3d(0.0)}, endBy[2]{Vec3d(0.0), Vec3d(0.0)};
     double radius = 1, radiusBy = 0;
-    bool sound = true; ///< there is a way back in the middle
+    bool sound = true; ///< invertible at the centre
 };
 
 double BlobMotion::numberAt(size_t i, size_t key, double way) const {
@@ -42,7 +42,7 @@ double BlobMotion::numberAt(size_t i, size_t key, double way) const {
 }
 
 BlobMotion::Span BlobMotion::spanOf(float from, float to) const {
-    // Spans do not reach over keys: the key is that of the middle.
+    // Spans do not cross keys: uses the key of the centre.
     double middle, a;
     Span s{keyBefore(times_, from + (to - from) * 0.5f, middle), 0, 1};
     const double length = double(times_[s.key + 1]) - times_[s.key];
@@ -109,8 +109,8 @@ BlobMotion::Change BlobMotion::changeOf(const BlobLeaf& plan, const Span& s) con
     return c;
 }
 
-/// Each coordinate of an end is a product of two numbers that are linear in time: it strays from what its ends span by a
-/// quarter of the product of their changes. The reach about it is at most that of the larger radius and axes.
+/// Each coordinate of an end is a product of two functions linear in time: it deviates from the interval between its ends by at
+/// most a quarter of the product of their changes. The extent around it is at most that of the larger radius and axes.
 void BlobMotion::leafBox(const BlobLeaf& plan, const Span& s, Vec3d& lo, Vec3d& hi) const {
     lo = Vec3d(INFINITY), hi = Vec3d(-INFINITY);
     const Change c = changeOf(plan, s);
@@ -135,8 +135,8 @@ void BlobMotion::leafBox(const BlobLeaf& plan, const Span& s, Vec3d& lo, Vec3d& 
         }
 }
 
-/// With A the leaf's matrix in the middle, sD its change and so' that of its origin, the leaf's coordinates q of a point become
-/// (q - s e) (1 + s E)^-1, where E = D A^-1 and e = o' A^-1: they change by |e + q E| / (1 - |E|) at most.
+/// With A the leaf's matrix at the centre, sD its change and so' that of its origin, the leaf's coordinates q of a point become
+/// (q - s e) (1 + s E)^-1, where E = D A^-1 and e = o' A^-1: they change by at most |e + q E| / (1 - |E|).
 Interval BlobMotion::leafBounds(const BlobLeaf& plan, const Vec3d& lo, const Vec3d& hi, const Span& s) const {
     if (plan.kind == BlobLeaf::Kind::Ground) return plan_.leafBounds(plan, lo, hi);
     Vec3d from, to;
@@ -152,7 +152,7 @@ Interval BlobMotion::leafBounds(const BlobLeaf& plan, const Vec3d& lo, const Vec
     const double turn = norm(E);
     if (!c.sound || !(turn < 0.9)) return all;
     const Vec3d half = (hi - lo) * 0.5, q = rowTimes((lo + hi) * 0.5 - c.origin, c.inverse);
-    double reach = 0; // of the box about its middle, in the leaf's space
+    double reach = 0; // of the box around its centre, in the leaf's space
     for (int k = 0; k < 3; ++k) {
         double e = 1e-14 * (1 + std::fabs(q[k]));
         for (int i = 0; i < 3; ++i) e += std::fabs(c.inverse.m[i][k]) * half[i];
@@ -164,7 +164,7 @@ Interval BlobMotion::leafBounds(const BlobLeaf& plan, const Vec3d& lo, const Vec
     if (!plan.bySegment) return {bump(length(q) + reach + moved), bump(std::max(0.0, length(q) - reach - moved))};
     const double least = c.radius - c.radiusBy;
     if (!(least > 0) || c.middle.kind != BlobLeaf::Kind::Segment) return all;
-    // What of it moves against the radius. A change of either end counts as much as one of the point, at most.
+    // Motion relative to the radius. A change of either end counts at most as much as one of the point.
     const double grows = c.radiusBy / (least * c.radius), ends = length(c.endBy[0]) + length(c.endBy[1]);
     const double away = length(q - c.end[0]) + length(q - c.end[1]) + 2 * reach;
     const double by = (moved + ends) / least + grows * away + reach / c.radius;
@@ -209,7 +209,7 @@ BlobMotion::Extent BlobMotion::extent(const BlobTape& tape, float from, float to
         const double far = std::max(length(c.end[0]), length(c.end[1])) + c.radius;
         out.way = std::max(out.way, 2 * (length(c.originBy) + norm(c.by) * (plan.bySegment ? far : 1) +
                                          norm(c.linear) * (length(c.endBy[0]) + length(c.endBy[1]) + c.radiusBy)));
-        double thin = 0; // what grows from nothing is as large as it gets
+        double thin = 0; // a leaf growing from 0 has its final size
         for (double w : {s.w0, 0.5 * (s.w0 + s.w1), s.w1})
             if (const double t = leafAt(plan, s.key, w).thin; std::isfinite(t)) thin = std::max(thin, t);
         if (thin > 0) out.thin = std::min(out.thin, thin);
@@ -240,7 +240,7 @@ Vec3d BlobMotion::carried(const BlobTape& tape, const Vec3d& p, float from, floa
         }
         if (determinant3(a) == 0) continue;
         const Vec3d q = transformPoint(inverse(a), p);
-        // Along a segment as far from its begin as before, in parts of the whole; across it in parts of the radius.
+        // Along a segment: the same fraction of its length as before; across it: the same fraction of the radius.
         Vec3d there = q;
         if (plan.bySegment) {
             const auto number = [&](size_t i, size_t k, double w) { return numberAt(plan.at + i, k, w); };

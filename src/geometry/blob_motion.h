@@ -1,5 +1,5 @@
-// The field of a Blobby whose numbers move: between keys they are linear, so that at each time it is the field that has the
-// numbers of that time. Bounds over a box hold for a span of time as well.
+// The field of a Blobby with moving numbers: linear between keys, so that at each time it is the field with the numbers of that
+// time. Bounds over a box are valid for a time span as well.
 #pragma once
 #include "geometry/blob_field.h"
 #include "geometry/keyed.h"
@@ -14,13 +14,13 @@ public:
     const std::vector<float>& times() const { return times_; }
     const BlobField& plan() const { return plan_; }
 
-    /// The field of a tape at a time, with the leaves of this tape alone, and the tape for it.
+    /// The field of a tape at a time, with the leaves of this tape only, and the tape for it.
     void at(const BlobTape&, float time, BlobField& field, BlobTape& tape) const;
     /// Bounds over a box and from one time to another, between the same two keys.
     Interval bounds(const BlobTape&, const Vec3d& lo, const Vec3d& hi, float from, float to, std::vector<Interval>& values) const;
-    /// What of a tape's leaves matters for the size of boxes and spans of time.
+    /// Extent of a tape's leaves, for sizes of boxes and time spans.
     struct Extent {
-        double way = 0;                    ///< the longest way of a leaf between two times, object space
+        double way = 0;                    ///< longest displacement of a leaf between two times, object space
         double thin = INFINITY;            ///< smallest half axis
         Vec3d lo{INFINITY}, hi{-INFINITY}; ///< all are 0 outside
     };

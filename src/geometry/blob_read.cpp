@@ -1,4 +1,4 @@
-// A Blobby's instructions, as BlobField keeps them.
+// Parses a Blobby's instructions into a BlobField.
 #include "base/file.h"
 #include "base/limits.h"
 #include "geometry/blob_field.h"
@@ -100,7 +100,7 @@ bool shapeBlobLeaf(const double matrix[16], const double segment[7], BlobLeaf& l
     if (!sound) return false;
     l.thin = std::sqrt(3 / norm);
     const double long_ = length(b - a) / radius;
-    constexpr double kPoint = 1e-6; // a segment so short has no field of its own: it is a ball
+    constexpr double kPoint = 1e-6; // shorter segments have no field of their own: they are spheres
     l.kind = long_ > kPoint ? BlobLeaf::Kind::Segment : BlobLeaf::Kind::Ellipsoid;
     if (l.kind == BlobLeaf::Kind::Segment) {
         l.from = a / radius;
@@ -177,7 +177,7 @@ static std::shared_ptr<BlobGround> readGround(const std::string& path, const Mat
     g->least = INFINITY, g->most = -INFINITY;
     for (size_t i = 0; i < n; ++i) {
         float z = real(kHead + 4 * i);
-        if (!(std::fabs(z) < 1e30f)) z = 1e30f; // nothing there: as far as can be
+        if (!(std::fabs(z) < 1e30f)) z = 1e30f; // empty: infinitely far
         g->depth.push_back(z);
         g->least = std::min(g->least, z);
         g->most = std::max(g->most, z);
@@ -194,7 +194,8 @@ bool BlobField::Reader::ground() {
     auto g = readGround(strings[size_t(name)], objectToWorld, why);
     if (!g) { // the rest is drawn
         diag.report(Severity::Error, Rie::NoFile, place,
-                    "Blobby: the depth map \"" + strings[size_t(name)] + "\" of a repelling plane: " + why + "; nothing repels");
+                    "Blobby: the depth map \"" + strings[size_t(name)] + "\" of a repelling plane: " + why +
+                        "; the plane is ignored");
         results.push_back(add({Kind::Constant, 0, 0, 0}));
         return true;
     }
@@ -253,7 +254,7 @@ bool BlobField::Reader::instruction(int op) {
     uint32_t a = 0, b = 0;
     switch (op) {
     case 4:
-    case 5: // the specification's order; the application note's table has the two the other way round, its pictures do not
+    case 5: // in the order of the specification; the application note's table has the two reversed, unlike its pictures
         if (!result(a) || !result(b)) return false;
         results.push_back(add({op == 4 ? Kind::Subtract : Kind::Divide, a, b, 0}));
         return true;
@@ -275,7 +276,7 @@ bool BlobField::Reader::run() {
     while (at < code.size())
         if (!instruction(code[at++])) return false;
     if (results.empty()) return fail(Rie::MissingData, "there are none");
-    // The last instruction is the field: what it does not need goes.
+    // The last instruction is the field: drops what it does not use.
     const uint32_t last = results.back();
     field.tape_.resize(last + 1);
     std::vector<Interval> open(field.tape_.size(), Interval{-INFINITY, INFINITY});

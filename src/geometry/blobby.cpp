@@ -10,7 +10,7 @@ namespace alpenglow::geometry {
 
 namespace {
 
-constexpr int kMostRoots = 4; ///< hits that one box gives a ray
+constexpr int kMostRoots = 4; ///< hits of a ray in one box
 
 int largest(const Vec3d& v) {
     const double x = std::fabs(v.x), y = std::fabs(v.y), z = std::fabs(v.z);
@@ -31,7 +31,7 @@ Blobby::Now::Now(const Blobby& b, const BlobTape& tape, float time) {
 Blobby::Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag)
     : KeyedShape(std::move(s)), field_(std::move(field)), leaves_(leaves) {
     toObject_ = inverse(toCamera());
-    if (!source_.like) cut(diag); // later keys only tell their numbers
+    if (!source_.like) cut(diag); // later keys only supply numbers
     measure();
     takePrimvars(diag);
     takePlacedPoints();
@@ -40,7 +40,7 @@ Blobby::Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag)
 bool Blobby::fits(KeyedShape& later) const {
     const scene::Primitive &a = *source_.primitive, &b = *later.source().primitive;
     if (a.ints != b.ints || a.ints2 != b.ints2 || a.numbers.size() != b.numbers.size() || a.strings != b.strings) return false;
-    // Repelling planes stand.
+    // Repelling planes do not move.
     for (const BlobLeaf& l : field_.leaves())
         if (l.kind == BlobLeaf::Kind::Ground && !std::equal(&a.numbers[l.at], &a.numbers[l.at] + 4, &b.numbers[l.at]))
             return false;
@@ -65,7 +65,7 @@ void Blobby::joinKeys(const std::vector<float>& times, Diagnostics& diag) {
 
 // ---- boxes
 
-/// What is cut: all space in which there is a field, between one key and the next.
+/// The initial boxes: all space with a nonzero field, from one key to the next.
 std::vector<Blobby::Box> Blobby::roots() {
     std::vector<Box> all;
     if (motion_) {
@@ -94,8 +94,8 @@ Interval Blobby::fieldBounds(const Box& of, const Vec3d& lo, const Vec3d& hi, fl
     return motion_ ? motion_->bounds(tapeOf(of), lo, hi, from, to, values) : field_.bounds(tapeOf(of), lo, hi, values);
 }
 
-/// Along which of its sides a box is longest, how long, and the smallest half axis of a blob in it. 3: in time, by half of
-/// what its blobs move: their way makes bounds as wide as the box itself does.
+/// Longest side of a box, its length, and the smallest half axis of a blob in it. 3: time, by half of the motion of its blobs,
+/// which widens bounds as much as the box itself.
 int Blobby::longest(const Box& b, double& size, double& thin) const {
     int axis = largest(b.hi - b.lo);
     size = b.hi[axis] - b.lo[axis];
@@ -122,7 +122,7 @@ void Blobby::cut(Diagnostics& diag) {
         const bool full = boxes_.size() + 2 * now.size() > limits::kBlobBoxes;
         if (full) {
             diag.report(Severity::Info, Rie::Limit, place(),
-                        "Blobby: its boxes are larger than would be fast, for there would be too many");
+                        "Blobby: it needs too many boxes; larger ones are used, which is slower");
             boxes_.insert(boxes_.end(), now.begin(), now.end());
             break;
         }
@@ -217,7 +217,7 @@ Vec3d Blobby::onSurface(const Now& now, Vec3d p, const Vec3d& size, bool& found)
     return found ? p : begin;
 }
 
-/// When a hit with this number was: the time itself where that is as near as the number can tell.
+/// Time of a hit with this number; the given time itself, if the number cannot distinguish them.
 float Blobby::metAt(const Box& box, double b2, float time) const {
     if (!motion_) return time;
     constexpr uint64_t kAll = (uint64_t(1) << kHalfBits) - 1;
@@ -226,7 +226,7 @@ float Blobby::metAt(const Box& box, double b2, float time) const {
     return box.at(time) && std::fabs(time - when) <= span / float(kAll) ? time : when;
 }
 
-/// Shaders that run when the shutter opens ask for what was met at another time: the blobs carry it along.
+/// For shaders that run at shutter open, a hit at another time moves with the blobs.
 Blobby::Found Blobby::decoded(uint32_t prim, double b1, double b2, float time) const {
     const Box& box = boxes_[std::min(size_t(prim), boxes_.size() - 1)];
     const auto bits = [](double x) { return std::bit_cast<uint64_t>(std::clamp(1 + x, 1.0, 0x1.fffffffffffffp0)); };
@@ -251,7 +251,7 @@ Blobby::Found Blobby::decoded(uint32_t prim, double b1, double b2, float time) c
     }
     if (met == time) return {p, time, &tapeOf(box)};
     bool found;
-    const BlobTape& tape = field_.whole().size() <= 256 ? field_.whole() : tapeOf(box); // of many blobs those that made it
+    const BlobTape& tape = field_.whole().size() <= 256 ? field_.whole() : tapeOf(box); // with many blobs those of the box
     const Vec3d there = onSurface(Now(*this, tape, time), motion_->carried(tapeOf(box), p, met, time), box.hi - box.lo, found);
     if (found) return {there, time, &tape};
     return {p, met, &tapeOf(box)};
@@ -263,7 +263,7 @@ int Blobby::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     if (motion_ && !box.at(time)) return 0;
     Vec3d o = transformPoint(toObject_, org), d = transformVector(toObject_, dir);
     if (!(dot(d, d) > 0) || !std::isfinite(dot(o, o) + dot(d, d))) return 0;
-    // From the point nearest the box: a far origin would take the digits of what is near.
+    // From the point nearest to the box: a far origin would lose precision.
     const Vec3d middle = (box.lo + box.hi) * 0.5;
     const double shift = dot(middle - o, d) / dot(d, d);
     o = o + d * shift;
@@ -328,7 +328,7 @@ SurfacePoint Blobby::pointAt(uint32_t prim, double b1, double b2, float time) co
     pu[a] = 1, pu[c] = -g[a] / g[c];
     pv[b] = 1, pv[c] = -g[b] / g[c];
     const Vec3d hu = bent(pu), hv = bent(pv);
-    const auto along = [&](double second) { // F_c times what the third coordinate bends cancels what the field does
+    const auto along = [&](double second) { // F_c times the second derivative of the third coordinate cancels the field's
         Vec3d x(0.0);
         x[c] = second / g[c];
         return Vec3(transformVector(m, x));
@@ -363,7 +363,7 @@ int Blobby::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
     if (c == Class::Constant || c == Class::Uniform || p.prim >= all.boxes_.size()) return 1;
     std::vector<BlobField::Share> shares;
     const Box& box = all.boxes_[p.prim];
-    const float time = all.metAt(box, p.b2, p.time); // blobs colour a point that is carried as they did where it was met
+    const float time = all.metAt(box, p.b2, p.time); // a moved point has the colours from where it was hit
     const Vec3d at = all.decoded(p.prim, p.b1, p.b2, time).p;
     const Now now(all, all.tapeOf(box), time);
     now.field().shares(now.tape(), at, shares);
@@ -375,7 +375,7 @@ int Blobby::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
     return std::max(n, 1);
 }
 
-/// Of the blobs that make it, along the surface; across it what the field does.
+/// Along the surface, the velocity of its blobs; across it, that of the field.
 Vec3 Blobby::velocity(const SurfacePoint& at) const {
     if (!motion_ || at.prim >= boxes_.size()) return Vec3(0.f);
     const Found found = decoded(at.prim, at.b1, at.b2, at.time);

@@ -76,11 +76,10 @@ private:
         const Part& at(float time) const;
     };
     const Areas& areas() const;
-    /// A vertex variable of type mpoint: what each blob does to the points of object space, to the variable's place in camera
-    /// space.
+    /// A vertex variable of type mpoint: maps object space of each blob to the variable's position in camera space.
     struct PlacedPoints {
         size_t var;               ///< among primvars_, where it is a point (or an array of them)
-        std::vector<Matrix> maps; ///< of each blob in turn, elements() each
+        std::vector<Matrix> maps; ///< elements() for each blob
     };
     void takePlacedPoints();
     void placePoint(const PlacedPoints&, const SurfacePoint& at, float* out, float* du, float* dv) const;
@@ -93,7 +92,7 @@ private:
     const BlobTape& tapeOf(const Box& b) const { return tapes_[b.tape]; }
     struct Found {
         Vec3d p;
-        float time;           ///< when it is there
+        float time;           ///< its time
         const BlobTape* tape; ///< of the field about it
     };
     Found decoded(uint32_t prim, double b1, double b2, float time) const;
@@ -110,7 +109,7 @@ private:
     std::vector<Box> boxes_;
     std::vector<BlobTape> tapes_;
     Matrix toObject_;
-    std::unique_ptr<const BlobMotion> motion_; ///< null: its numbers stand still
+    std::unique_ptr<const BlobMotion> motion_; ///< null: numbers do not move
     const Blobby* owner_ = nullptr;            ///< of a later key: that which has its boxes
     mutable Areas areas_;
     std::vector<PlacedPoints> placed_;

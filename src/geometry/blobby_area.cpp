@@ -36,13 +36,13 @@ const Blobby::Areas::Part& Blobby::Areas::at(float time) const {
     return parts[std::min(n - 1, size_t(std::max(0.f, time) * float(n)))];
 }
 
-/// Lines along the axes through a box meet the surface; what each root stands for is shared by the three directions.
+/// Intersects lines along the axes through a box with the surface; the three directions share the area of each root.
 double Blobby::boxArea(uint32_t number, int lines) const {
     const Box& b = boxes_[number];
     const Now now(*this, tapeOf(b), b.from + (b.to - b.from) * 0.5f);
     const Vec3d size = b.hi - b.lo;
     double area = 0;
-    // Boxes lie in rows: lines at the same places of each would see a ball as the same few circles.
+    // Boxes are aligned: lines at equal positions in each would sample a sphere at the same few circles.
     const double turn = number * 0.7548776662466927, shiftA = turn - std::floor(turn);
     const double other = number * 0.5698402909980532, shiftB = other - std::floor(other);
     for (int axis = 0; axis < 3; ++axis)
@@ -54,7 +54,7 @@ double Blobby::boxArea(uint32_t number, int lines) const {
             for (int n = alongAxis(b, now, axis, p, roots), i = 0; i < n; ++i) {
                 p[axis] = roots[i];
                 const Vec3d g = normalize(now.jet(p).g);
-                // A third of them by the square of its part of the normal: nothing at the edges that a direction sees.
+                // Weights a third by the square of its normal component: zero at silhouettes.
                 area += size[(axis + 1) % 3] * size[(axis + 2) % 3] / (lines * lines) * std::fabs(g[axis]) * stretch(g);
             }
         }
@@ -63,7 +63,7 @@ double Blobby::boxArea(uint32_t number, int lines) const {
 
 const Blobby::Areas& Blobby::areas() const {
     std::call_once(areas_.made, [&] {
-        // By side of a box; few boxes get many, for lines at the edge of what they see count for much.
+        // Lines along a side of a box; more if there are few boxes, because lines at silhouettes have large weights.
         const int lines = std::clamp(int(std::sqrt(2e5 / (3.0 * double(boxes_.size() + 1)))), motion_ ? 2 : 4, 32);
         areas_.parts.resize(motion_ ? 64 : 1);
         const float n = float(areas_.parts.size());
@@ -72,7 +72,7 @@ const Blobby::Areas& Blobby::areas() const {
             const Box& b = boxes_[k];
             const double area = boxArea(k, lines);
             areas_.sum += area * (double(b.to) - b.from);
-            // A box that the lines missed may hold a corner of the surface: it has a chance as well.
+            // A box that all lines missed may contain a corner of the surface: it has a nonzero probability as well.
             const Vec3d size = b.hi - b.lo;
             const double face = size.x * size.y + size.y * size.z + size.z * size.x;
             const double chance = area + 1e-3 * face * stretch(Vec3d(0, 0, 1));
@@ -94,7 +94,7 @@ double Blobby::densityObject(uint32_t prim, const Now& now, float time, const Ve
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
         double roots[kRoots];
-        const int n = std::max(1, alongAxis(b, now, axis, p, roots)); // the point itself is one of them
+        const int n = std::max(1, alongAxis(b, now, axis, p, roots)); // including the point itself
         sum += std::fabs(normal[axis]) / (n * size[(axis + 1) % 3] * size[(axis + 2) % 3]);
     }
     return areas().at(time).chance(prim) * sum / 3;
@@ -107,7 +107,7 @@ SurfacePoint Blobby::evaluate(int, double u, double v) const {
 
 SurfacePoint Blobby::sampleFromAt(const Vec3&, double xi1, double xi2, float time) const {
     const Areas::Part& part = areas().at(time);
-    SurfacePoint none; // a point without a chance
+    SurfacePoint none; // density 0
     none.n = none.N = none.Ng = Vec3(0, 0, 1);
     none.prim = kNone;
     none.time = time;
@@ -116,7 +116,7 @@ SurfacePoint Blobby::sampleFromAt(const Vec3&, double xi1, double xi2, float tim
     const size_t i = size_t(std::upper_bound(sums.begin(), sums.end() - 1, xi1) - sums.begin());
     const uint32_t prim = part.boxes[i];
     const double before = i ? sums[i - 1] : 0, share = sums[i] - before;
-    // What is left of the numbers chooses the axis, the line, and one of its roots.
+    // The rest of the numbers selects the axis, the line, and one of its roots.
     double x = share > 0 ? std::clamp((xi1 - before) / share, 0.0, 0x1.fffffffffffffp-1) : 0.5, y = xi2;
     const int axis = std::min(2, int(y * 3));
     y = y * 3 - axis;
@@ -129,8 +129,8 @@ SurfacePoint Blobby::sampleFromAt(const Vec3&, double xi1, double xi2, float tim
     const Now now(*this, tapeOf(b), time);
     double roots[kRoots];
     const int n = alongAxis(b, now, axis, p, roots);
-    if (n == 0) return none;                                  // nothing on this line
-    const double scrambled = x * 4096 - std::floor(x * 4096); // bits of x that the place of the line hardly sees
+    if (n == 0) return none;                                  // no hit on this line
+    const double scrambled = x * 4096 - std::floor(x * 4096); // bits of x that hardly affect the line
     p[axis] = roots[std::min(n - 1, int(scrambled * n))];
     double b1, b2;
     encode(prim, p, now.jet(p).g, time, b1, b2);

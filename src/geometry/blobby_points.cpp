@@ -31,7 +31,7 @@ void Blobby::takePlacedPoints() {
         if (!vertex || v.type != scene::Type::HPoint || v.arrayLength < kRows || v.arrayLength % kRows) continue;
         const size_t each = size_t(v.arrayLength / kRows), count = size_t(leaves_) * each;
         PlacedPoints all{i, std::vector<Matrix>(count)};
-        std::vector<float> origins(3 * count); // where the blobs' origins go: what the plain sum of the variable would be made of
+        std::vector<float> origins(3 * count); // images of the blobs' origins: the plain blend of the variable
         for (size_t k = 0; k < count; ++k) {
             Matrix& m = all.maps[k] = matrixFrom(&v.cameraValues[16 * k]);
             for (int c = 0; c < 3; ++c) origins[3 * k + size_t(c)] = m.m[3][3] != 0 ? float(m.m[3][c] / m.m[3][3]) : 0;

@@ -17,7 +17,7 @@ struct Bounds {
             hi[i] = std::max(hi[i], p[i]);
         }
     }
-    /// An empty box adds nothing.
+    /// An empty box has no effect.
     void add(const Bounds& b) {
         if (b.empty()) return;
         add(b.lo);

@@ -60,7 +60,7 @@ bool unset(const scene::Basis& b) {
     return true;
 }
 
-// RenderMan's defaults where a caller gave no attributes or no basis.
+// RenderMan's defaults if the caller has no attributes or basis.
 void fillBasis(scene::Basis& b) {
     if (!unset(b)) return;
     static constexpr double bezier[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
@@ -81,7 +81,7 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
         once(diag, "kind:" + what, Rie::Unimplement, prim->place, what + " is not yet drawn");
         return nullptr;
     }
-    // Exporters invert matrices in single precision: what is left of that in the last column is no perspective.
+    // Exporters invert matrices in single precision: rounding errors in the last column are no perspective.
     constexpr double noise = 1e-7;
     bool affine = std::fabs(toCamera.m[0][3]) < noise && std::fabs(toCamera.m[1][3]) < noise &&
                   std::fabs(toCamera.m[2][3]) < noise && std::fabs(toCamera.m[3][3] - 1) < noise;
@@ -95,7 +95,7 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     }
     if (!affine)
         once(diag, "projective", Rie::Incapable, prim->place,
-             "a transformation of this " + prim->kind + " holds a perspective; derivatives and quadrics ignore it");
+             "a transformation of this " + prim->kind + " contains a perspective; derivatives and quadrics ignore it");
     ShapeSource s;
     s.primitive = prim;
     s.toCamera = toCamera;
@@ -129,7 +129,7 @@ bool invertible(const Matrix& m) {
     return !singular && determinant3(m) != 0;
 }
 
-/// The middle of the points of a primitive, object space; of a quadric, its origin.
+/// Centroid of a primitive's points, object space; for a quadric, its origin.
 Vec3d centreOf(const scene::Primitive& p) {
     Bounds b;
     if (const scene::Param* P = scene::find(p.params, "P"))
@@ -143,7 +143,7 @@ class FrameBuilder {
 public:
     FrameBuilder(const scene::Frame& f, Diagnostics& d, const BuildOptions& o)
         : frame_(f), diag_(d), options_(o), shutter_(f.options), camera_(scene::at(f.options.worldToCamera, shutter_.open)),
-          // REYES turned them to the eye once; where rays come from everywhere they turn to each.
+          // REYES turned them to the eye; with ray tracing they turn to each ray.
           facing_(f.options.hider != "hidden"             ? Facing::Ray
                   : f.options.projection == "perspective" ? Facing::Eye
                                                           : Facing::Picture) {}
@@ -183,7 +183,7 @@ private:
     std::vector<ShapeRef> out_;
     std::vector<Usage> usage_; ///< by object
     std::map<std::tuple<int, const scene::Primitive*, const void*>, Shared>
-        shared_; ///< by object, primitive and what of the attributes it depends on
+        shared_; ///< by object, primitive and the attributes that matter
     std::map<std::pair<int, const scene::Primitive*>, Matrix> nearest_;
     std::map<scene::AttributesRef, scene::AttributesRef> turned_;
 };
@@ -215,7 +215,7 @@ const scene::AttributesRef& FrameBuilder::turned(const scene::AttributesRef& a) 
 ShapeRef FrameBuilder::shapeOf(const PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& toCamera, int instance) {
     ShapeRef s = buildShape(p, a, toCamera, instance, diag_, facing_);
     if (!s || normalsSay(*s, diag_) != NormalsSay::Back) return s;
-    Diagnostics said; // what there is to say of the primitive has been
+    Diagnostics said; // messages of the primitive have been reported
     return buildShape(p, turned(s->attributesRef()), toCamera, instance, said, facing_);
 }
 
@@ -223,7 +223,7 @@ ShapeRef FrameBuilder::shapeOf(const PrimitiveRef& p, const scene::AttributesRef
 ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& toCamera, int instance) {
     std::vector<float> times = scene::keysOverShutter(*p, shutter_);
     if (times.size() > 1) {
-        // The numbers of a quadric are what moves linearly, not its points: keys between follow them.
+        // Quadrics interpolate their parameters, not their points: keys follow the parameters.
         const PrimitiveRef last = scene::primitiveAt(p, shutter_.close);
         if (!p->numbers.empty() && p->kind != "NuPatch" && p->kind != "Blobby" && p->numbers != last->numbers) {
             std::vector<float> more;
@@ -260,7 +260,7 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
     if (full(p->place)) return;
     if (place.moves() && !std::all_of(place.keys.begin(), place.keys.end(), affine)) {
         once(diag_, "movingprojective", Rie::Incapable, p->place,
-             "a moving transformation of this " + p->kind + " holds a perspective: it stands where it is when the shutter opens");
+             "a moving transformation of this " + p->kind + " contains a perspective: its motion is ignored");
         place = Transform(place.first());
     }
     const Matrix open = place.first();
@@ -269,7 +269,7 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
         if (ShapeRef s = shapeOf(scene::primitiveAt(p, shutter_.open), a, open, instance)) out_.push_back(std::move(s));
         return;
     }
-    // The geometry lives where the shutter opens, so that what does not move has the numbers that it has in a still picture.
+    // The geometry's space is that at shutter open, so that static parts have the numbers of a still picture.
     Matrix home = open;
     if (!invertible(home))
         for (const Matrix& m : place.keys)
@@ -283,8 +283,8 @@ void FrameBuilder::add(const PrimitiveRef& p, const scene::AttributesRef& a, Tra
     out_.push_back(std::make_shared<Placed>(std::move(s), geometry, place));
 }
 
-/// GeometricApproximation "motionfactor": what moves far needs fewer micropolygons. ShadingRate times the factor times a
-/// sixteenth of the pixels that the primitive moves, as 3Delight has it.
+/// GeometricApproximation "motionfactor": fast objects need fewer micropolygons. Multiplies ShadingRate by the factor times a
+/// sixteenth of the motion in pixels, as in 3Delight.
 scene::AttributesRef FrameBuilder::coarser(const scene::AttributesRef& a, const scene::Primitive& p,
                                            const Transform& place) const {
     const scene::Param* f = a ? a->value("GeometricApproximation:motionfactor") : nullptr;
@@ -300,8 +300,8 @@ scene::AttributesRef FrameBuilder::coarser(const scene::AttributesRef& a, const 
     return out;
 }
 
-/// Whether the instances of a primitive should share it: it is large enough to matter, and what depends on the place (the grid of
-/// what is displaced, the area of an emitter) does not make it different in each.
+/// Whether the instances of a primitive share its geometry: if it is large enough, and no result that depends on the position
+/// (the grid of a displaced shape, the area of an emitter) differs between instances.
 bool FrameBuilder::shares(const scene::Primitive& p, const scene::Attributes* a, size_t instances) const {
     if (instances < 2 || !a || a->displacement || a->areaLight >= 0) return false;
     if (facing_ != Facing::Ray && (p.kind == "Curves" || p.kind == "Points")) return false; // each turns to the eye
@@ -311,7 +311,7 @@ bool FrameBuilder::shares(const scene::Primitive& p, const scene::Attributes* a,
     return numbers > 0 && instances * numbers > options_.shareFrom;
 }
 
-/// Of the instances of a primitive, the one that is seen largest: what is diced finely enough there is so everywhere.
+/// The instance of a primitive that appears largest: dicing for it is fine enough for all.
 const Matrix& FrameBuilder::nearest(const scene::Instance& inst, const scene::Primitive& p) {
     const auto [at, fresh] = nearest_.try_emplace({inst.object, &p});
     if (!fresh) return at->second;
@@ -336,7 +336,7 @@ void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& 
         const Matrix& home = nearest(inst, *p);
         shared.geometry = geometryOf(p, a, home, instance);
         shared.from = inverse(home);
-        Diagnostics said; // when the geometry was made
+        Diagnostics said; // reported when the geometry was made
         const Shape* first = shared.geometry.get();
         if (const auto* deforming = dynamic_cast<const Deforming*>(first)) first = deforming->keys()[0].get();
         shared.normalsDecide = first && normalsSay(*first, said) != NormalsSay::Nothing;

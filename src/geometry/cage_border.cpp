@@ -56,7 +56,7 @@ CageBorder::CageBorder(const SubdivisionCage& cage, const LimitSurface& limit) {
         Around& a = around[size_t(cage.cornerVertex[i])];
         if (cage.cornerSharpness[i] > 0) (cage.cornerSharpness[i] >= kSharp ? a.sharp : a.semiSharp) = true;
     }
-    // What is behind an end of a border edge that comes from vertex `from`.
+    // Neighbour beyond an end of a border edge from vertex `from`.
     const auto behind = [&](int v, int from) {
         const Around& a = around[size_t(v)];
         if (a.sharp || (a.faces == 1 && cage.boundary == SubdivisionCage::Boundary::EdgeAndCorner)) return kCorner;

@@ -20,7 +20,7 @@ struct Capsule {
     bool mayPass(const Vec3& org, const Vec3& dir, float slack = 0) const {
         const float dd = dot(dir, dir), inverse = 1 / dd;
         const Vec3 w = a - org, across = w - dir * (dot(w, dir) * inverse), beside = along - dir * (dot(along, dir) * inverse);
-        // Of what is not a number comes an end.
+        // NaN gives an end.
         const float s = std::min(1.f, std::max(0.f, -dot(across, beside) / dot(beside, beside)));
         const Vec3 nearest = across + beside * s;
         const auto norm = [](const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
@@ -38,18 +38,18 @@ struct Capsule {
     }
 };
 
-/// Shapes that rays meet one primitive at a time (Shape::exactPrims()) and that know capsules around them.
+/// Shapes with primitives intersected one at a time (Shape::exactPrims()) and known capsules around them.
 class InCapsules {
 public:
     virtual ~InCapsules() = default;
-    /// Encloses all that a ray can hit of a primitive, camera space. False: none does.
+    /// A capsule around all hits of a primitive, camera space. Returns false if there is none.
     virtual bool capsule(uint32_t prim, Capsule&) const = 0;
-    /// The same of primitives that follow one another; where none is known the radius is infinite.
+    /// The same for consecutive primitives; infinite radius if there is none.
     virtual void capsules(uint32_t first, std::span<Capsule> out) const {
         for (Capsule& c : out)
             if (!capsule(first++, c)) c.radius = INFINITY;
     }
-    /// Asks memory for what exactHits() of a primitive will read.
+    /// Prefetches the data for exactHits() of a primitive.
     virtual void fetch(uint32_t prim) const = 0;
 };
 

@@ -166,7 +166,7 @@ template <class Points>
 std::vector<std::array<double, 4>> NetDirection::bezier(int patch, double from, double to, const Points& points) const {
     using Point = std::array<double, 4>;
     std::vector<Point> out;
-    if (order_ > 0) { // blossoms: de Boor's scheme with `from` and `to` in place of the parameter
+    if (order_ > 0) { // blossoms: de Boor's scheme with `from` and `to` replacing the parameter
         const double a = lo_ + from * (hi_ - lo_), b = lo_ + to * (hi_ - lo_);
         const int k = order_ - 1, span = spanOf(0.5 * (a + b));
         for (int r = 0; r <= k; ++r) {
@@ -370,7 +370,7 @@ double ControlNet::area() const {
 
 SurfacePoint ControlNet::sampleArea(double xi1, double xi2) const {
     double u = xi1, v = xi2;
-    if (trim_) trim_->sample(xi1, xi2, u, v); // where it finds nothing the density is 0
+    if (trim_) trim_->sample(xi1, xi2, u, v); // if there is none the density is 0
     return evaluateLocal(0, u, v);
 }
 
@@ -417,7 +417,7 @@ int ControlNet::weights(Class c, const SurfacePoint& p, Weight w[16]) const {
 
 namespace {
 
-/// Whether the weight of a net of which some control points have none is 0 where patches begin and end, or between.
+/// For a net with control points of weight 0: whether the weight vanishes at ends of patches, or between.
 bool atInfinity(const NetDirection& u, const NetDirection& v, const std::vector<std::array<double, 4>>& points) {
     const auto zero = [](const std::array<double, 4>& p) { return p[3] == 0; };
     if (std::none_of(points.begin(), points.end(), zero)) return false;
@@ -448,7 +448,7 @@ ShapeRef makeNet(ShapeSource s, NetDirection u, NetDirection v, std::vector<std:
                  std::shared_ptr<const TrimRegion> trim) {
     if (atInfinity(u, v, points)) {
         diag.report(Severity::Error, Rie::Range, s.primitive->place,
-                    s.primitive->kind + ": the weights of \"Pw\" vanish, so that a part of it is at infinity; it is not drawn");
+                    s.primitive->kind + ": the weights of \"Pw\" vanish, so it reaches infinity; it is not drawn");
         return nullptr;
     }
     return std::make_shared<ControlNet>(std::move(s), std::move(u), std::move(v), std::move(points), diag, std::move(trim));

@@ -31,18 +31,18 @@ public:
     /// Count of varying values: one a patch border.
     int varyings() const { return wrap_ ? patches_ : patches_ + 1; }
     BasisSpan at(double x) const;
-    /// No weight of it is below 0, so that what it joins lies between its control points.
+    /// Whether no weight is negative, so that the surface is within the convex hull of its control points.
     bool convex() const;
-    /// Control points that act at one place.
+    /// Number of control points that affect a position.
     int width() const { return order_ > 0 ? order_ : width_; }
-    /// Where patches meet, from 0 to 1: knots of NURBS (each once), evenly spaced otherwise.
+    /// Borders of patches from 0 to 1: distinct knots of NURBS, otherwise uniform.
     std::vector<double> borders() const;
-    /// Whether a knot is there so often that the two sides have no point in common.
+    /// Whether the multiplicity of a knot separates the two sides.
     bool torn(double border) const;
     /// Bezier points of a patch of a curve by this basis, between two borders; points: by control index.
     template <class Points>
     std::vector<std::array<double, 4>> bezier(int patch, double from, double to, const Points& points) const;
-    /// The patch at x, how far x lies in it (0..1), and how fast that grows. NURBS: between knots.
+    /// The patch at x, the position of x in it (0..1), and its derivative. NURBS: between knots.
     struct Cell {
         int patch;
         double at, slope;
@@ -61,8 +61,7 @@ private:
 
 class ControlNet final : public Parametric {
 public:
-    /// points: camera space, four coordinates each (weight last), u fastest.
-    /// trim: the part that is kept, null for all.
+    /// points: camera space, four coordinates each (weight last), u fastest. trim: the visible part, null for all.
     ControlNet(ShapeSource, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics&,
                std::shared_ptr<const TrimRegion> trim = nullptr);
     int faces() const override { return u_.patches() * v_.patches(); }
@@ -94,12 +93,12 @@ private:
     NetDirection u_, v_;
     std::vector<std::array<double, 4>> points_;
     std::shared_ptr<const TrimRegion> trim_;
-    std::vector<bool> edge_; ///< by triangle: the edge of what is kept may go through it
+    std::vector<bool> edge_; ///< by triangle: may intersect the edge of the visible part
     bool rational_ = false, closedU_ = false, closedV_ = false;
-    bool convex_ = false; ///< it lies within the box of its control points, and so does each patch
+    bool convex_ = false; ///< it is within the bounding box of its control points, as is each patch
 };
 
-/// The surface of a net. A point of weight 0 is a direction; null, with an error: the surface itself is at infinity somewhere.
+/// The surface of a net. A point of weight 0 is a direction. Returns null, with an error, if the surface reaches infinity.
 ShapeRef makeNet(ShapeSource, NetDirection u, NetDirection v, std::vector<std::array<double, 4>> points, Diagnostics&,
                  std::shared_ptr<const TrimRegion> trim = nullptr);
 

@@ -38,7 +38,7 @@ Vec3d CurveBoxes::reachOf(double wide) const {
     return {reach_[0] * wide * 1.000001, reach_[1] * wide * 1.000001, reach_[2] * wide * 1.000001};
 }
 
-/// Points whose hull holds the middle of a primitive.
+/// Points whose convex hull contains the centre line of a primitive.
 int CurveBoxes::hull(const CurveSegment& g, uint32_t prim, Vec3d p[4]) const {
     const double from = double(prim % parts_) / parts_, to = double(prim % parts_ + 1) / parts_;
     const int n = g.linear ? 2 : 4;

@@ -6,13 +6,13 @@
 
 namespace alpenglow::geometry {
 
-/// Of one key; what it is made of must stay.
+/// For one key; its sources must outlive it.
 class CurveBoxes {
 public:
     CurveBoxes(const CurveSet&, const Matrix& toCamera, uint32_t parts);
     /// Of primitives that follow one another.
     void bounds(uint32_t first, std::span<Bounds> out) const;
-    /// Whether there is a quicker way: segments are cubic, and curves stay curves of their control points.
+    /// Whether the fast path applies: segments are cubic, and the space is affine.
     bool quick() const { return !set_.linear() && affine_; }
     /// They may be a little larger, but end at `all`.
     void quickBounds(uint32_t first, std::span<Bounds> out, const Bounds& all) const;

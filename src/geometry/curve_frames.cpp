@@ -60,7 +60,7 @@ ScalarJet halfWidthAt(const CurveSegment& g, double f) {
     return {h, bernsteinAt<2>(d, f), bernsteinAt<1>(dd, f)};
 }
 
-/// The direction along a cubic; where points coincide at an end, that of what follows.
+/// The tangent of a cubic; if points coincide at an end, that of the next ones.
 Jet directionAt(const CurveSegment& g, const Cubic& c) {
     if (dot(c.d, c.d) > 0) return {c.d, c.dd, c.ddd};
     if (dot(c.dd, c.dd) > 0) return {c.dd, c.ddd, {}};
@@ -75,8 +75,8 @@ Jet curveAt(const CurveSegment& g, double f) {
     return {c.f, c.d, c.dd};
 }
 
-/// The side vector of a linear ribbon at an end: mitred with the neighbour, which thus has the same one; ends and turns of more
-/// than 120 degrees are cut straight.
+/// The side vector of a linear ribbon at an end: mitred with the neighbour, whose vector is the same; ends and turns of more than
+/// 120 degrees are cut straight.
 static Vec3d mitred(const CurveSegment& g, const CurveFacing& face, bool end) {
     const Vec3d corner = end ? g.p[2] : g.p[1];
     const Vec3d n = face.kind == CurveFacing::Point ? face.at - corner : face.kind == CurveFacing::Given ? g.n[end] : face.at;

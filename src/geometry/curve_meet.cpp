@@ -51,7 +51,7 @@ int meetFlatLine(const CurveSegment& g, double from, double to, const CurveFacin
     if (!passesBy(r, ends, 2, 2 * g.widest())) return 0; // mitres reach twice as far
     const Vec3d w0 = r.turned(sideAt(g, face, 0).f), w1 = r.turned(sideAt(g, face, 1).f);
     const auto area = [](const Vec3d& a, const Vec3d& b) { return a.x * b.y - a.y * b.x; };
-    // Where the line is beside the middle, along the side vector.
+    // Offset of the line from the centre, along the side vector.
     double c[3] = {area(c0, w0), 0.5 * (area(c0, w1) + area(c1, w0)), area(c1, w1)};
     double roots[8];
     const int count = bernsteinRoots(c, 2, roots);
@@ -91,7 +91,7 @@ int meetRibbon(const CurveSegment& g, double from, double to, const CurveFacing&
     double x[4], y[4], dx[3], dy[3], dz[3];
     for (int i = 0; i < 4; ++i) x[i] = p[i].x, y[i] = p[i].y;
     for (int i = 0; i < 3; ++i) dx[i] = d[i].x, dy[i] = d[i].y, dz[i] = d[i].z;
-    // The ribbon's side vector is along b = dC/df ^ N; the ray meets its line where C and b are parallel, seen along the ray.
+    // The ribbon's side vector is along b = dC/df ^ N; the ray hits its line where C and b are parallel as seen along the ray.
     double roots[8], c[kBernsteinMost + 1] = {}, bx[6] = {}, by[6] = {}, bz[6] = {};
     int count = 0;
     if (fromRay) {
@@ -142,8 +142,8 @@ int meetRibbon(const CurveSegment& g, double from, double to, const CurveFacing&
 
 namespace {
 
-/// Where the ray, the z axis, meets the endless cone about p0 to p1; how many z. Where it does not quite (`misses`), two about
-/// the nearest it comes.
+/// Intersections of the ray, the z axis, with the infinite cone around p0 to p1; number of z. For a near miss (`misses`), two
+/// values around the nearest approach.
 int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2], bool& misses) {
     misses = false;
     const double l = length(p1 - p0);
@@ -169,7 +169,7 @@ int meetRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]) {
     bool misses;
     const int roots = meetCone(a, g.h[0], b, g.h[1], z, misses);
     const Vec3d along = normalize(b - a), before = normalize(a - r.placed(g.p[0])), behind = normalize(r.placed(g.p[3]) - b);
-    // Planes that halve the angle with the neighbours; ends and turns of more than 120 degrees are cut straight.
+    // Bisecting planes with the neighbours; ends and turns of more than 120 degrees are cut straight.
     const Vec3d first = dot(before, along) > -0.5 ? along + before : along,
                 second = dot(behind, along) > -0.5 ? along + behind : along;
     int n = 0;

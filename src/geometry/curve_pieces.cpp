@@ -55,8 +55,8 @@ Capsule CurvePieces::capsule(uint32_t part) const {
         const Four c = a * b;
         return c[0] + c[1] + c[2];
     };
-    // How far the inner points are off the chord. The middle is off it by B1(f) off[0] + B2(f) off[1], and B1 + B2 <= 3/4: that
-    // lies in the triangle of 0 and 3/4 of both, about which the capsule is put.
+    // Distance of the inner points from the chord. The centre deviates from it by B1(f) off[0] + B2(f) off[1] with B1 + B2 <=
+    // 3/4, i.e. within the triangle of 0 and 3/4 of both, around which the capsule is placed.
     const Four e = p[3] - p[0];
     const float ee = dot(e, e);
     Four off[2];

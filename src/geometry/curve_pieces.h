@@ -1,5 +1,5 @@
-// Boxes and capsules of the pieces of a cubic segment, for the building of trees: in single precision about where the segment
-// begins, with room for the rounding. Camera space.
+// Boxes and capsules of the pieces of a cubic segment, for building trees: in single precision relative to the start of the
+// segment, with a margin for rounding. Camera space.
 #pragma once
 #include "geometry/capsule.h"
 #include "geometry/shape.h"
@@ -10,7 +10,7 @@ namespace alpenglow::geometry {
 
 class CurvePieces {
 public:
-    /// Of so many equal parts.
+    /// For this number of equal parts.
     explicit CurvePieces(uint32_t parts);
     /// The Bezier points of a segment. Half its width: `wide` at the most, `reach` along each axis.
     void take(const Vec3d p[4], double wide, const Vec3d& reach);

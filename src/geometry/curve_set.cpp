@@ -136,7 +136,7 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
     for (const scene::Param& q : p.params) {
         if (q.name != "N" || scene::componentCount(q.type) != 3 || q.arrayLength || q.numbers.size() < 3 * classCount(q.cls))
             continue;
-        normal_ = q.numbers.data(); // takePrimvars() says what is wrong with others
+        normal_ = q.numbers.data(); // takePrimvars() reports other errors
         normalClass_ = q.cls;
     }
     const bool key = isKey(s);
@@ -168,7 +168,7 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
             ++notFinite;
             continue;
         }
-        // A key of what moves may be nothing now and something later.
+        // A key of a moving curve may have width 0 and others not.
         if (!key && std::all_of(width_.values + w, width_.values + w + ws, [](float f) { return !(f > 0); })) {
             ++thin;
             continue;

@@ -14,12 +14,12 @@
 namespace alpenglow::geometry {
 namespace {
 
-/// Hits of ribbons that face the ray say how the ribbon was turned: ExactHit::u is 2 * turn + u, turn counting these parts of a
-/// circle.
+/// Hits on ribbons that face the ray encode the rotation of the ribbon: ExactHit::u is 2 * turn + u, with turn in these fractions
+/// of a circle.
 constexpr double kTurns = 1 << 24;
 
-/// Hits on the discs that close a tube: ExactHit::v (b2 of points) is kFirst plus the part of the radius where it begins, kLast
-/// less that where it ends. Elsewhere it is the place in the segment, 0 to 1 and a little beyond.
+/// Hits on the end caps of a tube: ExactHit::v (b2 of points) is kFirst plus the fraction of the radius at the start, kLast minus
+/// it at the end. Elsewhere it is the position in the segment, 0 to 1 with a margin.
 constexpr double kFirst = -3, kLast = 4;
 bool onDisc(double b2) { return b2 < kFirst + 1.5 || b2 > kLast - 1.5; }
 /// The part of the radius.
@@ -89,7 +89,7 @@ private:
     double turnOf(const CurveSegment&, double f, const Vec3d& across) const;
     const std::vector<double>& areas() const;
     bool tubes() const { return facing_.kind == CurveFacing::Round; }
-    /// Whether a disc closes a tube at the begin, or the end, of a segment.
+    /// Whether a tube has a cap at the start, or the end, of a segment.
     bool closedAt(uint32_t segment, bool end) const {
         const CurveSet::Place p = set_.place(segment);
         return tubes() && !set_.periodic() && p.local == (end ? p.count - 1 : 0);
@@ -104,8 +104,7 @@ private:
     Matrix toObject_;
     double side_ = 1; ///< +1, -1: of Ng along dPdu ^ dPdv of object space
     mutable std::once_flag made_;
-    /// Summed up by segment, of each what is round the curve and the discs at its begin and end; of what moves, the mean of its
-    /// keys.
+    /// Cumulative areas by segment, each including the curve and its caps; for moving curves the mean of the keys.
     mutable std::vector<double> areas_;
 };
 
@@ -116,7 +115,7 @@ Curves::Curves(ShapeSource s, CurveSet set, Diagnostics& diag) : KeyedShape(std:
     const scene::Param* round = attributes().value("dice:roundcurve");
     if (set_.hasNormals()) facing_.kind = CurveFacing::Given;
     else {
-        // These look at who sees them whatever the orientation: with sides 1 they would vanish.
+        // These face the viewer regardless of orientation: with sides 1 they would vanish.
         facing_.side = side_;
         if (round && !round->numbers.empty() && round->numbers[0] != 0) facing_.kind = CurveFacing::Round;
         else if (source_.facing == Facing::Eye) facing_.kind = CurveFacing::Point, facing_.at = toObject(Vec3d(0.0));
@@ -166,7 +165,7 @@ void Curves::load(uint32_t segment, size_t k, double way, CurveSegment& g) const
             g.n[i] = g.n[i] * (1 - way) + to.n[i] * way;
         }
     }
-    if (k > 0) set_.load(segment, to), g.axis = to.axis; // one axis at all times, or the frame would turn over at a key
+    if (k > 0) set_.load(segment, to), g.axis = to.axis; // a constant axis, otherwise the frame could flip at a key
 }
 
 void Curves::exactBoundsOf(uint32_t first, std::span<Bounds> out) const {
@@ -232,7 +231,7 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     return n;
 }
 
-/// Adds where a ray meets the discs of a primitive.
+/// Adds the hits of a ray on the caps of a primitive.
 void Curves::meetDiscs(const CurveSegment& g, uint32_t prim, const CurveRay& ray, CurveHit* hits, int& n) const {
     for (const bool end : {false, true}) {
         if (prim % parts_ != (end ? parts_ - 1 : 0) || !closedAt(prim / parts_, end)) continue;
@@ -245,7 +244,7 @@ void Curves::meetDiscs(const CurveSegment& g, uint32_t prim, const CurveRay& ray
         const double z = dot(c, axis) / along, t = ray.t(z);
         const Vec3d w = ray.e3 * z - c;
         const double out = std::sqrt(dot(w, w)) / radius.f;
-        // Out to where the tube is met, by as much as that is rounded.
+        // Up to the tube, including its rounding error.
         if (!(t > ray.lo && t <= ray.hi) || !(out <= 1 + 1e-9)) continue;
         hits[n++] = {t, 0, end ? kLast - std::min(out, 1.0) : kFirst + std::min(out, 1.0), {}};
     }
@@ -277,7 +276,7 @@ LocalPoint Curves::local(const CurveSegment& g, const CurveFacing& facing, doubl
         Jet a, b;
         ScalarJet r;
         tubeFrame(g, f, a, b, r);
-        // Outward, and counterclockwise as seen from where the curve goes to.
+        // Outward, and counterclockwise seen from the direction of the curve.
         const auto [s, k] = exact::sinCos(2 * kPi * u);
         const Jet out = r * (ScalarJet{k} * a + ScalarJet{s} * b),
                   round = r * (ScalarJet{-2 * kPi * s} * a + ScalarJet{2 * kPi * k} * b);
@@ -288,7 +287,7 @@ LocalPoint Curves::local(const CurveSegment& g, const CurveFacing& facing, doubl
         const Jet w = sideAt(g, facing, f);
         p = {c.f + w.f * s, w.f * 2.0, c.d + w.d * s, Vec3d(0.0), w.d * 2.0, c.dd + w.dd * s};
         p.n = facing.kind == CurveFacing::Point ? facing.at - c.f : facing.at; // where the product vanishes
-        // Where a bend is narrower than the ribbon its inner side lies folded: what faces the ray goes on doing so.
+        // If a bend is narrower than the ribbon, its inner side is folded; it still faces the ray.
         if (facing.kind != CurveFacing::Given && dot(cross(p.Pu, p.Pv), p.n) * facing.side <= 0)
             p.Pv = c.d, p.Puv = p.Pvv = Vec3d(0.0);
     }
@@ -339,13 +338,14 @@ SurfacePoint Curves::pointAt(uint32_t prim, double b1, double b2, float time) co
     p.b1 = u;
     p.b2 = b2;
     p.time = time;
-    // What leaves a ribbon that faces the ray must not meet the same ribbon, now turned elsewhere: it begins half a width away.
+    // A ray that leaves a ribbon facing the previous ray must not hit the ribbon in its new orientation: it starts half a width
+    // away.
     p.pError = 2 * roundingError(p.P) + (fromRay_ ? 0.26f * length(p.dPdu) : 0);
     finishPoint(p, true);
     return p;
 }
 
-/// A point of a segment as it is seen from `from` (camera space).
+/// A point of a segment as seen from `from` (camera space).
 SurfacePoint Curves::pointOf(uint32_t segment, double u, double f, const Vec3d& from, float time) const {
     double b1 = u;
     if (fromRay_) {
@@ -394,20 +394,20 @@ SurfacePoint Curves::sampleFromAt(const Vec3& from, double xi1, double xi2, floa
     const std::vector<double>& sums = areas();
     const double target = xi1 * sums.back();
     const size_t i = std::min(size_t(std::upper_bound(sums.begin(), sums.end(), target) - sums.begin()), sums.size() - 1);
-    // What is left of the first number is uniform again within the segment.
+    // The remainder of the first number is uniform within the segment.
     const double lo = i ? sums[i - 1] : 0, size = sums[i] - lo;
     const double left = size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, out = std::sqrt(left);
     const double f = i % 3 == 0 ? left : i % 3 == 1 ? kFirst + out : kLast - out;
     return pointOf(uint32_t(i / 3), xi2, f, Vec3d(from), time);
 }
 
-/// Of the disc that a point is on, as it is then.
+/// Area of the cap that contains a point, at its time.
 double Curves::discArea(const SurfacePoint& p) const {
     const double out = outOnDisc(p.b2), l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
     return out > 0 ? l / (2 * out * set_.place(p.prim / parts_).count) : 0;
 }
 
-/// Of a ribbon that faces the ray that of its middle: who sees it from another place sees it turn otherwise.
+/// For ribbons that face the ray, the velocity of the centre line, as the orientation depends on the viewer.
 Vec3 Curves::velocity(const SurfacePoint& at) const {
     double way;
     const size_t k = keyAt(at.time, way);

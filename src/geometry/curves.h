@@ -25,7 +25,7 @@ Jet operator+(const Jet&, const Jet&);
 /// Unit vectors; of a vanishing one zero.
 Jet unit(const Jet&);
 
-/// One segment, ready to be met or evaluated.
+/// One segment, prepared for intersection or evaluation.
 struct CurveSegment {
     bool linear = false;
     Vec3d p[4]; ///< cubic: Bezier points. Linear: the point before it, its ends, the point behind it (an end again where there is
@@ -36,10 +36,10 @@ struct CurveSegment {
     double widest() const;
 };
 
-/// What faces rays is turned to where its point is then so often, until it is turned to the ray that meets it there.
+/// Rotation steps toward the local position before the final one toward the ray.
 inline constexpr int kTurnsToRay = 12;
 
-/// What the flat side looks to.
+/// The direction that the flat side faces.
 struct CurveFacing {
     enum Kind {
         Along, ///< everywhere along `at`
@@ -57,7 +57,7 @@ Jet curveAt(const CurveSegment&, double f);
 Jet sideAt(const CurveSegment&, const CurveFacing&, double f);
 /// Two unit vectors across a tube, the first where u is 0, and its radius.
 void tubeFrame(const CurveSegment&, double f, Jet& first, Jet& second, ScalarJet& radius);
-/// Two unit vectors across `along`, for what is turned about it. along need not be unit.
+/// Two unit vectors perpendicular to `along`, for rotation around it. along need not be unit.
 void acrossFrame(const Vec3d& along, Vec3d& a, Vec3d& b);
 
 /// A ray, its direction being the third axis of a frame around the segment.
@@ -78,16 +78,16 @@ struct CurveHit {
 /// Hits with lo < t <= hi of the part from..to of a segment, at most 4, in no order. fromRay: the ribbon faces the ray, facing.at
 /// is its direction reversed.
 int meetRibbon(const CurveSegment&, double from, double to, const CurveFacing&, bool fromRay, const CurveRay&, CurveHit out[4]);
-/// Without the discs at the ends of tubes. Subdivided until a cone is within a fiftieth of its radius of the part (or 1/1024 of
-/// the segment is left), then Newton's iteration on the swept circle itself, to the last bits. nearest: others than the first
-/// along the ray may be left out. plain: with the instructions that every processor has.
+/// Without the end caps of tubes. Subdivides until a cone is within a fiftieth of its radius of the part (or 1/1024 of the
+/// segment remains), then iterates Newton's method on the swept circle to the last bits. nearest: hits other than the first may
+/// be omitted. plain: with the baseline instruction set.
 int meetTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4], bool nearest = false,
              bool plain = false);
 
-/// How curves lie in the arrays of their request.
+/// Layout of curves in the arrays of their request.
 class CurveSet {
 public:
-    /// What is wrong is reported; false: nothing is left to draw.
+    /// Reports errors; returns false if there is nothing to draw.
     bool take(const ShapeSource&, Diagnostics&);
     uint32_t segments() const { return uint32_t(curveOf_.size()); }
     struct Place {
@@ -98,17 +98,17 @@ public:
         const Row& r = rows_[curveOf_[segment]];
         return {r.face, segment - r.segment, (&r)[1].segment - r.segment};
     }
-    /// The segment that holds v of a curve, and where; curves that are not drawn give way to the next.
+    /// The segment that contains v of a curve, and the position in it; curves that are not drawn are replaced by the next.
     uint32_t segmentAt(int face, double v, double& f) const;
     void load(uint32_t segment, CurveSegment& out) const;
-    /// Asks memory for what load() will read.
+    /// Prefetches the data for load().
     void fetch(uint32_t segment) const;
     size_t classCount(scene::Class) const;
-    /// Weights at f of a segment; `dv` by v of the whole curve.
+    /// Weights at f of a segment; `dv` with respect to v of the complete curve.
     int weights(scene::Class, uint32_t segment, double f, Weight w[16]) const;
     bool linear() const { return linear_; }
     bool periodic() const { return periodic_; }
-    /// Whether the same curves of both are drawn, cut into the same segments.
+    /// Whether the same curves of both are drawn, with the same segments.
     bool alike(const CurveSet& o) const {
         const auto same = [](const Row& a, const Row& b) {
             return a.vertex == b.vertex && a.corner == b.corner && a.segment == b.segment && a.face == b.face;
@@ -143,7 +143,7 @@ private:
     double basis_[4][4]; ///< value = (t^3 t^2 t 1) basis_ P
     double toBezier_[4][4];
     size_t vertices_ = 0, varying_ = 0;
-    std::vector<Row> rows_;         ///< of curves that are drawn; and one behind the last
+    std::vector<Row> rows_;         ///< of drawn curves; one more at the end
     std::vector<uint32_t> curveOf_; ///< row by segment
 };
 

@@ -35,7 +35,8 @@ Bounds Deforming::bounds() const {
     return b;
 }
 
-/// Points of one place of the surface at two keys. Partials by u and v blend as points do: the place keeps its u and v.
+/// Interpolates the same surface point between two keys. Partials by u and v interpolate like points, because u and v are
+/// constant.
 SurfacePoint Deforming::between(const SurfacePoint& a, const SurfacePoint& b, double w) const {
     SurfacePoint p = a;
     for (auto v : {&SurfacePoint::P, &SurfacePoint::dPdu, &SurfacePoint::dPdv, &SurfacePoint::Puu, &SurfacePoint::Puv,
@@ -55,9 +56,9 @@ SurfacePoint Deforming::between(const SurfacePoint& a, const SurfacePoint& b, do
     return p;
 }
 
-/// What of a facet of a mesh that is its own surface depends on its shape at the time: the normal, and slopes by u and v, which
-/// for polygons are object x and y and so change with it. All of them follow from what the facet's corners have; where u and v
-/// are the same all over it, slopes stay what they are.
+/// The parts of a facet that depend on its shape at the time, for a mesh that is its own surface: normal, and derivatives by u
+/// and v, which for polygons are object x and y and change with it. They follow from the data of the facet's corners; if u and v
+/// are constant over it, derivatives are unchanged.
 void Deforming::facet(SurfacePoint& p, uint32_t prim, size_t key, double way, uint32_t needs) const {
     const ShapeRef &first = keys_[key], &last = keys_[std::min(key + 1, keys_.size() - 1)];
     Vec3d P[3];
@@ -189,14 +190,13 @@ Vec3 Deforming::velocity(const SurfacePoint& at) const {
 
 void reportUnlike(const Shape& s, Diagnostics& diag) {
     diag.report(Severity::Warning, Rie::Incapable, s.place(),
-                "the keys of this moving " + s.kind() +
-                    " are not made of the same pieces: it is drawn where it is at its first time");
+                "the keys of this moving " + s.kind() + " do not match: it is drawn at its first position");
 }
 
 void Deforming::dice(const DiceOptions& options, Diagnostics& diag) {
     DiceOptions alike = options;
     alike.keys = keys_;
-    for (size_t k = 0; k < keys_.size(); ++k) { // what meets does so at every key
+    for (size_t k = 0; k < keys_.size(); ++k) { // joined points are joined at every key
         alike.seamWith = options.seamWith;
         alike.seamWith.push_back(double(k));
         for (float t : times_) alike.seamWith.push_back(double(t));

@@ -86,9 +86,9 @@ void reportNotDisplaced(const Shape& s, const DiceOptions& o, Diagnostics& diag)
 
 namespace {
 
-/// How far points may go, in a space of its own; Attribute "displacementbound" and what the shaders say add up.
+/// Limit of displacement, in its own space; Attribute "displacementbound" and declarations of shaders add up.
 struct Bound {
-    double radius = -1; ///< nothing was said
+    double radius = -1; ///< not declared
     std::string space;
     Matrix fromCamera;
     double reach(const Vec3d& moved) const { return length(transformVector(fromCamera, moved)); }
@@ -160,7 +160,7 @@ double displacementReach(const Shape& s, const DiceOptions& opt) {
 bool displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
                   const std::function<SurfacePoint(uint32_t)>& pointOf, const std::function<Vec2(uint32_t)>& stepOf,
                   TriMesh& mesh) {
-    constexpr uint32_t kRun = 4096; // keeps the full points of a run in the cache, and kernels in wide batches
+    constexpr uint32_t kRun = 4096; // the points of a run fit into the cache, and kernels have wide batches
     uint32_t n = uint32_t(mesh.P.size());
     const Bound bound = displacementBound(shape, opt);
     double farthest = 0;
@@ -188,24 +188,24 @@ bool displaceMesh(const Shape& shape, const DiceOptions& opt, Diagnostics& diag,
                 continue;
             }
             if (bound.radius >= 0) farthest = std::max(farthest, bound.reach(Vec3d(p) - Vec3d(g.points[i].P)));
-            // An unmoved vertex keeps its bits, and with them the closed seams of the mesh.
+            // An unmoved vertex keeps its bits, so seams of the mesh stay closed.
             if (!(p == g.points[i].P)) mesh.P[begin + i] = p;
         }
     }
-    if (opt.stop && *opt.stop) return true; // what kernels left early is void
+    if (opt.stop && *opt.stop) return true; // early exits of kernels are void
     if (notFinite)
         diag.report(Severity::Error, Rie::Math, shape.place(),
                     "displacement of this " + shape.kind() + " is not finite at " + std::to_string(notFinite) +
-                        " points; they stay where they were");
+                        " points; these are not displaced");
     if (tooFar)
         diag.report(Severity::Error, Rie::Limit, shape.place(),
                     "displacement of this " + shape.kind() + " moves " + std::to_string(tooFar) +
-                        " points farther than the limit; they stay where they were");
+                        " points farther than the limit; these are not displaced");
     if (bound.radius < 0 || farthest <= bound.radius * 1.001) return true;
     diag.report(Severity::Warning, Rie::Range, shape.place(),
                 "displacement of this " + shape.kind() + " reaches " + std::to_string(farthest) +
                     ", beyond its displacementbound of " + std::to_string(bound.radius) + " in \"" + bound.space +
-                    "\" space; it is drawn whole",
+                    "\" space; it is drawn completely",
                 bound.radius > 0 ? "other renderers need the bound times " + factor(farthest / bound.radius)
                                  : "other renderers need a bound that is not 0");
     return false;
@@ -220,8 +220,8 @@ void closeSeams(const DiceOptions& opt, TriMesh& mesh, std::vector<uint32_t> ver
 
 namespace {
 
-/// What must be the same of two shapes for their borders to be one throughout the shutter: nothing for shapes that stand still.
-/// To some 1e-6, as the same motion comes through several products of matrices.
+/// Motion that two shapes must share for their borders to coincide during the shutter: none for static shapes. Compared to about
+/// 1e-6, as equal motions may result from different matrix products.
 std::vector<double> motionOf(const Placed* p) {
     std::vector<double> out;
     if (!p || !p->placeMoves()) return out;
@@ -241,7 +241,7 @@ bool stitched(const Shape& s) {
 } // namespace
 
 void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagnostics& diag) {
-    // A geometry once for all its places.
+    // Each geometry once, for all instances.
     std::vector<ShapeRef> shapes;
     std::vector<const Placed*> places;
     std::unordered_set<const Shape*> known;
@@ -251,11 +251,11 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
         else if (known.insert(p->geometry().get()).second) shapes.push_back(p->geometry()), places.push_back(p);
     }
     Seams seams;
-    std::vector<std::vector<double>> with(shapes.size()); // whose borders are closed among each other
+    std::vector<std::vector<double>> with(shapes.size()); // groups of shapes whose borders are closed together
     EdgeCorners corners;
     for (size_t i = 0; i < shapes.size(); ++i) {
         with[i] = motionOf(places[i]);
-        // Procedurals that wait are made in any order: their borders are closed among themselves.
+        // Deferred procedurals expand in any order: their borders are closed among themselves.
         for (const char c : scene::partOf(shapes[i]->attributes())) with[i].push_back(double(c));
         if (places[i] || !stitched(*shapes[i]) || !isDisplaced(*shapes[i], opt)) continue;
         std::vector<Vec3> own;
@@ -264,7 +264,7 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
         corners.add(with[i], own);
     }
     corners.finish();
-    // Messages are kept by shape and passed on in order, so that they do not depend on threads.
+    // Messages are collected by shape and reported in order, so that they do not depend on threads.
     std::vector<std::vector<Diagnostic>> said(shapes.size());
     std::vector<DiceCost> costs(shapes.size());
     parallelFor(size_t(0), shapes.size(), [&](size_t i) {

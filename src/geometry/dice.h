@@ -1,4 +1,4 @@
-// Dicing by screen size (docs/design/decisions.md, "Geometry"): how fine, and displacement of what was diced.
+// Dicing by screen size (docs/design/decisions.md, "Geometry"): resolution of the grid, and displacement.
 #pragma once
 #include "base/stopflag.h"
 #include "geometry/shape.h"
@@ -7,13 +7,13 @@
 
 namespace alpenglow::geometry {
 
-/// What dicing must know of the camera: pixels per unit of length.
+/// The camera for dicing: pixels per unit of length.
 struct DiceCamera {
     bool perspective = false;
     double pixelsPerUnit = 1; ///< at distance 1 for a perspective camera, anywhere for an orthographic one
-    double narrowest = 1;     ///< part of the length of a step along the line of sight that counts at least; 1: all of it
-    /// Length in pixels of a step d at p (camera space). By distance, not by depth: what is beside or behind the camera is
-    /// seen in mirrors and must not degenerate.
+    double narrowest = 1;     ///< smallest foreshortening of a step along the line of sight; 1: none
+    /// Length in pixels of a step d at p (camera space). By distance rather than depth: geometry beside or behind the camera is
+    /// visible in mirrors and must not degenerate.
     double pixels(const Vec3d& p, const Vec3d& d) const;
     /// From the frame's options (RISpec 3.2, 4.1.1); unknown projections count as orthographic.
     static DiceCamera from(const scene::Options&);
@@ -32,52 +32,52 @@ class PictureSides;
 
 struct DiceOptions {
     DiceCamera camera = {};
-    const StopFlag* stop = nullptr; ///< set: shapes not yet diced stay as they are, and what is diced is void; null: never
+    const StopFlag* stop = nullptr; ///< once set, remaining shapes are not diced, and results are void; null: never
     /// Whether displace is to run for a shape; null: for those with a displacement shader (attributes().displacement).
     std::function<bool(const Shape&)> displaces;
-    /// Runs what displaces a shape. Must be thread safe: shapes are diced
-    /// at the same time, a shape's runs one after the other. Null: nothing is displaced.
+    /// Displaces a shape. Must be thread safe: several shapes are diced at once, but one shape's runs are sequential. Null: no
+    /// displacement.
     std::function<void(const Shape&, DiceGrid&)> displace;
-    /// How far the shaders of a shape say that they move points (3Delight manual, 6.3), in which space; added to the attribute.
+    /// Displacement declared by shaders (3Delight manual, 6.3) in a space; added to the attribute.
     struct DeclaredBound {
-        double radius = 0; ///< 0: they say nothing
+        double radius = 0; ///< 0: not declared
         std::string space;
     };
-    std::function<DeclaredBound(const Shape&)> declaredBound; ///< null: none says anything
-    /// The shape to be diced and what it is at other times: all of them are diced alike, each finely enough for all, and also
-    /// those that rays could meet exactly. Empty: a still shape.
+    std::function<DeclaredBound(const Shape&)> declaredBound; ///< null: none declared
+    /// The shape at all its times: all keys are diced alike, finely enough for each, even if exact intersection is possible.
+    /// Empty: a static shape.
     std::span<const ShapeRef> keys;
     /// Where borders of displaced shapes are left, to be closed when all are diced; null: a shape closes its own.
     Seams* seams = nullptr;
     uint32_t seamOrder = 0;               ///< of this shape among all, one apart for each key
     std::vector<double> seamWith;         ///< borders are closed among those for which this is the same: how they move
-    const EdgeCorners* corners = nullptr; ///< of all displaced shapes that stand still; null: only a shape's own edges cut it
-    /// Nothing but rays of the camera is sent: what they cannot come to is left out. Null: rays may come from everywhere.
+    const EdgeCorners* corners = nullptr; ///< of all displaced static shapes; null: edges are cut by the shape's own corners only
+    /// Only camera rays are traced: parts that they cannot reach are omitted. Null: rays may come from everywhere.
     const PictureSides* picture = nullptr;
     /// A primitive that costs more is named in a note.
     double noteSeconds = 1;
     size_t noteBytes = size_t(256) << 20;
-    /// From a named space to camera space; null, or false: the space is not known.
+    /// Transformation from a named space to camera space; null, or returns false: unknown space.
     std::function<bool(const Shape&, const std::string& space, Matrix& out)> spaceOf;
 };
 
-/// The camera by which a shape is diced: of a displaced one that only camera rays meet, steps count as the eye sees them
-/// (Attribute "dice" "rasterorient"), but at least by a quarter, for displacement turns micropolygons towards the eye.
+/// The camera for dicing a shape: for a displaced shape that only camera rays hit, steps are foreshortened (Attribute "dice"
+/// "rasterorient"), but at least to a quarter, because displacement may turn micropolygons toward the eye.
 DiceCamera diceCamera(const DiceOptions&, const scene::Attributes&, bool displaced);
 /// Edge of a micropolygon in pixels: sqrt(ShadingRate), within limits.
 double diceEdge(const scene::Attributes&);
-/// GeometricApproximation "flatness": pixels that facets of what is not displaced may stray from the surface, within limits,
-/// whatever ShadingRate says; 0: it says nothing.
+/// GeometricApproximation "flatness": largest distance in pixels of undisplaced facets from the surface, within limits,
+/// regardless of ShadingRate; 0: not set.
 double diceFlatness(const scene::Attributes&);
 /// Whether dicing must displace this shape.
 bool isDisplaced(const Shape&, const DiceOptions&);
-/// For shapes that are met exactly and have no mesh to displace: a warning, once a kind, where a displacement shader wants to.
+/// Warns, once for each kind, if a displacement shader is bound to a shape that is intersected exactly and has no mesh.
 void reportNotDisplaced(const Shape&, const DiceOptions&, Diagnostics&);
-/// How far displacement moves points of a shape at most, in camera space, as it and its shaders say; -1: they say nothing.
+/// Largest displacement of a shape's points in camera space, as declared; -1: not declared.
 double displacementReach(const Shape&, const DiceOptions&);
 /// Runs the hook over all vertices (params: (b1, b2) of each, prim of each by primOf) and writes the displaced positions to
-/// mesh.P. Non-finite results stay undisplaced, and what exceeds Attribute "displacementbound" is reported, once a shape.
-/// False: something did exceed it.
+/// mesh.P. Non-finite results are not displaced, and exceeding Attribute "displacementbound" is reported once a shape. Returns
+/// false if a point exceeded it.
 bool displaceMesh(const Shape&, const DiceOptions&, Diagnostics&, const std::function<SurfacePoint(uint32_t)>& pointOf,
                   const std::function<Vec2(uint32_t)>& stepOf, TriMesh& mesh);
 

@@ -14,7 +14,7 @@ double threadSeconds() {
 
 DiceCost costOf(const Shape& s, double seconds) {
     const TriMesh& m = s.mesh();
-    // A point has its place and its parameters, a triangle its corners.
+    // A point has its position and parameters, a triangle its corners.
     return {seconds, m.P.size() * (sizeof(Vec3) + sizeof(Vec2)) + m.made.size() * sizeof(uint32_t)};
 }
 
@@ -32,8 +32,8 @@ void noteCosts(const std::vector<ShapeRef>& shapes, const std::vector<DiceCost>&
     note.message = fmt::format("{}: dicing it took {:.1f} s and {} MB, for {} facets at ShadingRate {:g}{}", s.kind(),
                                dearest->seconds, dearest->bytes >> 20, s.mesh().triangles(), s.attributes().shadingRate,
                                others == 0   ? ""
-                               : others == 1 ? "; another primitive took much as well"
-                                             : fmt::format("; {} other primitives took much as well", others));
+                               : others == 1 ? "; another primitive was expensive as well"
+                                             : fmt::format("; {} other primitives were expensive as well", others));
     note.hint = "a larger ShadingRate before it makes fewer facets";
     note.always = true;
     diag.report(std::move(note));

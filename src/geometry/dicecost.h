@@ -1,4 +1,4 @@
-// What dicing costs, and the note about what costs much.
+// The cost of dicing, and the note about expensive primitives.
 #pragma once
 #include "geometry/dice.h"
 #include "geometry/shape.h"
@@ -7,13 +7,13 @@ namespace alpenglow::geometry {
 
 struct DiceCost {
     double seconds = 0; ///< of a processor
-    size_t bytes = 0;   ///< of the mesh that is kept
+    size_t bytes = 0;   ///< of the mesh
 };
 
 /// Seconds of a processor that this thread has had.
 double threadSeconds();
 DiceCost costOf(const Shape&, double seconds);
-/// A note that names the primitive that cost most, where that is more than DiceOptions says.
+/// Reports the most expensive primitive, if it exceeds the threshold of DiceOptions.
 void noteCosts(const std::vector<ShapeRef>&, const std::vector<DiceCost>&, const DiceOptions&, Diagnostics&);
 
 } // namespace alpenglow::geometry

@@ -6,7 +6,7 @@
 namespace alpenglow::geometry {
 
 namespace {
-constexpr double kNear = 4e-7;       ///< of the largest coordinate: what single precision makes of a point on the edge
+constexpr double kNear = 4e-7;       ///< relative to the largest coordinate: single precision error of a point on the edge
 constexpr double kApart = 0x1p-18;   ///< of the edge
 constexpr size_t kMostOnEdge = 4096; ///< on one edge
 } // namespace

@@ -1,5 +1,5 @@
-// Corners of displaced primitives that lie within a straight edge of another one: it is cut there, so that one long edge
-// meets several short ones at the same points to the bit.
+// Corners of displaced primitives on a straight edge of another one: the edge is cut there, so that one long edge shares points
+// with several short ones, bit by bit.
 #pragma once
 #include "base/vec.h"
 #include <map>
@@ -15,16 +15,16 @@ public:
         double t;
         Vec3 P;
     };
-    /// with: DiceOptions::seamWith of whose corners these are.
+    /// with: DiceOptions::seamWith of the corners.
     void add(const std::vector<double>& with, std::span<const Vec3> corners);
     /// After the last add().
     void finish();
-    /// Those strictly within the edge from a to b, by place, as far as rounding lets tell; places 2^-18 apart or less count
-    /// as one. Thread safe.
+    /// The corners strictly within the edge from a to b, by position, within rounding; positions at most 2^-18 apart count as
+    /// one. Thread safe.
     std::vector<On> within(const std::vector<double>& with, const Vec3d& a, const Vec3d& b) const;
 
 private:
-    using Points = std::vector<Vec3>; ///< a tree: the middle of each part divides it by an axis, the first by x
+    using Points = std::vector<Vec3>; ///< a k-d tree: the median of each range divides it, the first by x
     static void divide(std::span<Vec3>, int axis);
     static void collect(std::span<const Vec3>, int axis, const Vec3& lo, const Vec3& hi, std::vector<Vec3>& out);
     std::map<std::vector<double>, Points> points_;

@@ -8,7 +8,7 @@
 namespace alpenglow::geometry {
 
 namespace {
-constexpr int kMostSegments = 32; ///< of a part that is cut evenly
+constexpr int kMostSegments = 32; ///< of a uniformly cut part
 constexpr int kDeepestEdge = 20;  ///< halvings
 
 Vec3d single(const Vec3d& v) { return Vec3d(Vec3(v)); }
@@ -95,7 +95,7 @@ Vec3d EdgeCurve::along(double c, Vec3d* slope, Vec3d* bend) const {
     return a_ + out;
 }
 
-/// False: the visitor wants no more.
+/// Returns false if the visitor stops.
 template <class Visit> bool EdgeCuts::walk(double t0, double t1, Visit& visit) const {
     if (const int n = segments(t0, t1); n > 0) return visit(t0, t1, n);
     const double middle = 0.5 * (t0 + t1);
@@ -105,7 +105,7 @@ template <class Visit> bool EdgeCuts::walk(double t0, double t1, Visit& visit) c
 EdgeCuts::EdgeCuts(std::span<const EdgeCurve> curves, const DiceCamera& camera, double micropolygon, double deviation,
                    bool displaced)
     : curves_(curves), camera_(camera), edge_(micropolygon), deviation_(deviation), displaced_(displaced) {
-    // Of the whole edge, so that it depends on nothing else.
+    // For the complete edge, so that it depends on nothing else.
     int n = 0;
     const auto count = [&](double, double, int k) { return (n += k) <= limits::kDiceEdge; };
     while (!walk(0, 1, count)) n = 0, coarse_ *= 2;
@@ -116,7 +116,7 @@ double EdgeCuts::need(double t0, double t1) const {
     for (const EdgeCurve& e : curves_) {
         const double c0 = e.reversed() ? 1 - t1 : t0, width = t1 - t0;
         double n = 0;
-        for (double x : {0.1, 0.5, 0.9}) { // from the end that comes first, in whatever direction the edge is asked
+        for (double x : {0.1, 0.5, 0.9}) { // from the first end, for either direction of the edge
             Vec3d d, dd;
             const Vec3d p = e.along(c0 + width * x, &d, &dd);
             double l = camera_.pixels(p, d) / edge_;

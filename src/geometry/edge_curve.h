@@ -1,6 +1,5 @@
-// Edges of surfaces as data of their own. Where an edge is cut depends on this data, the camera and ShadingRate only, and the
-// cuts are dyadic: surfaces that have an edge in common are cut there at the same points to the bit, in whatever primitives and
-// directions.
+// Edges of surfaces as separate data. The cuts of an edge depend on this data, the camera and ShadingRate only, and are dyadic:
+// surfaces with a common edge are cut at the same points, bit by bit, in any primitives and directions.
 #pragma once
 #include "geometry/dice.h"
 #include <array>
@@ -9,23 +8,23 @@
 
 namespace alpenglow::geometry {
 
-/// A curve over 0..1 in camera space. Its data is rounded to single precision, as corners of polygons are, and evaluated from the
-/// end that comes first, so that at(t) of one direction and at(1 - t) of the other are the same to the bit for dyadic t.
+/// A curve over 0..1 in camera space. Its data is rounded to single precision, like corners of polygons, and evaluated from its
+/// first end, so that at(t) in one direction and at(1 - t) in the other have the same bits for dyadic t.
 class EdgeCurve {
 public:
     static EdgeCurve line(const Vec3d& from, const Vec3d& to);
     /// Rational Bezier of any degree from 1 to limits::kNurbsOrder - 1: x, y and z times the weight, and the weight.
     static EdgeCurve bezier(std::span<const std::array<double, 4>>);
-    /// centre + x cos(t sweep) + y sin(t sweep), sweep in radians. It keeps its direction.
+    /// centre + x cos(t sweep) + y sin(t sweep), sweep in radians. Direction is preserved.
     static EdgeCurve arc(const Vec3d& centre, const Vec3d& x, const Vec3d& y, double sweep);
 
     Vec3d at(double t) const { return along(reversed_ ? 1 - t : t); }
-    /// The same from the end that comes first, and on demand the first two derivatives.
+    /// The same from the first end, optionally with the first two derivatives.
     Vec3d along(double c, Vec3d* slope = nullptr, Vec3d* bend = nullptr) const;
     bool straight() const { return kind_ == Kind::Line; }
     /// All of it is one point.
     bool collapsed() const { return collapsed_; }
-    /// The fewest segments that keep its two sides apart: 1, or more where it turns about.
+    /// Minimum number of segments that keep its two sides apart: 1, or more if it turns around.
     double fewest() const { return fewest_; }
     bool reversed() const { return reversed_; }
 
@@ -43,7 +42,7 @@ class EdgeCuts {
 public:
     /// curves: the edge at each of its times. displaced: into micropolygons; else as finely as it bends.
     EdgeCuts(std::span<const EdgeCurve> curves, const DiceCamera&, double micropolygon, double deviation, bool displaced);
-    /// Of a part between dyadic places: how many equal segments, a power of two; 0: its halves are cut each for itself.
+    /// For a part between dyadic positions: number of equal segments, a power of two; 0: its halves are cut separately.
     int segments(double t0, double t1) const;
     /// Increasing, from 0 to 1.
     std::vector<double> places() const;

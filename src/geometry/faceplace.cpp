@@ -20,7 +20,7 @@ bool PolygonMesh::placeOnFace(uint32_t tri, double b1, double b2, FacePlace& to)
         }
     const uint32_t corners = last - first + 1;
     if (corners < 3 || corners > 4 || end - begin != corners - 2) return false;
-    // Corners lie at (0, 0), (1, 0), (1, 1), (0, 1); of triangles at (0, 0), (1, 0), (0, 1).
+    // Corners are at (0, 0), (1, 0), (1, 1), (0, 1); for triangles at (0, 0), (1, 0), (0, 1).
     double u[3], v[3];
     for (int k = 0; k < 3; ++k) {
         const uint32_t c = cornerOf(tri, k) - first;

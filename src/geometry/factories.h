@@ -1,4 +1,4 @@
-// One function a request: makes the shape, or reports why there is none and returns null. build.cpp holds the table.
+// One function for each request: makes the shape, or reports an error and returns null. build.cpp has the table.
 #pragma once
 #include "geometry/shape.h"
 

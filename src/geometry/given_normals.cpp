@@ -7,7 +7,7 @@ namespace alpenglow::geometry {
 
 namespace {
 
-/// Faces of a mesh that are looked at, evenly spread over it.
+/// Number of faces sampled, uniformly over the mesh.
 constexpr uint32_t kFacesLookedAt = 256;
 
 /// Places along a parametric surface, in each direction.
@@ -40,8 +40,8 @@ Count lookAt(const Shape& s) {
     return c;
 }
 
-/// Whether normals mean a side at all: curves and points turn by rules of their own, and what is taken from a solid shows its
-/// inside.
+/// Whether normals define a side: not for curves and points, which have their own rules, nor for subtracted parts of solids,
+/// which show their inside.
 bool meansSide(const Shape& s) {
     static constexpr const char* kOthers[] = {"Curves", "Points", "Blobby", "SubdivisionMesh", "HierarchicalSubdivisionMesh"};
     return s.givesNormals() && !scene::solidTakenAway(s.attributes()) &&
@@ -65,10 +65,10 @@ NormalsSay normalsSay(const Shape& s, Diagnostics& diag) {
     if (10 * few > all) {
         d.message = s.kind() + ": \"N\" lies on the front of some faces and on the back of others (" + std::to_string(few) +
                     " of " + counted(all, "place") + " looked at); these look dark";
-        d.hint = "all faces must wind the same way, seen from where their normals are; else leave \"N\" out";
+        d.hint = "wind all faces the same way as seen from the side of their normals, or omit \"N\"";
     } else if (says == NormalsSay::Back) {
-        d.message = s.kind() + ": \"N\" lies on the back of its faces; the side of \"N\" is taken for the front";
-        d.hint = "ReverseOrientation, or faces that wind the other way round, say the same without this note";
+        d.message = s.kind() + ": \"N\" lies on the back of its faces; the side of \"N\" is used as the front";
+        d.hint = "use ReverseOrientation or reverse the winding of the faces to avoid this note";
     }
     if (!d.message.empty()) diag.reportOnce("normals:" + d.place.file + ":" + std::to_string(d.place.line), d);
     return says;

@@ -1,5 +1,5 @@
-// Which side of a shape is its front, where its normals are given: the one that they are on. Files turn their primitives inside
-// out (ReverseOrientation) and give normals that are turned already, or wind faces against their normals.
+// The front of a shape with given normals: the side that they are on. Files may reverse the orientation of primitives
+// (ReverseOrientation) whose normals are already reversed, or wind faces against their normals.
 #pragma once
 #include "geometry/shape.h"
 
@@ -7,12 +7,13 @@ namespace alpenglow::geometry {
 
 /// Where the orientation has the front of a shape, by its normals.
 enum class NormalsSay {
-    Nothing, ///< none are given, or they lie on both sides of the faces: the orientation holds
-    Front,   ///< they lie where the front is
-    Back     ///< they lie on the other side
+    Nothing, ///< none given, or on both sides of the faces: the orientation applies
+    Front,   ///< they are on the front
+    Back     ///< they are on the back
 };
 
-/// What the given normals say; the same wherever the shape is placed. Before the shape is diced. A note says what is amiss.
+/// Determines the side of the given normals; independent of the position of the shape. Call before dicing. Reports
+/// inconsistencies.
 NormalsSay normalsSay(const Shape&, Diagnostics&);
 
 } // namespace alpenglow::geometry

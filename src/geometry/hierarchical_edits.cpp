@@ -11,9 +11,8 @@ using scene::Primitive;
 
 namespace {
 
-/// One change of one thing. Tags hold: per path its length, a face, parts of parts of it, and a vertex or edge (not for faces);
-/// strings in threes: "set", "add" or "subtract", a variable, and "value" or "sharpness"; floats per path in the order of the
-/// strings.
+/// An edit. Tags hold: per path its length, a face, indices of its subfaces, and a vertex or edge (not for faces); string
+/// triples: "set", "add" or "subtract", a variable, and "value" or "sharpness"; floats per path in order of the strings.
 struct Edit {
     enum What { Value, VertexSharpness, EdgeSharpness, Hole } what = Value;
     enum How { Set, Add, Subtract } how = Set;
@@ -75,7 +74,7 @@ private:
                 continue;
             }
             if (k + 3 > t.strings.size())
-                return say(t, "its strings are not in threes (how, variable, what); it is ignored"), false;
+                return say(t, "its strings must be triples (operation, variable, value); it is ignored"), false;
             const std::string &how = t.strings[k], &what = t.strings[k + 2];
             e.variable = t.strings[k + 1];
             if (how == "set") e.how = Edit::Set;
@@ -89,17 +88,16 @@ private:
                 const auto v =
                     std::find_if(values_.begin(), values_.end(), [&](const scene::Param& q) { return q.name == e.variable; });
                 if (v == values_.end())
-                    return say(t, "there is no variable \"" + e.variable + "\" whose values could be edited; it is ignored"),
-                           false;
+                    return say(t, "there is no editable variable \"" + e.variable + "\"; it is ignored"), false;
                 width = size_t(scene::componentCount(v->type)) * size_t(std::max(1, v->arrayLength));
             } else {
-                return say(t, "\"" + what + "\" is not a thing that it edits; it is ignored"), false;
+                return say(t, "\"" + what + "\" cannot be edited; it is ignored"), false;
             }
             ops.push_back(e);
             widths.push_back(width);
             k += 3;
         }
-        if (ops.empty()) say(t, "it says nothing to do; it is ignored");
+        if (ops.empty()) say(t, "it has no operation; it is ignored");
         return !ops.empty();
     }
 
@@ -110,8 +108,7 @@ private:
 
 float changed(Edit::How how, float old, float by) { return how == Edit::Set ? by : how == Edit::Add ? old + by : old - by; }
 
-/// Makes an edit on a face of the cage of its level. False: it names a corner that the face does not have, or a value that it
-/// cannot.
+/// Applies an edit to a face of the cage at its level. Returns false if it names a missing corner, or an invalid value.
 bool make(const Edit& e, int face, const std::vector<size_t>& first, RefinedCage& r) {
     const size_t f = size_t(face), n = size_t(r.corners[f]);
     if (e.what != Edit::Hole && e.corner < 0 && e.what != Edit::Value) return false;
@@ -160,7 +157,7 @@ bool make(const Edit& e, int face, const std::vector<size_t>& first, RefinedCage
     return false;
 }
 
-/// The cage of the request as the first level. Variables that do not fit it are left to who checks them.
+/// The cage of the request as the first level. Other code reports variables that do not match it.
 RefinedCage firstLevel(const Primitive& p, const CageInput& in) {
     RefinedCage r;
     r.cage = in.cage;
@@ -197,7 +194,7 @@ RefinedCage firstLevel(const Primitive& p, const CageInput& in) {
     return r;
 }
 
-/// The request with the values of the last level in place of its own.
+/// The request with the values of the last level.
 std::shared_ptr<Primitive> refinedPrimitive(const Primitive& p, RefinedCage&& r, Diagnostics& diag) {
     auto out = std::make_shared<Primitive>(p);
     out->ints = r.corners;
@@ -224,7 +221,7 @@ std::shared_ptr<Primitive> refinedPrimitive(const Primitive& p, RefinedCage&& r,
 
 EditedCage applyEdits(const Primitive& p, const CageInput& in, Diagnostics& diag) {
     std::vector<SubdivisionTag> tags;
-    Diagnostics quiet; // readCage() has reported what does not fit
+    Diagnostics quiet; // readCage() has reported errors
     subdivisionTags(p, quiet, tags);
     if (std::none_of(tags.begin(), tags.end(), [](const SubdivisionTag& t) { return t.name.ends_with("edit"); })) return {};
     RefinedCage r = firstLevel(p, in);
@@ -235,7 +232,7 @@ EditedCage applyEdits(const Primitive& p, const CageInput& in, Diagnostics& diag
     if (edits.empty()) return {};
     size_t deepest = 0, lost = 0, tooDeep = 0;
     for (const Edit& e : edits) deepest = std::max(deepest, e.path.size() - 1);
-    // Where each edit's path has led so far; -1: nowhere.
+    // By edit: face reached so far on its path; -1: none.
     std::vector<int> at(edits.size(), -1);
     for (size_t i = 0; i < edits.size(); ++i) {
         const int f = edits[i].path[0];

@@ -1,5 +1,5 @@
 // Edits of HierarchicalSubdivisionMesh (PRMan's "vertexedit", "edgeedit", "faceedit"): the cage is refined to the level of the
-// deepest edit, and each edit is made where its level is reached. The limit surface of a refined cage is that of the cage.
+// deepest edit, and each edit is applied at its level. Refinement does not change the limit surface.
 #pragma once
 #include "geometry/subdivision.h"
 
@@ -12,7 +12,7 @@ struct EditedCage {
     std::vector<FaceDomain> domains;
 };
 
-/// Null primitive: there are no edits, or none that can be made; what is wrong with them is reported.
+/// Null primitive: no valid edits; errors are reported.
 EditedCage applyEdits(const scene::Primitive&, const CageInput&, Diagnostics&);
 
 } // namespace alpenglow::geometry

@@ -4,9 +4,8 @@
 
 namespace alpenglow::geometry {
 
-/// Attributes of a primitive of an object in one of the object's instances: the instance's (RISpec 3.2, 5.10), and over them what
-/// was set between ObjectBegin and the primitive, whose shaders stand in the instance's space. Never null when the primitive has
-/// some.
+/// Attributes of an object's primitive in an instance: those of the instance (RISpec 3.2, 5.10), overridden by those set between
+/// ObjectBegin and the primitive, whose shaders are in the instance's space. Not null if the primitive has some.
 scene::AttributesRef instanceAttributes(const scene::Primitive& primitive, const scene::Instance& instance);
 
 } // namespace alpenglow::geometry

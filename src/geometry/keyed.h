@@ -1,12 +1,12 @@
-// Shapes that rays meet exactly, one primitive at a time, and that are what they are at each time of the shutter: their numbers
-// are linear between keys. (A mesh at several times is a Deforming, placed.h.)
+// Moving shapes that are intersected exactly, one primitive at a time: their numbers are linear between keys. (A moving mesh is a
+// Deforming, placed.h.)
 #pragma once
 #include "geometry/shape.h"
 #include <algorithm>
 
 namespace alpenglow::geometry {
 
-/// Among increasing times the last at or before `time` that another follows, and the way to that one, 0 to 1.
+/// The last of increasing times at or before `time` that has a successor, and the fraction of the way to it, 0 to 1.
 inline size_t keyBefore(const std::vector<float>& times, float time, double& way) {
     const size_t n = times.size();
     way = 0;
@@ -17,14 +17,14 @@ inline size_t keyBefore(const std::vector<float>& times, float time, double& way
     return k;
 }
 
-/// Whether a shape is made as a key of what moves: pieces that are nothing at one key may be something at another.
+/// Whether a shape is a key of a moving shape: pieces that are empty at one key may not be at another.
 inline bool isKey(const ShapeSource& s) { return s.like || !s.primitive->motionKeys.empty(); }
 
 class KeyedShape : public Shape {
 public:
     using Shape::Shape;
-    /// Becomes the first key; `later` are shapes of the same class, made of the primitive at later times. times: one more, from 0
-    /// to 1. False: they are not made of the same pieces, and this stays what it is.
+    /// Makes this the first key; `later` are shapes of the same class from the primitive at later times. times: one more, from 0
+    /// to 1. Returns false, without effect, if their pieces do not match.
     bool join(std::vector<ShapeRef> later, std::vector<float> times, Diagnostics&);
     bool joined() const { return !later_.empty(); }
 
@@ -58,20 +58,20 @@ public:
     virtual SurfacePoint sampleFromAt(const Vec3& from, double xi1, double xi2, float time) const = 0;
 
 protected:
-    /// A primitive's box at this key alone.
+    /// A primitive's box at this key.
     virtual Bounds keyBounds(uint32_t prim) const = 0;
     /// evaluateLocal() at a time.
     virtual SurfacePoint pointAt(uint32_t prim, double b1, double b2, float time) const = 0;
     /// Whether that is the same primitive piece for piece, at another time. May make it so.
     virtual bool fits(KeyedShape& later) const = 0;
-    /// When all keys fit and are there, before measure().
+    /// Called when all keys match and are stored, before measure().
     virtual void joinKeys(const std::vector<float>& /*times*/, Diagnostics&) {}
-    /// After primitives and keys are there.
+    /// Call after primitives and keys are stored.
     void measure();
     size_t keyAt(float time, double& way) const { return keyBefore(times_, time, way); }
     const KeyedShape& key(size_t i) const { return i == 0 ? *this : static_cast<const KeyedShape&>(*later_[i - 1]); }
-    /// Change over the whole shutter of a place(way) between a key and the next, by a central difference: what turns is not
-    /// linear there.
+    /// Change of place(way) over the complete shutter at a position between a key and the next, by a central difference:
+    /// rotations are not linear.
     template <class Place> Vec3 slopeOf(size_t key, double way, Place place) const {
         const double a = std::max(way - 1e-5, 0.0), b = std::min(way + 1e-5, 1.0);
         return Vec3((place(b) - place(a)) / ((b - a) * (double(times_[key + 1]) - times_[key])));

@@ -50,7 +50,7 @@ protected:
 
 // OpenSubdiv's patch parameters hold ten bits of u and v: deeper than ten levels is not sound.
 constexpr int kDeepestLevel = 10;
-// Control points of a face beyond which its pattern, whose size grows with their square, is not made.
+// Faces with more control points are not evaluated, as the size of patterns grows with their square.
 constexpr int kMostPoints = 1000;
 
 int levelFor(int points, size_t used) {
@@ -66,7 +66,7 @@ std::span<const int> spanOf(const Osd::Far::ConstIndexArray& a) {
 
 } // namespace
 
-/// Surfaces whose weights all faces of the same neighbourhood share.
+/// Surfaces with weights shared by all faces of the same neighbourhood.
 struct LimitSurface::Patterns {
     std::deque<Surface> surface;
     Cache caches[3]; ///< by level
@@ -78,7 +78,7 @@ struct LimitSurface::Patterns {
         surface.push_back(s);
         return uint32_t(surface.size() - 1);
     }
-    /// The pattern of a face's surface. from: what the cache gave for it, or null.
+    /// The pattern of a face's surface. from: the cached one, or null.
     uint32_t of(const Surface& s, const void* from) {
         if (!s.IsRegular() && !s.IsLinear() && from) {
             auto [at, isNew] = irregular.try_emplace(from, 0);
@@ -88,7 +88,7 @@ struct LimitSurface::Patterns {
             }
             return at->second;
         }
-        // One polynomial piece (or bilinear ones): its weights at a point say which.
+        // One polynomial piece (or bilinear ones), identified by its weights at a point.
         std::vector<double> w(size_t(s.GetNumControlPoints()) + 1);
         const double uv[2] = {0.3125, 0.21875};
         w.back() = s.GetFaceSize();
@@ -127,7 +127,7 @@ LimitSurface::LimitSurface(const SubdivisionCage& c, const std::vector<Channel>&
     topology_->refiner = makeRefiner(c, channels);
     ManifoldCage apart;
     if (topology_->refiner && !isManifold(topology_->base())) {
-        // What OpenSubdiv makes of such neighbourhoods is not always sound.
+        // OpenSubdiv's results for such neighbourhoods may be invalid.
         apart = makeManifold(c);
         // Values belong to one vertex, so they are taken apart with it.
         std::vector<Channel> own = channels;
@@ -223,8 +223,8 @@ LimitSurface::PieceOf LimitSurface::pieceOf(uint32_t piece) const {
     return {f, int(piece - firstPiece_[f])};
 }
 
-/// OpenSubdiv 3.5 gives the second derivatives of irregular triangles the wrong sign in those parts that lie the other way round
-/// (the middle one of four). Whether it did here: by a difference of first ones.
+/// OpenSubdiv 3.5 computes second derivatives of irregular triangles with the wrong sign in inverted parts (the middle one of
+/// four). Detects this by a difference of first derivatives.
 static bool turnedOver(const Surface& s, const double uv[2], const double* du, const double* duu, int n) {
     const double step = uv[0] > 1 / 3.0 ? -1e-6 : 1e-6, there[2] = {uv[0] + step, uv[1]};
     LimitWeights room;
@@ -248,7 +248,7 @@ void LimitSurface::evaluate(const Data& d, uint32_t piece, double u, double v, i
     out.index = &d.index[d.first[at.face]];
     double uv[2] = {u, v}, scale = 1;
     if (piecesOf(at.face) > 1) {
-        // Pieces lie in tiles of which each fills a quarter.
+        // Pieces are in tiles of which each fills a quarter.
         const double own[2] = {u, v};
         s.GetParameterization().ConvertNormalizedSubFaceToCoord(at.corner, own, uv);
         scale = 0.5;
@@ -282,7 +282,7 @@ int LimitSurface::edgeStart(int e) const {
 
 void LimitSurface::forgetTopology() {
     topology_.reset();
-    // What the surfaces need of the caches they hold themselves.
+    // The surfaces keep the cache data that they need.
 }
 
 } // namespace alpenglow::geometry

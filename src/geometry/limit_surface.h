@@ -22,11 +22,11 @@ namespace alpenglow::geometry {
 
 enum class SubdivisionScheme { CatmullClark, Loop, Bilinear };
 
-/// What is subdivided. Indices are checked by who makes it; a face has no vertex twice. With Loop every face has three corners.
+/// The cage. The caller checks indices; a face has no vertex twice. With Loop every face has three corners.
 struct SubdivisionCage {
     SubdivisionScheme scheme = SubdivisionScheme::CatmullClark;
     enum class Boundary { None, EdgeAndCorner, EdgeOnly } boundary = Boundary::None;
-    /// Rule of smooth face-varying values: what stays sharp where they end.
+    /// Interpolation rule of face-varying values: which boundaries stay sharp.
     enum class FaceVarying {
         EdgeOnly,
         EdgeAndCorner,
@@ -34,7 +34,7 @@ struct SubdivisionCage {
         AlwaysSharp
     } faceVarying = FaceVarying::EdgeAndCorner;
     bool chaikin = false;         ///< sharpness of a crease is averaged along it
-    bool smoothTriangles = false; ///< triangles of catmull-clark have weights of their own
+    bool smoothTriangles = false; ///< special weights for triangles in catmull-clark
     int vertices = 0;
     std::span<const int> corners;       ///< per face: how many
     std::span<const int> vertex;        ///< per corner
@@ -45,7 +45,7 @@ struct SubdivisionCage {
     std::vector<int> holes; ///< faces
 };
 
-/// Weights of control values at a point: values by (`index`), then their slopes by u, v, uu, uv, vv as far as asked for.
+/// Weights of control values at a point: by (`index`), then for derivatives by u, v, uu, uv, vv as requested.
 class LimitWeights {
 public:
     int count = 0;
@@ -63,7 +63,7 @@ class LimitSurface {
 public:
     /// Face-varying values that are smoothed: per corner an index; corners of one vertex with equal indices are joined.
     using Channel = std::vector<int>;
-    /// `why` says what OpenSubdiv could not take; valid() is then false.
+    /// `why`: reason if OpenSubdiv rejects the cage; valid() is then false.
     LimitSurface(const SubdivisionCage&, const std::vector<Channel>&, std::string& why);
     ~LimitSurface();
     bool valid() const { return valid_; }
@@ -91,7 +91,7 @@ public:
         evaluate(channels_[size_t(channel)], piece, u, v, derivatives, out);
     }
 
-    /// Edges of the cage, until forgetTopology(). Sheets that meet along an edge share its number, as they share vertices.
+    /// Number of edges of the cage, until forgetTopology(). Sheets that share an edge use its number, as for vertices.
     uint32_t edges() const;
     int corners(uint32_t face) const;
     int vertexAt(uint32_t face, int corner) const;
@@ -99,16 +99,16 @@ public:
     int edgeStart(int edge) const;               ///< first vertex of an edge
     void forgetTopology();
 
-    /// Faces at which more edges meet than can be evaluated: they are flat. For a message.
+    /// Number of faces with more adjacent edges than can be evaluated, which are flat. For a message.
     uint32_t flattened() const { return flattened_; }
-    /// Whether patterns were made coarser than stated above, because there are too many.
+    /// Whether patterns are coarser than stated above, because there are too many.
     bool coarser() const { return coarser_; }
     /// Whether the mesh had to be taken apart, and lost its creases and corners by that.
     bool blunted() const { return blunted_; }
 
 private:
     static constexpr uint32_t kNothing = 0xffffffffu;
-    /// What one kind of data (vertices, or a channel) has a face: a pattern, and the values that it weighs.
+    /// Data of a face for vertices or a channel: a pattern, and indices of values.
     struct Data {
         std::vector<uint32_t> pattern;
         std::vector<size_t> first;

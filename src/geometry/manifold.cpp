@@ -7,7 +7,7 @@ namespace alpenglow::geometry {
 
 namespace {
 
-/// Corner c stands for the side of its face that begins there.
+/// Corner c represents the side of its face that starts there.
 class Splitter {
 public:
     explicit Splitter(const SubdivisionCage& c) : in_(c), n_(c.vertex.size()), next_(n_), previous_(n_), pair_(n_, -1), set_(n_) {
@@ -73,7 +73,7 @@ private:
             }
         }
     }
-    /// The first sheet at a vertex keeps its number.
+    /// The first sheet at a vertex keeps its index.
     void nameVertices(ManifoldCage& out) {
         out.original.resize(size_t(in_.vertices));
         std::iota(out.original.begin(), out.original.end(), 0);

@@ -8,7 +8,7 @@ namespace alpenglow::geometry {
 
 namespace {
 
-/// The part of the patch that trim curves keep: null for all of it. False when that is nothing.
+/// The part of the patch that trim curves keep: null for all. Returns false if nothing is kept.
 bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_ptr<const TrimRegion>& region,
             Diagnostics& diag) {
     const scene::ParamList& curves = *s.attributes->trimCurve;
@@ -21,14 +21,14 @@ bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_
         d.code = Rie::BadToken;
         d.place = sense->place;
         d.message =
-            "Attribute \"trimcurve\" \"sense\" is \"inside\" or \"outside\", not \"" + named + "\"; what is inside is cut away";
+            "Attribute \"trimcurve\" \"sense\" is \"inside\" or \"outside\", not \"" + named + "\"; the inside is cut away";
         diag.reportOnce("geometry:trimsense:" + named, d);
     }
     std::string why;
     double gap = 0;
     region = TrimRegion::make(curves, domain, named == "outside", why, gap);
     if (!region) {
-        diag.report(Severity::Error, Rie::Range, place, "TrimCurve: " + why + "; the NuPatch is drawn whole");
+        diag.report(Severity::Error, Rie::Range, place, "TrimCurve: " + why + "; the NuPatch is drawn completely");
         return true;
     }
     constexpr double kSeen = 1e-3; // of the patch
@@ -40,7 +40,7 @@ bool trimOf(const ShapeSource& s, const TrimRegion::Domain& domain, std::shared_
     d.severity = Severity::Warning;
     d.code = Rie::Consistency;
     d.place = s.primitive->place;
-    d.message = "NuPatch: its trim curves leave nothing of it";
+    d.message = "NuPatch: its trim curves cut all of it away";
     d.hint = std::string("Attribute \"trimcurve\" \"sense\" \"") + (named == "outside" ? "inside" : "outside") +
              "\" keeps the other part";
     diag.report(std::move(d));

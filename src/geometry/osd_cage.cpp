@@ -42,7 +42,7 @@ Osd::Sdc::Options optionsOf(const SubdivisionCage& c) {
 std::unique_ptr<Osd::Far::TopologyRefiner> makeRefiner(const SubdivisionCage& c,
                                                        const std::vector<LimitSurface::Channel>& channels) {
     static std::once_flag quiet;
-    std::call_once(quiet, [] { // what it cannot take is reported by who calls
+    std::call_once(quiet, [] { // callers report errors
         Osd::Far::SetErrorCallback([](Osd::Far::ErrorType, const char*) {});
         Osd::Far::SetWarningCallback([](const char*) {});
     });

@@ -1,11 +1,11 @@
-// A cage as OpenSubdiv knows it. Only for the files that include OpenSubdiv themselves.
+// A cage in OpenSubdiv's form. Only for files that include OpenSubdiv.
 #pragma once
 #include "geometry/limit_surface.h"
 #include <opensubdiv/far/topologyRefiner.h>
 
 namespace alpenglow::geometry {
 
-/// Null: OpenSubdiv cannot take its topology.
+/// Returns null if OpenSubdiv rejects its topology.
 std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> makeRefiner(const SubdivisionCage&, const std::vector<LimitSurface::Channel>&);
 
 } // namespace alpenglow::geometry

@@ -17,7 +17,7 @@ public:
 private:
     Profile profile(double v) const override {
         double k = zmax_ - zmin_, z = zmin_ + v * k;
-        // At the apex the radius grows like a root: derivatives are taken a hair beside it.
+        // At the apex the radius grows like a root: derivatives are taken slightly beside it.
         double x = std::max(z / zref_, 0.0), y = std::max(x, 1e-9), root = std::sqrt(y), dx = k / zref_;
         return {{r_ * std::sqrt(x), 0, z}, {r_ * dx / (2 * root), 0, k}, {-r_ * dx * dx / (4 * root * y), 0, 0}};
     }
@@ -35,11 +35,11 @@ ShapeRef makeParaboloid(ShapeSource s, Diagnostics& diag) {
            sweep = quadricNumber(p, 3, ok);
     if (!ok) return reportDegenerate(p, diag, "needs four finite numbers"), nullptr;
     double zref = zmax;
-    if (zref == 0) zref = zmin; // swapped limits of a bowl that stands on its apex
+    if (zref == 0) zref = zmin; // swapped limits of a bowl on its apex
     if (r == 0 || sweep == 0 || zref == 0 || zmin == zmax)
         return reportDegenerate(p, diag, "has no radius, no sweep or no height"), nullptr;
     if (zmin / zref < 0) {
-        diag.report(Severity::Warning, Rie::Range, p.place, "Paraboloid zmin lies beyond its apex; it is drawn from the apex");
+        diag.report(Severity::Warning, Rie::Range, p.place, "Paraboloid zmin is beyond its apex; it is drawn from the apex");
         zmin = 0;
     }
     return std::make_shared<Paraboloid>(std::move(s), r, zmin, zmax, zref, sweep, diag);

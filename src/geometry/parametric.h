@@ -1,4 +1,4 @@
-// What surfaces over one (u, v) square share: derivatives to camera space, sampling, area, dicing, corner variables.
+// Shared by surfaces over one (u, v) square: derivatives in camera space, sampling, area, dicing, corner variables.
 #pragma once
 #include "geometry/shape.h"
 
@@ -21,37 +21,37 @@ public:
     double sampleDensity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
 
-    /// Corners of patches on the border of the surface, as far as its edges are data of their own (edgeCurve()), camera space.
+    /// Corners of patches on the border of the surface, for edges with an edgeCurve(), camera space.
     void borderCorners(std::vector<Vec3>& out) const;
 
 protected:
     SurfacePoint evaluateLocal(uint32_t prim, double u, double v) const override;
-    /// The surface in camera space in double; what evaluateLocal rounds.
+    /// The surface point in camera space in double, which evaluateLocal rounds.
     virtual LocalPoint cameraPoint(double u, double v) const = 0;
     /// Position only.
     virtual Vec3d cameraPosition(double u, double v) const { return cameraPoint(u, v).P; }
     /// Patches along u and v: dicing lines never cross their borders.
     virtual int patchesU() const { return 1; }
     virtual int patchesV() const { return 1; }
-    /// Where those borders lie along u (0) or v (1), from 0 to 1.
+    /// Positions of patch borders along u (0) or v (1), from 0 to 1.
     virtual std::vector<double> borders(int direction) const;
     /// Whether the surface is torn at such a border.
     virtual bool torn(int /*direction*/, double /*border*/) const { return false; }
     /// The edge of a patch on the border of the surface, in the direction of u or v; side 0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0;
-    /// cell: which patch along it, between `from` and `to`. False: it is no data of its own.
+    /// cell: index of the patch along it, between `from` and `to`. Returns false if it has no edge curve.
     virtual bool edgeCurve(int /*side*/, int /*cell*/, double /*from*/, double /*to*/, EdgeCurve&) const { return false; }
-    /// A box, in camera space, about the surface between two parameters of each direction within one patch, or (0, 0, 1, 1) about
-    /// all of it. False: none is known without looking.
+    /// A box in camera space around the surface between two parameters of each direction within one patch, or (0, 0, 1, 1) around
+    /// all of it. Returns false if it is unknown without sampling.
     virtual bool hull(double /*u0*/, double /*v0*/, double /*u1*/, double /*v1*/, Bounds&) const { return false; }
     /// Index of the uniform value at a point.
     virtual int faceAt(double u, double v) const;
-    /// Takes away triangles of the mesh that rays are to meet; meshParam_ is set.
+    /// Removes trimmed triangles of the mesh; meshParam_ is set.
     virtual void trim(TriMesh&) {}
     virtual bool closedU() const { return false; }
     virtual bool closedV() const { return false; }
-    /// Whether rays meet the mesh even when nothing displaces it.
+    /// Whether the surface is diced even without displacement.
     virtual bool needsDicing() const = 0;
-    /// Bilinear weights in a grid of values, nu by nv over the whole square (periodic: nu values span nu cells).
+    /// Bilinear weights in a grid of values, nu by nv over the complete square (periodic: nu values span nu cells).
     static int bilinearWeights(double u, double v, int nu, int nv, bool wrapU, bool wrapV, Weight w[16]);
 
     double pointScale_ = 0; ///< bound on |P| in double computations before cancellation, for the error bound

@@ -1,7 +1,7 @@
-// Facets of surfaces over a square. The square is cut into blocks that need some dozens of facets each, as many as they look
-// large; a block has an even grid inside and, around it, a ring that meets the points of its four sides. Points of a side are
-// made once for the blocks on both sides of it. On the border of the surface, where its edges are data of their own
-// (edge_curve.h), they are those that every surface with the same edge has.
+// Facets of surfaces over a square. The square is cut into blocks that need about some dozens of facets by their size on screen;
+// a block has a uniform grid inside and, around it, a ring that connects to the points of its four sides. Points of a side are
+// shared by the blocks on both sides. On the border of the surface, if its edges are edge curves (edge_curve.h), points are those
+// of every surface with the same edge.
 #include "base/limits.h"
 #include "base/parallel.h"
 #include "geometry/edge_corners.h"
@@ -28,8 +28,8 @@ Parametric::Dicing::Dicing(const Parametric& shape, const DiceOptions& o, bool m
     closed[1] = std::all_of(keys.begin(), keys.end(), [](const Parametric* k) { return k->closedV(); });
 }
 
-/// Facets along a block, by some points strictly inside of it, so that knots do not mix neighbours' second derivatives.
-/// `least`: the fewest that a probe asks for.
+/// Number of facets along a block, from some points strictly inside of it, so that knots do not mix second derivatives of
+/// neighbours. `least`: the smallest number of a probe.
 void Parametric::Dicing::probe(const Parametric& shape, Block& k, Block& least, ProbedBox& box) const {
     constexpr int kProbe = 5;
     const double wu = k.u1 - k.u0, wv = k.v1 - k.v0, micro = edge(), tol = tolerance();
@@ -43,7 +43,7 @@ void Parametric::Dicing::probe(const Parametric& shape, Block& k, Block& least, 
                 const double cu = std::sqrt(camera.pixels(p.P, p.Puu) / (8 * tol)) * wu;
                 const double cv = std::sqrt(camera.pixels(p.P, p.Pvv) / (8 * tol)) * wv;
                 const double twist = std::sqrt(camera.pixels(p.P, p.Puv) / (4 * tol)) * std::sqrt(wu * wv);
-                // 1.5: the probes miss the peak of what they sample.
+                // 1.5: the probes miss the peak
                 const double bu = 1.5 * std::max(cu, twist), bv = 1.5 * std::max(cv, twist);
                 lu = flat ? bu : std::min(lu, bu);
                 lv = flat ? bv : std::min(lv, bv);
@@ -63,11 +63,11 @@ void Parametric::Dicing::refine(Block k, int depth) {
     least.nu = least.nv = std::numeric_limits<double>::infinity();
     ProbedBox box;
     for (const Parametric* key : keys) probe(*key, k, least, box);
-    // What asks for so much everywhere that no halving that is left brings it down is not halved: a patch at 1e39, say.
+    // Does not divide a block that stays too large after all remaining subdivisions, such as a patch at 1e39.
     const double hopeless = std::ldexp(kBlock, kDeepestHalving - depth);
     const bool u = k.nu > kBlock && least.nu <= hopeless, v = k.nv > kBlock && least.nv <= hopeless;
     if ((!u && !v) || depth >= kDeepestHalving || cuts >= kMostBlocks) {
-        k.nu = std::min(k.nu, double(limits::kDiceEdge)); // a weight that vanishes makes it look as large as can be
+        k.nu = std::min(k.nu, double(limits::kDiceEdge)); // a vanishing weight makes it arbitrarily large
         k.nv = std::min(k.nv, double(limits::kDiceEdge));
         k.seen = !leavesOut() || !(*unseen)(box.box());
         blocks.push_back(k);
@@ -84,7 +84,7 @@ void Parametric::Dicing::refine(Block k, int depth) {
         }
 }
 
-/// Where patches begin and end, two numbers a patch: where the surface is torn both sides have an end of their own.
+/// Start and end of patches, two numbers each: if the surface is torn, both sides have separate ends.
 std::vector<double> Parametric::Dicing::cells(int direction) const {
     const std::vector<double> at = s.borders(direction);
     std::vector<double> out;
@@ -122,8 +122,7 @@ bool Parametric::Dicing::limitFacets() {
     return scale < 1;
 }
 
-/// Cuts a part of a line evenly in halves, until no side of a block begins or ends within one and none is longer than its blocks
-/// want.
+/// Halves a part of a line until no side of a block starts or ends within a segment, and none is longer than its blocks need.
 void Parametric::Dicing::cutLine(Line& line, double a, double b, std::span<const Line::Side*> sides) {
     double need = 0;
     bool within = false, any = false;
@@ -145,7 +144,7 @@ void Parametric::Dicing::cutLine(Line& line, double a, double b, std::span<const
     line.at.push_back(b);
 }
 
-/// The points of a border of the surface (0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0), as far as its edges are data of their own.
+/// Points of a border of the surface (0: v = 0, 1: u = 1, 2: v = 1, 3: u = 0), for edges with edge curves.
 void Parametric::Dicing::giveEdge(int side, Line& line, const std::vector<double>& cells) {
     std::vector<double> at;
     std::vector<Vec3d> points;
@@ -158,7 +157,7 @@ void Parametric::Dicing::giveEdge(int side, Line& line, const std::vector<double
             if (EdgeCurve e; key->edgeCurve(side, int(c), from, to, e)) curves.push_back(e);
         if (curves.size() != keys.size()) return;
         if (std::all_of(curves.begin(), curves.end(), [](const EdgeCurve& e) { return e.collapsed(); })) return;
-        const double micro = !displaced && diceFlatness(s.attributes()) > 0 ? 1e-9 : edge(); // how it bends has the only say
+        const double micro = !displaced && diceFlatness(s.attributes()) > 0 ? 1e-9 : edge(); // curvature decides alone
         // Where others have a corner it is two edges.
         std::vector<EdgeCorners::On> ends{{0, Vec3(own.at(0))}};
         if (opt.corners && displaced && own.straight() && keys.size() == 1)
@@ -220,8 +219,8 @@ size_t Parametric::Dicing::Line::nearest(double x) const {
     return k > 0 && x - at[k - 1] < at[k] - x ? k - 1 : k;
 }
 
-/// Points of lines. Where lines cross there is one vertex; an end that is no point of a given border goes to the nearest one that
-/// is.
+/// Points of lines. Crossing lines share a vertex; an end that is not a point of an existing border moves to the nearest point of
+/// it.
 void Parametric::Dicing::makeVertices() {
     const auto make = [&](double u, double v) {
         param.push_back({u, v});
@@ -289,10 +288,10 @@ void Parametric::Dicing::place(std::vector<Vec3>& P) const {
     parallelFor(size_t(0), param.size(), [&](size_t i) {
         if (used.empty() || used[i]) P[i] = Vec3(s.cameraPosition(float(param[i][0]), float(param[i][1])));
     });
-    // At corners the borders of constant v have the word: they are whole circles, the others may be none.
+    // At corners the borders of constant v have priority: they are complete circles, the others may be none.
     if (!closed[0]) placeEdge(3, lines[1].begin()->second, P), placeEdge(1, lines[1].rbegin()->second, P);
     if (!closed[1]) placeEdge(0, lines[0].begin()->second, P), placeEdge(2, lines[0].rbegin()->second, P);
-    // A closed surface meets itself to the bit, or rays would leak through the seam.
+    // A closed surface joins itself bit by bit, so that no ray leaks through the seam.
     for (size_t d = 0; d < 2; ++d) {
         if (!closed[1 - d]) continue;
         const Line &first = lines[d].begin()->second, &last = lines[d].rbegin()->second;
@@ -311,7 +310,7 @@ void Parametric::Dicing::triangle(uint32_t a, uint32_t b, uint32_t c) {
     if (a != b && b != c && a != c) index.insert(index.end(), {a, b, c});
 }
 
-/// The strip between two rows of points; `out` on the right hand of `in` as u, v are drawn, or with flip on the left.
+/// The strip between two rows of points; `out` on the right of `in` as u, v are drawn, or with flip on the left.
 void Parametric::Dicing::zip(const std::vector<Point>& out, const std::vector<Point>& in, bool flip) {
     size_t i = 0, j = 0;
     const auto put = [&](uint32_t a, uint32_t b, uint32_t c) { flip ? triangle(a, c, b) : triangle(a, b, c); };
@@ -393,7 +392,7 @@ void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
     Bounds all;
     if (!unseen.none() && hull(0, 0, 1, 1, all) && unseen(all)) return leaveOut(all);
     Diagnostics said;
-    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // it goes farther than was said: what was left out may be seen
+    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // exceeds the declared bound: omitted parts may be visible
         unseen.lookAnywhere();
         diceSeen(opt, unseen, diag);
         return;
@@ -401,7 +400,7 @@ void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
     for (const Diagnostic& d : said.all()) diag.report(d);
 }
 
-/// Without what no ray comes to. False: displacement went beyond its bound.
+/// Omits unreachable parts. Returns false if displacement exceeded its bound.
 bool Parametric::diceSeen(const DiceOptions& opt, Unseen& unseen, Diagnostics& diag) {
     Dicing d(*this, opt, displaced_);
     d.unseen = &unseen;

@@ -17,9 +17,9 @@ struct Parametric::Dicing {
     struct Block {
         double u0, u1, v0, v1, nu, nv;
         uint32_t cutU = 1, cutV = 1, first = 0; ///< facets, and the first vertex inside
-        bool seen = true;                       ///< false: only its sides are there, as far as others have them
+        bool seen = true;                       ///< false: only its sides exist, if neighbours need them
     };
-    /// A line of constant u or v, as far as it is a side of blocks.
+    /// A line of constant u or v, where it is a side of blocks.
     struct Line {
         struct Side {
             double from, to, need;
@@ -43,7 +43,7 @@ struct Parametric::Dicing {
     const DiceOptions& opt;
     const bool displaced;
     const DiceCamera camera;
-    const Unseen* unseen = nullptr; ///< set: what may be left out
+    const Unseen* unseen = nullptr; ///< if set, parts that may be omitted
     std::vector<const Parametric*> keys;
     bool closed[2];
     std::vector<Block> blocks;

@@ -1,10 +1,9 @@
-// What of a surface over a square is left out, for no ray comes there.
+// Parts of a surface over a square that no ray can reach.
 #include "geometry/parametric_dicing.h"
 
 namespace alpenglow::geometry {
 
-/// Patches that are not worth a look: no ray comes there or to their neighbours, whose sides depend on them. Empty: none is
-/// known.
+/// Patches that need no probing: no ray reaches them or their neighbours, whose sides depend on them. Empty: none known.
 std::vector<uint8_t> Parametric::Dicing::unseenPatches(const std::vector<double>& u, const std::vector<double>& v) const {
     std::vector<uint8_t> away, out;
     Bounds b;

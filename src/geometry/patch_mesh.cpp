@@ -20,7 +20,7 @@ ShapeRef makePatchMesh(ShapeSource s, Diagnostics& diag) {
         wrap[k] = w == "periodic";
         if (!wrap[k] && w != "nonperiodic" && w != "nowrap")
             diag.report(Severity::Warning, Rie::BadToken, p.place,
-                        "PatchMesh: wrap \"" + w + "\" is unknown; taken as \"nonperiodic\"");
+                        "PatchMesh: wrap \"" + w + "\" is unknown; \"nonperiodic\" is used");
     }
     const scene::Attributes& a = *s.attributes;
     NetDirection dir[2];

@@ -12,8 +12,8 @@ namespace alpenglow::geometry {
 
 namespace {
 
-/// Pixels beyond the edge of the picture that filters and rounding of places reach, apart from the filters' own widths. Facets
-/// that reach into the picture from there have neighbours, whose points they share.
+/// Margin in pixels beyond the edge of the picture for filters and rounding, apart from filter widths. Facets that reach into the
+/// picture from there have neighbours that share their points.
 constexpr double kMargin = 8;
 
 /// Half the widest filter of the frame, in pixels.
@@ -42,7 +42,7 @@ std::optional<PictureSides> PictureSides::from(const scene::Options& o) {
     double width = std::max(1, o.xres), height = std::max(1, o.yres);
     const double aspect = o.frameAspect ? double(*o.frameAspect) : width * o.pixelAspect / height;
     if (!(aspect > 0) || !std::isfinite(aspect) || !(o.pixelAspect > 0)) return {};
-    if (o.frameAspect && aspect >= 1) height = std::max(1.0, width * o.pixelAspect / aspect); // as the camera makes the picture
+    if (o.frameAspect && aspect >= 1) height = std::max(1.0, width * o.pixelAspect / aspect); // as in the camera
     if (o.frameAspect && aspect < 1) width = std::max(1.0, height * aspect / o.pixelAspect);
     p.right_ = std::max(1.0, aspect), p.top_ = std::max(1.0, 1 / aspect);
     p.left_ = -p.right_, p.bottom_ = -p.top_;
@@ -71,11 +71,11 @@ bool PictureSides::outside(const Bounds& b, double pixels) const {
     for (int i = 0; i < 3; ++i)
         if (!(b.lo[i] <= b.hi[i] && std::fabs(b.lo[i]) < 1e30f && std::fabs(b.hi[i]) < 1e30f)) return false;
     if (double(b.hi.z) < near_) return true;
-    // Rays of a lens of radius r leave the middle one by up to r |1 - z / focus|.
+    // Rays through a lens of radius r deviate from the centre ray by up to r |1 - z / focus|.
     const double z0 = std::max(0.0, double(b.lo.z)), z1 = std::max(0.0, double(b.hi.z));
     const double blur = lens_ * std::max(std::fabs(1 - z0 / focus_), std::fabs(1 - z1 / focus_));
     const double mx = pixels * pixelX_, my = pixels * pixelY_;
-    // The least of x - side * z over the box, and of the opposite on the other side.
+    // Minimum of x - side * z over the box, and of the opposite on the other side.
     const auto beyond = [&](double lo, double hi, double from, double to) {
         if (!perspective_) return lo > to + blur || hi < from - blur;
         const double right = lo - std::max(to * z0, to * z1), left = std::min(from * z0, from * z1) - hi;
@@ -85,9 +85,9 @@ bool PictureSides::outside(const Bounds& b, double pixels) const {
 }
 
 Unseen::Unseen(const Shape& s, const DiceOptions& opt) {
-    constexpr double kFacets = 4; // about as many lie between what is left out and what is seen
+    constexpr double kFacets = 4; // margin: about so many facets between omitted and visible parts
     const scene::Attributes& a = s.attributes();
-    // Light comes from all of an emitter, and what bounds a solid tells inside from outside.
+    // Light comes from all of an emitter, and a solid's boundary separates inside from outside.
     if (!opt.picture || !opt.keys.empty() || a.areaLight >= 0 || a.value(scene::kSolidAttribute)) return;
     reach_ = isDisplaced(s, opt) ? displacementReach(s, opt) : 0;
     if (!(reach_ >= 0)) return;
@@ -103,7 +103,7 @@ bool Unseen::operator()(Bounds b) const {
 }
 
 void ProbedBox::add(const Vec3d& p, const Vec3d& alongU, const Vec3d& alongV) {
-    // What lies between probes is not far off a straight line; steps grow by less than this from one to the next.
+    // The surface between probes is nearly straight; steps grow by less than this from one to the next.
     constexpr double kGrowth = 2;
     for (int i = 0; i < 3; ++i) {
         lo_[i] = std::min(lo_[i], p[i]), hi_[i] = std::max(hi_[i], p[i]);

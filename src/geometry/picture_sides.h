@@ -1,5 +1,5 @@
-// What camera rays can come to: the room between the sides of the picture and the near plane. Where no other ray is sent, what
-// lies outside of it need not be diced.
+// Region that camera rays can reach: the volume between the sides of the picture and the near plane. If no other rays are traced,
+// geometry outside of it need not be diced.
 #pragma once
 #include "geometry/bounds.h"
 #include "geometry/shape.h"
@@ -10,26 +10,26 @@ namespace alpenglow::geometry {
 
 class PictureSides {
 public:
-    /// From the frame's options, with room for the widest filter and the lens. None: the camera moves, there are two eyes, or
-    /// others look (scene/anycamera.h).
+    /// From the frame's options, with margins for the widest filter and the lens. None: the camera moves, there are two eyes, or
+    /// other rays exist (scene/anycamera.h).
     static std::optional<PictureSides> from(const scene::Options&);
-    /// No ray of the camera comes to the box, in camera space, nor to what lies so many pixels beside it.
+    /// Whether no camera ray reaches the box, in camera space, or its surroundings of this width in pixels.
     bool outside(const Bounds&, double pixels) const;
 
 private:
     bool perspective_ = false;
-    double left_ = -1, right_ = 1, bottom_ = -1, top_ = 1; ///< on the screen; a perspective one lies at z = 1
+    double left_ = -1, right_ = 1, bottom_ = -1, top_ = 1; ///< on the screen; for perspective at z = 1
     double pixelX_ = 1, pixelY_ = 1;                       ///< on the screen
     double near_ = 0, lens_ = 0, focus_ = 1;
 };
 
 struct DiceOptions;
 
-/// Which parts of a still shape no ray can come to, wherever its shader moves them within its bound.
+/// Parts of a static shape that no ray can reach, for any displacement within its bound.
 class Unseen {
 public:
     Unseen(const Shape&, const DiceOptions&);
-    /// Nothing of the shape may be left out.
+    /// Whether nothing of the shape may be omitted.
     bool none() const { return !sides_; }
     bool operator()(Bounds) const;
     void lookAnywhere() { sides_ = nullptr; } ///< none() from now on
@@ -39,7 +39,7 @@ private:
     double reach_ = 0, pixels_ = 0;
 };
 
-/// A box about a piece of a smooth surface by points of it, each with the way to where the next one's part begins.
+/// A box around a piece of a smooth surface from points on it, each with the vector to the start of the next one's part.
 class ProbedBox {
 public:
     void add(const Vec3d& p, const Vec3d& alongU, const Vec3d& alongV);

@@ -1,4 +1,4 @@
-// How a quadrilateral or triangle is cut into facets when each of its edges has a rate of its own.
+// Division of a quadrilateral or triangle into facets with a separate rate for each edge.
 #pragma once
 #include "base/vec.h"
 #include <cstdint>

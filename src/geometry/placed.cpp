@@ -25,7 +25,7 @@ Placed::Placed(ShapeSource s, ShapeRef geometry, const scene::Transform& place, 
     variables_ = &geometry_->primvars();
     out_ = Affine(place.first());
     if (!out_.inverse(in_)) in_ = Affine();
-    // What the orientation makes of the geometry's own normals, which go by the inverse transpose (Shape::orientation()).
+    // Effect of the orientation on the geometry's own normals, which use the inverse transpose (Shape::orientation()).
     side_ = double(orientation()) * double(geometry_->orientation()) * (out_.determinant() < 0 ? -1 : 1);
     if (!place.moves()) return;
     auto moving = std::make_unique<Moving>();
@@ -63,7 +63,7 @@ Placed::Pose Placed::poseAt(float time) const {
 
 Matrix Placed::toCameraAt(float time) const {
     if (!moving_ || !(time > 0)) return toCamera();
-    // Object to geometry stays what it is at shutter open.
+    // The transformation from object to geometry is that at shutter open.
     const auto matrix = [](const Affine& a) {
         Matrix m;
         const Vec3d rows[4] = {a.x, a.y, a.z, a.o};
@@ -78,10 +78,10 @@ void Placed::place(SurfacePoint& p, const Pose& m, float time) const {
     const auto vector = [&](Vec3& v) { v = Vec3(m.out.vector(Vec3d(v))); };
     const auto normal = [&](const Vec3& n) { return m.in.across(Vec3d(n)); };
     const Vec3d from(p.displaced ? p.displacedP : p.P);
-    // Of the float point of the geometry's own space, which may lie far from its origin; then of the rounded result.
+    // Error of the float point in the geometry's own space, which may be far from its origin; plus that of the rounded result.
     const double stretch = std::sqrt(3.0) * m.out.stretch();
     p.P = Vec3(m.out.point(Vec3d(p.P)));
-    const Vec3d Ng = normal(p.Ng) * (m.out.determinant() * m.flip); // where no partials are known
+    const Vec3d Ng = normal(p.Ng) * (m.out.determinant() * m.flip); // if no partials are known
     for (Vec3* v : {&p.dPdu, &p.dPdv, &p.Puu, &p.Puv, &p.Pvv}) vector(*v);
     const bool own = p.N == p.n;
     const Vec3d n = normal(p.n) * side_;
@@ -140,7 +140,7 @@ Bounds Placed::bounds() const {
     const auto add = [&](const Affine& m) {
         for (int i = 0; i < 8; ++i) {
             const Vec3d c = m.point(Vec3d(i & 1 ? in.hi.x : in.lo.x, i & 2 ? in.hi.y : in.lo.y, i & 4 ? in.hi.z : in.lo.z));
-            // Rounded outwards, and by what rays are off on their way into the geometry's space.
+            // Rounded outwards, including the error of rays transformed to the geometry's space.
             const Vec3 p(c);
             const float room = 4 * roundingError(p);
             b.add(p - Vec3(room));
@@ -154,7 +154,7 @@ Bounds Placed::bounds() const {
 }
 
 double Placed::area() const {
-    // Exact where the place keeps angles; else the mean of what a plane's area becomes, which only weights choices among shapes.
+    // Exact for similarity transforms; else the mean change of areas, which only affects selection probabilities.
     return geometry_->area() * exact::pow(std::fabs(out_.determinant()), 2. / 3);
 }
 

@@ -13,16 +13,16 @@
 
 namespace alpenglow::geometry {
 
-/// The same primitive at several times: shapes whose meshes have the same triangles once they are diced.
+/// A primitive at several times: shapes whose diced meshes have the same triangles.
 class Deforming final : public Shape {
 public:
-    /// keys, at least two, all of one kind; times: as many, 0 the first and 1 the last.
+    /// keys: at least two, all of one kind; times: as many, from 0 to 1.
     Deforming(ShapeSource, std::vector<ShapeRef> keys, std::vector<float> times);
     const std::vector<ShapeRef>& keys() const { return keys_; }
     const std::vector<float>& times() const { return times_; }
-    /// The key at or before a time, and the way to the next one, 0 to 1.
+    /// The key at or before a time, and the fraction of the way to the next one, 0 to 1.
     size_t keyAt(float time, double& way) const;
-    /// A triangle that rays meet at a time.
+    /// A triangle at a time.
     void corners(uint32_t prim, float time, Vec3d out[3]) const;
     /// A corner between two keys.
     static Vec3d between(const Vec3& a, const Vec3& b, double way) { return Vec3d(a) * (1 - way) + Vec3d(b) * way; }
@@ -59,7 +59,7 @@ void reportUnlike(const Shape&, Diagnostics&);
 /// The bounds of a geometry for all its places, which would each look at all its points.
 class SharedBounds {
 public:
-    /// Always of the same shape, whose points may have changed when it was diced.
+    /// Always for the same shape, whose points may change when it is diced.
     Bounds of(const Shape&);
 
 private:
@@ -70,22 +70,22 @@ private:
     Bounds bounds_;
 };
 
-/// A geometry at a place.
+/// An instance of a geometry.
 class Placed final : public Shape {
 public:
-    /// toCamera of the source: at shutter open. place: from the space of the geometry to camera space; affine, and the same
-    /// handedness throughout. bounds: those of the geometry, shared with its other places; null: it has none.
+    /// toCamera of the source: at shutter open. place: from the geometry's space to camera space; affine, with constant
+    /// handedness. bounds: of the geometry, shared by its instances; null: none.
     Placed(ShapeSource, ShapeRef geometry, const scene::Transform& place, std::shared_ptr<SharedBounds> bounds = nullptr);
     const ShapeRef& geometry() const { return geometry_; }
     /// Null where the geometry is the same at all times.
     const Deforming* deforming() const { return deforming_; }
-    /// Null where rays meet no primitives one by one that know the time.
+    /// Null unless primitives are intersected one by one at a time.
     const KeyedShape* keyed() const { return keyed_; }
     bool moves() const { return moving_ || deforming_ || (keyed_ && keyed_->joined()); }
     bool placeMoves() const { return moving_ != nullptr; }
     /// Where it is placed at times of the shutter, for one that is placeMoves().
     std::vector<std::pair<float, Affine>> placeKeys() const;
-    /// From camera space at a time. False: there is no way back then, and nothing to be met.
+    /// Transformation from camera space at a time. Returns false if it is singular; the shape is then invisible.
     bool toGeometry(float time, Affine& out) const;
     Affine fromGeometry(float time) const;
     /// 1 or -1: the side of a normal of the geometry that is the placed one's.
@@ -101,14 +101,14 @@ public:
     using Shape::sampleArea;
     SurfacePoint sampleArea(double xi1, double xi2) const override;
     void sampleAreaAt(double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const override;
-    /// The same for a point that is lit: what faces rays is where rays from there would meet it.
+    /// The same for a lit point: shapes that face rays are turned as seen from it.
     void sampleFromAt(const Vec3& from, double xi1, double xi2, float time, SurfacePoint& out, uint32_t needs) const;
     double sampleDensity(const SurfacePoint&) const override;
     double turnedDensity(const SurfacePoint&, const Vec3& from) const override;
     bool facesRays() const override { return geometry_->facesRays(); }
     void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const override;
     const std::string& stringValue(int var, const SurfacePoint& at) const override { return geometry_->stringValue(var, at); }
-    /// The geometry is diced by diceShapes(), once for all its places.
+    /// diceShapes() dices the geometry, once for all instances.
     void dice(const DiceOptions&, Diagnostics&) override {}
 
 protected:
@@ -134,7 +134,7 @@ private:
     std::shared_ptr<SharedBounds> bounds_;
     const Deforming* deforming_ = nullptr;
     const KeyedShape* keyed_ = nullptr;
-    std::unique_ptr<const Moving> moving_; ///< null: stands still
+    std::unique_ptr<const Moving> moving_; ///< null: does not move
     Affine out_, in_;                      ///< at shutter open
     double side_ = 1;
 };

@@ -1,4 +1,4 @@
-// Half-spaces, for what a part of a picture may show.
+// Half-spaces, for the visible region of a part of a picture.
 #pragma once
 #include "base/vec.h"
 

@@ -1,5 +1,5 @@
-// Points: discs that face the ray or the eye, or lie across "N"; by "type" spheres and squares as well (RISpec 3.2, 5.5, PRMan's
-// names).
+// Points: disks that face the ray or the eye, or are perpendicular to "N"; by "type" spheres and squares as well (RISpec 3.2,
+// 5.5, PRMan's names).
 #include "base/exact.h"
 #include "geometry/curves.h"
 #include "geometry/dice.h"
@@ -15,8 +15,8 @@ namespace {
 
 using scene::Class;
 
-/// A direction toward a ray is kept in ExactHit: u is 2 * x + (u of the point), v 2 * y + (v of the point), x and y counting
-/// steps of an octahedron's unfolded face.
+/// The direction toward a ray is encoded in ExactHit: u is 2 * x + (u of the point), v is 2 * y + (v of the point), with x and y
+/// in steps of the unfolded octahedron.
 constexpr double kSteps = 1 << 24;
 
 double signOf(double x) { return x < 0 ? -1 : 1; }
@@ -121,7 +121,7 @@ private:
     Vec3d eye_, backward_, up_;
     double side_ = 1, reach_[3], spread_ = 1;
     mutable std::once_flag made_;
-    mutable std::vector<double> areas_; ///< squares of radii, summed up; of what moves, the mean of its keys
+    mutable std::vector<double> areas_; ///< cumulative squares of radii; for moving points the mean of the keys
 };
 
 bool Points::take(Diagnostics& diag) {
@@ -176,7 +176,7 @@ bool Points::take(Diagnostics& diag) {
     }
     size_t notFinite = 0, thin = 0;
     std::vector<uint32_t> kept;
-    const bool key = isKey(source_); // a width may grow from nothing
+    const bool key = isKey(source_); // a width may grow from 0
     source_.like = nullptr;
     for (uint32_t i = 0; i < count_; ++i) {
         const float *q = P_ + 3 * size_t(i), w = width_[widthStep_ * i], *n = normal_ ? normal_ + normalStep_ * i : q;
@@ -222,13 +222,13 @@ Points::Now Points::nowAt(uint32_t prim, size_t k, double way) const {
     return {a.centre * (1 - way) + b.centre * way, a.normal * (1 - way) + b.normal * way, a.radius * (1 - way) + b.radius * way};
 }
 
-/// What a disc looks to, not unit; `against` is what a ray comes from.
+/// The direction that a disk faces, not unit; `against`: the origin of a ray.
 Vec3d Points::facing(const Now& now, const Vec3d& against) const {
     if (normal_) return now.normal * (side_ * orientation_ < 0 ? -1.0 : 1.0);
     return source_.facing == Facing::Ray ? against : source_.facing == Facing::Eye ? eye_ - now.centre : backward_;
 }
 
-/// Unit vectors along u and v: a ^ b looks along n (side_ tells in which hand).
+/// Unit vectors along u and v: a ^ b is along n (handedness: side_).
 void Points::sides(const Vec3d& n, Vec3d& a, Vec3d& b) const {
     acrossFrame(n, a, b);
     if (kind_ == PointKind::Square) { // v upward in the picture
@@ -283,7 +283,7 @@ int Points::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     return 1;
 }
 
-/// Object space; n: what a disc looks to.
+/// Object space; n: the direction that a disk faces.
 LocalPoint Points::place(const Now& now, const Vec3d& n, double u, double v) const {
     const double r = now.radius;
     LocalPoint o;
@@ -343,7 +343,7 @@ SurfacePoint Points::pointAt(uint32_t prim, double b1, double b2, float time) co
     p.b1 = u;
     p.b2 = v;
     p.time = time;
-    // What leaves a disc that faces the ray must not meet the same disc, now turned elsewhere.
+    // A ray that leaves a disk facing the previous ray must not hit the disk in its new orientation.
     p.pError = 2 * roundingError(p.P) + (facesRays() ? 0.26f * std::max(length(p.dPdu), length(p.dPdv)) : 0);
     finishPoint(p, true);
     if (kind_ != PointKind::Square) p.dsdu = p.dsdv = p.dtdu = p.dtdv = 0;
@@ -363,8 +363,8 @@ SurfacePoint Points::pointFrom(uint32_t prim, double u, double v, const Vec3d& f
     return pointAt(prim, 2 * x + u, 2 * y + v, time);
 }
 
-/// Of a disc that faces rays: the point where one from `from` meets it that passes its centre at this part of its radius. Seen
-/// from there all such points lie on the ball over the way to the centre (Thales).
+/// For a disk that faces rays: the hit of a ray from `from` that passes its centre at this fraction of its radius. All such
+/// points are on the sphere whose diameter is the segment to the centre (Thales).
 SurfacePoint Points::discFrom(uint32_t prim, double part, double angle, const Vec3d& from, float time) const {
     const Now now = nowAt(prim, time);
     const Vec3d eye = transformPoint(toObject_, from), to = now.centre - eye;
@@ -393,7 +393,7 @@ double Points::turnedDensity(const SurfacePoint& p, const Vec3& from) const {
     return far / (way * least * least);
 }
 
-/// Of a disc that faces the ray that of its centre: who sees it from another place sees it turn otherwise.
+/// For a disk that faces rays, the velocity of its centre, as the orientation depends on the viewer.
 Vec3 Points::velocity(const SurfacePoint& at) const {
     double way;
     const size_t k = keyAt(at.time, way);
@@ -441,7 +441,7 @@ SurfacePoint Points::sampleFromAt(const Vec3& whence, double xi1, double xi2, fl
 double Points::sampleDensity(const SurfacePoint& p) const {
     const double r = nowAt(p.prim, p.time).radius, share = meanSquare(p.prim) / areas().back(),
                  l = length(cross(Vec3d(p.dPdu), Vec3d(p.dPdv)));
-    if (kind_ == PointKind::Ball) { // even over the ball of object space, which the transformation stretches
+    if (kind_ == PointKind::Ball) { // uniform over the sphere in object space, which the transformation stretches
         const double cosine = exact::cos(kPi * (p.b2 - 0.5));
         return l > 0 ? share * 2 * kPi * kPi * cosine / (4 * kPi * l) : share / (4 * kPi * r * r * spread_);
     }
@@ -465,7 +465,7 @@ ShapeRef makePoints(ShapeSource s, Diagnostics& diag) {
             d.severity = Severity::Warning;
             d.code = t == "blobby" ? Rie::Incapable : Rie::BadToken;
             d.place = type->place;
-            d.message = t == "blobby" ? "Points of type \"blobby\" are drawn as spheres, which do not melt together"
+            d.message = t == "blobby" ? "Points of type \"blobby\" are drawn as spheres, which do not blend"
                                       : "Points of type \"" + t +
                                             "\" are drawn as particles; known are particle, disk, sphere, patch and blobby";
             diag.reportOnce("geometry:points:" + t, d);

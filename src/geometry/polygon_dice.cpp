@@ -1,6 +1,5 @@
-// Facets of displaced polygons. Each edge of a triangle is cut as its data and the camera say (edge_curve.h), so neighbours
-// within the mesh and in others have the same points there; triangles with edges of too many parts are cut into smaller ones
-// first.
+// Facets of displaced polygons. Each edge of a triangle is cut by its data and the camera (edge_curve.h), so neighbours in this
+// mesh and others have the same points there; triangles whose edges have too many parts are first cut into smaller ones.
 #include "base/limits.h"
 #include "geometry/edge_corners.h"
 #include "geometry/edge_curve.h"
@@ -17,7 +16,7 @@
 namespace alpenglow::geometry {
 
 namespace {
-constexpr int kDeepest = 20; ///< parts of parts: where the eye lies on a face, what is near it would look large at any size
+constexpr int kDeepest = 20; ///< recursion depth: if the eye is on a face, near parts would look large at any size
 }
 
 struct PolygonMesh::Dicing {
@@ -48,7 +47,7 @@ struct PolygonMesh::Dicing {
         uint32_t tri;
         struct Corner {
             Vec2 b;  ///< b1, b2
-            Vec3d P; ///< as all parts that meet there have it
+            Vec3d P; ///< shared by all parts that join there
         } corner[3];
         Side side[3]; ///< from corner k to the next
         int depth = 0;
@@ -87,7 +86,7 @@ PolygonMesh::Dicing::Dicing(const PolygonMesh& shape, const DiceOptions& o)
     if (keys.empty()) keys.push_back(&s);
 }
 
-/// By where their ends lie, as faces may have points of their own.
+/// By positions of their ends, as faces may have separate points.
 void PolygonMesh::Dicing::findOpen() {
     using Place = std::tuple<float, float, float>;
     const auto place = [&](uint32_t tri, int k) {
@@ -138,8 +137,8 @@ void PolygonMesh::Dicing::cut(uint32_t tri, bool count) {
     cut(p, count);
 }
 
-/// From the middle one of the corners on a side to the corner across. Sides are then edges from corner to corner, as others have
-/// them.
+/// Connects the middle one of the corners on a side with the corner across. Sides are then edges from corner to corner, as in
+/// other meshes.
 void PolygonMesh::Dicing::cutMet(uint32_t tri, const Met& m, bool count) {
     int k = 0;
     while (k < 3 && m.on[k].empty()) ++k;
@@ -193,7 +192,7 @@ void PolygonMesh::Dicing::cut(const Part& p, bool count) {
     else cutInside(p, split, count);
 }
 
-/// Sides with too many parts are cut in the middle: one, two or three of them.
+/// Cuts sides with too many parts in the middle: one, two or three of them.
 void PolygonMesh::Dicing::cutInside(const Part& p, const bool split[3], bool count) {
     const int sides = split[0] + split[1] + split[2];
     // So turned that with one or two cut sides side 0 is the one that is cut, or with two the one that is not.
@@ -277,8 +276,8 @@ void PolygonMesh::Dicing::leaf(const Part& p, const int rates[3], bool count) {
 
 namespace {
 
-/// Points that were one before they were displaced are one after it: in the middle of where their faces, whose normals and
-/// variables may differ there, have moved them. Where one of them lies on the rim all do.
+/// Points that coincided before displacement are joined again: at the mean of the positions by their faces, whose normals and
+/// variables may differ. If one of them is on the border, all are.
 void closeCracks(const std::vector<Vec3>& flat, std::vector<Vec3>& moved, std::vector<uint8_t>& rim) {
     std::vector<uint32_t> order(flat.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -302,7 +301,7 @@ void closeCracks(const std::vector<Vec3>& flat, std::vector<Vec3>& moved, std::v
 
 } // namespace
 
-/// Cuts what rays can come to, and displaces it. flat: where it was. False: it went beyond its bound.
+/// Cuts and displaces the visible parts. flat: undisplaced positions. Returns false if displacement exceeded its bound.
 bool PolygonMesh::displaceSeen(Dicing& d, std::vector<Vec3>& flat, Diagnostics& diag) {
     d.mesh = TriMesh();
     d.param.clear(), d.prim.clear(), d.step.clear(), d.rim.clear();
@@ -344,7 +343,7 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = true;
     Diagnostics said;
     std::vector<Vec3> flat;
-    if (!displaceSeen(d, flat, said) && !d.unseen.none()) { // it goes farther than was said: what was left out may be seen
+    if (!displaceSeen(d, flat, said) && !d.unseen.none()) { // exceeds the declared bound: omitted parts may be visible
         d.unseen.lookAnywhere();
         displaceSeen(d, flat, diag);
     } else {

@@ -20,7 +20,7 @@ ShapeRef makePolygonMesh(ShapeSource s, PolygonInput in, Diagnostics& diag) {
     if (points > 0xfffffff0u || in.vertex.size() > 0xfffffff0u) return fail(Rie::Limit, "too many points");
     for (float f : P->numbers)
         if (!std::isfinite(f)) return fail(Rie::Range, "\"P\" holds a number that is not finite");
-    // A face with a vertex that does not exist loses its loops, and keeps its place: uniform values are counted by face.
+    // A face with a missing vertex loses its loops but keeps its index, because uniform values are counted by face.
     size_t loop = 0, corner = 0, bad = 0, thin = 0;
     for (int& n : in.loopsPerFace) {
         bool ok = true;
@@ -62,7 +62,7 @@ PolygonMesh::PolygonMesh(ShapeSource s, PolygonInput&& in, const std::vector<flo
     source_.like = nullptr;
     if (like) cutAlike(*like, in);
     else if (!takeTriangles(in)) cutFaces(in, diag);
-    in = {}; // what follows needs memory
+    in = {}; // frees memory for the following
     triangles_ = mesh_.triangles();
     const uint32_t points = uint32_t(P.size() / 3);
     mesh_.P.reserve(points + 1);
@@ -70,11 +70,11 @@ PolygonMesh::PolygonMesh(ShapeSource s, PolygonInput&& in, const std::vector<flo
     mesh_.finish();
     takePrimvars(diag);
     plain_ = varS_ < 0 && varT_ < 0 && varSt_ < 0 && !normal_.param;
-    constexpr size_t kRemember = 256; // triangles; each takes 700 bytes
+    constexpr size_t kRemember = 256; // triangles of 700 bytes each
     if (triangles_ <= kRemember) remember();
 }
 
-/// Sound triangles and nothing else, the usual large mesh: corners and faces need no lists then.
+/// The usual large mesh of valid triangles only: it needs no lists of corners and faces.
 bool PolygonMesh::takeTriangles(const PolygonInput& in) {
     const size_t n = in.loopsPerFace.size();
     if (in.cornersPerLoop.size() != n || in.vertex.size() != 3 * n) return false;
@@ -82,11 +82,11 @@ bool PolygonMesh::takeTriangles(const PolygonInput& in) {
         if (in.loopsPerFace[f] != 1 || in.cornersPerLoop[f] != 3 || in.vertex[3 * f] < 0) return false;
         const Vec3d a = objectPoint(uint32_t(in.vertex[3 * f])), e1 = objectPoint(uint32_t(in.vertex[3 * f + 1])) - a,
                     e2 = objectPoint(uint32_t(in.vertex[3 * f + 2])) - a, c = cross(e1, e2);
-        // Far from what triangulate() could doubt or leave out.
+        // Well within what triangulate() accepts.
         const double longest = std::max(dot(e1, e1), dot(e2, e2));
         if (!(dot(c, c) > 1e-12 * longest * longest)) return false;
     }
-    // Corners of the request and of the triangles are the same: large lists are there once.
+    // Corners of the request and of the triangles are the same, so large lists are stored once.
     if (in.kept.size() >= 3 * n) mesh_.index = {reinterpret_cast<const uint32_t*>(in.kept.data()), 3 * n};
     else mesh_.made.assign(in.vertex.begin(), in.vertex.end()), mesh_.index = mesh_.made;
     return true;
@@ -121,7 +121,7 @@ void PolygonMesh::cutFaces(const PolygonInput& in, Diagnostics& diag) {
     if (forced)
         diag.report(Severity::Warning, Rie::Consistency, place(),
                     kind() + ": the loops of " + std::to_string(forced) +
-                        " faces cross or lie outside each other; they are filled as well as possible");
+                        " faces have loops that cross or are outside each other; they are filled approximately");
     mesh_.made.reserve(corner_.size());
     for (uint32_t c : corner_) mesh_.made.push_back(vertex(c));
     mesh_.index = mesh_.made;
@@ -173,7 +173,7 @@ PolygonMesh::Plane PolygonMesh::planeOf(uint32_t tri) const {
     r.e2 = objectPoint(vertexOf(tri, 2)) - r.o;
     const Vec3d c = cross(r.e1, r.e2), e3 = r.e2 - r.e1;
     const double area = dot(c, c), longest = std::max({dot(r.e1, r.e1), dot(r.e2, r.e2), dot(e3, e3)});
-    // A sliver's normal is noise, and a bent face may hold a triangle that stands edge-on in its frame: the face's then.
+    // The normal of a sliver is noise, and a bent face may contain a triangle perpendicular to its frame: uses the face's normal.
     const bool sliver = !(area > 1e-24 * longest * longest);
     const Vec3d face = faceNormal_.empty() ? c : Vec3d(faceNormal_[faceOf(tri)]);
     if (!sliver && looksAlongZ(face) && c.z * c.z >= 1e-10 * area) { // the usual case: u and v are x and y
@@ -206,7 +206,7 @@ PolygonMesh::Plane PolygonMesh::planeOf(uint32_t tri) const {
 }
 
 SurfacePoint PolygonMesh::evaluate(int face, double u, double v) const {
-    // The triangle of the face that holds (u, v), or the one that it misses least.
+    // The triangle of the face that contains (u, v), or the nearest one.
     uint32_t first = uint32_t(std::clamp(face, 0, int(triangles_) - 1)), last = first + 1;
     if (!face_.empty()) {
         auto range = std::equal_range(face_.begin(), face_.end(), uint32_t(std::max(0, face)));
@@ -251,16 +251,16 @@ const PolygonMesh::Areas& PolygonMesh::areas() const {
 void PolygonMesh::sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs) const {
     const Areas& all = areas();
     const double target = xi1 * all.sum;
-    // The first triangle whose cumulative area is beyond the target.
+    // The first triangle whose cumulative area exceeds the target.
     size_t t = 0;
-    if (constexpr uint32_t kFew = 4; triangles_ <= kFew) { // which it is is chance: no branch
+    if (constexpr uint32_t kFew = 4; triangles_ <= kFew) { // unpredictable: avoids a branch
         for (uint32_t k = 0; k + 1 < triangles_; ++k) t += all.cumulative[k] <= target;
-    } else { // the part of the sum that holds it begins near by
+    } else { // starts near the right entry
         t = all.first[std::min(size_t(xi1 * double(triangles_)), size_t(triangles_) - 1)];
         while (t > 0 && all.cumulative[t - 1] > target) --t;
         while (t + 1 < triangles_ && all.cumulative[t] <= target) ++t;
     }
-    // What is left of the first number is uniform again within the triangle.
+    // The remainder of the first number is uniform within the triangle.
     double lo = t ? all.cumulative[t - 1] : 0, size = all.cumulative[t] - lo;
     double x = size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, root = std::sqrt(x);
     evaluateLocal(uint32_t(t), root * (1 - xi2), root * xi2, out, needs);

@@ -18,15 +18,15 @@ struct PolygonInput {
     std::span<const int> kept;       ///< empty, or the list that `vertex` was copied from, which lives as long as the primitive
 };
 
-/// Checks the input against "P", reports what is wrong, drops faulty faces; null when nothing is left.
+/// Checks the input against "P", reports errors, drops invalid faces; returns null if none are left.
 ShapeRef makePolygonMesh(ShapeSource, PolygonInput, Diagnostics&);
 
 class PolygonMesh final : public Shape {
 public:
-    /// Takes the lists of the input, to give their memory back early.
+    /// Moves the lists of the input, to free their memory early.
     PolygonMesh(ShapeSource, PolygonInput&&, const std::vector<float>& P, Diagnostics&);
     bool empty() const { return triangles_ == 0; }
-    /// No variable gives s, t or N: normals are those of the triangles.
+    /// No variable supplies s, t or N: normals are those of the triangles.
     bool plain() const { return plain_; }
     int faces() const override { return faceCount_; }
     SurfacePoint evaluate(int face, double u, double v) const override;
@@ -35,9 +35,10 @@ public:
     void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t needs) const override;
     double sampleDensity(const SurfacePoint&) const override;
     void dice(const DiceOptions&, Diagnostics&) override;
-    /// u, v, s and t at the corners of a triangle that rays meet, before it is diced: evaluateHit() there.
+    /// u, v, s and t at the corners of a triangle, before dicing: as evaluateHit() there.
     void cornerParameters(uint32_t tri, SurfacePoint out[3]) const;
-    /// facePlace() of a point of a triangle of the undiced mesh. False: its face has more than four corners. faceplace.cpp
+    /// facePlace() of a point of a triangle of the undiced mesh. Returns false if its face has more than four corners. Defined in
+    /// faceplace.cpp.
     bool placeOnFace(uint32_t tri, double b1, double b2, FacePlace&) const;
     /// Corners on sides that no other triangle of the mesh has, camera space. Before it is diced.
     void borderCorners(std::vector<Vec3>& out) const;
@@ -60,22 +61,22 @@ private:
         Frame f;
         double u1, u2, v1, v2;
     };
-    /// What does not depend on the place in a triangle, for small meshes.
+    /// Data that is constant in a triangle, for small meshes.
     struct Remembered {
         Plane plane;
         Vec3d a, e1, e2;
         SurfacePoint point;
     };
-    /// Triangles by area, for emitters: made when first asked for.
+    /// Triangles by area, for emitters; made at first use.
     struct Areas {
         std::once_flag made;
         double sum = 0, perSum = 0;     ///< of the areas, and 1 over it; 0 where there is none
         std::vector<double> cumulative; ///< per triangle, camera space
-        std::vector<uint32_t> first;    ///< by equal parts of the sum: the triangle where it begins
+        std::vector<uint32_t> first;    ///< by equal parts of the sum: index of the first triangle
     };
     bool takeTriangles(const PolygonInput&);
     void cutFaces(const PolygonInput&, Diagnostics&);
-    /// As that mesh of the same faces was cut, whose points lay elsewhere.
+    /// Cuts faces as in another mesh with the same faces and other points.
     void cutAlike(const PolygonMesh&, const PolygonInput&);
     Frame frame(const Vec3d& faceNormal) const;
     Plane planeOf(uint32_t tri) const;
@@ -105,8 +106,8 @@ private:
     std::vector<uint32_t> corner_;       ///< three per triangle: corners of the request. Empty: they are counted through
     std::vector<uint32_t> face_;         ///< per triangle. Empty: every face is one triangle
     std::vector<Vec3> faceNormal_;       ///< per face, object space, unit, by winding. Empty: the triangle's
-    TriMesh undiced_;                    ///< base() once the mesh was displaced
-    bool plain_ = false;                 ///< no variable gives s, t or N
+    TriMesh undiced_;                    ///< base() after displacement
+    bool plain_ = false;                 ///< no variable supplies s, t or N
     std::vector<Remembered> remembered_; ///< per triangle of small meshes, which are hit often; else empty
     mutable Areas areas_;
 };

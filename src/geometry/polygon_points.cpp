@@ -1,4 +1,4 @@
-// The points of hits on polygons: no more than is asked for, and memory fetched ahead.
+// Surface points of hits on polygons: computes only what is needed, and prefetches memory.
 #include "geometry/polygon_mesh.h"
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ void PolygonMesh::setPartials(uint32_t tri, const Plane& q, const Vec3d& wind, S
     const Vec3d Pu = transformVector(toCamera(), q.Pu), Pv = transformVector(toCamera(), q.Pv);
     p.dPdu = Vec3(Pu);
     p.dPdv = Vec3(Pv);
-    // Ng = sign * dPdu ^ dPdv must lie where the winding points; the corners' cross product is the winding in camera space.
+    // Ng = sign * dPdu ^ dPdv must be on the side of the winding; the corners' cross product is the winding in camera space.
     const Vec3d g = cross(Pu, Pv);
     double along = dot(g, wind);
     if (along == 0) along = dot(transformNormal(toCamera(), faceNormal(tri)), g) * determinant3(toCamera());
@@ -22,7 +22,7 @@ void PolygonMesh::setPartials(uint32_t tri, const Plane& q, const Vec3d& wind, S
 void PolygonMesh::setVariables(SurfacePoint& p, const Plane* q, uint32_t needs) const {
     Weight w[3] = {{0, 1 - p.b1 - p.b2}, {0, p.b1}, {0, p.b2}};
     if (q) w[0].du = -q->u1 - q->u2, w[1].du = q->u1, w[2].du = q->u2, w[0].dv = -q->v1 - q->v2, w[1].dv = q->v1, w[2].dv = q->v2;
-    // One component of a variable, and its slopes where the triangle's plane is known.
+    // One component of a variable, and its derivatives if the triangle's plane is known.
     const auto mix = [&](const PrimVar& var, const uint32_t at[3], int width, int component, float& f, float* du, float* dv) {
         double x = 0, xu = 0, xv = 0;
         const float* data = var.data() + component;
@@ -73,7 +73,7 @@ void PolygonMesh::remember() {
         r.e1 = cameraCorner(t, 1) - r.a;
         r.e2 = cameraCorner(t, 2) - r.a;
         evaluateLocal(t, 0, 0, r.point, kNeedAll);
-        r.point.N = r.point.n; // of the triangle; the variables come anew for each point
+        r.point.N = r.point.n; // of the triangle; variables are evaluated for each point
         r.point.dNdu = r.point.dNdv = Vec3();
         r.point.dsdu = r.point.dtdv = 1;
         r.point.dsdv = r.point.dtdu = 0;
@@ -98,7 +98,7 @@ void PolygonMesh::evaluateRemembered(uint32_t tri, double b1, double b2, Surface
 void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint& p, uint32_t needs) const {
     if (!remembered_.empty()) return evaluateRemembered(tri, b1, b2, p, needs);
     static const SurfacePoint kBlank;
-    p = kBlank; // what is not asked for is the same in every run
+    p = kBlank; // unneeded members are the same in every run
     p.face = int(faceOf(tri));
     p.prim = tri;
     p.b1 = b1;
@@ -108,7 +108,7 @@ void PolygonMesh::evaluateLocal(uint32_t tri, double b1, double b2, SurfacePoint
     const Vec3d a(corners[v[0]]), e1 = Vec3d(corners[v[1]]) - a, e2 = Vec3d(corners[v[2]]) - a;
     p.P = Vec3(a + e1 * b1 + e2 * b2);
     p.pError = roundingError(p.P);
-    // Rays meet the rounded triangle: its own normal, unless it is too thin to have one.
+    // Rays hit the rounded triangle: uses its own normal, unless it is degenerate.
     const Vec3d wind = cross(e1, e2), e3 = e2 - e1;
     const double area = dot(wind, wind), longest = std::max({dot(e1, e1), dot(e2, e2), dot(e3, e3)});
     const bool thin = !(area > 1e-12 * longest * longest);
@@ -150,7 +150,7 @@ void PolygonMesh::cornerParameters(uint32_t tri, SurfacePoint out[3]) const {
 }
 
 void PolygonMesh::localPoints(std::span<const HitRef> hits, uint32_t needs) const {
-    // Far enough ahead that memory has answered: first the indices of a triangle, then what they point at.
+    // Prefetch distances that cover memory latency: first the indices of a triangle, then its vertices.
     constexpr size_t kIndices = 12, kCorners = 6;
     const bool large = remembered_.empty(), object = (needs & (kNeedPartials | kNeedNg | kNeedUV)) != 0;
     const TriMesh& m = base();

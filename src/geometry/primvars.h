@@ -1,4 +1,4 @@
-// Primitive variables: checked, and brought to camera space where their type asks for it.
+// Primitive variables: validated, and converted to camera space by type.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/matrix.h"
@@ -10,19 +10,19 @@
 
 namespace alpenglow::geometry {
 
-/// One variable of a primitive. Values lie one after the other, width() floats each.
+/// One variable of a primitive. Values are consecutive, width() floats each.
 struct PrimVar {
     std::string name;
     scene::Class cls = scene::Class::Constant;
     scene::Type type = scene::Type::Float;
     int arrayLength = 0;                 ///< 0 = not an array
     const scene::Param* param = nullptr; ///< the request's own parameter; lives as long as the primitive
-    std::vector<float> cameraValues;     ///< points, vectors, normals, hpoints in camera space; empty: param->numbers as they are
+    std::vector<float> cameraValues;     ///< points, vectors, normals, hpoints in camera space; empty: uses param->numbers
     const float* data() const { return cameraValues.empty() ? param->numbers.data() : cameraValues.data(); }
     int elements() const { return arrayLength > 0 ? arrayLength : 1; }
-    /// Floats a value takes in data().
+    /// Floats of a value in data().
     int width() const { return scene::componentCount(type) * elements(); }
-    /// Floats interpolate() writes: hpoints come out divided, as points.
+    /// Floats written by interpolate(): hpoints are divided, as points.
     int outWidth() const { return (type == scene::Type::HPoint ? 3 : scene::componentCount(type)) * elements(); }
 };
 
@@ -32,10 +32,11 @@ struct Weight {
     double w = 0, du = 0, dv = 0;
 };
 
-/// The parameter of that name; the last one where a file gives it twice. Null when absent.
+/// The parameter of that name; the last one if there are several. Null if there is none.
 const scene::Param* lastParam(const scene::ParamList&, std::string_view name);
 
-/// Checks that a parameter has `count` values of finite numbers and brings it to camera space. False: reported, not usable.
+/// Checks that a parameter has `count` finite values and converts it to camera space. Returns false if it is unusable, which is
+/// reported.
 bool makePrimVar(const scene::Param&, size_t count, const Matrix& toCamera, const std::string& kind, Diagnostics&, PrimVar& out);
 
 /// Weighted sum and its derivatives; outWidth() floats each, du and dv may be null.

@@ -10,8 +10,8 @@ namespace alpenglow::geometry {
 using scene::Class;
 
 namespace {
-// Limits are widened by this part of the range: primitives that share an edge come with decimal numbers rounded to float, and a
-// ray must not slip between them.
+// Limits are widened by this fraction of the range: primitives with a common edge have decimal numbers rounded to float, and rays
+// must not slip between them.
 constexpr double kEdge = 1e-7;
 
 // transformVector() and transformPoint() of base/, here so that they need no call.
@@ -189,7 +189,7 @@ int Quadric::exactHits(uint32_t, const Vec3d& org, const Vec3d& dir, double lo, 
     Vec3d d = turned(toObject_, dir);
     double dd = dot(d, d);
     if (!(dd > 0) || !std::isfinite(dd)) return 0;
-    // From the point nearest the middle of the surface: squares of a far origin would swallow the radius.
+    // From the point nearest to the centre of the surface: squares of a far origin would swallow the radius.
     Vec3d mid(0, 0, 0.5 * (zLo_ + zHi_));
     double shift = dot(mid - o, d) / dd;
     Vec3d near = o + d * shift;

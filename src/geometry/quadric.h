@@ -1,5 +1,5 @@
-// What the seven quadrics share. Each is a profile curve (a(v), b(v), z(v)) in object space, turned about z by theta = u thetamax
-// (RISpec 3.2, 5.4): P = (a cos - b sin, a sin + b cos, z). Only the hyperboloid has b != 0.
+// Shared by the seven quadrics: a profile curve (a(v), b(v), z(v)) in object space, rotated about z by theta = u thetamax (RISpec
+// 3.2, 5.4): P = (a cos - b sin, a sin + b cos, z). Only the hyperboloid has b != 0.
 #pragma once
 #include "geometry/parametric.h"
 #include "geometry/quadricform.h"
@@ -30,24 +30,24 @@ public:
     virtual std::optional<QuadricForm> form() const;
 
 protected:
-    /// To be called once the derived object is whole: bounds of the error, primitive variables.
+    /// Call when the derived object is complete: computes the error bound and primitive variables.
     void finish(Diagnostics&);
     virtual Profile profile(double v) const = 0;
-    /// +1, -1: all of the profile lies on that side of the x axis (y = 0); 0: profile() must be asked.
+    /// +1, -1: the complete profile is on that side of the x axis (y = 0); 0: use profile().
     virtual int profileSide() const { return 0; }
     virtual Implicit implicit() const = 0;
-    /// All of implicit() belongs to the surface after a full turn.
+    /// Whether all of implicit() belongs to the surface after a full turn.
     virtual bool wholeProfile() const { return false; }
-    /// v of an object-space point that lies on the unswept surface; values outside 0..1 are clipped by the caller.
+    /// v of an object-space point on the unswept surface; the caller clips values outside 0..1.
     virtual double vOf(const Vec3d& p) const = 0;
     /// Object-space roots of the line; the default solves implicit().
     virtual int roots(const Vec3d& o, const Vec3d& d, double t[4]) const;
-    /// Where v is not unique (a disk's worth of circles met twice), the second candidate.
+    /// The second candidate if v is not unique.
     virtual std::optional<double> secondV(const Vec3d&) const { return {}; }
 
     /// u and v of an object-space point; false: that is cut away.
     bool accept(const Vec3d& p, double v, ExactHit& hit) const;
-    /// Nothing of implicit() is cut away. After finish().
+    /// Whether nothing of implicit() is cut away. Call after finish().
     bool whole() const { return whole_; }
     const Matrix& toObject() const { return toObject_; }
 
@@ -66,7 +66,7 @@ private:
     bool fullTurn_ = false;
     bool whole_ = false;                    ///< nothing of implicit() is cut away
     bool offAxis_ = false;                  ///< some b(v) != 0
-    double radius_ = 0, zLo_ = 0, zHi_ = 0; ///< cylinder around the whole profile
+    double radius_ = 0, zLo_ = 0, zHi_ = 0; ///< bounding cylinder of the profile
     Matrix toObject_;
 };
 

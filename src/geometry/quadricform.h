@@ -1,4 +1,4 @@
-// The equations of quadrics, for who looks at many lines at once.
+// Equations of quadrics, for testing many rays at once.
 #pragma once
 #include "base/vec.h"
 #include <optional>
@@ -7,8 +7,8 @@ namespace alpenglow::geometry {
 
 class Shape;
 
-/// What the hits of a line with a quadric solve. Shape::exactHits() computes the same, in this order and in double: a line for
-/// which this has no root is one that it finds no hit for.
+/// The equation for hits of a ray with a quadric. Shape::exactHits() computes the same in this order and in double: if this has
+/// no root, it finds no hit.
 struct QuadricForm {
     enum class Kind {
         Ball,      ///< |P - centre| = radius, camera space
@@ -20,8 +20,9 @@ struct QuadricForm {
     double middle;         ///< of the surface, on the z axis: lines are measured from the point nearest to it
     double zz, z1, c, height;
     Vec3d centre;
-    double radius;                 ///< of a ball
-    double size, high, hole, room; ///< Torus: its greatest radius; by it half its height, the hole's radius, and the room of both
+    double radius; ///< of a ball
+    /// Torus: largest radius; relative to it half its height, the hole's radius, and the tolerance of both
+    double size, high, hole, room;
 };
 
 /// None: no quadric, or one that a perspective distorts.

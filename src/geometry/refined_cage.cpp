@@ -26,7 +26,7 @@ std::unordered_map<int, Vec2> places(const Osd::Far::TopologyLevel& base, int f,
     const auto corners = base.GetFaceVertices(f), edges = base.GetFaceEdges(f);
     const int n = corners.size();
     std::unordered_map<int, Vec2> at;
-    if (!triangles && n != 4) { // a piece, which has a square of its own
+    if (!triangles && n != 4) { // a piece with its own square
         at[base.GetVertexChildVertex(corners[part])] = {0, 0};
         at[base.GetEdgeChildVertex(edges[part])] = {1, 0};
         at[base.GetFaceChildVertex(f)] = {1, 1};

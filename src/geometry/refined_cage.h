@@ -1,4 +1,4 @@
-// A cage that is refined as a whole, level by level, with the values that lie on it. OpenSubdiv has the rules.
+// A cage refined uniformly, level by level, with its values. The rules are OpenSubdiv's.
 #pragma once
 #include "geometry/limit_surface.h"
 #include "scene/primitive.h"
@@ -9,13 +9,13 @@ namespace alpenglow::geometry {
 struct RefinedCage {
     SubdivisionCage cage; ///< its lists look at those below
     std::vector<int> corners, vertex;
-    std::vector<Vec2> origin, along, across; ///< per face, its square in the (u, v) of the face it came from
+    std::vector<Vec2> origin, along, across; ///< per face: its square in the (u, v) of the original face
     std::vector<scene::Param> values;        ///< numbers of any class but Constant; of face-varying ones one a corner
     std::vector<uint8_t> smooth;             ///< per value: face-varying, smoothed
     std::vector<std::vector<int>> children;  ///< per face of the level before: the faces it became
 
     void look() { cage.corners = corners, cage.vertex = vertex; }
-    /// One level deeper. False: OpenSubdiv cannot take its topology.
+    /// Refines by one level. Returns false if OpenSubdiv rejects its topology.
     bool refine();
 };
 

@@ -193,7 +193,7 @@ void Shape::localPoints(std::span<const HitRef> hits, uint32_t needs) const {
 }
 
 Vec3d Shape::hitNormal(uint32_t prim, double b1, double b2) const {
-    // Triangles wind as the polygon does, or as (u, v) does: either way orientation() turns their normal to Ng's side.
+    // Triangles wind as the polygon, or as (u, v): in both cases orientation() turns their normal to Ng's side.
     if (!exact()) return facetAt(mesh_, prim, b1, b2).n * double(orientation_);
     return localNormal(prim, b1, b2);
 }

@@ -1,7 +1,6 @@
-// What every primitive is to the rest of the renderer: a surface in camera space that can be intersected, evaluated with
-// exact derivatives, sampled, and asked for its primitive variables.
-//
-// Space: camera ("current", docs/design/decisions.md), left-handed, unless a comment says object. Angles are radians.
+// Interface of primitives: a surface in camera space that can be intersected, evaluated with exact derivatives, sampled, and
+// queried for its primitive variables. Space: camera ("current", docs/design/decisions.md), left-handed, unless a comment says
+// object. Angles are radians.
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/bounds.h"
@@ -19,7 +18,7 @@ namespace alpenglow::geometry {
 
 inline constexpr uint32_t kNone = 0xffffffffu;
 
-/// A point of a surface with all that shading wants to know about it. Camera space.
+/// A surface point with the data for shading. Camera space.
 struct SurfacePoint {
     Vec3 P;
     Vec3 dPdu, dPdv;    ///< first partials by the surface's own u and v
@@ -28,22 +27,22 @@ struct SurfacePoint {
     Vec3 n;             ///< Ng normalised; defined at poles and collapsed edges too
     Vec3 N;             ///< shading normal, unit: the primitive variable "N" (or "Np") if given, else n
     Vec3 dNdu, dNdv;    ///< derivatives of N
-    float u = 0, v = 0; ///< 0..1 over the whole primitive; polygons: object x and y (RISpec 3.2, 5.1)
+    float u = 0, v = 0; ///< 0..1 over the complete primitive; polygons: object x and y (RISpec 3.2, 5.1)
     float s = 0, t = 0, dsdu = 1, dsdv = 0, dtdu = 0, dtdv = 1;
-    float pError = 0;            ///< bound on the distance from P to the surface that rays meet: rounding plus facets
+    float pError = 0;            ///< bound on the distance from P to the surface that rays hit: rounding plus facets
     float orientation = 1;       ///< +1 or -1: the sign in Ng above
     int face = 0;                ///< index of the uniform value: patch of a mesh, polygon of a polyhedron
     bool displaced = false;      ///< the surface was displaced when it was diced; then all above is the undisplaced surface
     uint32_t facet = kNone;      ///< of a hit on a surface that is diced: the triangle of the mesh; then:
-    Vec3 displacedP, displacedN; ///< where rays meet it: point, and unit normal on the side of n
+    Vec3 displacedP, displacedN; ///< where rays hit it: point, and unit normal on the side of n
     float facetError = 0;        ///< bound on the distance from displacedP to the facet
     uint32_t prim = 0;           ///< with b1, b2: where interpolate() finds the point again. Triangle of the polygon; else 0
-    float time = 0;              ///< of the shutter, 0 to 1: when the surface is there
+    float time = 0;              ///< of the shutter, 0 to 1
     double b1 = 0, b2 = 0;       ///< barycentric weights of the triangle's 2nd and 3rd corner; parametric surfaces: u and v
 };
 
-/// What of a SurfacePoint is asked for, as bits. P, n, pError, face, prim, b1, b2, `displaced`, `facet` and what that brings
-/// always come; of the rest what is not asked for may be zero. A shape may give more than it is asked for.
+/// Requested members of a SurfacePoint, as bits. P, n, pError, face, prim, b1, b2, `displaced`, `facet` and their dependents are
+/// always set; other members that are not requested may be zero. A shape may set more.
 enum PointNeed : uint32_t {
     kNeedN = 1,            ///< N
     kNeedPartials = 2,     ///< dPdu, dPdv, Puu, Puv, Pvv, orientation
@@ -55,7 +54,7 @@ enum PointNeed : uint32_t {
     kNeedAll = 127
 };
 
-/// Where a ray met a shape, and the place for what is known there.
+/// A hit on a shape, and the destination of its surface point.
 struct HitRef {
     uint32_t prim = 0;
     double b1 = 0, b2 = 0;
@@ -66,7 +65,7 @@ struct HitRef {
 /// Triangles in camera space. P holds one unused point past `vertices` (intersectors read 16 bytes at a time).
 struct TriMesh {
     std::vector<Vec3> P;
-    std::span<const uint32_t> index; ///< three a triangle: `made`, or a list that the primitive keeps
+    std::span<const uint32_t> index; ///< three for each triangle: `made`, or a list owned by the primitive
     std::vector<uint32_t> made;
     uint32_t vertices = 0;
     uint32_t triangles() const { return uint32_t(index.size() / 3); }
@@ -76,11 +75,11 @@ struct TriMesh {
         if (!made.empty()) index = made;
     }
     TriMesh() = default;
-    TriMesh(TriMesh&&) = default; // a span of `made` stays good; of a copy it would not
+    TriMesh(TriMesh&&) = default; // a span of `made` stays valid; in a copy it would not
     TriMesh& operator=(TriMesh&&) = default;
 };
 
-/// A point where a ray meets an exactly intersected shape.
+/// A hit of a ray on an exactly intersected shape.
 struct ExactHit {
     double t, u, v;
 };
@@ -89,11 +88,11 @@ struct DiceOptions;
 struct DiceGrid;
 class Placed;
 
-/// What shapes without a side of their own (curves and points without "N") turn to: whatever ray comes, the eye in the origin, or
-/// the plane of the picture, when the eye is far.
+/// Direction of shapes without a side of their own (curves and points without "N"): toward each ray, toward the eye at the
+/// origin, or perpendicular to the picture plane (orthographic).
 enum class Facing { Ray, Eye, Picture };
 
-/// From where a shape came.
+/// Origin of a shape.
 struct ShapeSource {
     scene::PrimitiveRef primitive;
     scene::AttributesRef attributes; ///< never null; those of the instance for instanced primitives (RISpec 3.2)
@@ -101,11 +100,11 @@ struct ShapeSource {
     int instance = -1;               ///< index into Frame::instances
     Facing facing = Facing::Ray;
     const class Shape* like =
-        nullptr; ///< while it is made: the same shape at an earlier time, which is cut into the same triangles
+        nullptr; ///< during construction: the shape at an earlier time, which is cut into the same triangles
 };
 
-/// Sign of Ng against dPdu ^ dPdv (RISpec 3.2, 4.2). "outside" follows the handedness of the transform, so that what a primitive
-/// defines as its outside stays outside; "lh" is +1 (camera space is left-handed) and "rh" is -1, whatever the transform.
+/// Sign of Ng relative to dPdu ^ dPdv (RISpec 3.2, 4.2). "outside" follows the handedness of the transform, so that the outside
+/// of a primitive stays outside; "lh" is +1 (camera space is left-handed) and "rh" is -1, for any transform.
 float orientationSign(const scene::Attributes&, const Matrix& toCamera);
 
 class Shape {
@@ -130,7 +129,7 @@ public:
     /// True: rays meet exactHits(). False: rays meet mesh(), hits are (triangle, b1, b2).
     bool exact() const { return mesh_.vertices == 0; }
     const TriMesh& mesh() const { return mesh_; }
-    /// Exact shapes: primitives that rays meet one by one, each in its own box (curves and points have many). A hit's prim.
+    /// Exact shapes: number of primitives with boxes of their own (curves and points have many); prim of a hit.
     virtual uint32_t exactPrims() const { return 1; }
     /// Encloses all that a ray can hit of one of them.
     virtual Bounds exactBounds(uint32_t /*prim*/) const { return bounds(); }
@@ -145,7 +144,7 @@ public:
                           ExactHit[4]) const {
         return 0;
     }
-    /// Of some triangles a part is cut away: keepsHit() says which points are there. Thread safe.
+    /// Some triangles are partly cut away: keepsHit() tests points. Thread safe.
     bool trimmed() const { return trimmed_; }
     virtual bool keepsHit(uint32_t /*prim*/, double /*b1*/, double /*b2*/) const { return true; }
     /// Encloses everything a ray can hit.
@@ -154,18 +153,18 @@ public:
     // ---- evaluation ---------------------------------------------------------------------------------------------------------
     /// Number of faces, the count of uniform values.
     virtual int faces() const { return 1; }
-    /// The surface at (u, v). Parametric surfaces take 0..1 over the whole primitive and ignore `face`; for polygons (u, v)
-    /// are object x and y (or the fallback frame), and a point outside the face goes to the plane of its nearest triangle.
+    /// The surface at (u, v). Parametric surfaces use 0..1 over the complete primitive and ignore `face`; for polygons (u, v) are
+    /// object x and y (or the fallback frame), and a point outside of the face uses the plane of its nearest triangle.
     virtual SurfacePoint evaluate(int face, double u, double v) const = 0;
-    /// The surface at a hit: (prim, b1, b2) as the intersector gave them; exact shapes: (prim, ExactHit::u, v).
+    /// The surface at a hit: (prim, b1, b2) from the intersector; exact shapes: (prim, ExactHit::u, v).
     SurfacePoint evaluateHit(uint32_t prim, double b1, double b2) const;
     /// The same, written in place.
     void evaluateHit(uint32_t prim, double b1, double b2, SurfacePoint& out, uint32_t needs = kNeedAll) const;
     /// The same for many hits; meshes fetch the memory of those that follow while they work. needs: PointNeed.
     void points(std::span<const HitRef>, uint32_t needs) const;
-    /// Normal of the surface a ray meets there, with orientation; not normalised. Cheaper than evaluateHit; for Sides.
+    /// Normal of the surface that a ray hits there, with orientation; not normalised. Cheaper than evaluateHit; for Sides.
     Vec3d hitNormal(uint32_t prim, double b1, double b2) const;
-    /// Rays meet points of an undiced surface, or of none with facets of its own: the surface is the mesh.
+    /// Whether rays hit facets of a diced surface rather than the surface itself.
     bool diced() const { return !meshParam_.empty(); }
 
     // ---- motion and sharing (geometry/placed.h) -----------------------------------------------------------------------------
@@ -173,7 +172,7 @@ public:
     virtual const Placed* placed() const { return nullptr; }
     /// Object to camera at a time of the shutter.
     virtual Matrix toCameraAt(float /*time*/) const { return source_.toCamera; }
-    /// Change of the point of the surface over the whole shutter, camera space, at its time: dPdtime times the shutter.
+    /// Change of the surface point over the complete shutter, camera space: dPdtime times the shutter.
     virtual Vec3 velocity(const SurfacePoint&) const { return Vec3(0.f); }
     /// sampleArea() at a time of the shutter.
     virtual void sampleAreaAt(double xi1, double xi2, float /*time*/, SurfacePoint& out, uint32_t needs) const {
@@ -188,17 +187,17 @@ public:
     virtual void sampleArea(double xi1, double xi2, SurfacePoint& out, uint32_t /*needs*/ = kNeedAll) const {
         out = sampleArea(xi1, xi2);
     }
-    /// The same for a point that is lit: what faces rays is where rays from there would meet it.
+    /// The same for a lit point: shapes that face rays are turned as seen from it.
     virtual void sampleFrom(const Vec3& /*from*/, double xi1, double xi2, SurfacePoint& out, uint32_t needs = kNeedAll) const {
         sampleArea(xi1, xi2, out, needs);
     }
-    /// Curves and points without a side of their own that turn to whatever ray comes (Facing::Ray).
+    /// Curves and points without a side of their own that turn to each ray (Facing::Ray).
     virtual bool facesRays() const { return false; }
-    /// Density per unit area with which sampleArea gives this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons;
-    /// 0 where the surface is degenerate.
+    /// Density of sampleArea per unit of area at this point: 1 / |dPdu ^ dPdv|, or 1 / area for polygons; 0 where the surface is
+    /// degenerate.
     virtual double sampleDensity(const SurfacePoint&) const = 0;
-    /// What faces rays is no flat piece of surface to a point, for each ray meets it turned otherwise: the density with which
-    /// sampleFrom() gives this one over that of points of a flat one there.
+    /// Shapes that face rays are turned differently for each ray: density of sampleFrom() at a point, relative to that of a flat
+    /// shape.
     virtual double turnedDensity(const SurfacePoint&, const Vec3& /*from*/) const { return 1; }
 
     // ---- primitive variables ------------------------------------------------------------------------------------------------
@@ -210,7 +209,7 @@ public:
     virtual void interpolate(int var, const SurfacePoint& at, float* out, float* du, float* dv) const;
     /// Value of a string variable (not interpolated: constant and uniform by face, others the first corner's).
     virtual const std::string& stringValue(int var, const SurfacePoint& at) const;
-    /// A variable gives N.
+    /// A variable supplies N.
     bool givesNormals() const { return normal_.param != nullptr; }
 
     // ---- dicing -------------------------------------------------------------------------------------------------------------
@@ -225,7 +224,7 @@ protected:
     virtual size_t classCount(scene::Class) const = 0;
     /// Weights of the values of a class at a point, with derivatives by u and v. Returns how many, at most mostWeights_.
     virtual int weights(scene::Class, const SurfacePoint& at, Weight w[16]) const = 0;
-    /// interpolate() of a variable: by weights(), unless a surface has rules of its own or more weights.
+    /// interpolate() for a variable: by weights(), unless a surface has its own rules or more weights.
     virtual void interpolateVariable(const PrimVar&, const SurfacePoint& at, float* out, float* du, float* dv) const;
     /// evaluate() by (prim, b1, b2) of the undiced surface.
     virtual SurfacePoint evaluateLocal(uint32_t prim, double b1, double b2) const = 0;
@@ -235,11 +234,11 @@ protected:
     }
     /// The same for many hits of an undiced surface.
     virtual void localPoints(std::span<const HitRef>, uint32_t needs) const;
-    /// No ray comes to the shape, which lies in this box: it has a mesh without triangles.
+    /// No ray reaches the shape, which is in this box: makes a mesh without triangles.
     void leaveOut(const Bounds&);
     /// hitNormal() of exact shapes.
     virtual Vec3d localNormal(uint32_t prim, double b1, double b2) const;
-    /// Fills s, t and N from the variables (or defaults), and what depends on them; P, u, v, n, partials, dNdu, dNdv are set.
+    /// Sets s, t and N from variables (or defaults), and dependents; requires P, u, v, n, partials, dNdu, dNdv.
     void finishPoint(SurfacePoint&, bool parametric) const;
 
     ShapeSource source_;
@@ -253,26 +252,26 @@ protected:
     uint32_t trianglesPerPrim_ = 0;  ///< diced polygons: triangles made from each triangle; 0: all of prim 0
     std::vector<uint32_t> meshPrim_; ///< diced, and not empty: prim of each vertex; a triangle's vertices are of one
     bool displaced_ = false, trimmed_ = false;
-    int mostWeights_ = 16; ///< room that weights() gets
+    int mostWeights_ = 16; ///< capacity of weights()
 };
 using ShapeRef = std::shared_ptr<Shape>;
 
 /// Bound on the rounding of a point's coordinates in float.
 inline float roundingError(const Vec3& p) {
-    // 2^-23 times the 1-norm: twice what rounding each coordinate once can do, so that a computation in double that rounds at
-    // the end stays inside with room for the double's own error.
+    // 2^-23 times the 1-norm: twice the error of rounding each coordinate once, so that a double computation rounded at the end
+    // stays within it.
     return 1.1920929e-7f * (std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z)) + 1e-37f;
 }
 
-/// Origin of a ray that leaves a surface at P along dir: off the surface, whose unit normal is n, by the bound on the distance
-/// from P to it, on dir's side.
+/// Origin of a ray that leaves a surface at P along dir: offset from the surface, whose unit normal is n, by the bound on the
+/// distance from P to it, on dir's side.
 inline Vec3 offsetOrigin(const Vec3& P, const Vec3& n, float error, const Vec3& dir) {
-    // The rounded origin itself is off by up to half a bound, hence twice the bound.
+    // The rounded origin has an error of up to half a bound, hence twice the bound.
     float d = 2 * error;
     Vec3 off = n * (dot(dir, n) >= 0 ? d : -d);
     Vec3 o = P + off;
-    // Round away from the surface: one float up or down, as std::nextafter, whose call costs more than the rest. All signs are as
-    // likely as their opposites here, so there is no branch.
+    // Rounds away from the surface: one float up or down, as std::nextafter, whose call costs more than the rest. Signs are
+    // unpredictable here, so there is no branch.
     auto step = [](float x, float by) {
         const int32_t bits = std::bit_cast<int32_t>(x), direction = std::bit_cast<int32_t>(by);
         int32_t moved = bits + (((bits ^ direction) >> 31) | 1); // signs agree: one away from 0
@@ -282,7 +281,7 @@ inline Vec3 offsetOrigin(const Vec3& P, const Vec3& n, float error, const Vec3& 
     };
     return {step(o.x, off.x), step(o.y, off.y), step(o.z, off.z)};
 }
-/// The same of a surface's own point. extra widens the bound (for example when the shader moved P).
+/// The same for a surface point. extra widens the bound (for example if the shader moved P).
 inline Vec3 offsetOrigin(const SurfacePoint& p, const Vec3& dir, float extra = 0) {
     return offsetOrigin(p.P, p.n, p.pError + extra, dir);
 }

@@ -28,7 +28,7 @@ double value(const double* c, int degree, double t) {
     return f;
 }
 
-// One root in [a, b] with a sign change: Newton kept inside the bracket by bisection.
+// The root in [a, b] with a sign change: Newton steps safeguarded by bisection.
 double refine(const double* c, const double* dc, int degree, double a, double b, double fa) {
     double t = 0.5 * (a + b);
     for (int i = 0; i < 100; ++i) {

@@ -8,8 +8,8 @@
 namespace alpenglow::geometry {
 namespace {
 
-// Hits of balls. Their parameters are the direction from the centre, as a point of an octahedron that is unfolded (Meyer et al.,
-// "On Floating-Point Normal Vectors", EGSR 2010), and not u and v, whose arctangents few shaders need. kCode tells them apart.
+// Hits on spheres. Their parameters are the direction from the centre as a point of the unfolded octahedron (Meyer et al., "On
+// Floating-Point Normal Vectors", EGSR 2010), rather than u and v, whose arctangents few shaders need. kCode distinguishes them.
 constexpr double kCode = 3;
 bool isCode(double b1) { return b1 > 1.5; }
 double signed1(double x) { return x < 0 ? -1 : 1; }
@@ -75,7 +75,7 @@ private:
         return isCode(b1) ? decode(b1, b2) * outward_ : Quadric::localNormal(prim, b1, b2);
     }
     double r_, phi0_, phi1_;
-    /// A whole sphere that is one in camera space, too: centre and radius there, and the side of n. 0: another.
+    /// A complete sphere that is also a sphere in camera space: centre and radius there, and the side of n. 0: other spheres.
     Vec3d centre_, axis_; ///< axis: the sphere's own z, unit
     double radius_ = 0, outward_ = 1;
     double stretch_ = 0; ///< |dPdu ^ dPdv| at the equator
@@ -139,7 +139,7 @@ void Sphere::evaluateLocal(uint32_t prim, double b1, double b2, SurfacePoint& ou
         out = Quadric::evaluateLocal(prim, at.u, at.v);
     } else {
         static const SurfacePoint kBlank;
-        out = kBlank; // what is not asked for is the same in every run
+        out = kBlank; // unneeded members are the same in every run
         const double height = dot(d, axis_), Ng = stretch_ * std::sqrt(std::max(0., 1 - height * height));
         out.orientation = orientation_;
         out.Ng = Vec3(d * (outward_ * (Ng > 0 ? Ng : 1)));

@@ -34,10 +34,10 @@ Subdivision::Subdivision(ShapeSource s, CageInput&& in, std::vector<FaceDomain> 
                         " faces have more neighbours than their limit can be evaluated for; they are drawn flat");
     if (limit_->blunted())
         diag.report(Severity::Warning, Rie::Incapable, place(),
-                    kind() + ": faces share edges or vertices in more than one sheet; its creases and corners are left out");
+                    kind() + ": faces share edges or vertices in more than one sheet; its creases and corners are ignored");
     if (limit_->coarser())
         diag.report(Severity::Info, Rie::Limit, place(),
-                    kind() + " has very many different neighbourhoods of faces; some are evaluated less exactly");
+                    kind() + " has very many different face neighbourhoods; some are evaluated less accurately");
     if (empty())
         diag.report(Severity::Warning, Rie::Range, place(), kind() + " has no face with a limit surface; it is not drawn",
                     input_.cage.boundary == SubdivisionCage::Boundary::None
@@ -231,7 +231,7 @@ int Subdivision::cornerWeights(uint32_t piece, double u, double v, std::vector<W
         for (int k = 0; k < 4; ++k) add(k, 1, f[k], fu[k], fv[k]);
         return n;
     }
-    // Corner, middle of the edge that follows, middle of the face, middle of the edge before.
+    // Corner, midpoint of the next edge, centre of the face, midpoint of the previous edge.
     const int k = at.corner;
     add(k, 1, f[0], fu[0], fv[0]);
     for (int j : {k, k + 1}) add(j, 0.5, f[1], fu[1], fv[1]);
@@ -315,7 +315,7 @@ SurfacePoint Subdivision::sampleArea(double xi1, double xi2) const {
     const double target = xi1 * all.sum;
     size_t k = size_t(std::upper_bound(all.cumulative.begin(), all.cumulative.end(), target) - all.cumulative.begin());
     k = std::min(k, all.cumulative.size() - 1);
-    // What is left of the first number is uniform again within the piece.
+    // The remainder of the first number is uniform within the piece.
     const double lo = k ? all.cumulative[k - 1] : 0, size = all.cumulative[k] - lo;
     double u = size > 0 ? std::clamp((target - lo) / size, 0.0, 1.0) : 0.5, v = xi2;
     if (limit_->triangles()) {

@@ -1,5 +1,5 @@
-// SubdivisionMesh and HierarchicalSubdivisionMesh: rays meet a fine tessellation, shading evaluates the limit surface
-// (limit_surface.h has the parameters of a face and how exact it is).
+// SubdivisionMesh and HierarchicalSubdivisionMesh: rays hit a fine tessellation, shading evaluates the limit surface
+// (limit_surface.h has the parameters of a face and the accuracy).
 #pragma once
 #include "geometry/parametric.h"
 #include "geometry/subdivision_cage.h"
@@ -7,7 +7,7 @@
 
 namespace alpenglow::geometry {
 
-/// Where a face of a refined cage lies on the face it came from: its (u, v) is origin + u along + v across.
+/// Position of a refined face in its original face: (u, v) is origin + u along + v across.
 struct FaceDomain {
     Vec2 origin{0, 0}, along{1, 0}, across{0, 1};
 };
@@ -35,7 +35,7 @@ protected:
     void evaluateLocal(uint32_t prim, double u, double v, SurfacePoint& out, uint32_t needs) const override;
 
 private:
-    /// Pieces by area, for emitters: made when first asked for.
+    /// Pieces by area, for emitters; made at first use.
     struct Areas {
         std::once_flag made;
         double sum = 0;

@@ -67,7 +67,7 @@ public:
     void finish() {
         using F = SubdivisionCage::FaceVarying;
         in_.faceVaryingLinear = faceVarying_ == 0;
-        // facevertex variables are smooth whatever the tag says.
+        // facevertex variables are smooth regardless of the tag.
         in_.cage.faceVarying = faceVarying_ == 2   ? F::EdgeOnly
                                : faceVarying_ == 3 ? F::AlwaysSharp
                                : propagate_        ? F::EdgeAndCornerPropagate
@@ -170,7 +170,7 @@ SubdivisionScheme schemeOf(const Primitive& p, Diagnostics& diag) {
     return SubdivisionScheme::CatmullClark;
 }
 
-/// Which faces can be subdivided: those with at least three corners, on points that exist, none of them twice.
+/// Valid faces: at least three corners, on existing points, without repetition.
 struct Sound {
     size_t beyond = 0, thin = 0, twice = 0;
     std::vector<uint8_t> face;
@@ -204,7 +204,7 @@ Sound soundFaces(const Primitive& p, size_t points) {
     return s;
 }
 
-/// Leaves out what is not sound, and turns the faces of holes to what is left.
+/// Removes invalid faces, and updates the indices of holes.
 void leaveOut(const Primitive& p, const Sound& sound, CageInput& in) {
     std::vector<int> place(p.ints.size(), -1);
     size_t corner = 0;
@@ -268,7 +268,7 @@ bool readCage(const Primitive& p, Diagnostics& diag, CageInput& in) {
                         " faces have fewer than three corners or more than 4096; they are not drawn");
     if (sound.twice)
         diag.report(Severity::Warning, Rie::Range, p.place,
-                    p.kind + ": " + std::to_string(sound.twice) + " faces meet one of their points twice; they are not drawn");
+                    p.kind + ": " + std::to_string(sound.twice) + " faces use one of their points twice; they are not drawn");
     if (sound.all()) {
         in.cage.corners = p.ints;
         in.cage.vertex = {p.ints2.data(), corners};

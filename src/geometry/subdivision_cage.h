@@ -1,4 +1,4 @@
-// What SubdivisionMesh says: faces, tags and their arguments, checked (RISpec 3.2, 5.3).
+// Reads SubdivisionMesh: faces, tags and their arguments, validated (RISpec 3.2, 5.3).
 #pragma once
 #include "geometry/limit_surface.h"
 #include "scene/primitive.h"
@@ -6,12 +6,12 @@
 
 namespace alpenglow::geometry {
 
-/// A cage with what it keeps of the request. Faces that cannot be subdivided are left out; what is left keeps its place among the
+/// A cage and its relation to the request. Faces that cannot be subdivided are removed; the others keep the indices of their
 /// values.
 struct CageInput {
     SubdivisionCage cage;
-    std::vector<int> corners, vertex; ///< what the cage looks at, where faces were left out; else the request's own lists
-    std::vector<uint32_t> faceOf;     ///< per face its place in the request; empty: the same
+    std::vector<int> corners, vertex; ///< used by the cage if faces were removed; else the request's own lists
+    std::vector<uint32_t> faceOf;     ///< per face: index in the request; empty: the same
     std::vector<uint32_t> cornerOf;   ///< per corner the same
     size_t requestFaces = 0, requestCorners = 0;
     bool faceVaryingLinear = true; ///< facevarying variables; facevertex ones are always smooth
@@ -20,16 +20,16 @@ struct CageInput {
 /// One tag of the request with its arguments.
 struct SubdivisionTag {
     std::string name;
-    std::span<const float> ints, floats; ///< integers as the request keeps them
+    std::span<const float> ints, floats; ///< integers are stored as floats
     std::span<const std::string> strings;
 };
-/// The tags of a request. False: their counts do not fit, which is reported.
+/// The tags of a request. Returns false if their counts do not match, which is reported.
 bool subdivisionTags(const scene::Primitive&, Diagnostics&, std::vector<SubdivisionTag>&);
 
-/// False: there is nothing to draw; reported. Edits of the hierarchical form are not looked at.
+/// Returns false if there is nothing to draw, which is reported. Ignores edits of the hierarchical form.
 bool readCage(const scene::Primitive&, Diagnostics&, CageInput&);
 
-/// A number that stands for an index: -1 when it is none of [0, count).
+/// Converts a number to an index: -1 unless it is in [0, count).
 int indexFrom(float number, size_t count);
 
 } // namespace alpenglow::geometry

@@ -1,5 +1,5 @@
-// Facets of subdivision surfaces. Every edge of the cage has one rate and its points are made once, so neighbours meet to the
-// bit, whether displaced or not. So do separate meshes, whose borders are cut as their own data says (cage_border.h).
+// Facets of subdivision surfaces. Every edge of the cage has one rate and its points are made once, so neighbours join bit by
+// bit, displaced or not. So do separate meshes, whose borders are cut by their own data (cage_border.h).
 #include "base/limits.h"
 #include "base/parallel.h"
 #include "geometry/cage_border.h"
@@ -23,15 +23,16 @@ struct Subdivision::Dicing {
     DiceCamera camera;
     Unseen unseen;
 
-    /// A point of the mesh, shared by all pieces that meet there: where it is evaluated.
+    /// A point of the mesh, shared by adjacent pieces: where it is evaluated.
     struct Point {
         uint32_t piece;
         float u, v;
     };
-    std::vector<uint8_t> away;              ///< per piece: no ray comes there
-    std::vector<std::array<float, 2>> need; ///< per piece: segments along u and v, before they are made whole
-    std::vector<int> edgeRate, spokeRate;   ///< per edge of the cage; per piece of split faces: middle of its edge to the face's
-    std::vector<uint8_t> even;              ///< per edge: it borders a split face, so its middle is a point
+    std::vector<uint8_t> away;              ///< per piece: no ray reaches it
+    std::vector<std::array<float, 2>> need; ///< per piece: segments along u and v, before rounding up
+    /// Per edge of the cage; per piece of split faces: from the edge's midpoint to the face's centre
+    std::vector<int> edgeRate, spokeRate;
+    std::vector<uint8_t> even; ///< per edge: it borders a split face, so its midpoint is a point
     std::vector<Point> points;
     std::vector<uint32_t> cornerPoint, edgePoint, middlePoint, spokePoint; ///< first of its points; kNone: none yet
     struct Rim {
@@ -56,7 +57,7 @@ struct Subdivision::Dicing {
     size_t edge(uint32_t face, uint32_t corner) const { return size_t(limit.edgeAt(face, int(corner))); }
 };
 
-/// How many segments a piece wants along u and v: as surfaces over one square do (parametric.cpp).
+/// Segments of a piece along u and v: as for surfaces over one square (parametric.cpp).
 void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
     if (!limit.drawn(limit.pieceOf(piece).face)) return;
     constexpr double kDeviation = 0.05; // pixels that facets may stray from the surface
@@ -73,7 +74,7 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
             double cu = std::sqrt(camera.pixels(p.P, p.Puu) / (8 * tol)), cv = std::sqrt(camera.pixels(p.P, p.Pvv) / (8 * tol));
             const double twist = std::sqrt(camera.pixels(p.P, p.Puv) / (4 * tol));
             if (three) cu = cv = std::max({cu, cv, std::sqrt(camera.pixels(p.P, p.Puu - p.Puv * 2 + p.Pvv) / (8 * tol))});
-            cu = 1.5 * std::max(cu, twist); // 1.5: the probes miss the peak of what they sample
+            cu = 1.5 * std::max(cu, twist); // 1.5: the probes miss the peak
             cv = 1.5 * std::max(cv, twist);
             a = flat > 0 ? cu : std::min(a, cu);
             b = flat > 0 ? cv : std::min(b, cv);
@@ -93,11 +94,12 @@ void Subdivision::Dicing::measure(const Subdivision& of, uint32_t piece) {
                 for (double u : {0.1, 0.5, 0.9})
                     if (u != 0.5 || v != 0.5) probe(u, v);
     }
-    constexpr double kMost = 1e9; // what rates() brings down to one by the least scale
+    constexpr double kMost = 1e9; // rates() reduces it to one by the smallest scale
     need[piece] = {std::max(need[piece][0], float(std::min(lu, kMost))), std::max(need[piece][1], float(std::min(lv, kMost)))};
     if (unseen.none()) return;
     ProbedBox box;
-    const double part = three ? (probed.size() > 1 ? 0.35 : 0.7) : probed.size() > 1 ? 0.2 : 0.5; // as far as a probe stands for
+    // Extent that a probe represents
+    const double part = three ? (probed.size() > 1 ? 0.35 : 0.7) : probed.size() > 1 ? 0.2 : 0.5;
     for (const LocalPoint& p : probed) box.add(p.P, p.Pu * part, p.Pv * part);
     away[piece] = unseen(box.box());
 }
@@ -131,7 +133,7 @@ void Subdivision::Dicing::rates(double scale) {
         if (even[e]) edgeRate[e] += edgeRate[e] & 1;
 }
 
-/// How finely edges of the border are cut, by what they are at all times: whoever has the same edge cuts it alike.
+/// Cuts border edges by their data at all times: surfaces with the same edge cut it alike.
 void Subdivision::Dicing::cutBorder() {
     std::vector<const Subdivision*> keys;
     for (const ShapeRef& key : opt.keys)
@@ -140,7 +142,7 @@ void Subdivision::Dicing::cutBorder() {
     if (keys.empty()) keys.push_back(&s);
     rim.emplace(CageBorder(s.input_.cage, limit), std::vector<EdgeCurve>(), std::vector<int>());
     const double edge = diceEdge(s.attributes()), flat = diceFlatness(s.attributes()), tolerance = flat > 0 ? flat : 0.05 * edge;
-    const double micro = !displaced && flat > 0 ? 1e-9 : edge; // how it bends has the only say
+    const double micro = !displaced && flat > 0 ? 1e-9 : edge; // curvature decides alone
     for (size_t i = 0; i < rim->border.edges().size(); ++i) {
         std::vector<EdgeCurve> curves;
         for (const Subdivision* k : keys) curves.push_back(rim->border.curve(i, [k](int v) { return k->controlPoint(v); }));
@@ -166,7 +168,7 @@ void Subdivision::Dicing::placeBorder(std::vector<Vec3>& P) const {
     }
 }
 
-/// By point: whether it lies on such an edge.
+/// By point: whether it is on such an edge.
 std::vector<uint8_t> Subdivision::Dicing::onBorder() const {
     std::vector<uint8_t> on(points.size(), 0);
     for (size_t i = 0; i < rim->border.edges().size(); ++i) {
@@ -207,13 +209,13 @@ double Subdivision::Dicing::quads() const {
     return sum;
 }
 
-/// What is not displaced is smooth: where its pieces want more than 64 x 64 on average, some reach far beyond what pictures show.
+/// Undisplaced surfaces are smooth: if pieces need more than 64 x 64 on average, some extend far beyond the picture.
 double Subdivision::Dicing::mostQuads() const {
     const double most = double(limits::kDiceQuads), smooth = 64 * 64 * double(limit.pieces());
     return std::max(displaced ? most : std::clamp(smooth, most / 16, most), 2.0 * limit.pieces());
 }
 
-/// Points at vertices, on edges, in the middle of split faces and on the lines that split them.
+/// Points at vertices, on edges, at centres of split faces and on the lines that split them.
 void Subdivision::Dicing::sharedPoints() {
     cornerPoint.assign(size_t(s.input_.cage.vertices), kNone);
     edgePoint.assign(limit.edges(), kNone);
@@ -246,7 +248,7 @@ void Subdivision::Dicing::sharedPoints() {
         if (!parts) continue;
         middlePoint[f] = uint32_t(points.size());
         points.push_back({first, 1, 1});
-        for (uint32_t k = 0; k < n; ++k) { // from the middle of the edge to that of the face
+        for (uint32_t k = 0; k < n; ++k) { // from the midpoint of the edge to the centre of the face
             spokePoint[first + k] = uint32_t(points.size());
             const int rate = spokeRate[first + k];
             for (int i = 1; i < rate; ++i) points.push_back({first + k, 1, float(i) / float(rate)});
@@ -280,7 +282,7 @@ void Subdivision::Dicing::border(uint32_t piece, std::vector<uint32_t>& out) con
     const uint32_t first = limit.firstPiece(at.face);
     const auto half = [&](size_t edge) { return rate(edge) / 2; };
     out.push_back(cornerPoint[size_t(vertex(k))]);
-    along(line(k), turned(k) ? half(k) : 0, turned(k) ? rate(k) : half(k), turned(k), out); // to its middle
+    along(line(k), turned(k) ? half(k) : 0, turned(k) ? rate(k) : half(k), turned(k), out); // to its midpoint
     out.push_back(line(k) + uint32_t(half(k)) - 1);
     along(spokePoint[first + k], 0, spokeRate[first + k], false, out);
     out.push_back(middlePoint[at.face]);
@@ -294,7 +296,7 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
     Unseen unseen(*this, opt);
     Diagnostics said;
-    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // it goes farther than was said: what was left out may be seen
+    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // exceeds the declared bound: omitted parts may be visible
         unseen.lookAnywhere();
         diceSeen(opt, unseen, diag);
     } else {
@@ -303,7 +305,7 @@ void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     limit_->forgetTopology();
 }
 
-/// Without what no ray comes to. False: displacement went beyond its bound.
+/// Omits unreachable parts. Returns false if displacement exceeded its bound.
 bool Subdivision::diceSeen(const DiceOptions& opt, const Unseen& unseen, Diagnostics& diag) {
     const DiceCamera camera = diceCamera(opt, attributes(), displaced_);
     Dicing d{*this, *limit_, opt, displaced_, camera, unseen, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
@@ -327,7 +329,7 @@ bool Subdivision::diceSeen(const DiceOptions& opt, const Unseen& unseen, Diagnos
                     kind() + " would need more than " + std::to_string(size_t(most)) +
                         " micropolygons; it is diced more coarsely");
     d.sharedPoints();
-    // The same rates come again and again.
+    // The same rates recur.
     std::map<std::array<int, 4>, PieceGrid> grids;
     std::vector<const PieceGrid*> gridOf(limit_->pieces(), nullptr);
     std::vector<uint32_t> insideOf(limit_->pieces(), 0);
@@ -364,7 +366,7 @@ bool Subdivision::diceSeen(const DiceOptions& opt, const Unseen& unseen, Diagnos
     return true;
 }
 
-/// The mesh of the pieces that have a grid, each with vertices of its own. flat: where displaced points were.
+/// The mesh of pieces with a grid, each with its own vertices. flat: undisplaced positions.
 void Subdivision::takeMesh(const Dicing& d, const TriMesh& shared, const std::vector<Vec3>& flat,
                            const std::vector<const PieceGrid*>& gridOf, const std::vector<uint32_t>& insideOf) {
     const std::vector<uint8_t> onBorder = d.onBorder();

@@ -31,7 +31,7 @@ private:
     Implicit implicit() const override { return {}; }
     bool closedV() const override { return std::fabs(phi1_ - phi0_) >= 2 * kPi - 1e-6; }
 
-    /// Signed distance from the tube, well conditioned however thin it is, and its slope along a line that goes on by d.
+    /// Signed distance from the tube, well conditioned for thin tubes, and its derivative along a ray with direction d.
     struct Distance {
         double f, slope;
     };
@@ -44,8 +44,8 @@ private:
         return {length - r, (across * (p.x * d.x + p.y * d.y) / rho + p.z * d.z) / length};
     }
 
-    /// Where a line p + s q, scaled to a torus of size 1 and unit speed, may meet it: inside of the enclosing sphere, no higher
-    /// than the tube, and not where all of it passes through the hole. False: nowhere.
+    /// Interval where a ray p + s q, scaled to a torus of size 1 and unit speed, may hit it: inside of the bounding sphere,
+    /// within the tube's height, and not entirely in the hole. Returns false if there is none.
     bool clip(const Vec3d& p, const Vec3d& q, double s[2]) const {
         if (solveQuadratic(1, dot(p, q), dot(p, p) - (1 + kRoom), s) != 2) return false;
         if (q.z != 0) {
@@ -56,7 +56,7 @@ private:
             return false;
         }
         if (!(s[0] <= s[1])) return false;
-        const auto far = [&](double at) { // from the axis, squared: greatest at one of the ends
+        const auto far = [&](double at) { // squared distance from the axis: largest at one of the ends
             const double x = p.x + q.x * at, y = p.y + q.y * at;
             return x * x + y * y;
         };
@@ -76,7 +76,7 @@ private:
         double x[4];
         const int n = polynomialRoots(c, 4, s[0], s[1], x);
         for (int i = 0; i < n; ++i) {
-            // The quartic squares the distance; a few steps of Newton's on the distance itself win the digits back.
+            // The quartic squares the distance; a few Newton steps on the distance itself restore precision.
             double at = x[i] * size / speed;
             Distance here = distance(o + d * at, d);
             for (int step = 0; step < 3; ++step) {
@@ -99,7 +99,7 @@ private:
         if (far < near) rho = -rho;
         double phi = exact::atan2(r_ < 0 ? -p.z : p.z, r_ < 0 ? R_ - rho : rho - R_);
         double k = phi1_ - phi0_, turn = 2 * kPi / k;
-        // phi is known up to whole turns: the one nearest inside the range.
+        // phi is known up to full turns: takes the one nearest inside the range.
         double v = (phi - phi0_) / k;
         v -= std::floor(v / std::fabs(turn)) * std::fabs(turn);
         if (v > 1 && v - std::fabs(turn) > -1e-7) v -= std::fabs(turn);
@@ -107,8 +107,8 @@ private:
     }
     static constexpr double kRoom = 1e-4;
     double R_, r_, phi0_, phi1_;
-    double size_;        ///< greatest radius
-    double high_, hole_; ///< half the tube's height, and the hole's radius, with room; by size_
+    double size_;        ///< largest radius
+    double high_, hole_; ///< half the tube's height, and the hole's radius, with tolerance; relative to size_
 };
 
 } // namespace

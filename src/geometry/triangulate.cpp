@@ -60,7 +60,7 @@ bool bridge(const std::vector<P2>& p, std::vector<uint32_t>& ring, const std::ve
     size_t pick = p[ring[edge]].x > p[ring[e2]].x ? edge : e2;
     P2 q{best, m.y}, c = p[ring[pick]];
     if (!same(q, c)) {
-        // A reflex corner inside the triangle (m, q, c) hides c: take the one nearest in angle to the ray.
+        // A reflex corner inside the triangle (m, q, c) hides c: takes the one nearest in angle to the ray.
         double slope = INFINITY, dist = INFINITY;
         size_t blocker = ring.size();
         for (size_t i = 0; i < ring.size(); ++i) {
@@ -84,7 +84,7 @@ bool bridge(const std::vector<P2>& p, std::vector<uint32_t>& ring, const std::ve
     return true;
 }
 
-// Clips ears off a counter-clockwise ring. False: it had to guess.
+// Clips ears off a counter-clockwise ring. Returns false if it had to guess.
 bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vector<uint32_t>& out, size_t most) {
     size_t n = ring.size();
     std::vector<uint32_t> next(n), prev(n);
@@ -108,7 +108,7 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
                 if (gone[r] || !isReflex[r] || r == a || r == i || r == b) continue;
                 ++tests;
                 const P2& q = at(r);
-                // Bridges double their ends: a corner that coincides with one of the ear's does not lie in it.
+                // Bridges duplicate their ends: a corner that coincides with one of the ear's is not inside.
                 if (same(q, at(a)) || same(q, at(i)) || same(q, at(b))) continue;
                 if (inside(at(a), at(i), at(b), q)) {
                     ear = false;
@@ -116,8 +116,8 @@ bool clip(const std::vector<P2>& p, const std::vector<uint32_t>& ring, std::vect
                 }
             }
         }
-        // A flat corner goes without a triangle only when no ear is left, or where a loop turns back on itself: a neighbour
-        // shares it, and a triangle that passes over it would leave a crack.
+        // A flat corner is removed without a triangle only if no ear is left, or where a loop reverses: a neighbour shares it,
+        // and a triangle across it would leave a crack.
         bool doubled = same(at(a), at(i)) || same(at(i), at(b)) || same(at(a), at(b));
         bool flat = t == 0 && (doubled || sinceEar > left);
         bool force = sinceEar > 2 * left;
@@ -157,7 +157,7 @@ TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const i
     double len = length(normal);
     if (!(len > 0) || !std::isfinite(len)) return TriangulationResult::Nothing;
     size_t start = out.size();
-    // The plane's own axis goes; the other two keep the winding counter-clockwise.
+    // Drops the dominant axis; the other two keep the winding counter-clockwise.
     int axis = std::fabs(normal.x) > std::fabs(normal.y) ? (std::fabs(normal.x) > std::fabs(normal.z) ? 0 : 2)
                                                          : (std::fabs(normal.y) > std::fabs(normal.z) ? 1 : 2);
     int ax = (axis + 1) % 3, ay = (axis + 2) % 3;
@@ -189,7 +189,7 @@ TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const i
             if (turn(a, b, c) <= 0) convex = false; // flat corners too: a fan could pass over one
             sumTurns += exact::atan2(turn(a, b, c), (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y));
         }
-        if (convex && std::fabs(sumTurns - 2 * kPi) < 0.1) { // once around: a pentagram is locally convex too
+        if (convex && std::fabs(sumTurns - 2 * kPi) < 0.1) { // once around: a pentagram is also locally convex
             for (size_t i = 1; i + 1 < n; ++i)
                 if (turn(p[ring[0]], p[ring[i]], p[ring[i + 1]]) > 0) out.insert(out.end(), {ring[0], ring[i], ring[i + 1]});
             return out.size() > start ? TriangulationResult::Good : TriangulationResult::Nothing;
@@ -209,7 +209,7 @@ TriangulationResult triangulate(std::span<const Vec3d> points, std::span<const i
         if (cost > most || !bridge(p, ring, inner[i])) good = false; // outside the outer loop: left out
     }
     if (!clip(p, ring, out, most)) good = false;
-    // Guessed triangles may have come out backwards.
+    // Guessed triangles may have the wrong winding.
     for (size_t i = start; i + 2 < out.size(); i += 3)
         if (turn(p[out[i]], p[out[i + 1]], p[out[i + 2]]) < 0) std::swap(out[i + 1], out[i + 2]);
     if (out.size() == start) return TriangulationResult::Nothing;

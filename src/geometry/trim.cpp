@@ -14,7 +14,7 @@ constexpr double kWeight[4] = {0.1739274225687269, 0.3260725774312731, 0.3260725
 struct Quadrature {
     double at, weight;
 };
-// On [0, 1], with room for square roots at both ends: curves have level tangents where strips end.
+// On [0, 1], adapted to square roots at both ends: curves have horizontal tangents at ends of strips.
 Quadrature smoothed(int panel, int panels, int k) {
     const double s = (panel + kNode[k]) / panels;
     return {s * s * (3 - 2 * s), kWeight[k] / panels * 6 * s * (1 - s)};
@@ -44,7 +44,7 @@ std::vector<double> part(std::vector<double> c, double t0, double t1) {
 } // namespace
 
 double TrimRegion::Piece::crossing(double v) const {
-    // y(t) - v w(t) changes its sign once: regula falsi (Illinois) held in by bisection.
+    // y(t) - v w(t) changes sign once: regula falsi (Illinois) safeguarded by bisection.
     double lo = 0, hi = 1;
     double flo = v0 - v, fhi = v1 - v;
     if (flo == 0) return u0;
@@ -154,8 +154,7 @@ bool TrimRegion::Maker::curve(int order, const float* knot, double min, double m
     return true;
 }
 
-/// Where v = y / w turns round: the quotients of its control points rise or fall only where the curve does (it crosses a line at
-/// most as often as they do).
+/// Extremes of v = y / w: the quotients of the control points rise or fall only if the curve does (variation diminishing).
 void TrimRegion::Maker::extremes(const std::vector<double>& y, const std::vector<double>& w, double t0, double t1,
                                  std::vector<double>& out) {
     bool up = false, down = false;
@@ -178,7 +177,8 @@ void TrimRegion::Maker::extremes(const std::vector<double>& y, const std::vector
     const size_t found = out.size();
     extremes(part(y, 0, 0.5), part(w, 0, 0.5), t0, middle, out);
     extremes(part(y, 0.5, 1), part(w, 0.5, 1), middle, t1, out);
-    if (out.size() == found && middle - out.back() > 1e-7) out.push_back(middle); // it turns where the halves meet, or not at all
+    // It turns at the joint of the halves, or not at all
+    if (out.size() == found && middle - out.back() > 1e-7) out.push_back(middle);
 }
 
 void TrimRegion::Maker::bezier(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& w) {
@@ -257,7 +257,7 @@ std::shared_ptr<const TrimRegion> TrimRegion::make(const scene::ParamList& curve
         maker.closeLoop();
     }
     widestGap = maker.widestGap;
-    // What lies beside the square or is level in v is never crossed there.
+    // Pieces beside the square, or horizontal in v, are never crossed there.
     std::erase_if(region->pieces_,
                   [](const Piece& p) { return p.v0 == p.v1 || std::max(p.v0, p.v1) < 0 || std::min(p.v0, p.v1) > 1; });
     region->makeStrips();
@@ -278,7 +278,7 @@ void TrimRegion::makeStrips() {
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     for (;;) {
-        if (ends.size() > kMost) { // evenly spaced then: the ends are shortcuts only
+        if (ends.size() > kMost) { // then uniform: the ends are only an index
             ends.clear();
             for (size_t i = 0; i <= kMost / 2; ++i) ends.push_back(double(i) / (kMost / 2));
         }
@@ -350,7 +350,7 @@ void TrimRegion::weighStrips() {
             }
         s.share = sum * h;
         area_ += s.share;
-        // Where the nodes saw nothing there may be something all the same, and every kept point must have its chance.
+        // The nodes may miss a kept part: every kept point needs a nonzero probability.
         if (s.count) s.share += 1e-4 * h;
         all += s.share;
     }

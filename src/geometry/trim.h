@@ -19,26 +19,26 @@ public:
     struct Domain {
         double lo[2], hi[2];
     };
-    /// curves: the nine arrays of TrimCurve (scene::Attributes::trimCurve), u, v, w homogeneous. keepInside: what is outside
-    /// goes. A loop that does not close is closed by a line (a warning where the gap can be seen). Null with a message in `why`
-    /// where the curves are none.
+    /// curves: the nine arrays of TrimCurve (scene::Attributes::trimCurve), u, v, w homogeneous. keepInside: removes the outside.
+    /// An open loop is closed by a line (with a warning if the gap is visible). Returns null, with a message in `why`, for
+    /// invalid curves.
     static std::shared_ptr<const TrimRegion> make(const scene::ParamList& curves, const Domain&, bool keepInside,
                                                   std::string& why, double& widestGap);
 
-    /// Whether the point is kept. Of points on the curve one side is.
+    /// Whether the point is kept. Points on the curve belong to one side.
     bool keeps(double u, double v) const;
     enum class Cover { None, Some, All };
-    /// How much of a rectangle is kept; Some may stand where it is None or All, never the other way round.
+    /// Coverage of a rectangle; conservative: Some may stand for None or All, never the reverse.
     Cover cover(double u0, double v0, double u1, double v1) const;
-    /// The intervals of u that are kept at v, pairs of ends by increasing u.
+    /// The kept intervals of u at v, pairs of ends by increasing u.
     void intervals(double v, std::vector<double>& ends) const;
-    /// The part of the unit square that is kept, as a number of 0 to 1. Quadrature, to about 1e-9 for smooth curves.
+    /// Kept fraction of the unit square, 0 to 1. By quadrature, to about 1e-9 for smooth curves.
     double area() const { return area_; }
-    /// A kept point for two numbers of [0,1), with density(): false where there is none at the v that it came to.
+    /// Samples a kept point from two numbers in [0,1), with density(); returns false if there is none at the sampled v.
     bool sample(double xi1, double xi2, double& u, double& v) const;
-    /// Density by du dv with which sample() gives points at this v; it is about 1 / area(). 0 where nothing is kept.
+    /// Density of sample() per du dv at this v, about 1 / area(). 0 if nothing is kept there.
     double density(double v) const;
-    /// Nodes and weights for integrals over what is kept, by du dv.
+    /// Nodes and weights for integrals over the kept part, by du dv.
     struct Node {
         double u, v, weight;
     };

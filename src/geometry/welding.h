@@ -9,7 +9,7 @@ namespace alpenglow::geometry {
 
 /// Per corner the first one of its vertex with the same bits. valueOf(corner): its `width` floats.
 template <class ValueOf> std::vector<int> weld(std::span<const int> vertex, int vertices, ValueOf valueOf, size_t width) {
-    constexpr int kMost = 64; // different values that are told apart at a vertex; the next ones stay by themselves
+    constexpr int kMost = 64; // distinct values at a vertex; further ones are not merged
     std::vector<int> last(size_t(vertices), -1), before(vertex.size(), -1), out(vertex.size());
     for (size_t k = 0; k < vertex.size(); ++k) {
         int same = last[size_t(vertex[k])], tries = 0;

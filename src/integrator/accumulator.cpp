@@ -37,7 +37,7 @@ void Accumulator::notFinite(const PathRay* ray, const std::string& what, const S
     if (ray && ray->sample && ray->sample->path >= 0) spoiled.push_back(ray->sample->path);
     diagnostics_.reportOnce(
         "nonfinite:" + what + place.file + std::to_string(place.line),
-        {Severity::Warning, Rie::Math, place, what + " is not a finite number; samples that meet it are left out", {}, {}});
+        {Severity::Warning, Rie::Math, place, what + " is not a finite number; affected samples are dropped", {}, {}});
 }
 
 void Accumulator::notFinite(const PathRay* ray, const char* what, const ShaderInstance* of) {

@@ -31,8 +31,7 @@ public:
     /// needsPoints(): whether the batch needs its points.
     bool run(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
-    /// Samples one light for such points and evaluates their lobes toward it, to `found`. Returns false, without effect, if not
-    /// possible.
+    /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 
 private:

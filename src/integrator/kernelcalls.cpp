@@ -35,8 +35,8 @@ void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64
             {Severity::Error,
              Rie::Limit,
              place,
-             "a shader asks for more rays at one point than fit into " + std::to_string(limits::kRequestBytes >> 20) + " MiB",
-             "a loop around such a call needs fewer turns",
+             "a shader requests more rays at one point than fit into " + std::to_string(limits::kRequestBytes >> 20) + " MiB",
+             "reduce the iterations of loops around such calls",
              {}});
     }
     throw LimitReached();

@@ -19,7 +19,7 @@ void MediaStacks::tellLost(const Media* m, const ShadePoint& p) const {
             "media", {Severity::Warning,
                       Rie::Limit,
                       p.shape ? p.shape->place() : SourcePlace{},
-                      "a ray is inside of more than " + std::to_string(limits::kMedia) + " volumes; the outermost are forgotten",
+                      "a ray is inside of more than " + std::to_string(limits::kMedia) + " volumes; the outermost are ignored",
                       {},
                       {}});
 }

@@ -74,8 +74,8 @@ bool MediumFlights::leaks(const Flight& f) {
                                  Rie::Consistency,
                                  m.shape ? m.shape->place() : m.shader->place,
                                  "rays leave the scene inside of the medium \"" + m.shader->name +
-                                     "\": the primitive whose Interior it is does not enclose it; such ways are empty",
-                                 "a medium fills what lies behind a surface until the next one: close it",
+                                     "\": the primitive whose Interior it is does not enclose it; these rays see no medium",
+                                 "close the surface: a medium extends from a surface to the next one behind it",
                                  {}});
     return true;
 }

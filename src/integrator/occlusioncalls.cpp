@@ -73,8 +73,8 @@ int OcclusionCalls::samplesOf(float asked, const geometry::Shape* shape, const S
                                 {Severity::Warning,
                                  Rie::Limit,
                                  place,
-                                 "a call sends 4096 rays at most; it asks for more samples",
-                                 "more samples a pixel give the same mean",
+                                 "a call requests more samples than the limit of 4096 rays",
+                                 "use more samples per pixel instead",
                                  {}});
     }
     return int(std::min(asked, 4096.f));

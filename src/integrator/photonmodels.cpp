@@ -50,9 +50,9 @@ void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
         {Severity::Warning,
          Rie::Incapable,
          b.surface->place,
-         "surface \"" + b.surface->name + "\" makes no caustics: its shader decides on what its rays bring",
+         "surface \"" + b.surface->name + "\" makes no caustics: its shader branches on the results of its rays",
          "a shader whose Ci is a sum of products with trace() makes them, as slmaterial does; `alpenglow info` names the "
-         "call that is used otherwise",
+         "call that prevents it",
          {}});
 }
 
@@ -118,8 +118,8 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
                 {Severity::Info,
                  Rie::NoError,
                  b.surface->place,
-                 "surface \"" + b.surface->name + "\" decides on what its rays bring: photons come off it as off a matte surface",
-                 "Attribute \"photon\" \"string shadingmodel\" says what it is",
+                 "surface \"" + b.surface->name + "\" branches on the results of its rays: photons scatter as on a matte surface",
+                 "Attribute \"photon\" \"string shadingmodel\" selects another model",
                  {}});
     }
     takeModels(c, true);

@@ -143,7 +143,7 @@ template <class Row> const LobeKind* Requests::lobeOf(const BatchContext& c, con
                             {Severity::Error,
                              Rie::BadToken,
                              place,
-                             rsl::noDistribution(s.site->op, name) + "; the call brings no light",
+                             rsl::noDistribution(s.site->op, name) + "; the call returns no light",
                              rsl::knownDistributions(),
                              {}});
     return known->second = nullptr;

@@ -98,10 +98,10 @@ void LightKernels::takeShadowSays(LightValue& v, const BoundLight& light, float 
             what + light.instance->name,
             {Severity::Warning, Rie::Range, light.instance->place, "light \"" + light.instance->name + "\": " + what, {}, {}});
     };
-    if (!std::isfinite(radius) || radius < 0) say("__shadowradius is no number >= 0; its shadows_.queue are those of a point");
+    if (!std::isfinite(radius) || radius < 0) say("__shadowradius must be >= 0; the light casts the shadows of a point");
     else v.shadowRadius = radius;
-    if (!(samples >= 1)) say("__shadowsamples is no number >= 1; one is taken");
-    else if (samples > kMost) say("__shadowsamples is above 4096, the most that are taken");
+    if (!(samples >= 1)) say("__shadowsamples must be >= 1; 1 is used");
+    else if (samples > kMost) say("__shadowsamples exceeds the limit of 4096");
     v.shadowSamples = samples >= 1 ? int(std::min(samples, kMost)) : 1;
 }
 

@@ -29,10 +29,9 @@ void VertexLight::tellScaled(const SurfaceBinding& b, bool more) {
                             {more ? Severity::Warning : Severity::Info,
                              Rie::NoError,
                              b.surface->place,
-                             "shader \"" + b.surface->name + "\" reflects" +
-                                 (more ? "" : ", together with what comes through it,") +
-                                 " more light than it receives; its indirect light is scaled down to what it receives",
-                             "--unbiased leaves it as it is",
+                             "shader \"" + b.surface->name + "\" reflects" + (more ? "" : ", including transmitted light,") +
+                                 " more light than it receives; its indirect light is scaled down to conserve energy",
+                             "--unbiased disables this",
                              {}});
 }
 

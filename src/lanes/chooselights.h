@@ -14,21 +14,21 @@ AL_INLINE vd rootOf(vd x) { return __builtin_elementwise_sqrt(x); }
 AL_INLINE vd least0(vd x) { return 0 < x ? x : vd(0); }
 AL_INLINE vl isFinite(vd x) { return __builtin_elementwise_abs(x) < vd(__builtin_inf()); }
 
-/// Nodes in registers, one a lane.
+/// Nodes in registers, one for each lane.
 struct NodeLanes {
     V3 centre;
     vi next, count;
     vm everywhere, faces;
     vd power, radius2, blind, wide2;
 };
-/// A double of each node from the rows of its two words.
+/// Doubles from the rows of their two words.
 AL_INLINE vd doubleOf(vu low, vu high) {
     const vu half[2] = {inTurns<0>(low, high, LaneNumbers()), inTurns<1>(low, high, LaneNumbers())};
     vd v;
     __builtin_memcpy(&v, half, sizeof v);
     return v;
 }
-/// Structures of 16 words, one a lane, to a row for each word.
+/// Transposes structures of 16 words, one for each lane, into rows.
 AL_INLINE void loadRows(const void* const (&of)[kW], vu (&row)[16]) {
     for (int first = 0; first < 16; first += kW) {
         vu square[kW];
@@ -60,7 +60,7 @@ AL_INLINE vd distance2(const NodeLanes& n, const V3& at) {
     return d2 < n.radius2 ? n.radius2 : d2;
 }
 
-/// Turns a direction by an angle towards an axis.
+/// Rotates a direction by an angle toward an axis.
 AL_INLINE void turn(vd c, vd s, vd& cosine, vd& sine) {
     const vd before = cosine;
     const vl there = before > c;
@@ -82,15 +82,15 @@ static vd towards(const void* const (&of)[kW], const V3& at) {
 }
 AL_INLINE bool anyOf(vm m) { return __builtin_reduce_or(m) != 0; }
 
-/// Ways down the tree, of all points: the node that each is at, its share of the choice, where it begins in the running sum of
-/// the probabilities, and the teeth of the comb before that.
+/// Descents in the tree for all points: current node, its share, start in the cumulative probabilities, and teeth of the comb
+/// before that.
 struct Ways {
     static constexpr int kRoom = kBlock * (LightTree::kMostChosen + 1) + kW;
     int32_t next[kRoom], lane[kRoom];
     float at[3][kRoom];
     double random[kRoom], share[kRoom], begin[kRoom], teeth[kRoom];
     int size = 0;
-    /// The last one in the place of another.
+    /// Replaces an entry by the last one.
     void drop(int i) {
         const int last = --size;
         next[i] = next[last], lane[i] = lane[last];
@@ -98,13 +98,13 @@ struct Ways {
         random[i] = random[last], share[i] = share[last], begin[i] = begin[last], teeth[i] = teeth[last];
     }
 };
-/// What their two children are, by way.
+/// The two children, by descent.
 struct Children {
     int32_t next[2][Ways::kRoom], count[2][Ways::kRoom];
     double weight[2][Ways::kRoom], blind[2][Ways::kRoom];
-    int32_t faces[2 * Ways::kRoom]; ///< those whose front counts: twice the way, and the child
+    int32_t faces[2 * Ways::kRoom]; ///< children whose front counts: twice the descent, plus the child
     int facing;
-    int32_t over[Ways::kRoom]; ///< ways that have ended, in their order
+    int32_t over[Ways::kRoom]; ///< descents that have ended, in order
     int ended;
 };
 struct Choosing {
@@ -121,7 +121,7 @@ AL_INLINE void choose(Choosing& c, int32_t leaf, int lane, double p) {
     c.to[c.count++] = {~leaf, lane, float(1.0 < p ? 1.0 : p)};
 }
 
-/// Goes into a node, or takes the light of a leaf.
+/// Descends to a node, or takes the light of a leaf.
 AL_INLINE void goInto(Choosing& c, int32_t next, int lane, double share, double p, double begin, double teeth) {
     if (next < 0) return choose(c, next, lane, p);
     Ways& w = c.ways;
@@ -136,9 +136,9 @@ AL_INLINE vd loadDoubles(const double* from) {
     return v;
 }
 
-/// The cuts of points, lane by lane: a node of some points a turn.
+/// Cuts of points in lanes: each iteration handles one node of some points.
 struct CutLanes {
-    static constexpr int kTurns = 2 * LightTree::kCut; ///< of each node that is opened and each that stays
+    static constexpr int kTurns = 2 * LightTree::kCut; ///< one for each node that is opened and each that stays
     int32_t next[kTurns][kW], count[kTurns][kW];
     double importance[kTurns][kW], blind[kTurns][kW];
     Lanes here[kTurns];
@@ -173,7 +173,7 @@ static void cutAt(const LightTree& t, const V3& at, Lanes asked, CutLanes& c) {
         store(c.importance[c.turns], importance), store(c.blind[c.turns], n.blind);
         c.here[c.turns] = bitsFrom(stays, 0);
         store(next, n.next);
-        for (int k = 0; k < kW; ++k) node[size[k]][k] = next[k] + 1; // counts where the node is opened
+        for (int k = 0; k < kW; ++k) node[size[k]][k] = next[k] + 1; // counts if the node is opened
         const vi position = loadInt(place) - stays, end = loadInt(size) - opens;
         store(place, position), store(size, end);
         goes &= position < end;
@@ -183,13 +183,13 @@ static void cutAt(const LightTree& t, const V3& at, Lanes asked, CutLanes& c) {
     }
 }
 
-/// Enters nodes of the cuts of the points from `from` on.
+/// Adds the cut nodes of the points from `from` on.
 static void enterCut(Choosing& c, int from, Lanes points) {
     CutLanes cut;
     cutAt(c.tree, load3(c.P, from), points >> from & ((1u << kW) - 1), cut);
     const vd random = loadDoubles(c.random + from);
     vd sum(0), teeth = __builtin_elementwise_ceil(sum - random);
-    const bool seen = !anyOf(maskFrom(points, from) & shortMask(~(cut.total > 0))); // some light is, from each point
+    const bool seen = !anyOf(maskFrom(points, from) & shortMask(~(cut.total > 0))); // some light is visible from each point
     for (int turn = 0; turn < cut.turns; ++turn) {
         if (!cut.here[turn]) continue;
         const vl here = longMask(maskFrom(cut.here[turn], 0));
@@ -208,7 +208,7 @@ static void enterCut(Choosing& c, int from, Lanes points) {
     }
 }
 
-/// What the children of as many ways as there are lanes weigh, from `first` on; without their fronts.
+/// Importances of the children of kW descents from `first` on, without fronts.
 static void weigh(const Choosing& c, int first) {
     const Ways& w = c.ways;
     Children& to = c.children;
@@ -220,7 +220,7 @@ static void weigh(const Choosing& c, int first) {
     }
     const V3 at{load(w.at[0] + first), load(w.at[1] + first), load(w.at[2] + first)};
     const NodeLanes a = loadNodes(left), b = loadNodes(right);
-    // Of the importances only the ratio matters: each is taken times both squared distances, for one division.
+    // Only the ratio of the importances matters: both are multiplied by both squared distances, for a single division.
     const vl everywhere = longMask(a.everywhere);
     store(to.weight[0] + first, everywhere ? a.power : a.power * distance2(b, at));
     store(to.weight[1] + first, everywhere ? b.power : b.power * distance2(a, at));
@@ -234,7 +234,7 @@ static void weigh(const Choosing& c, int first) {
         to.faces[to.facing++] = 2 * (first + __builtin_ctz(some)) + 1;
 }
 
-/// Fronts of as many children as there are lanes, from `first` of those that face on.
+/// Applies the fronts of kW children from `first` of those with one.
 static void face(const Choosing& c, int first) {
     const Ways& w = c.ways;
     Children& to = c.children;
@@ -251,8 +251,8 @@ static void face(const Choosing& c, int first) {
     for (int k = 0; k < count; ++k) to.weight[to.faces[first + k] & 1][to.faces[first + k] >> 1] *= part[k];
 }
 
-/// A step down of as many ways as there are lanes, of `size`, from `first` on. Most go on in their place; where both children are
-/// gone into, the second is a way of its own.
+/// One step down for kW of `size` descents from `first` on. Most are updated in place; if both children are entered, the second
+/// is appended.
 static void goDown(Choosing& c, int first, int size) {
     Ways& w = c.ways;
     Children& of = c.children;

@@ -27,7 +27,7 @@ static void aimShadowRays(const VertexBlock& v, const LightBlock& l, ShadowBlock
             store(to.length + at, load(l.far + at));
             continue;
         }
-        // The light's own surface must not block: the ray stops short of it.
+        // The light's own surface must not occlude: the ray ends before it.
         const V3 way = load3(l.end, at) - from;
         store3(to.direction, at, normalizeOr(way, w));
         store(to.length + at, length(way) * vf(1 - 1e-6f));
@@ -48,7 +48,7 @@ static Lanes contributeLight(const VertexBlock& v, const LobeBlock& lobe, const 
         V3 c = load3(lobe.weight, at) * load3(v.weight, at) * load3(l.Cl, at);
         c = c * (load3(value + kRowColour * kBlock + at, kBlock) / fcos);
         if (l.parted) c = c * load(l.part + at);
-        if (l.met) { // `other`: the density with which the lobe's own ray would have come here
+        if (l.met) { // `other`: density of this direction by the lobe's own sampling
             const vf chosen = load(lobe.chosen + at);
             const vf other = select(maskFrom(met, at) & (chosen > 0), pdf * chosen, vf(0));
             c = c * (part * fcos / density * misWeight(density, other));

@@ -1,50 +1,49 @@
-// A tree of lights as the stage that chooses among them reads it (world/lightchooser.h says what it means). No standard header
-// beyond <cstdint>, as in blocks.h.
+// The light tree in the layout of its stage (meaning: world/lightchooser.h). No standard header beyond <cstdint>, as in blocks.h.
 #pragma once
 #include <cstdint>
 
 namespace alpenglow::transport {
 
-/// A node: of a cache line's size, so that lanes load whole ones and turn them to rows.
+/// A node of one cache line, so that lanes load complete nodes and transpose them to rows.
 struct alignas(64) LightNode {
     float centre[3] = {0, 0, 0}; ///< current space
-    int32_t next = -1;           ///< the first of its two children, which lie side by side; < 0: a leaf, ~next its light
+    int32_t next = -1;           ///< first of its two adjacent children; < 0: a leaf, ~next is its light
     double power = 0;
-    double radius2 = 0; ///< squared, and not zero
-    double blind = 0;   ///< the part of the choice that is the same for all lights, times its part of these
+    double radius2 = 0; ///< squared, > 0
+    double blind = 0;   ///< uniform part of the choice for these lights
     double wide2 = 0;   ///< squared distance within which it is opened; 0: never
-    int32_t count = 1;  ///< lights below it
+    int32_t count = 1;  ///< number of lights below it
     uint32_t flags = 0;
     int32_t parent = -1;
-    static constexpr uint32_t kEverywhere = 1; ///< its light does not fall off; so in all of its tree
-    static constexpr uint32_t kFaces = 2;      ///< its front is not all directions
+    static constexpr uint32_t kEverywhere = 1; ///< no falloff, for all lights below it
+    static constexpr uint32_t kFaces = 2;      ///< its front does not include all directions
     bool leaf() const { return next < 0; }
     bool everywhere() const { return flags & kEverywhere; }
     bool faces() const { return flags & kFaces; }
 };
 static_assert(sizeof(LightNode) == 64);
 
-/// The directions that a node's light leaves to: Cone of world/lightchooser.h; and what of the node belongs to that.
+/// Emission directions of a node: Cone of world/lightchooser.h; and related values.
 struct alignas(64) LightFront {
     float axis[3] = {0, 0, 0}, centre[3] = {0, 0, 0};
-    double radius2 = 0, cosine = -1, sine = 0; ///< cosine and sine of the cone's angle
+    double radius2 = 0, cosine = -1, sine = 0; ///< of the cone's angle
 };
 static_assert(sizeof(LightFront) == 64);
 
-/// All of it.
+/// The complete tree.
 struct LightTree {
-    static constexpr int kMost = 64; ///< the most that may be wanted
-    static constexpr int kCut = 32;  ///< nodes of the cut at most
-    /// Of a choice at a point.
+    static constexpr int kMost = 64; ///< maximum of `wanted`
+    static constexpr int kCut = 32;  ///< maximum number of nodes in a cut
+    /// Limit for one point.
     static constexpr int kMostChosen = kMost + kCut + 4;
     const LightNode* nodes = nullptr;
     const LightFront* fronts = nullptr; ///< by node
     int32_t roots[2] = {0, 0}, rootCount = 0;
-    double wanted = 1, seeing = 1; ///< seeing: the part of the choice that is not blind
-    double lights = 1;             ///< how many
+    double wanted = 1, seeing = 1; ///< seeing: fraction of the choice that uses power
+    double lights = 1;             ///< number of lights
 };
 
-/// A light that a point of a block has chosen, and with which probability.
+/// A light chosen for a point of a block, with its probability.
 struct ChosenLight {
     int32_t light, lane;
     float chance;

@@ -1,4 +1,4 @@
-// Stage place: Emitter::sample() for emitters of a few flat triangles. Solid angles are in doubles, half a register's worth of
+// Stage place: Emitter::sample() for emitters of a few flat triangles. Solid angles are computed in double, half a register of
 // points at a time.
 #pragma once
 #include "base/exactlanes.h"
@@ -9,7 +9,7 @@ namespace alpenglow::transport::AL_NAMESPACE {
 inline constexpr int kH = kW / 2;
 typedef float hf __attribute__((ext_vector_type(ALPENGLOW_LANES / 2)));
 typedef double hd __attribute__((ext_vector_type(ALPENGLOW_LANES / 2)));
-typedef exact::MaskOf<hd> hm; ///< mask, and whole numbers
+typedef exact::MaskOf<hd> hm; ///< mask, and integers
 
 struct D3 {
     hd x, y, z;
@@ -21,7 +21,7 @@ AL_INLINE D3 operator/(const D3& a, hd s) { return {a.x / s, a.y / s, a.z / s}; 
 AL_INLINE hd dot(const D3& a, const D3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 AL_INLINE D3 cross(const D3& a, const D3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 AL_INLINE hd rootOf(hd x) { return __builtin_elementwise_sqrt(x); }
-/// Of what rounding may have made negative.
+/// Root of a value that rounding may have made negative.
 AL_INLINE hd rootAbove(hd x) { return rootOf(x > 0 ? x : hd(0)); }
 AL_INLINE hd length(const D3& a) { return rootOf(dot(a, a)); }
 AL_INLINE D3 choose(hm m, const D3& a, const D3& b) { return {m ? a.x : b.x, m ? a.y : b.y, m ? a.z : b.z}; }
@@ -51,10 +51,10 @@ AL_INLINE hm isNear(const FlatEmitter& e, const D3& from) {
     return dot(middle, middle) < e.near2;
 }
 
-/// The triangles as seen from points: TriangleLamp::see().
+/// The triangles seen from points: TriangleLamp::see().
 struct SeenLanes {
     hd angle[FlatEmitter::kMost], total;
-    D3 way[3 * FlatEmitter::kMost]; ///< unit, to the corners
+    D3 way[3 * FlatEmitter::kMost]; ///< unit, toward the corners
 };
 AL_INLINE hm seeLamp(const FlatEmitter& e, const D3& from, SeenLanes& s) {
     hm seen = isNear(e, from);
@@ -131,10 +131,10 @@ AL_INLINE void placeByArea(const FlatEmitter& e, hd x, hd y, hm& t, hd& b1, hd& 
     b1 = side * (1 - y), b2 = side * y;
 }
 
-/// Points of a block and their places on the emitter, in doubles.
+/// Points of a block and their positions on the emitter, in double.
 struct alignas(64) PlaceRows {
     double from[3][kBlock], u[2][kBlock];
-    double b1[kBlock], b2[kBlock], total[kBlock]; ///< total: solid angle; 0: the place is even in area
+    double b1[kBlock], b2[kBlock], total[kBlock]; ///< total: solid angle; 0: uniform by area
     int64_t triangle[kBlock];
 };
 AL_INLINE hd loadHalf(const double* p) {
@@ -146,7 +146,7 @@ AL_INLINE D3 fromHalf(const PlaceRows& r, int at) {
     return {loadHalf(r.from[0] + at), loadHalf(r.from[1] + at), loadHalf(r.from[2] + at)};
 }
 
-/// Replaces the places of those from `at` on that are even in solid angle.
+/// Replaces positions from `at` on by uniform ones in solid angle.
 AL_INLINE void placeNear(const FlatEmitter& e, PlaceRows& r, int at) {
     const D3 from = fromHalf(r, at);
     SeenLanes s;
@@ -161,7 +161,7 @@ AL_INLINE void placeNear(const FlatEmitter& e, PlaceRows& r, int at) {
     store(r.total + at, seen ? s.total : hd(0));
 }
 
-/// The same for points anywhere in a block, which move together: solid angles are most of the work.
+/// The same for any points of a block, packed together: solid angles are most of the work.
 static void placeTogether(const FlatEmitter& e, PlaceRows& r, const int* lanes, int count) {
     PlaceRows g;
     for (int k = 0; k < (count + kH - 1) / kH * kH; ++k) {
@@ -178,7 +178,7 @@ static void placeTogether(const FlatEmitter& e, PlaceRows& r, const int* lanes, 
 }
 
 AL_INLINE void placeAll(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, PlaceRows& r) {
-    int near[kBlock], count = 0, halves = 0; // halves: with some near points
+    int near[kBlock], count = 0, halves = 0; // halves: half registers with some near points
     bool some[kBlock / kH];
     for (int at = 0; at < kBlock; at += kH) {
         const hd u0 = wide(x + at), u1 = wide(y + at);
@@ -198,7 +198,7 @@ AL_INLINE void placeAll(const VertexBlock& v, const FlatEmitter& e, const float*
         if (some[at / kH]) placeNear(e, r, at);
 }
 
-/// P and the normals of triangles, of the places from `at` on.
+/// P and triangle normals for the positions from `at` on.
 AL_INLINE void pointsOf(const FlatEmitter& e, const PlaceRows& r, int at, float* P, float* N, int stride) {
     hm t;
     __builtin_memcpy(&t, r.triangle + at, sizeof t);
@@ -217,8 +217,8 @@ AL_INLINE vf roundingError(const V3& p) {
     return vf(1.1920929e-7f) * (absLanes(p.x) + absLanes(p.y) + absLanes(p.z)) + vf(1e-37f);
 }
 
-/// Directions, densities and ends of shadow rays of the points at P with normals N. perArea: by point. oneSided: points whose
-/// emitters give no light behind.
+/// Directions, densities and shadow ray ends for points at P with normals N. perArea: by point. oneSided: points whose emitters
+/// emit on one side.
 AL_INLINE Lanes seenFrom(const VertexBlock& v, const PlaceRows& r, const double* perArea, Lanes oneSided, const double* share,
                          LightBlock& to, const float* P, const float* N, int stride) {
     Lanes placed = 0;
@@ -259,7 +259,7 @@ static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const fl
     return seenFrom(v, r, perArea, e.oneSided ? 0xffffu : 0, share, to, P, N, stride);
 }
 
-/// placeAll() where each point has an emitter of its own.
+/// placeAll() with an emitter for each point.
 AL_INLINE void placeEach(const VertexBlock& v, const FlatEmitter* const* lamps, const float* x, const float* y, PlaceRows& r) {
     alignas(64) double target[kBlock], low[kBlock], high[kBlock];
     int near[kBlock], count = 0;

@@ -1,4 +1,4 @@
-// Stages load and store: structures of 32-bit words to rows and back, by transposing squares of as many words as there are lanes.
+// Stages load and store: convert structures of 32-bit words to rows and back, by transposing squares of kW words.
 #pragma once
 #include "lanes/rows.h"
 
@@ -10,13 +10,13 @@ template <class T, T... I> struct NumbersOf {
 };
 using LaneNumbers = __make_integer_seq<NumbersOf, int, kW>::Type; ///< 0 to kW - 1
 
-/// The first, or the second, half of the lanes of two registers in turns.
+/// Interleaves the first, or the second, halves of two registers.
 template <int Half, int... I> AL_INLINE vu inTurns(vu a, vu b, Numbers<int, I...>) {
     return __builtin_shufflevector(a, b, ((I % 2 ? kW : 0) + Half * kW / 2 + I / 2)...);
 }
 
-/// Row i, lane k becomes row k, lane i: each turn makes the highest bit of a lane's number the lowest bit of its row's, and the
-/// other way round.
+/// Row i, lane k becomes row k, lane i: each step moves the highest bit of the lane index to the lowest bit of the row index, and
+/// vice versa.
 AL_INLINE void transpose(vu (&rows)[kW]) {
     for (int step = 1; step < kW; step *= 2) {
         vu next[kW];
@@ -37,7 +37,7 @@ static void loadRecords(const void* from, int stride, int count, int words, void
             record[k] = static_cast<const char*>(from) + i * stride;
         }
         for (int next = 0; next < words; next += kW) {
-            const int word = next + kW <= words ? next : words - kW; // the last words again, none behind them
+            const int word = next + kW <= words ? next : words - kW; // repeats the last words instead of reading beyond them
             vu square[kW];
             for (int k = 0; k < kW; ++k) __builtin_memcpy(&square[k], record[k] + 4 * word, sizeof square[k]);
             transpose(square);
@@ -56,7 +56,7 @@ static int storeRecords(const void* rows, int words, Lanes points, void* to) {
             for (int k = 0; k < kW; ++k) square[k] = loadBits(from + (word + k) * kBlock + at);
             transpose(square);
             end = stored;
-            for (int k = 0; k < kW; ++k) { // a point that is left out is overwritten by the next one
+            for (int k = 0; k < kW; ++k) { // an excluded point is overwritten by the next one
                 store(static_cast<uint32_t*>(to) + int64_t(end) * words + word, square[k]);
                 end += int(points >> (at + k) & 1);
             }

@@ -7,7 +7,7 @@ namespace alpenglow::transport::AL_NAMESPACE {
 /// Directions toward the viewer.
 AL_INLINE V3 toViewer(const VertexBlock& v, int at) { return normalizeOr(-load3(v.I, at), load3(v.n, at)); }
 
-/// Rows of the directions that a call gives; `usual`: as directionOr().
+/// Rows of the directions that a call gives; `usual`: as for directionOr().
 AL_INLINE void giveDirections(const VertexBlock& v, const LobeArguments& a, const float* rows, int stride, int at, LobeBlock& to,
                               vm& usual) {
     const V3 n = load3(v.n, at);
@@ -34,7 +34,7 @@ AL_INLINE void giveSurface(const LobeArguments& a, const float* rows, int stride
         store(to.lobe[kRowRoughness + r] + at, a.rows[r] < 0 ? vf(a.numbers[r]) : load(rows + a.rows[r] * stride + at));
 }
 
-/// Rays of trace() that start elsewhere than at the point.
+/// trace() rays that do not start at the point.
 AL_INLINE vm startsElsewhere(const VertexBlock& v, const float* rows, int stride, int at) {
     const V3 P = load3(v.P, at), size = absolute(P);
     const vf near = vf(1.1920929e-7f) * (size.x + size.y + size.z) + vf(1e-37f);
@@ -69,7 +69,7 @@ static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const fl
     return odd;
 }
 
-/// The factor that leaves of what lobes give back at most what arrives and does not come through.
+/// Energy rule: factor so that reflected plus transmitted light is at most the incident light.
 AL_INLINE vf energyScaleOf(const V3& reflected, const V3& clear, const SelectRules& rules) {
     vf scale(1);
     if (rules.unbiased) return scale;
@@ -81,10 +81,11 @@ AL_INLINE vf energyScaleOf(const V3& reflected, const V3& clear, const SelectRul
     return scale;
 }
 
-/// A ray that is to bring nothing of surfaces still brings the light of lights: its lobe keeps this part of its chance.
+/// Indirect light of a lobe may be scaled to 0, but its ray still carries emission: it keeps at least this fraction of its
+/// probability.
 inline constexpr float kLeastScale = 1 / 32.f;
 
-/// What a share of the throughput is worth: where rays behind the surface compete, by what the way here has left of each channel.
+/// Weight of a part of the throughput: if rays behind the surface compete, weighted by the path's throughput in each channel.
 AL_INLINE vf worthOf(const V3& share, const V3& left, vm competes) {
     return select(competes, dot(share, left) / vf(3), luminance(share));
 }

@@ -1,5 +1,5 @@
-// Rows in registers: the vectors of shadeops/lanes.h over the blocks of lanes/blocks.h. Sums and products are in the order
-// of base/vec.h and rounded one by one, so that a stage gives the bits of a function over Vec3.
+// Rows in registers: the vectors of shadeops/lanes.h over the blocks of lanes/blocks.h. Sums and products are in the order of
+// base/vec.h, each rounded once, so a stage gives the bits of a function over Vec3.
 #pragma once
 #include "lanes/stages.h"
 #include "shadeops/lanes.h"
@@ -75,7 +75,7 @@ AL_INLINE V3 normalizeOr(const V3& a, const V3& otherwise) {
     const vf l = length(a);
     return choose((l > 0) & finite(l), a / l, otherwise);
 }
-/// directionOr() of base/direction.h where the result is mask; elsewhere it takes doubles.
+/// directionOr() of base/direction.h where `usual` is set; the other lanes need double.
 AL_INLINE V3 directionOr(const V3& a, const V3& otherwise, vm& usual) {
     const V3 size = absolute(a);
     const vf most = maxLanes(maxLanes(size.x, size.y), size.z);
@@ -96,14 +96,14 @@ AL_INLINE V3 offsetOrigin(const V3& P, const V3& n, vf error, const V3& w) {
     const V3 off = n * select(dot(w, n) >= 0, d, -d), o = P + off;
     return {stepAway(o.x, off.x), stepAway(o.y, off.y), stepAway(o.z, off.z)};
 }
-/// Where a ray along w leaves a vertex.
+/// Origin of a ray along w from a vertex.
 AL_INLINE V3 leave(const VertexBlock& v, int at, const V3& w) {
     const V3 P = load3(v.P, at);
     const vf bias = load(v.bias + at);
     return choose(bias > 0, P + w * bias, offsetOrigin(P, load3(v.n, at), load(v.error + at), w));
 }
 
-/// The weight of technique a beside b: misWeight() of lobes/sampling.h.
+/// MIS weight of technique a against b: misWeight() of lobes/sampling.h.
 AL_INLINE vf misWeight(vf a, vf b) {
     const vf r = b / a;
     return select(a > 0, vf(1) / (vf(1) + r * r), vf(0));

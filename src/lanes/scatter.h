@@ -14,7 +14,7 @@ static void pickLobe(VertexBlock& v, const LobeBlock* const* sites, int count, c
             lobes -= mask;
         }
         const vf passes = load(v.passes + at), u = count > 1 || v.through ? load(number + at) : vf(0);
-        const vm mayPass = passes < 1; // then lobes have the rest of the chance
+        const vm mayPass = passes < 1; // lobes have the remaining probability
         vf sum(0), scale(1);
         vm taken(0);
         for (int s = 0; s < count; ++s) {
@@ -73,8 +73,7 @@ static void nameVertices(const VertexBlock& v, const uint32_t* key, ScatterBlock
     }
 }
 
-/// The chance that paths go on with that of rouletteOfPath() or rouletteLocal() (lobes/sampling.h), behind the third bounce; 0:
-/// they end.
+/// Survival probability by rouletteOfPath() or rouletteLocal() (lobes/sampling.h) after the third bounce; 0: the path ends.
 AL_INLINE vf chanceToGoOn(Roulette rule, const V3& weight, const V3& request, const vf& dice) {
     const vf likely = rule == Roulette::Local ? maxComponent(request) : vf(1.5f) * rootLanes(maxComponent(absolute(weight)));
     const vf most = select(likely < 1, likely, vf(1));

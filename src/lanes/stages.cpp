@@ -2,7 +2,7 @@
 
 namespace alpenglow::transport {
 
-// One for each file made from lanes/stages.inc.
+// One for each file compiled from lanes/stages.inc.
 const Stages& stages_4v2();
 const Stages& stages_8v3();
 const Stages& stages_16v4();

@@ -1,5 +1,5 @@
-// The stages that work on blocks of points (blocks.h), at 4, 8 and 16 lanes; the processor chooses once. Every width gives the
-// same bits: a stage works point by point, never on two of them, in a fixed order of operations.
+// Stages over blocks of points (blocks.h) at 4, 8 and 16 lanes, selected once by processor. Every width gives the same bits: a
+// stage processes points independently, in a fixed order of operations.
 //
 //   request     what calls ask for: rows of lobes                    reads VertexBlock, the call's arguments; writes LobeBlock
 //   select      which lobe is followed with which chance             reads LobeBlock; writes LobeBlock::chosen, energyScale
@@ -19,57 +19,56 @@
 namespace alpenglow::transport {
 
 struct Stages {
-    /// Fills the rows that `needs` (LobeNeed) names for points of `asked` and LobeBlock::asked, weights included, with those
-    /// whose weight is not 0. Returns the points that one by one must be looked at: numbers that are not finite, directions whose
-    /// square no float holds, rays that do not start at the point.
+    /// Sets the rows named by `needs` (LobeNeed) for the points of `asked`, and LobeBlock::asked, the points of nonzero weight,
+    /// including weights. Returns points that must be processed one by one: numbers that are not finite, directions whose square
+    /// overflows or underflows, rays that do not start at the point.
     Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
-    /// LobeBlock::chosen, VertexBlock::energyScale and passes.
+    /// Sets LobeBlock::chosen, VertexBlock::energyScale and passes.
     Selected (*select)(VertexBlock&, LobeBlock* const* sites, int count, const SelectRules&);
-    /// A point of the emitter for each of the block, by pairs of numbers, 0 to 1; share: the chances with which the emitter was
-    /// chosen. Writes LightBlock::w, density and end, and P and N, three rows each, `stride` floats apart. Returns the points
-    /// that have one.
+    /// Samples a point on the emitter for each point of the block, by pairs of numbers in [0, 1); share: probabilities of
+    /// choosing the emitter. Writes LightBlock::w, density and end, and P and N, three rows each, `stride` floats apart. Returns
+    /// the points with a sample.
     Lanes (*place)(const VertexBlock&, const FlatEmitter&, const float* x, const float* y, const double* share, LightBlock&,
                    float* P, float* N, int stride);
-    /// The same where each point has an emitter of its own: so many pointers as a block has points, none null.
+    /// The same with an emitter for each point: kBlock pointers, none null.
     Lanes (*placeEach)(const VertexBlock&, const FlatEmitter* const* lamps, const float* x, const float* y, const double* share,
                        LightBlock&, float* P, float* N, int stride);
-    /// Of lights without geometry, by the way L from them (three rows): LightBlock::w, far and density. endless: they stand
-    /// nowhere.
-    /// Returns the points whose L is of a length that one by one must be looked at.
+    /// For lights without geometry, from the direction L of their light (three rows): LightBlock::w, far and density. endless:
+    /// lights without a position. Returns points that must be processed one by one because of the length of L.
     Lanes (*placeFar)(const float* L, int stride, bool endless, LightBlock&);
-    /// Shadow rays from the points toward the light: ShadowBlock::origin, direction and length.
+    /// Sets shadow rays from the points to the light: ShadowBlock::origin, direction and length.
     void (*aim)(const VertexBlock&, const LightBlock&, ShadowBlock&);
-    /// For points of LobeBlock::lights and LightBlock::asked. kept: a row, what the lobe takes of the light; met: points from
-    /// where its rays could meet the light; ahead: only where the way to the emitter is along its direction. value: of the lobe
-    /// toward the light, kValueRows. Returns the points where something arrives; `failed`: gets those where the value is not a
-    /// number.
+    /// Adds a lobe's response for points of LobeBlock::lights and LightBlock::asked. kept: a row, fraction of the light that the
+    /// lobe reflects; met: points whose rays could hit the light; ahead: valid only if the emitter is along its direction. value:
+    /// of the lobe toward the light, kValueRows. Returns points with a contribution; `failed`: points with values that are not
+    /// numbers.
     Lanes (*contribute)(const VertexBlock&, const LobeBlock&, const LightBlock&, const float* kept, Lanes met, bool ahead,
                         const float* value, ShadowBlock&, Lanes* failed);
-    /// Which lobe is followed, by one number a point, 0 to 1: ScatterBlock::site and scale; VertexBlock::passes is 0 where one
-    /// is.
+    /// Selects the lobe to follow, by one number in [0, 1) for each point: ScatterBlock::site and scale; sets VertexBlock::passes
+    /// to 0 where a lobe is selected.
     void (*pick)(VertexBlock&, const LobeBlock* const* sites, int count, const float* number, ScatterBlock&);
-    /// For points that follow the lobe of `site`: `drawn` (kDrawnRows) becomes ScatterBlock::direction, then `value` (kValueRows)
-    /// of lobes that spread colour and pdf.
+    /// For points that follow the lobe of `site`: copies `drawn` (kDrawnRows) to ScatterBlock::direction, then `value`
+    /// (kValueRows) of non-delta lobes to colour and pdf.
     void (*takeDirections)(const LobeBlock&, int site, bool lighting, const float* drawn, ScatterBlock&);
     void (*takeValues)(const LobeBlock&, int site, const float* value, ScatterBlock&);
-    /// ScatterBlock::vertex, as childVertex() of answers/random.h. key: by site, the call site's number.
+    /// Sets ScatterBlock::vertex as childVertex() of answers/random.h. key: number of the call site, by site.
     void (*name)(const VertexBlock&, const uint32_t* key, ScatterBlock&);
-    /// Paths end by the rule and ScatterBlock::dice. Returns points whose throughput is not finite.
+    /// Sets origin and weight; ends paths by the rule and ScatterBlock::dice. Returns points whose throughput is not finite.
     Lanes (*extend)(const VertexBlock&, Roulette, ScatterBlock&);
-    /// Structures of `words` words (at least 16) each, `stride` bytes apart, to a row for each word. Rows have kBlock numbers:
-    /// behind the first `count` structures the last one stands again.
+    /// Transposes structures of `words` words (at least 16) each, `stride` bytes apart, to a row for each word. Rows have kBlock
+    /// numbers: after the first `count` structures the last one repeats.
     void (*load)(const void* from, int stride, int count, int words, void* rows);
-    /// The structures of some points one behind the other, of 16 words or a multiple. Returns how many; what one more would take
-    /// is overwritten.
+    /// Writes the structures of some points consecutively, of 16 words or a multiple. Returns their number; the space of one more
+    /// may be overwritten.
     int (*store)(const void* rows, int words, Lanes points, void* to);
-    /// LightChooser::choose() for some points of a block: P, three rows, and a random number each. Room for
-    /// LightTree::kMostChosen a point. Returns how many; those of a point are in no order.
+    /// LightChooser::choose() for some points of a block: P, three rows, and a random number each. `to` needs space for
+    /// LightTree::kMostChosen lights for each point. Returns their number; lights of a point are in no order.
     int (*chooseLights)(const LightTree&, const Row* P, const float* random, Lanes points, ChosenLight* to);
 };
 
-/// The stages at 4, 8 or 16 lanes; null where this processor cannot run that.
+/// The stages at 4, 8 or 16 lanes; null if this processor cannot run that width.
 const Stages* stages(int lanes);
-/// The widest that this processor runs.
+/// The widest that this processor can run.
 const Stages& stages();
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// The diffusion models of subsurface(), on demand: exact for a half space of high albedo, elsewhere an estimate with a bias.
+// Diffusion models of subsurface(): exact for a half space of high albedo, otherwise a biased approximation.
 #include "lobes/dipole.h"
 #include "base/exact.h"
 #include "base/vec.h"
@@ -39,7 +39,7 @@ double Dipole::at(double r) const {
     return albedo_ / (4 * kPi) * (flux_ * flux + fluence_ / spread_ * (below - above));
 }
 
-// Rings of equal area, each by the middle of its turns. About the point itself at() is steep: rings that are finer inside.
+// Rings of equal area, sampled at the centres of their sectors. At the point itself at() is steep, so inner rings are finer.
 double Dipole::over(double distance, double radius) const {
     if (!(radius > 0)) return at(distance);
     constexpr int kRings = 6, kTurns = 6;
@@ -62,7 +62,7 @@ double Dipole::total() const {
     return albedo_ / 2 * (flux_ * (below + above) + fluence_ / spread_ * fluence);
 }
 
-// Half by the exponential far away, half by the distance that the source below is seen from.
+// Mixture: half by the exponential falloff far away, half by the distance to the source below.
 double Dipole::choose(float which, float u) const {
     if (which < 0.5f && fall_ > 0) return -exact::log(1 - std::min(double(u), 1 - 0x1p-24)) / fall_;
     const double c = 1 - std::min(double(u), 1 - 0x1p-24);

@@ -8,10 +8,10 @@ namespace alpenglow::transport {
 
 namespace {
 
-constexpr int kSteps = 256; ///< of the table
+constexpr int kSteps = 256; ///< entries of the table
 constexpr double kPiD = 3.14159265358979323846;
 
-/// Nodes and weights of Gauss and Legendre on 0 to 1, by Newton's method on the polynomial.
+/// Gauss-Legendre nodes and weights on [0, 1], by Newton's method on the polynomial.
 struct Gauss {
     static constexpr int kCount = 16;
     std::array<double, kCount> at{}, weight{};
@@ -46,7 +46,7 @@ double fresnelInside(double cosine, double index) {
 
 HalfSpace::HalfSpace(double index) : index_(index) {
     const Gauss g;
-    // Both sides of the critical angle by themselves; above it the root of the reflection is taken out by a square.
+    // Integrates both sides of the critical angle separately; above it, substitutes a square for the root in the reflectance.
     const double critical = index > 1 ? std::sqrt(1 - 1 / (index * index)) : 0;
     for (int i = 0; i < Gauss::kCount; ++i) {
         if (critical > 0) nodes_.push_back({critical * g.at[size_t(i)], critical * g.weight[size_t(i)], 1, 0});
@@ -80,7 +80,7 @@ double HalfSpace::solve(double albedo) const {
             next[i] = 1 / sum;
             change = std::max(change, std::fabs(next[i] - h[i]));
         }
-        for (size_t i = 0; i < n; ++i) h[i] = 0.5 * (h[i] + next[i]); // plain turns swing about the solution
+        for (size_t i = 0; i < n; ++i) h[i] = 0.5 * (h[i] + next[i]); // plain iteration oscillates around the solution
         if (change < 1e-12) break;
     }
     for (int round = 0; round < 2000; ++round) { // up(m) = albedo / 2 H(m) int H(m') m' / (m + m') down(m') dm'

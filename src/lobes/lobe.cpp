@@ -3,7 +3,7 @@
 namespace alpenglow::transport {
 
 namespace {
-/// Writes the rows that a kind needs, `stride` floats apart.
+/// Writes the rows that a kind reads, `stride` floats apart.
 void give(float* rows, size_t stride, int needs, const LobeParams& p, const DistributionParams* more) {
     const auto set = [&](int row, float x) { rows[size_t(row) * stride] = x; };
     const auto triple = [&](int row, const Vec3& v) { set(row, v.x), set(row + 1, v.y), set(row + 2, v.z); };

@@ -1,9 +1,9 @@
-// Lobes: what a vertex does to light. One file each in lobes/; each is one kind, known to trace() and the lighting shadeops by
-// name. The value of a lobe is f cos (docs/light.md): the shadeop's result is the integral of L f cos over directions, so
-// diffuse() of radiance 1 from everywhere is 1 and a light's Cl (irradiance / pi) is scored pi f cos Cl.
+// Lobes: BSDFs and phase functions. One file each in kinds/; trace() and the lighting shadeops find them by name. The value of a
+// lobe is f cos (docs/light.md): the shadeop's result is the integral of L f cos over directions, so diffuse() of uniform
+// radiance 1 is 1, and a light's Cl (irradiance / pi) contributes pi f cos Cl.
 //
-// Their code runs over blocks of 16 lobes of a kind (lobelanes.h). LobeColumns holds those of a batch; OneLobe asks one alone,
-// with the same bits.
+// The code runs over blocks of 16 lobes of a kind (lobelanes.h). LobeColumns holds those of a batch; OneLobe evaluates a single
+// one with the same bits.
 #pragma once
 #include "base/vec.h"
 #include "lobes/lobelanes.h"
@@ -15,27 +15,27 @@
 
 namespace alpenglow::transport {
 
-/// What the distributions that trace() has in common with bsdf() take beside the rest (3Delight manual, 6.4.5.2). Current space.
+/// Parameters of the distributions shared by trace() and bsdf() (3Delight manual, 6.4.5.2). Current space.
 struct DistributionParams {
     float roughness = 0, roughnessv = 0;
     Vec3 udir;
     Color eta{0}, k{0};       ///< index of refraction and extinction; glass-ggx and hair: the first channel of eta
     Color absorption{0};      ///< hair
-    std::vector<float> lobes; ///< glass-ggx: weights of reflection and refraction; hair: four numbers a lobe
+    std::vector<float> lobes; ///< glass-ggx: weights of reflection and refraction; hair: four numbers for each lobe
     int part = -1;            ///< glass-ggx: 0 reflection, 1 refraction; hair: the lobe; -1: all
 };
 
-/// Parameters of a lobe at one vertex, in current space. Which are used is said by the kind.
+/// Parameters of a lobe at one vertex, in current space. Each kind uses some of them.
 struct LobeParams {
     Vec3 axis;    ///< normal, mirror or cone direction; unit
     Vec3 wo;      ///< toward the viewer; unit
-    Vec3 horizon; ///< normal of the plane that cuts the lobe; used when hasHorizon
+    Vec3 horizon; ///< normal of the plane that clips the lobe; used if hasHorizon
     float a = 0;  ///< roughness, exponent or cone half angle
     bool hasHorizon = false;
-    std::shared_ptr<const DistributionParams> more; ///< kinds with `distribution` need it; null for others
+    std::shared_ptr<const DistributionParams> more; ///< required by kinds with `distribution`; null for others
 };
 
-/// A lobe for light that arrives from one direction.
+/// Value of a lobe for light from one direction.
 struct LobeValue {
     Color colour{0}; ///< f cos by channel; >= 0; per steradian
     float fcos = 0;  ///< the largest channel
@@ -48,7 +48,7 @@ struct LobeKind {
     bool distribution = false; ///< reads LobeParams::more
     int index = 0;             ///< in lobeKinds() and in lobeLanes()
 
-    // One lobe, asked once; see OneLobe.
+    // A single evaluation; see OneLobe.
     bool isDelta(const LobeParams&) const;
     float fcos(const LobeParams&, Vec3 w) const;
     float pdf(const LobeParams&, Vec3 w) const;
@@ -57,19 +57,19 @@ struct LobeKind {
     float spread(const LobeParams&) const;
 };
 
-/// One lobe by itself.
+/// A single lobe.
 class OneLobe {
 public:
     OneLobe(const LobeKind&, const LobeParams&);
     /// w is unit.
     LobeValue value(const Vec3& w) const;
-    /// Draws a direction by u, 0 to 1; false: this draw brings nothing (it counts as a sample of value 0).
+    /// Samples a direction by u, each in [0, 1); returns false if there is none (counts as a sample of value 0).
     bool sample(Vec2 u, Vec3& w) const;
-    /// About the integral of fcos; for choosing between lobes and for the energy rule. Exact is not needed, > 0 is.
+    /// Approximate integral of fcos, > 0; for lobe selection and the energy rule.
     float albedo() const { return rows_[kRowAlbedo]; }
-    /// Half angle in radians of the lobe's spread, for the footprint of rays behind it.
+    /// Half angle of the lobe in radians, for the footprint of rays that it scatters.
     float spread() const { return rows_[kRowSpread]; }
-    /// A single direction: fcos and pdf are 0 everywhere, sample returns it with weight albedo().
+    /// A delta lobe: fcos and pdf are 0 everywhere, sample() returns the direction with weight albedo().
     bool delta() const { return rows_[kRowDelta] != 0; }
 
 private:
@@ -80,27 +80,27 @@ private:
 /// f cos by channel.
 inline Color lobeValue(const LobeKind& k, const LobeParams& p, Vec3 w) { return OneLobe(k, p).value(w).colour; }
 
-/// Lobes of any kinds in blocks of their kind. First all are added, then prepare() makes them ready; then rounds of questions,
-/// each lobe at most once in a round.
+/// Lobes of any kinds, in blocks by kind. First add() all, then prepare(); then rounds of queries, each lobe at most once in a
+/// round.
 class LobeColumns {
 public:
-    /// Where a lobe is.
+    /// Position of a lobe.
     struct Place {
         int kind = 0, at = 0;
     };
     LobeColumns();
     void clear();
     Place add(const LobeKind&, const LobeParams&,
-              const DistributionParams* more = nullptr); ///< `more`: in place of LobeParams::more
-    /// Call after the last add(), before all that follows. Again after more were added.
+              const DistributionParams* more = nullptr); ///< `more`: replaces LobeParams::more
+    /// Call after the last add(), before queries. Call again after further add().
     void prepare();
     float albedo(Place p) const { return block(p).rows[kRowAlbedo][lane(p)]; }
     float spread(Place p) const { return block(p).rows[kRowSpread][lane(p)]; }
     bool delta(Place p) const { return block(p).rows[kRowDelta][lane(p)] != 0; }
-    /// A row of a lobe (LobeRow), and three of them; only those that its kind needs hold anything.
+    /// A row of a lobe (LobeRow), or three of them; only those that its kind reads are set.
     float row(Place p, int r) const { return block(p).rows[r][lane(p)]; }
     Vec3 triple(Place p, int r) const { return {row(p, r), row(p, r + 1), row(p, r + 2)}; }
-    /// Asks for the value for light from w, unit; evaluate() answers all that were asked.
+    /// Queries the value for light from w, unit; evaluate() answers all queries.
     void ask(Place p, const Vec3& w) {
         Block& b = block(p);
         const int l = lane(p);
@@ -113,7 +113,7 @@ public:
         const int l = lane(p);
         return {{b.value[0][l], b.value[1][l], b.value[2][l]}, b.value[kRowFcos][l], b.value[kRowPdf][l]};
     }
-    /// Asks for a direction by u; sample() draws all that were asked.
+    /// Queries a direction by u; sample() answers all queries.
     void ask(Place p, Vec2 u) {
         Block& b = block(p);
         const int l = lane(p);
@@ -121,7 +121,7 @@ public:
         note(p, b);
     }
     void sample();
-    /// False: this draw brings nothing.
+    /// Returns false if the sample has no direction.
     bool drawn(Place p, Vec3& w) const {
         const Block& b = block(p);
         const int l = lane(p);
@@ -137,7 +137,7 @@ private:
     struct Kind {
         std::vector<Block> blocks;
         int count = 0, ready = 0;
-        std::vector<int> asked; ///< blocks with questions
+        std::vector<int> asked; ///< blocks with queries
     };
     static int lane(Place p) { return p.at % kLobeBlock; }
     Block& block(Place p) { return kinds_[size_t(p.kind)].blocks[size_t(p.at / kLobeBlock)]; }
@@ -151,7 +151,7 @@ private:
 };
 
 std::span<const LobeKind* const> lobeKinds();
-/// By the name trace() or a lighting shadeop knows it under; null when unknown.
+/// The lobe that trace() or a lighting shadeop knows by this name; null if unknown.
 const LobeKind* findLobe(std::string_view name);
 
 } // namespace alpenglow::transport

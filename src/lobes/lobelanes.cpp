@@ -2,7 +2,7 @@
 
 namespace alpenglow::transport {
 
-// One for each file made from lanes/stages.inc: lanes, and the level of x86-64 that it is compiled for.
+// One for each file compiled from lanes/stages.inc: lanes, and level of x86-64.
 LobeLanesList lobeLanes_1v2(), lobeLanes_1v3(), lobeLanes_4v2(), lobeLanes_8v3(), lobeLanes_16v4();
 
 namespace {

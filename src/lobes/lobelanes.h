@@ -1,39 +1,39 @@
-// Lobes in columns: the code of every lobe kind over blocks of 16 lobes, compiled at 4, 8 and 16 lanes and chosen once by the
-// processor. Every width gives the same bits, and so does one lobe alone (OneLobe). No standard header beyond <cstdint>: what
-// compiles for newer processors must not leave a copy of a library's inline function behind for others.
+// Lobe code over blocks of 16 lobes, compiled for 4, 8 and 16 lanes and selected once by processor. Every width gives the same
+// bits, as does a single lobe (OneLobe). No standard header beyond <cstdint>: code for newer processors must not leave a copy of
+// a library's inline function for others.
 #pragma once
 #include <cstdint>
 
 namespace alpenglow::transport {
 
-inline constexpr int kLobeBlock = 16; ///< lobes of a block
+inline constexpr int kLobeBlock = 16; ///< lobes in a block
 
-/// Rows of a block, each of kLobeBlock floats. Vectors have three, in current space. Up to kRowOwn they are what LobeParams
-/// holds.
+/// Rows of a block, each of kLobeBlock floats. Vectors have three, in current space. Rows below kRowOwn hold LobeParams and
+/// results of prepare().
 enum LobeRow : int {
     kRowAxis = 0,       ///< normal, mirror or cone direction; unit
     kRowWo = 3,         ///< toward the viewer; unit
-    kRowHorizon = 6,    ///< normal of the plane that cuts the lobe
-    kRowHasHorizon = 9, ///< 1: it does; 0
+    kRowHorizon = 6,    ///< normal of the plane that clips the lobe
+    kRowHasHorizon = 9, ///< 1 if there is such a plane, else 0
     kRowA = 10,         ///< roughness, exponent or cone half angle
-    kRowRoughness = 11, ///< from here on: kinds with `distribution`
+    kRowRoughness = 11, ///< this and the following: kinds with `distribution`
     kRowRoughnessV = 12,
     kRowUdir = 13,
     kRowEta = 16,
     kRowK = 19,
     kRowAbsorption = 22,
     kRowPart = 25,  ///< -1: all
-    kRowCount = 26, ///< how many numbers of kRowLobes are given
+    kRowCount = 26, ///< number of values in kRowLobes
     kRowLobes = 27,
-    kRowAlbedo = 43, ///< by prepare(), as all that follow; see LobeKind
+    kRowAlbedo = 43, ///< this and the following by prepare(); see LobeKind
     kRowSpread = 44,
-    kRowDelta = 45, ///< 1: a single direction; 0
-    kRowOwn = 46,   ///< the kind's own
+    kRowDelta = 45, ///< 1 for a delta lobe, else 0
+    kRowOwn = 46,   ///< rows for the kind's own use
     kLobeRows = 64
 };
 inline constexpr int kMostLobeNumbers = kRowAlbedo - kRowLobes;
 
-/// Which rows a kind reads besides the axis.
+/// Rows that a kind reads in addition to the axis.
 enum LobeNeed : int {
     kNeedsWo = 1,
     kNeedsHorizon = 2, ///< kRowHorizon and kRowHasHorizon
@@ -44,32 +44,32 @@ enum LobeNeed : int {
 
 /// Rows of a value.
 enum ValueRow : int { kRowColour = 0, kRowFcos = 3, kRowPdf = 4, kValueRows = 5 };
-/// Rows of a drawn direction.
+/// Rows of a sampled direction.
 enum DrawnRow : int { kRowDirection = 0, kRowDrawn = 3, kDrawnRows = 4 };
 
-/// One lobe kind at one width. `lanes`: the lobes of the block that are asked, as bits; rows of others may be anything, before
+/// A lobe kind at one width. `lanes`: bit mask of the lobes in the block to process; rows of other lanes are undefined, before
 /// and after.
 struct LobeLanes {
     const char* name;
     const char* doc;
-    bool distribution; ///< one of those that trace() has in common with bsdf()
-    int needs;         ///< LobeNeed; other rows may hold anything
-    /// Fills the rows from kRowAlbedo on; before all else.
+    bool distribution; ///< shared by trace() and bsdf()
+    int needs;         ///< LobeNeed; other rows are undefined
+    /// Sets the rows from kRowAlbedo on. Call first.
     void (*prepare)(float* block, uint32_t lanes);
     /// f cos and density for light from w (3 rows, unit), into `value` (kValueRows).
     void (*evaluate)(const float* block, uint32_t lanes, const float* w, float* value);
-    /// Draws directions by u (2 rows, 0 to 1) into `drawn` (kDrawnRows). Not drawn: this draw brings nothing.
+    /// Samples directions by u (2 rows, [0, 1)) into `drawn` (kDrawnRows). kRowDrawn is 0 if there is none.
     void (*sample)(const float* block, uint32_t lanes, const float* u, float* drawn);
 };
 struct LobeLanesList {
-    const LobeLanes* lobes = nullptr; ///< in the order of lobeKinds()
+    const LobeLanes* lobes = nullptr; ///< in order of lobeKinds()
     int count = 0;
 };
 
-/// The lobes at 4, 8 or 16 lanes; none where this processor cannot run that. 1: for blocks of one lobe, whose rows are single
+/// The lobes at 4, 8 or 16 lanes; empty if this processor cannot run that width. 1: for blocks of one lobe, whose rows are single
 /// floats.
 LobeLanesList lobeLanes(int width);
-/// The widest that this processor runs.
+/// The widest that this processor can run.
 int lobeWidth();
 
 } // namespace alpenglow::transport

@@ -17,15 +17,15 @@ struct Basis {
     Vec3 toWorld(Vec3 v) const { return t * v.x + u * v.y + n * v.z; }
 };
 
-/// Cosine and sine of so many turns, 0 to 1. The series of both functions within an eighth of a turn, as exact as float is: a
-/// library's differ from one version to the next.
+/// Cosine and sine of `turns`, 0 to 1, by series within an eighth of a turn, to float precision. Library functions differ between
+/// versions.
 inline Vec2 unitCircle(float turns) {
     float quarters = float(int(4 * turns + 0.5f));
     float x = (turns - 0.25f * quarters) * float(2 * kPi), q = x * x;
     float s = x * (1 - q * (1 / 6.f - q * (1 / 120.f - q * (1 / 5040.f - q * (1 / 362880.f)))));
     float c = 1 - q * (0.5f - q * (1 / 24.f - q * (1 / 720.f - q * (1 / 40320.f))));
     int k = int(quarters);
-    float a = k & 1 ? s : c, b = k & 1 ? c : s; // turned by k quarters: (c, s), (-s, c), (-c, -s), (s, -c)
+    float a = k & 1 ? s : c, b = k & 1 ? c : s; // rotated by k quarters: (c, s), (-s, c), (-c, -s), (s, -c)
     return {(k + 1) & 2 ? -a : a, k & 2 ? -b : b};
 }
 
@@ -36,8 +36,8 @@ inline Vec3 sampleCosine(Vec2 e) {
     return {r * d.x, r * d.y, std::sqrt(e.x)};
 }
 
-/// Uniform direction in a cone about +z with the given cosine of its half angle; density 1 / (2 pi (1 - cosMax)).
-/// oneMinusCos is passed beside it because small cones lose it in the subtraction.
+/// Uniform direction in a cone around +z; density 1 / (2 pi (1 - cosMax)). Takes 1 - cosMax, because small cones lose it in the
+/// subtraction.
 inline Vec3 sampleCone(float oneMinusCos, Vec2 e) {
     float h = e.x * oneMinusCos, c = 1 - h, s = std::sqrt(std::max(0.f, h * (2 - h)));
     Vec2 d = unitCircle(e.y);
@@ -51,15 +51,15 @@ inline float misWeight(float a, float b) {
     return 1 / (1 + r * r);
 }
 
-/// The chance that a ray goes on which a waiting kernel asks for: of its result's use nothing is known, and a kernel may ask any
-/// number of times. `bounces` of the point that asks; `known`: the most rays that were asked for at a point of the path before;
-/// `count`: of the call that asks, behind calls of the same kernel that have asked for `before` rays there.
-/// At the camera's hit every ray goes, at the next two points three in the mean. From there on the chances at a point sum up to
-/// less than 1, so that the tree of rays ends: to s = .8 for two or three rays, .7 for more, where 1 / (1 - s) points follow in
-/// the mean. All rays of a point have about the same chance; where kernels give back a part r of light, the variance that the
-/// chances bring is finite while r^2 < s, and s about .8 makes variance times rays least for r from .5 to .8. A ray that is known
-/// alone has .5, for its kernel may ask for others; calls that the path did not know of have .4 together, for they teach it
-/// only by and by how many there are. Unbiased: what is known depends on no number that is drawn here.
+/// Survival probability of a ray that a waiting kernel requests; its use of the result is unknown, and it may request any number
+/// of rays. `bounces`: of the requesting point; `known`: largest number of rays requested at an earlier point of the path;
+/// `before`: rays that the kernel has requested there; `count`: rays of this call. At the camera's hit all rays are sent, at the
+/// next two points three on average. From there on the probabilities at a point sum to s < 1, so that the tree of rays ends: s =
+/// .8 for two or three rays, .7 for more, with 1 / (1 - s) further points on average. All rays of a point have about the same
+/// probability. For kernels that reflect a fraction r of the light the variance is finite while r^2 < s, and s about .8 minimises
+/// variance times rays for r from .5 to .8. A single known ray has .5, because its kernel may request others; calls that the path
+/// did not know of share .4, because their number becomes known only gradually. Unbiased: the probabilities depend on no number
+/// drawn here.
 inline float rouletteWaiting(int bounces, uint32_t known, uint32_t before, uint32_t count) {
     const uint32_t many = std::max(known, before + count);
     const float n = float(many);
@@ -68,21 +68,21 @@ inline float rouletteWaiting(int bounces, uint32_t known, uint32_t before, uint3
     return many < 2 ? .5f : (learns ? .4f : many < 4 ? .8f : .7f) / n;
 }
 
-/// The chance that a ray goes on which the shader of a light asks for, at a point that it lights after so many bounces. `many`:
-/// the most such rays known to be asked for at one point. What such a ray meets is lit by all lights again, and its paths go on
-/// besides: so the chances at a point sum up to half, and the tree of rays ends where surfaces reflect no more than half.
+/// Survival probability of a ray that a light's shader requests at a point that it lights after so many bounces. `many`: largest
+/// number of such rays known at one point. Hits of such a ray are lit by all lights again, and its paths continue as well: so the
+/// probabilities at a point sum to 1/2, and the tree of rays ends if surfaces reflect at most half.
 inline float rouletteOfLight(int bounces, uint32_t many) { return bounces < 1 ? 1 : .5f / float(std::max(many, 1u)); }
 
-/// The chance that a path goes on behind its third bounce, whose throughput would be `weight`; 0 = it stops, and the caller
-/// divides by it. Half again the root of the largest channel: the throughput itself stops paths whose light is missed more than
-/// their time (docs/noise.md has the figures). `dice` draws a number, if one is needed.
+/// Survival probability of a path after its third bounce, with throughput `weight`; 0: it ends; the caller divides by it. 1.5
+/// times the root of the largest channel, because the throughput itself would end paths whose light costs more variance than
+/// their time (figures in docs/noise.md). `dice` draws a random number if needed.
 template <class Dice> float rouletteOfPath(const Color& weight, const Dice& dice) {
     const float m = maxComponent(Color(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z)));
     const float q = std::min(1.f, 1.5f * std::sqrt(m));
     return q >= 1 ? 1 : q > 0 && dice() < q ? q : 0;
 }
 
-/// SLProject's local roulette (docs/design/slproject.md): 1 up to depth 3, then the largest channel of the albedo. 0 = stop; the
+/// SLProject's local roulette (docs/design/slproject.md): 1 up to depth 3, then the largest channel of the albedo. 0: ends; the
 /// caller divides.
 inline float rouletteLocal(int depth, const Color& albedo, float random) {
     if (depth <= 3) return 1;

@@ -1,4 +1,4 @@
-// Photons: parts of the light of a scene that came to rest at points of surfaces.
+// Photons: light of a scene stored at points of surfaces.
 #pragma once
 #include "base/vec.h"
 #include <algorithm>
@@ -6,8 +6,8 @@
 
 namespace alpenglow::photons {
 
-/// A unit vector in 32 bits, 16 for each coordinate of the octahedron that is folded onto a square (Meyer and others, "On
-/// Floating-Point Normal Vectors", 2010). Off by less than 5e-5 radians.
+/// Packs a unit vector into 32 bits, 16 for each coordinate of the octahedral map (Meyer and others, "On Floating-Point Normal
+/// Vectors", 2010). Error below 5e-5 radians.
 inline uint32_t packUnit(const Vec3& v) {
     const float sum = std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
     float x = sum > 0 ? v.x / sum : 0, y = sum > 0 ? v.y / sum : 0;
@@ -28,13 +28,13 @@ inline Vec3 unpackUnit(uint32_t u) {
     return normalize(Vec3(x, y, z));
 }
 
-/// One of them, in 36 bytes. Camera space in memory, world space in files.
+/// A photon in 36 bytes. Camera space in memory, world space in files.
 struct Photon {
     Vec3 P;
-    Color power;         ///< of the light's power, its share: all that were emitted together carry what the lights send
-    uint32_t from = 0;   ///< packUnit(): unit, toward where it came from
-    uint32_t normal = 0; ///< packUnit(): of the surface, on the side on which it arrived
-    uint8_t reflected[3] = {0, 0, 0}; ///< 255: the surface gives back all that arrives, as diffuse light; by channel
+    Color power;         ///< fraction of the light's power: all photons of an emission sum to the power of the lights
+    uint32_t from = 0;   ///< packUnit(): unit, toward its origin
+    uint32_t normal = 0; ///< packUnit(): surface normal on the side of arrival
+    uint8_t reflected[3] = {0, 0, 0}; ///< diffuse reflectance of the surface by channel; 255: 1
     uint8_t bounces = 0;              ///< since the light; 255: that, or more
     Vec3 direction() const { return unpackUnit(from); }
 };

@@ -32,7 +32,7 @@ Vec3 takeFloats(const uint8_t* from) {
 }
 Vec3 turned(const Matrix& m, uint32_t unit) { return normalize(Vec3(transformVector(m, Vec3d(unpackUnit(unit))))); }
 
-/// Power has the units of radiance and area: what it is where lengths are those behind a matrix, over what it is before it.
+/// Scale factor of power by a matrix: power has units of radiance times area.
 float powerBehind(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 2.0 / 3)); }
 
 void pack(const Photon& p, const Matrix& m, float scale, uint8_t* to) {
@@ -49,14 +49,14 @@ bool sound(const Photon& p) {
     return std::isfinite(sum) && p.power.x >= 0 && p.power.y >= 0 && p.power.z >= 0;
 }
 
-/// "" where the header is one, and fits the size of the file.
+/// Returns "" if the header is valid and matches the size of the file.
 std::string faultOf(const std::vector<uint8_t>& b) {
     if (b.size() < 8 || std::memcmp(b.data(), kMagic, 8) != 0) return "it is no photon map";
     if (b.size() < kHeader + kEnd) return "it is cut short";
     if (uint32_t(crc32(0, b.data(), 32)) != take<uint32_t>(b.data() + 32)) return "its header is damaged";
     if (const uint32_t v = take<uint32_t>(b.data() + 8); v != kVersion)
         return "it has version " + std::to_string(v) + ", this program reads version " + std::to_string(kVersion);
-    if (take<uint32_t>(b.data() + 12) != kRecord) return "its photons have another size than those of its version";
+    if (take<uint32_t>(b.data() + 12) != kRecord) return "its photons do not have the size of its version";
     const uint64_t count = take<uint64_t>(b.data() + 16);
     if (count > limits::kPhotons) return "it has more than " + std::to_string(limits::kPhotons) + " photons";
     if (const uint64_t want = kHeader + count * kRecord + kEnd; b.size() != want)
@@ -116,12 +116,12 @@ std::shared_ptr<const PhotonMap> loadPhotons(const std::string& path, const Matr
             p.normal = packUnit(turned(worldToCamera, take<uint32_t>(at + 28)));
             std::memcpy(p.reflected, at + 32, 3);
             p.bounces = at[35];
-            if (!sound(p)) fault = "a photon in it is not a number, or carries less than nothing";
+            if (!sound(p)) fault = "a photon in it is not a number, or has negative power";
         }
     }
     if (!fault.empty()) {
         d.report(Severity::Error, Rie::BadFile, place, "photon map \"" + path + "\" cannot be read: " + fault,
-                 "Hider \"photon\" makes it anew");
+                 "Hider \"photon\" makes it again");
         return nullptr;
     }
     return std::make_shared<const PhotonMap>(std::move(photons));

@@ -1,4 +1,4 @@
-// Photon maps in files. Little-endian throughout:
+// Photon map files. Little-endian:
 //   bytes 0-7    "ALPGPHOT"
 //   8-11         version, 1
 //   12-15        bytes of a photon, 36
@@ -19,11 +19,11 @@ struct OutputPolicy;
 
 namespace alpenglow::photons {
 
-/// Writes photons, given in camera space. False: an error was reported, and what was there before still is.
+/// Writes photons given in camera space. Returns false after an error, which is reported; an existing file is then unchanged.
 bool savePhotons(const std::string& name, std::span<const Photon>, uint64_t emitted, const Matrix& cameraToWorld,
                  const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
 
-/// Reads a map into camera space. Null: an error was reported, with what is wrong with the file.
+/// Reads a map into camera space. Returns null after an error, which is reported with the fault of the file.
 std::shared_ptr<const PhotonMap> loadPhotons(const std::string& path, const Matrix& worldToCamera, Diagnostics&,
                                              const SourcePlace& = {});
 

@@ -37,7 +37,7 @@ uint32_t PhotonGrid::bucketOf(int64_t x, int64_t y, int64_t z) const {
 int PhotonGrid::bucketsAbout(const Vec3& at, std::array<uint32_t, 8>& out) const {
     if (photons_.empty() || !std::isfinite(dot(at, at))) return 0;
     int64_t low[3], high[3];
-    for (int k = 0; k < 3; ++k) { // cells are two radii wide: two of them at most
+    for (int k = 0; k < 3; ++k) { // cells are two radii wide: at most two of them
         low[k] = int64_t(std::floor((double(at[k]) - double(radius_)) / cell_));
         high[k] = std::min(low[k] + 1, int64_t(std::floor((double(at[k]) + double(radius_)) / cell_)));
     }
@@ -50,8 +50,7 @@ int PhotonGrid::bucketsAbout(const Vec3& at, std::array<uint32_t, 8>& out) const
 }
 
 float radiusOfPass(float first, uint32_t pass) {
-    // The product of (j + 2/3) / (j + 1) for j = 1 .. pass: the first thousand factors, then its limit for large ones, which is
-    // a power (the error of what is left out is below 1e-4).
+    // Product of (j + 2/3) / (j + 1) for j = 1 .. pass: the first thousand factors, then the asymptotic power (error below 1e-4).
     constexpr double kAlpha = 2.0 / 3;
     constexpr uint32_t kExact = 1000;
     double square = 1;

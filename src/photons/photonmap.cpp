@@ -5,11 +5,11 @@
 namespace alpenglow::photons {
 
 namespace {
-constexpr float kSameSide = 0.5f; ///< normals that differ by less than 60 degrees are of one surface
+constexpr float kSameSide = 0.5f; ///< normals that differ by less than 60 degrees belong to one surface
 
 float coordinate(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-/// The middle of a node's photons, which is its own.
+/// The median photon of a node, stored in the node itself.
 size_t middleOf(size_t begin, size_t end) { return begin + (end - begin) / 2; }
 } // namespace
 
@@ -59,8 +59,8 @@ PhotonMap::Bounds PhotonMap::bound(size_t begin, size_t end) {
     return bounds_[middle / kBoundStep] = all;
 }
 
-/// Whether a photon of this node may be nearer than those that were found, and face the right way. The distance is rounded as
-/// those of photons are, each of which is at least as far along each axis, so none that would count is passed over.
+/// Whether a photon of this node may be nearer than those found, and on the right side. Rounded like the distances of photons,
+/// each of which is at least as far along each axis, so no valid photon is missed.
 bool PhotonMap::mayCount(const Lookup& l, size_t begin, size_t end, float within2) const {
     const Bounds& b = bounds_[middleOf(begin, end) / kBoundStep];
     Vec3 away(0.f);
@@ -74,7 +74,7 @@ bool PhotonMap::mayCount(const Lookup& l, size_t begin, size_t end, float within
     return facing + 1e-3f * size > kSameSide * 127;
 }
 
-/// Order among equals is that of emission, so the tree does not depend on how the middle is found.
+/// Ties are ordered by emission, so the tree does not depend on the median algorithm.
 void PhotonMap::build(std::vector<Photon>& from, std::vector<uint32_t>& order, size_t begin, size_t end) {
     while (end - begin > 1) {
         Vec3 lo(std::numeric_limits<float>::max()), hi(-std::numeric_limits<float>::max());
@@ -103,11 +103,11 @@ Color PhotonMap::power() const {
     return Color(sum);
 }
 
-/// The nearest of what is offered. More than are asked for are kept until there are twice as many, so that few are moved.
+/// Collects the nearest photons. Holds up to twice as many as needed, so that few are moved.
 class PhotonMap::Nearest {
 public:
     Nearest(std::vector<Found>& found, size_t most) : found_(found), most_(most) { found_.clear(); }
-    float within2() const { return within2_; } ///< what is farther does not count
+    float within2() const { return within2_; } ///< squared radius; farther photons are ignored
     void offer(float distance2, size_t at) {
         found_.push_back({distance2, uint32_t(at)});
         if (found_.size() >= 2 * most_ + 32) cut();
@@ -125,12 +125,11 @@ private:
     float within2_ = std::numeric_limits<float>::infinity();
 };
 
-/// Whether a photon faces the right way and is one of those that are asked for. What its unit vectors in coarse steps leave open
-/// is decided by themselves.
+/// Whether a photon is on the right side and requested. Undecided coarse unit vectors are decided by the exact ones.
 bool PhotonMap::counts(const Lookup& l, size_t at) const {
     const Photon& p = photons_[at];
     if (p.bounces < l.minBounces) return false;
-    constexpr float kStep = 0.0075f; // more than the half of a step, 1/254, along each of three axes
+    constexpr float kStep = 0.0075f; // more than half a step, 1/254, along each of three axes
     const Directions& d = directions_[at];
     float normal = 0, from = 0;
     for (int k = 0; k < 3; ++k) normal += float(d.normal[k]) * l.N[k], from += float(d.from[k]) * l.N[k];
@@ -140,7 +139,7 @@ bool PhotonMap::counts(const Lookup& l, size_t at) const {
     return dot(unpackUnit(p.normal), l.N) > kSameSide && dot(p.direction(), l.N) > 0;
 }
 
-/// All photons of a small node.
+/// Tests all photons of a small node.
 void PhotonMap::scan(const Lookup& l, size_t begin, size_t end, Nearest& nearest) const {
     float d2[kScanned];
     const size_t n = end - begin;
@@ -153,13 +152,13 @@ void PhotonMap::scan(const Lookup& l, size_t begin, size_t end, Nearest& nearest
         if (d2[i] <= nearest.within2() && counts(l, begin + i)) nearest.offer(d2[i], begin + i);
 }
 
-/// The nearest photons that count, one more than are asked for.
+/// Finds the nearest valid photons, one more than requested.
 void PhotonMap::nearest(const Lookup& l, std::vector<Found>& found) const {
     Nearest nearest(found, size_t(std::clamp(l.estimator, 1, kMostAsked)) + 1);
     struct Part {
         size_t begin, end;
         float beyond2;
-    }; // squared distance of the plane that must be crossed
+    }; // squared distance to the splitting plane
     Part waiting[64];
     int depth = 0;
     waiting[depth++] = {0, photons_.size(), 0};
@@ -222,7 +221,7 @@ float typicalDistance(const PhotonMap& map, int n, int asked) {
     const size_t step = std::max<size_t>(1, all.size() / size_t(std::max(asked, 1)));
     std::vector<float> d2;
     for (size_t i = step / 2; i < all.size(); i += step) {
-        // Photons near each other in space are near each other in the tree's order, but not all of them: the whole map is asked.
+        // Near photons are mostly, but not always, near in the order of the tree: searches the complete map.
         d2.clear();
         for (const Photon& p : all) d2.push_back(dot(p.P - all[i].P, p.P - all[i].P));
         std::nth_element(d2.begin(), d2.begin() + n, d2.end());

@@ -1,6 +1,5 @@
-// A photon map: photons of one emission, and the light that they are found to be at a point. A tree of k dimensions without
-// pointers, as in Jensen, "Realistic Image Synthesis Using Photon Mapping" (2001). The same photons give the same tree and the
-// same sums, bit by bit.
+// A photon map: photons of one emission, and density estimates. A k-d tree without pointers, as in Jensen, "Realistic Image
+// Synthesis Using Photon Mapping" (2001). The same photons give the same tree and the same sums, bit by bit.
 #pragma once
 #include "photons/photon.h"
 #include <memory>
@@ -12,25 +11,25 @@ namespace alpenglow::photons {
 class PhotonMap {
 public:
     PhotonMap() = default;
-    /// The photons in the order in which they were emitted.
+    /// The photons in order of emission.
     explicit PhotonMap(std::vector<Photon> photons);
     size_t size() const { return photons_.size(); }
-    std::span<const Photon> photons() const { return photons_; } ///< in the tree's order
-    /// Sum of what all carry.
+    std::span<const Photon> photons() const { return photons_; } ///< in the order of the tree
+    /// Total power.
     Color power() const;
 
     struct Lookup {
-        Vec3 P, N;                   ///< N: unit; light counts that arrives on its side
-        int estimator = 50;          ///< photons that are asked for, 1 to kMostAsked
-        int minBounces = 0;          ///< photons with fewer are passed over
-        uint64_t* visited = nullptr; ///< counts the photons that are looked at
+        Vec3 P, N;                   ///< N: unit; only light on its side counts
+        int estimator = 50;          ///< number of photons in the estimate, 1 to kMostAsked
+        int minBounces = 0;          ///< photons with fewer are ignored
+        uint64_t* visited = nullptr; ///< counts visited photons
     };
     static constexpr int kMostAsked = 4096;
-    /// Power of the nearest photons over the area of the disc that they fill: irradiance, in radiance times steradians. The
-    /// nearest `estimator` of them count, and the disc reaches to the one after: so the estimate is right in the mean where
-    /// photons lie evenly. Of fewer the farthest bounds the disc. Biased where light changes within the disc.
+    /// Irradiance, in radiance times steradians: power of the nearest `estimator` photons over the area of the disk to the next
+    /// one, which is unbiased for uniform photons. With fewer photons the farthest one bounds the disk. Biased where light varies
+    /// within the disk.
     Color irradiance(const Lookup&) const;
-    /// What the surface gives back of it as diffuse light: the reflection that the photons there have met.
+    /// Diffusely reflected radiance: photons weighted by the reflectance where they are stored.
     Color radiance(const Lookup&) const;
 
 private:
@@ -44,7 +43,7 @@ private:
         Color power, given;
         float area = 0;
     };
-    /// What bounds the photons of a node: their places, and their normals in steps of 1/127.
+    /// Bounds of a node's photons: positions, and normals in steps of 1/127.
     struct Bounds {
         Vec3 lo, hi;
         int8_t normalLo[3], normalHi[3];
@@ -57,21 +56,22 @@ private:
     void scan(const Lookup&, size_t begin, size_t end, Nearest&) const;
     bool counts(const Lookup&, size_t at) const;
     std::vector<Photon> photons_;
-    /// What look-ups read of photons first: places, and unit vectors in steps of 1/127.
+    /// Data that lookups read first: positions, and unit vectors in steps of 1/127.
     std::vector<float> place_[3];
     struct Directions {
         int8_t normal[3], from[3];
     };
     std::vector<Directions> directions_;
-    std::vector<uint8_t> axis_; ///< by photon: along which its node divides
-    /// Of nodes of kBounded photons or more, by their middle / kBoundStep: the middles of two such nodes are that far apart.
+    std::vector<uint8_t> axis_; ///< by photon: split axis of its node
+    /// Bounds of nodes with at least kBounded photons, by median index / kBoundStep: medians of two such nodes are at least that
+    /// far apart.
     std::vector<Bounds> bounds_;
     static constexpr size_t kBounded = 16, kBoundStep = 8;
-    static constexpr size_t kScanned = 32; ///< nodes of fewer photons are looked through from end to end
+    static constexpr size_t kScanned = 32; ///< smaller nodes are searched linearly
 };
 
-/// The distance to the n-th nearest other photon, of a photon in the middle of `asked` that are picked evenly: how dense photons
-/// are where they are dense. 0 where there are too few.
+/// Distance to the n-th nearest other photon: median over `asked` photons at uniform indices, i.e. the density where most photons
+/// are. 0 if there are too few.
 float typicalDistance(const PhotonMap&, int n, int asked);
 
 } // namespace alpenglow::photons

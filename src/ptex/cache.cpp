@@ -13,7 +13,7 @@ Cache::Ref Cache::find(const Key& k) {
     return found->second->image;
 }
 
-/// Gives up what a part has not used for the longest time, but for the latest, until all parts together are small enough.
+/// Drops the least recently used faces of a part, except the newest, until the total size is small enough.
 void Cache::forget(Part& p, size_t butFor) {
     std::lock_guard lock(p.mutex);
     while (bytes_ > most_ && p.entries.size() > butFor) {
@@ -33,7 +33,7 @@ void Cache::keep(const Key& k, const Ref& image, size_t tableBytes) {
         p.at[k] = p.entries.begin();
         bytes_ += bytes;
     }
-    // The others only where one face is larger than what a part may have.
+    // Other parts only if a single face exceeds the limit of a part.
     for (size_t n = 0; n < kParts && bytes_ > most_; ++n) forget(parts_[(own + n) % kParts], n == 0 ? 1 : 0);
 }
 

@@ -13,14 +13,14 @@ constexpr float kLeastSpread = .6f; ///< of the Gaussian, pixels: below, it woul
 constexpr float kMostPixels = 8;    ///< that a footprint is wide in the level that is read
 constexpr int kMostSteps = 8;       ///< from face to face
 
-/// A place on some face. `black`: beyond a border that is black.
+/// A position on some face. `black`: beyond a black border.
 struct Place {
     uint32_t face;
     float u, v;
     bool black = false;
 };
 
-/// A function of the distance in pixels, for a footprint so many pixels wide.
+/// A function of the distance in pixels, for a footprint of this width in pixels.
 struct Shape {
     Kernel kernel;
     float half; ///< of the Gaussian its spread
@@ -34,11 +34,11 @@ struct Shape {
         const float a = std::fabs(x);
         if (kernel == Kernel::Gaussian) return float(exact::exp(-.5 * double(x / half) * double(x / half)));
         if (kernel == Kernel::Triangle) return std::max(0.f, 1 - a / half);
-        return std::clamp(half + .5f - a, 0.f, 1.f); // what of the pixel lies in the box
+        return std::clamp(half + .5f - a, 0.f, 1.f); // overlap of the pixel with the box
     }
 };
 
-/// A level of a face, whole or by tiles.
+/// A level of a face, complete or in tiles.
 struct Level {
     uint64_t key;
     std::shared_ptr<const Image> image; ///< or the latest tile
@@ -103,13 +103,13 @@ Level& Filter::levelLike(uint32_t face) {
     return level(face, std::max(0, int(std::max(f.ulog, f.vlog)) - std::max(ulog_, vlog_)));
 }
 
-/// Where a place along an edge lies: t from its first to its last corner, d beyond it.
+/// Position relative to an edge: t from its first to its last corner, d beyond it.
 void alongEdge(int edge, float u, float v, float& t, float& d) {
     t = edge == 0 ? u : edge == 1 ? v : edge == 2 ? 1 - u : 1 - v;
     d = edge == 0 ? -v : edge == 1 ? u - 1 : edge == 2 ? v - 1 : -u;
 }
 
-/// Beyond an edge: onto the neighbour. False: there is none.
+/// Crosses an edge onto the neighbour. Returns false if there is none.
 bool Filter::cross(Place& p, int edge) const {
     const Face& f = head_.faces[p.face];
     if (f.adjacent[size_t(edge)] < 0) return false;
@@ -141,7 +141,7 @@ bool Filter::cross(Place& p, int edge) const {
     return true;
 }
 
-/// At a border across u, or v. False: it is black there.
+/// Applies the border mode across u, or v. Returns false if it is black there.
 bool Filter::border(Place& p, bool u) const {
     float& x = u ? p.u : p.v;
     switch (u ? head_.uBorder : head_.vBorder) {
@@ -183,7 +183,7 @@ void Filter::addPixel(Level& m, int i, int j, float weight) {
     for (size_t c = 0; c < sums_.size(); ++c) sums_[c] += double(weight * from[c]);
 }
 
-/// What a place of another face shows, between its pixels where it has fewer.
+/// Adds the value of another face, interpolated if it has fewer pixels.
 void Filter::add(const Place& p, float weight) {
     weight_ += double(weight);
     if (p.black) return;
@@ -227,7 +227,7 @@ void Filter::overQuad() {
         }
 }
 
-/// Triangles lie beside each other as in a parallelogram.
+/// Adjacent triangles are treated as halves of a parallelogram.
 bool Filter::crossTriangle(Place& p, int edge) const {
     const Face& f = head_.faces[p.face];
     if (f.adjacent[size_t(edge)] < 0) return false;

@@ -15,8 +15,8 @@ struct Query {
     Kernel kernel = Kernel::Gaussian;
 };
 
-/// Writes Query::count numbers. False: there is no such face, and they are 0. Thread safe; the same bits whoever asks.
-/// Where two ways lead around a corner both count half; where a face has no neighbour, the file's border mode says what is there.
+/// Writes Query::count numbers. Returns false, with zeros, if there is no such face. Thread safe; the same bits for any caller.
+/// If two ways lead around a corner, each counts half; if a face has no neighbour, the file's border mode applies.
 bool lookup(const Texture&, const Query&, float* out);
 
 } // namespace alpenglow::ptex

@@ -1,4 +1,4 @@
-// Limits of Ptex files, beside those of base/limits.h.
+// Limits of Ptex files, in addition to base/limits.h.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,9 +11,9 @@ inline constexpr int kPtexSide = 15;                         ///< logarithm of t
 inline constexpr size_t kPtexFaceNumbers = size_t(1) << 27;  ///< of all channels of one face
 inline constexpr size_t kPtexWholeNumbers = size_t(1) << 20; ///< of a level of a face; larger ones are read by their tiles
 inline constexpr size_t kPtexTiles = size_t(1) << 20;        ///< of a level of a face
-inline constexpr size_t kPtexHeadBytes = size_t(1) << 30;    ///< of what is known of all faces: sides, neighbours, means, places
+inline constexpr size_t kPtexHeadBytes = size_t(1) << 30;    ///< data of all faces: sizes, neighbours, means, file positions
 inline constexpr size_t kPtexMetas = 1'000'000;
-inline constexpr size_t kPtexMetaBytes = size_t(256) << 20;  ///< of what is in a file beside faces
-inline constexpr size_t kPtexCacheBytes = size_t(256) << 20; ///< of faces that a frame keeps
+inline constexpr size_t kPtexMetaBytes = size_t(256) << 20;  ///< metadata of a file
+inline constexpr size_t kPtexCacheBytes = size_t(256) << 20; ///< faces in the cache of a frame
 
 } // namespace alpenglow::limits

@@ -21,18 +21,18 @@ template <class T> void put(std::vector<uint8_t>& to, T v) {
 float toFloat(Number, const uint8_t*);
 void fromFloat(Number, float, std::vector<uint8_t>& to);
 
-/// Exactly `size` bytes. False: the stream is damaged, or of another size.
+/// Decompresses exactly `size` bytes. Returns false if the stream is damaged, or has another size.
 bool inflated(std::span<const uint8_t>, size_t size, std::vector<uint8_t>& to);
 std::vector<uint8_t> deflated(std::span<const uint8_t>);
-/// What the 20 bytes of a face say.
+/// Parses the 20 bytes of a face.
 Face faceOf(const uint8_t*);
 
-/// Whole numbers of so many bytes from their differences; others stay.
+/// Reverses difference encoding for integers of this size in bytes; other sizes are unchanged.
 void addUp(size_t size, std::vector<uint8_t>&);
-/// A stream of so many bytes cannot become more than this.
+/// Largest decompressed size of a stream with so many bytes.
 inline uint64_t mostInflated(uint64_t bytes) { return bytes * 1040 + 1024; }
 
-/// Sizes and encodings of data blocks: bits 30 and 31 say how.
+/// Encodings of data blocks, in bits 30 and 31 of their size.
 enum Encoding : uint32_t { kConstant = 0, kZipped = 1, kDifferences = 2, kTiled = 3 };
 inline uint32_t blockSize(uint32_t header) { return header & 0x3fffffffu; }
 inline Encoding encodingOf(uint32_t header) { return Encoding(header >> 30); }

@@ -1,6 +1,6 @@
-// Ptex files: a picture for each face of a mesh, and which faces lie beside each other. Source: Ptex File Format Specification,
-// version 1.3r1 (ptex.us/PtexFile.html), and the pages on adjacency and on triangles beside it. u and v go from 0 to 1 over a
-// face, from its first corner to the second and to the last.
+// Ptex files: a picture for each face of a mesh, and adjacency of faces. Source: Ptex File Format Specification, version 1.3r1
+// (ptex.us/PtexFile.html), and its pages on adjacency and triangles. u and v run from 0 to 1 over a face, from its first corner
+// to the second and to the last.
 #pragma once
 #include "base/diagnostics.h"
 #include <array>
@@ -17,7 +17,7 @@ struct OutputPolicy;
 namespace alpenglow::ptex {
 
 enum class Mesh : uint8_t { Triangle = 0, Quad = 1 };
-enum class Number : uint8_t { Byte = 0, Word = 1, Half = 2, Float = 3 }; ///< bytes and words stand for 0 to 1
+enum class Number : uint8_t { Byte = 0, Word = 1, Half = 2, Float = 3 }; ///< bytes and words represent 0 to 1
 enum class Border : uint8_t { Clamp = 0, Black = 1, Periodic = 2 };      ///< where a face has no neighbour
 
 struct Face {
@@ -27,8 +27,8 @@ struct Face {
     std::array<uint8_t, 4> edge{};                   ///< which of the neighbour's edges it is
 };
 
-/// Rows of constant v, from v = 0; channels of a pixel side by side. Of triangles: pixel (i, j) with i + j < n is the triangle at
-/// (i / n, j / n), the others are those that stand on their heads, turned about the middle of the square.
+/// Rows of constant v, from v = 0; channels of a pixel are interleaved. For triangles: pixel (i, j) with i + j < n is the
+/// triangle at (i / n, j / n); the others are the inverted triangles, rotated about the centre of the square.
 struct Image {
     int u = 1, v = 1;
     std::vector<float> values;
@@ -37,9 +37,9 @@ struct Image {
 /// A level of a face that is read piece by piece: equal rectangles, row by row.
 struct Tiles : Image {        ///< sides of the level; no values
     int tu = 0, tv = 0;       ///< logarithms of the sides of a piece
-    std::vector<uint64_t> at; ///< where each lies in the file
+    std::vector<uint64_t> at; ///< file position of each
     std::vector<uint32_t> headers;
-    /// In which piece a pixel lies, and as the how manieth there.
+    /// Index of the tile that contains a pixel, and of the pixel in it.
     uint32_t numberOf(int i, int j) const { return uint32_t(j >> tv) * uint32_t(u >> tu) + uint32_t(i >> tu); }
     size_t within(int i, int j) const { return (size_t(j & ((1 << tv) - 1)) << tu) + size_t(i & ((1 << tu) - 1)); }
 };
@@ -68,10 +68,10 @@ class Texture {
 public:
     virtual ~Texture() = default;
     virtual const Head& head() const = 0;
-    /// A face with its sides halved so many times, not below one pixel, multiplied with alpha. The mean of it where it cannot be
-    /// read, which is reported once.
+    /// A face with its sides halved this many times, at least one pixel, premultiplied with alpha. The mean of the face if it
+    /// cannot be read, which is reported once.
     virtual std::shared_ptr<const Image> image(uint32_t face, int halvings) const = 0;
-    /// How such a picture lies in the file, if it is too large to be looked at whole and is cut there; else null.
+    /// File positions of the tiles of such a picture, if it is stored in tiles and too large to read completely; else null.
     virtual std::shared_ptr<const Tiles> tiles(uint32_t face, int halvings) const = 0;
     /// One of its pieces, as image() has it there.
     virtual std::shared_ptr<const Image> tile(uint32_t face, int halvings, const Tiles&, uint32_t number) const = 0;
@@ -80,8 +80,8 @@ public:
 std::shared_ptr<const Texture> openTexture(const std::string& path, std::shared_ptr<Cache>, Diagnostics&,
                                            const SourcePlace& = {});
 
-/// Writes a file: faces of `images`, by number, with the sides that the head says; what is coarser is made of them. False: an
-/// error was reported, and what was there before still is.
+/// Writes a file: faces of `images`, by index, with the sizes in the head; coarser levels are computed. Returns false after an
+/// error, which is reported; an existing file is then unchanged.
 bool writeTexture(const std::string& name, Head, const std::vector<Image>& images, const OutputPolicy&, Diagnostics&,
                   const SourcePlace& = {});
 

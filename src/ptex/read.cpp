@@ -1,4 +1,4 @@
-// Reading Ptex files. Nothing in them is believed: every size is checked against the file before memory is taken for it.
+// Reads Ptex files. They are untrusted: every size is checked against the file before memory is allocated.
 #include "base/randomfile.h"
 #include "ptex/cache.h"
 #include "ptex/limits.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kHeader = 64, kExtended = 40, kFaceInfo = 20, kLevelInfo = 16, kBarrier = 8;
 
-/// Where the data of a face lie, and how.
+/// File position and encoding of a face's data.
 struct Block {
     uint64_t at = 0;
     uint32_t header = 0;
@@ -68,17 +68,17 @@ private:
     std::vector<uint8_t> constants_;
     uint32_t extended_ = 0, faceInfoSize_ = 0, constantSize_ = 0, levelInfoSize_ = 0, levels_ = 0, faceCount_ = 0;
     uint64_t levelDataSize_ = 0, largeSize_ = 0, editAt_ = 0;
-    uint64_t headBytes_ = 0; ///< of what is kept of all faces
+    uint64_t headBytes_ = 0; ///< memory for data of all faces
     std::unordered_map<std::string, size_t> metaAt_;
     uint32_t metaZip_ = 0, metaSize_ = 0, largeZip_ = 0, largeHeader_ = 0;
     std::vector<std::vector<Block>> blocks_; ///< by level, then by face in the level
     std::vector<uint32_t> place_;            ///< by face: in levels behind the first
     std::map<uint32_t, Block> edited_;       ///< faces that were edited: their data
-    std::vector<bool> stale_;                ///< their levels are not made of them
+    std::vector<bool> stale_;                ///< their levels are out of date
 };
 
 std::string File::open() {
-    if (!bytes_.regular()) return "it is no file that can be read";
+    if (!bytes_.regular()) return "it is not a regular file";
     if (std::string f = readHeader(); !f.empty()) return f;
     if (std::string f = readFaces(); !f.empty()) return f;
     if (std::string f = readLevels(); !f.empty()) return f;
@@ -93,7 +93,7 @@ std::string File::open() {
     return readEdits();
 }
 
-/// A stream that is much longer than what it stands for was not made by anybody who packs: nothing is read of it.
+/// Rejects a stream that is much longer than its contents, which no encoder would write.
 bool File::unpack(uint64_t at, uint64_t packed, uint64_t size, std::vector<uint8_t>& to) const {
     std::vector<uint8_t> zip;
     return packed <= size + size / 8 + 1024 && bytes_.read(at, packed, zip) && inflated(zip, size_t(size), to);
@@ -125,14 +125,14 @@ std::string File::readHeader() {
     metaSize_ = u32(60);
     if (faceCount_ > limits::kPtexFaces) return "it has more than " + std::to_string(limits::kPtexFaces) + " faces";
     headBytes_ = uint64_t(faceCount_) * (sizeof(Face) + sizeof(Block) + sizeof(uint32_t) + pixelBytes());
-    if (headBytes_ > limits::kPtexHeadBytes) return "what it says of its faces is too large";
-    if (levels_ > 32 || levelInfoSize_ != levels_ * kLevelInfo) return "its header does not say what its levels are";
+    if (headBytes_ > limits::kPtexHeadBytes) return "its face data is too large";
+    if (levels_ > 32 || levelInfoSize_ != levels_ * kLevelInfo) return "its header does not match its levels";
     if (uint64_t(extended_) + faceInfoSize_ + constantSize_ + levelInfoSize_ + kHeader > bytes_.size() ||
         levelDataSize_ > bytes_.size())
         return "it is cut short";
     std::vector<uint8_t> e;
     if (!bytes_.read(kHeader, std::min<uint64_t>(extended_, kExtended), e)) return "it is cut short";
-    e.resize(kExtended); // what older files do not have is 0
+    e.resize(kExtended); // missing in older files: 0
     const auto border = [&](size_t at) { return take<uint32_t>(&e[at]) <= 2 ? Border(e[at]) : Border::Clamp; };
     head_.uBorder = border(0);
     head_.vBorder = border(4);
@@ -148,14 +148,14 @@ std::string File::checkFace(const Face& f) const {
     if ((size_t(head_.channels) << (f.ulog + f.vlog)) > limits::kPtexFaceNumbers) return "it has a face of too many pixels";
     if (head_.mesh == Mesh::Triangle && f.ulog != f.vlog) return "it has a triangle that is not square";
     for (const int32_t a : f.adjacent)
-        if (a < -1 || a >= int64_t(faceCount_)) return "it has a face beside one that does not exist";
+        if (a < -1 || a >= int64_t(faceCount_)) return "it has a face adjacent to one that does not exist";
     return "";
 }
 
 std::string File::readFaces() {
     std::vector<uint8_t> b;
     if (!unpack(kHeader + uint64_t(extended_), faceInfoSize_, uint64_t(faceCount_) * kFaceInfo, b))
-        return "what it says of its faces is damaged";
+        return "its face data is damaged";
     head_.faces.reserve(faceCount_);
     for (uint32_t i = 0; i < faceCount_; ++i) {
         head_.faces.push_back(faceOf(&b[i * kFaceInfo]));
@@ -182,7 +182,7 @@ std::string File::readLevels() {
     for (uint32_t k = 0; k < levels_; ++k) {
         const uint8_t* info = &b[k * kLevelInfo];
         const uint64_t size = take<uint64_t>(info);
-        if (size > left) return "its levels are larger than it says";
+        if (size > left) return "its levels are larger than declared";
         if (std::string f = readLevel(k, at, size, take<uint32_t>(info + 8), take<uint32_t>(info + 12)); !f.empty()) return f;
         at += size, left -= size;
     }
@@ -192,7 +192,7 @@ std::string File::readLevels() {
 
 std::string File::readLevel(size_t k, uint64_t at, uint64_t size, uint32_t headerSize, uint32_t count) {
     if (headerSize > size || count > faceCount_ || (k == 0 && count != faceCount_)) return "a level of it is damaged";
-    if (k > 0 && (headBytes_ += count * sizeof(Block)) > limits::kPtexHeadBytes) return "what it says of its faces is too large";
+    if (k > 0 && (headBytes_ += count * sizeof(Block)) > limits::kPtexHeadBytes) return "its face data is too large";
     std::vector<uint8_t> b;
     if (!unpack(at, headerSize, uint64_t(count) * 4, b)) return "a level of it is damaged";
     std::vector<Block>& blocks = blocks_.emplace_back();
@@ -203,14 +203,14 @@ std::string File::readLevel(size_t k, uint64_t at, uint64_t size, uint32_t heade
         // Constant faces have their pixel elsewhere.
         const bool elsewhere = k == 0 && head_.faces[i].constant;
         const uint64_t bytes = elsewhere ? 0 : blockSize(header);
-        if (next + bytes > at + size) return "the faces of a level are larger than it says";
+        if (next + bytes > at + size) return "the faces of a level are larger than declared";
         blocks.push_back({next, header});
         next += bytes;
     }
     return next > bytes_.size() ? "it is cut short" : "";
 }
 
-/// A stream of small items. Those of a key that is there already replace it.
+/// Parses a stream of small items. They replace existing items with the same key.
 std::string File::readMetas(std::span<const uint8_t> b) {
     for (size_t at = 0; at < b.size();) {
         const size_t key = b[at];
@@ -266,7 +266,7 @@ std::string File::readEdits() {
         const uint32_t size = take<uint32_t>(&b[1]);
         if (type == 0 && size == 0) break;
         at += 5;
-        if (size > bytes_.size() - at) return "an edit in it is cut short";
+        if (size > bytes_.size() - at) return "an edit in it is truncated";
         if (type == 1) {
             if (!bytes_.read(at, std::min<uint64_t>(size, 28 + pixelBytes()), b)) return "it is cut short";
             if (std::string f = editFace(b, at + 28 + pixelBytes()); !f.empty()) return f;
@@ -289,7 +289,7 @@ std::string File::editFace(std::span<const uint8_t> b, uint64_t at) {
     const Face f = faceOf(&b[4]);
     if (std::string fault = checkFace(f); !fault.empty()) return fault;
     const uint32_t header = take<uint32_t>(&b[24]);
-    if (blockSize(header) > bytes_.size() - std::min(at, bytes_.size())) return "an edit in it is cut short";
+    if (blockSize(header) > bytes_.size() - std::min(at, bytes_.size())) return "an edit in it is truncated";
     head_.faces[face] = f;
     stale_[face] = true;
     edited_[face] = {at, header};
@@ -317,7 +317,7 @@ bool File::decodePlain(std::span<const uint8_t> b, Encoding how, size_t pixels, 
     return true;
 }
 
-/// Where the tiles of a block lie.
+/// Reads the positions of the tiles of a block.
 bool File::readTiles(uint64_t at, uint32_t header, int ulog, int vlog, Tiles& t) const {
     std::vector<uint8_t> b, headers;
     const uint64_t end = at + blockSize(header);
@@ -355,7 +355,7 @@ bool File::decodeTiles(uint64_t at, uint32_t header, int ulog, int vlog, std::ve
 
 bool File::decode(const Block& block, int ulog, int vlog, std::vector<float>& to) const {
     std::vector<uint8_t> b;
-    // Of tiles of one pixel more is said than they have.
+    // More data than tiles of one pixel can have.
     if (blockSize(block.header) > ((pixelBytes() + 64) << (ulog + vlog)) + 1024) return false;
     if (encodingOf(block.header) == kTiled) return decodeTiles(block.at, block.header, ulog, vlog, to);
     if (!bytes_.read(block.at, blockSize(block.header), b)) return false;
@@ -398,16 +398,16 @@ void File::sayDamaged(uint32_t face) const {
                             {Severity::Error,
                              Rie::BadFile,
                              {},
-                             "Ptex file \"" + path_ + "\": face " + std::to_string(face) + " is damaged; its mean is shown",
+                             "Ptex file \"" + path_ + "\": face " + std::to_string(face) + " is damaged; its mean is used",
                              {},
                              {}});
 }
 
-/// Half of a level. Where that is read by tiles, of two of them at a time: nothing of it is kept.
+/// Halves a level. If it is stored in tiles, reads two of them at a time and keeps none.
 Image File::halvedOf(uint32_t face, int halvings) const {
     const auto t = tiles(face, halvings);
     if (!t) return halved(*image(face, halvings), head_.channels, head_.mesh);
-    std::pair<uint32_t, std::shared_ptr<const Image>> last[2]; // of triangles those on their heads lie elsewhere
+    std::pair<uint32_t, std::shared_ptr<const Image>> last[2]; // inverted triangles are stored elsewhere
     return halved(*t, head_.channels, head_.mesh, [&](int i, int j) {
         const uint32_t n = t->numberOf(i, j);
         if (!last[0].second || last[0].first != n) std::swap(last[0], last[1]);
@@ -441,7 +441,7 @@ std::shared_ptr<const Tiles> File::tiles(uint32_t face, int halvings) const {
     const Cache::Key key{number_, face, halvings, Cache::kTable};
     if (auto known = cache_->find(key)) return std::static_pointer_cast<const Tiles>(known);
     auto t = std::make_shared<Tiles>();
-    if (!readTiles(block->at, block->header, u, v, *t)) return nullptr; // image() says so
+    if (!readTiles(block->at, block->header, u, v, *t)) return nullptr; // image() reports it
     cache_->keep(key, t, t->at.size() * (sizeof(uint64_t) + sizeof(uint32_t)));
     return t;
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kTileBytes = 65536; ///< faces that are larger are cut
 constexpr int kLeastReduced = 2;     ///< logarithm of the smaller side, below which faces have no coarser level
-constexpr size_t kLargeMeta = 1024;  ///< bytes, from which on an item has a block of its own
+constexpr size_t kLargeMeta = 1024;  ///< bytes; larger items have a block of their own
 constexpr uint32_t kExtendedBytes = 40;
 
 class Writer {
@@ -38,7 +38,7 @@ bool isConstant(const Image& m, size_t channels) {
     return true;
 }
 
-/// Channels one behind the other, with differences where numbers are whole.
+/// Encodes the channels one after the other, with differences for integers.
 std::vector<uint8_t> Writer::packed(const Image& m, int u0, int v0, int u, int v, uint32_t* header) const {
     const size_t channels = size_t(head_.channels);
     std::vector<uint8_t> data;
@@ -216,7 +216,7 @@ std::vector<uint8_t> Writer::all() {
     return b;
 }
 
-/// By rectangles of bu x bv pixels of what it is made of.
+/// Averages rectangles of bu x bv pixels.
 template <class Pixel> Image halvedBy(const Image& from, int bu, int bv, int channels, Mesh mesh, const Pixel& pixel) {
     const int u = from.u, v = from.v;
     Image to{std::max(1, u / 2), std::max(1, v / 2), {}};

@@ -8,7 +8,7 @@ namespace alpenglow::render {
 
 namespace {
 
-/// Pixels x0 <= x <= x1, y0 <= y <= y1 about one.
+/// The neighbourhood x0 <= x <= x1, y0 <= y <= y1 of a pixel.
 struct About {
     int x0, x1, y0, y1;
     About(int x, int y, int width, int height, int radius)
@@ -17,12 +17,12 @@ struct About {
     int pixels() const { return (x1 - x0 + 1) * (y1 - y0 + 1); }
 };
 
-/// Values by pixel, whole numbers: what is left out of a sum leaves no trace in its rounding.
+/// Integers by pixel: a value left out of a sum leaves no trace in its rounding.
 struct Grid {
     int width, height;
     std::vector<int64_t> values;
     int64_t& at(int x, int y) { return values[size_t(y) * size_t(width) + size_t(x)]; }
-    /// Sums along the rows, over `radius` pixels on each side.
+    /// Sums along rows, over `radius` pixels on each side.
     Grid rows(int radius) {
         Grid r{width, height, std::vector<int64_t>(values.size())};
         for (int y = 0; y < height; ++y)
@@ -34,11 +34,11 @@ struct Grid {
     }
 };
 
-constexpr double kUnit = 0x1p-24; ///< of squared relative errors, and of what is wanted
-constexpr double kMost = 0x1p10;  ///< of both: 2^28 pixels fit 64 bits
+constexpr double kUnit = 0x1p-24; ///< of squared relative errors, and of wanted rates
+constexpr double kMost = 0x1p10;  ///< limit of both: sums of 2^28 pixels fit into 64 bits
 int64_t fixedNumber(double v) { return int64_t(std::min(v, kMost) / kUnit + 0.5); }
 
-/// r^2 of each pixel; at most kMost, which is more noise than any picture has.
+/// r^2 of each pixel, clamped to kMost, which is more noise than any picture has.
 Grid squaredErrors(const Film& film) {
     const Window& w = film.window();
     Grid g{w.width(), w.height(), {}};
@@ -51,7 +51,7 @@ Grid squaredErrors(const Film& film) {
     return g;
 }
 
-/// r^(2/3), r^2 the mean of the pixels about each, without its own.
+/// r^(2/3), with r^2 the mean over the neighbours of each pixel, without the pixel itself.
 Grid wantedRates(const Film& film) {
     Grid own = squaredErrors(film), rows = own.rows(kRateRadius), wanted{own.width, own.height, {}};
     wanted.values.reserve(own.values.size());
@@ -81,7 +81,7 @@ std::vector<uint16_t> ratesOf(const Film& film) {
         sum += v;
         count += v = v > 0;
     }
-    // The unit of a pixel's rate is the mean over those pixels on which its own value has no bearing.
+    // The normalisation of a pixel's rate is the mean over those pixels that its own value does not affect.
     Grid near = wanted.rows(kRateRadius), nearNoisy = noisy.rows(kRateRadius);
     std::vector<uint16_t> rates;
     rates.reserve(wanted.values.size());

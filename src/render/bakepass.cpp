@@ -1,4 +1,4 @@
-// A pass before the picture: primitives whose shaders bake are shaded whole, on grids of micropolygons.
+// A pass before the picture: shades primitives whose shaders bake completely, on grids of micropolygons.
 #include "render/bakepass.h"
 #include "integrator/bakes.h"
 #include <algorithm>
@@ -6,12 +6,12 @@
 namespace alpenglow::render {
 
 namespace {
-constexpr size_t kAtOnce = 1u << 16;      ///< points whose samples wait for their mean, at most
-constexpr size_t kSamplesWait = 1u << 22; ///< and these samples
-constexpr size_t kAsked = 16;             ///< corners, and middles, that say whether a shape bakes at all
-constexpr size_t kRays = 256;             ///< of one trace(): their shaders may send thousands
+constexpr size_t kAtOnce = 1u << 16;      ///< maximum number of points whose samples are accumulated at once
+constexpr size_t kSamplesWait = 1u << 22; ///< and of their samples
+constexpr size_t kAsked = 16;             ///< number of corners, and of centres, that decide whether a shape bakes at all
+constexpr size_t kRays = 256;             ///< in one trace(): their shaders may send thousands of rays
 
-/// Traces all samples of some points. False: it was stopped.
+/// Traces all samples of some points. Returns false if stopped.
 bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::vector<int>& numbers, uint32_t samples,
                  const transport::CameraRay& pixel) {
     const auto work = [&](int worker, size_t task) {
@@ -27,7 +27,7 @@ bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::v
     return job.team.run((points.size() + kRays - 1) / kRays, &job.halt, work, [&](size_t) { job.pollStop(); });
 }
 
-/// Whether no point of a shape bakes, if a few say it for all.
+/// Whether no point of a shape bakes, if a few points are representative.
 bool noneBakes(Job& job, uint32_t shape, const std::vector<shading::GridPoint>& all, const transport::CameraRay& pixel) {
     if (!transport::bakesAllOrNone(*job.world, shape)) return false;
     std::vector<shading::GridPoint> few;

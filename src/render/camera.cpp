@@ -9,10 +9,10 @@ namespace alpenglow::render {
 namespace {
 
 float pixelAspectOf(const scene::Options& o) {
-    return o.pixelAspect > 0 && std::isfinite(o.pixelAspect) ? o.pixelAspect : 1; // negative asks for the device's own
+    return o.pixelAspect > 0 && std::isfinite(o.pixelAspect) ? o.pixelAspect : 1; // a negative value requests the device's own
 }
 
-/// Concentric map of the unit square to the unit disc (Shirley and Chiu, 1997): neighbours stay neighbours, so the strata do too.
+/// Concentric map from the unit square to the unit disk (Shirley and Chiu, 1997); continuous, so it preserves strata.
 Vec2 toDisc(Vec2 u) {
     double a = 2.0 * u.x - 1, b = 2.0 * u.y - 1;
     if (a == 0 && b == 0) return {0, 0};
@@ -50,7 +50,7 @@ double Aperture::rim(double angle) const {
 
 Vec2 Aperture::sample(Vec2 u) const {
     if (!sides_ && density_ == 0) return toDisc(u);
-    // Angle and the part of the way to the rim. As light grows linearly, what comes through up to x is a cubic of x.
+    // Angle and fraction of the distance to the rim. As density is linear, the flux up to x is a cubic in x.
     double x = std::sqrt(double(u.y));
     if (density_ != 0) {
         const double square = (1 - density_) / 2, cube = 2 * density_ / 3, target = u.y * (square + cube);
@@ -70,7 +70,7 @@ Vec2 Aperture::sample(Vec2 u) const {
         const double step = (double(k - 1) + (target - cumulative_[k - 1]) / (cumulative_[k] - cumulative_[k - 1])) / kRimSteps;
         const double off = step * kPi / sides_;
         reach = rim(off);
-        // Half sides in turn: from the middle of a side back, then on.
+        // Alternates between half sides: from the centre of a side backward, then forward.
         angle = kPi * (2 * std::floor(side / 2) + 1) / sides_ + (side - 2 * std::floor(side / 2) < 0.5 ? -off : off);
     }
     const auto [s, c] = exact::sinCos(angle + turn_);
@@ -116,26 +116,26 @@ Camera::Camera(const scene::Options& o, Diagnostics& diags) {
     }
     pixel_ = std::max(std::fabs(right_ - left_) / width_, std::fabs(top_ - bottom_) / height_);
 
-    // In float, as the numbers were given: 640 * 0.1 is 64 there, and more than 64 in double.
+    // In float, as the numbers were given: 640 * 0.1 is 64 there, but more than 64 in double.
     float c[4];
     std::copy(o.crop, o.crop + 4, c);
     if (!(c[0] <= c[1] && c[2] <= c[3])) {
-        bad("CropWindow: its lower limits are above its upper ones; the whole picture is rendered");
+        bad("CropWindow: its lower limits exceed its upper ones; the complete picture is rendered");
         c[0] = c[2] = 0;
         c[1] = c[3] = 1;
     }
     auto low = [](float v, int n) { return int(std::clamp(std::ceil(float(n) * v), 0.f, float(n - 1))); };
     auto high = [](float v, int n) { return int(std::clamp(std::ceil(float(n) * v - 1), 0.f, float(n - 1))) + 1; };
     window_ = {low(c[0], width_), low(c[2], height_), high(c[1], width_), high(c[3], height_)};
-    if (window_.x1 <= window_.x0) window_.x1 = window_.x0 + 1; // narrower than a pixel: the pixel it lies in
+    if (window_.x1 <= window_.x0) window_.x1 = window_.x0 + 1; // narrower than a pixel: use that pixel
     if (window_.y1 <= window_.y0) window_.y1 = window_.y0 + 1;
 
     setProjection(o, diags);
     near_ = o.clipNear > 0 && std::isfinite(o.clipNear) ? o.clipNear : 0;
-    if (near_ <= 1e-9) near_ = 0; // RI_EPSILON: no plane was asked for
-    if (o.clipFar < o.clipNear) bad("Clipping: far lies in front of near");
+    if (near_ <= 1e-9) near_ = 0; // RI_EPSILON: no near plane
+    if (o.clipFar < o.clipNear) bad("Clipping: far is in front of near");
     else if (o.clipFar < 1e30f)
-        diags.report(Severity::Info, Rie::NoError, {}, "Clipping: rays see what lies behind the far plane too");
+        diags.report(Severity::Info, Rie::NoError, {}, "Clipping: rays also see geometry behind the far plane");
 
     setLens(o, diags);
     if (o.shutterClose < o.shutterOpen) bad("Shutter: it closes before it opens; there is no motion blur");
@@ -174,12 +174,12 @@ void Camera::setProjection(const scene::Options& o, Diagnostics& diags) {
         return otherwise;
     };
     convergence_ = number("focaldistance", o.focalDistance > 0 && std::isfinite(o.focalDistance) ? o.focalDistance : 10);
-    eyes_ = number("eyeseparation", convergence_ / 30); // what photographers take
+    eyes_ = number("eyeseparation", convergence_ / 30); // common in photography
     if (!perspective_) bad("Projection: a stereo pair needs \"perspective\""), stereo_ = Stereo::None;
 }
 
 LensGrid lensGridOf(const scene::Options& o) {
-    constexpr float kMostOfSide = 256; // 65,536 rays a pixel
+    constexpr float kMostOfSide = 256; // 65,536 rays per pixel
     const scene::Param* p = o.hider == "raytrace" ? scene::find(o.hiderParams, "lensSamples") : nullptr;
     if (!p || p->numbers.empty()) return {};
     const float x = p->numbers[0], y = p->numbers.size() > 1 ? p->numbers[1] : x;
@@ -187,7 +187,7 @@ LensGrid lensGridOf(const scene::Options& o) {
     return good(x) && good(y) ? LensGrid{int(x), int(y)} : LensGrid{};
 }
 
-/// SLProject's lens: it takes the place of DepthOfField's.
+/// SLProject's lens, which replaces that of DepthOfField.
 void Camera::setHiderLens(const scene::Options& o, Diagnostics& diags) {
     const scene::Param *diameter = scene::find(o.hiderParams, "lensDiameter"),
                        *samples = scene::find(o.hiderParams, "lensSamples"), *distance = scene::find(o.hiderParams, "focalDist");
@@ -195,22 +195,22 @@ void Camera::setHiderLens(const scene::Options& o, Diagnostics& diags) {
     if (!first) return;
     if (o.hider != "raytrace") {
         diags.report(Severity::Warning, Rie::Incapable, first->place,
-                     "\"" + first->name + "\" is for the hider raytrace; it is ignored", "DepthOfField is for all hiders");
+                     "\"" + first->name + "\" requires the hider raytrace; it is ignored", "DepthOfField works with all hiders");
         return;
     }
     const auto bad = [&](const scene::Param& p, const char* rule) {
         diags.report(Severity::Error, Rie::Range, p.place, "hider parameter \"" + p.name + "\" " + rule);
     };
     const auto positive = [](const scene::Param& p) { return !p.numbers.empty() && p.numbers[0] > 0 && p.numbers[0] < 1e30f; };
-    if (distance && !positive(*distance)) bad(*distance, "is a distance above 0; that of DepthOfField is used");
+    if (distance && !positive(*distance)) bad(*distance, "must be a distance > 0; that of DepthOfField is used");
     else if (distance) focus_ = distance->numbers[0];
     if (diameter && (diameter->numbers.empty() || !(diameter->numbers[0] >= 0 && diameter->numbers[0] < 1e30f)))
-        bad(*diameter, "is a length, 0 for a pinhole; that of DepthOfField is used");
+        bad(*diameter, "must be a length >= 0; that of DepthOfField is used");
     else if (diameter && diameter->numbers[0] > 0 && !(distance && positive(*distance)) && !(lensRadius_ > 0))
-        bad(*diameter, "needs \"focalDist\", the distance that is in focus; everything is");
+        bad(*diameter, "needs \"focalDist\", the distance in focus; everything is in focus");
     else if (diameter) lensRadius_ = 0.5 * diameter->numbers[0];
     lensGrid_ = lensGridOf(o);
-    if (samples && !lensGrid_.on()) bad(*samples, "is two whole numbers from 1 to 256; PixelSamples is used");
+    if (samples && !lensGrid_.on()) bad(*samples, "must be two integers from 1 to 256; PixelSamples is used");
     if (lensGrid_.x * lensGrid_.y == 1) lensRadius_ = 0;
 }
 
@@ -260,7 +260,7 @@ double Camera::eyeOf(double& rx, double& ry) const {
 
 std::vector<geometry::Plane> Camera::sides(const Window& w) const {
     if (lensRadius_ > 0 || stereo() || transform_.moves()) return {};
-    constexpr double kMargin = 1e-3; // pixels: more than floats of rays are off
+    constexpr double kMargin = 1e-3; // pixels: larger than the rounding errors of rays
     const auto x = [&](double rx) { return (left_ + (right_ - left_) * rx / width_) * (perspective_ ? tangent_ : 1); };
     const auto y = [&](double ry) { return (top_ - (top_ - bottom_) * ry / height_) * (perspective_ ? tangent_ : 1); };
     const auto [left, right] = std::minmax({x(w.x0 - kMargin), x(w.x1 + kMargin)});
@@ -288,7 +288,7 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
         origin = {xs, ys, 0};
         direction = {0, 0, 1};
     }
-    if (eye != 0) { // off the axis: the eyes look in parallel
+    if (eye != 0) { // off the axis: the eyes are parallel
         origin.x += eye;
         direction.x -= eye / convergence_;
     }
@@ -306,7 +306,7 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
     const double part = opening_.at(double(time01));
     r.shutter = float(part);
     r.time = float(shutter_.at(part));
-    // A pixel's side grows with depth, and depth with the cosine times the way.
+    // The side of a pixel grows with depth, and depth with cosine times distance.
     r.spread = perspective_ ? float(0.5 * pixel * cosine) : 0;
     r.width = perspective_ ? float(0.5 * pixel * near_) : float(0.5 * pixel);
     if (transform_.moves()) {
@@ -329,7 +329,7 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
 }
 
 void Camera::plainRays(std::span<const Vec2> raster, transport::CameraRay* out) const {
-    constexpr size_t kAtOnce = 16; // loops over these become vectors
+    constexpr size_t kAtOnce = 16; // loops over these are vectorised
     const transport::CameraRay like = ray(0, 0, {0.5f, 0.5f}, 0);
     const double width = right_ - left_, height = top_ - bottom_, tangent = perspective_ ? tangent_ : 1;
     for (size_t first = 0; first < raster.size(); first += kAtOnce) {

@@ -7,10 +7,10 @@ namespace {
 
 using Source = OutputVariable::Source;
 
-/// Of the file a display writes; nothing: no picture file.
+/// Format of the file that a display writes; nothing: not a picture file.
 std::optional<display::Format> formatOf(const OutputSpec& s) {
     const display::DriverDescriptor* d = display::findDriver(s.type);
-    const std::string driver = d ? d->names.front() : "file"; // unknown types are written by the name's extension
+    const std::string driver = d ? d->names.front() : "file"; // unknown types are written by extension
     if (driver == "png") return display::Format::Png;
     if (driver == "jpeg") return display::Format::Jpeg;
     if (driver == "tiff") return display::Format::Tiff;
@@ -32,7 +32,7 @@ bool isLookedAt(const OutputSpec& s) {
     const auto format = formatOf(s);
     if (!format || *format == display::Format::Exr) return false;
     if (std::none_of(s.variables.begin(), s.variables.end(), [](const OutputVariable& v) { return v.shown(); })) return false;
-    // A TIFF with depth beside the colours is one of floats.
+    // A TIFF with depth in addition to colours has floats.
     return *format != display::Format::Tiff ||
            (!s.rgba.floating() && s.rgba.max <= 255 && s.rgba.min >= 0 && !(s.has(Source::Z) && s.z.floating()));
 }

@@ -6,9 +6,9 @@
 namespace alpenglow::render {
 namespace {
 
-/// A row of pixels while its samples come in.
+/// A row of pixels during sampling.
 struct Row {
-    std::vector<uint32_t> counts; ///< steps of each pixel
+    std::vector<uint32_t> counts; ///< number of steps of each pixel
     std::vector<display::DeepStep> steps;
 };
 
@@ -31,14 +31,14 @@ private:
 };
 
 bool DepthLoop::row(int worker, int y, Row& out) {
-    constexpr int64_t kSlice = 2048; // rays of a call
+    constexpr int64_t kSlice = 2048; // rays in a call
     const Window& w = job_.camera.window();
     const int samples = nx_ * ny_;
     ImageRays image(job_.camera, seed_, nx_, ny_, jitter_);
     std::vector<transport::CameraRay>& rays = image.rays();
     std::vector<transport::SampleResult> results;
     std::vector<display::DeepChange> changes;
-    int64_t begun = 0; // of the samples of the row
+    int64_t begun = 0; // samples of the row started
     const auto finish = [&] {
         const size_t before = out.steps.size();
         display::meanStairs(changes, size_t(samples), error_, out.steps);
@@ -72,7 +72,7 @@ float deepShadowError(const scene::Options& o, Diagnostics& d) {
     if (i == o.values.end() || i->second.numbers.empty()) return 0.01f;
     const float e = i->second.numbers[0];
     if (e >= 0 && e <= 1) return e;
-    d.report(Severity::Error, Rie::Range, i->second.place, "\"deepshadowerror\" is a part of the light, 0 to 1; 0.01 is used");
+    d.report(Severity::Error, Rie::Range, i->second.place, "\"deepshadowerror\" must be in 0 to 1; 0.01 is used");
     return 0.01f;
 }
 

@@ -84,14 +84,14 @@ public:
         add(a.coshaders);
         add(a.trimCurve);
     }
-    /// Shared things are walked once; then their own digest stands for them.
+    /// Shared objects are traversed once; after that their digest represents them.
     template <class T> void add(const std::shared_ptr<const T>& p) {
         if (!p) return bits(0);
         auto [i, fresh] = known_.try_emplace(p.get(), 0);
         if (fresh) {
             const Digest outer = std::exchange(digest_, Digest());
             add(*p);
-            known_[p.get()] = value(); // the walk may have moved the table
+            known_[p.get()] = value(); // the traversal may have moved the table
             digest_ = outer;
         }
         bits(known_[p.get()]);

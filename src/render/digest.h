@@ -1,13 +1,13 @@
-// A digest of a scene: two renders are parts of one picture only when theirs are equal.
+// A digest of a scene: renders can be parts of one picture only if their digests are equal.
 #pragma once
 #include "scene/fwd.h"
 #include <string>
 
 namespace alpenglow::render {
 
-/// 16 hexadecimal digits over all of the frame that can change a sample: geometry, shaders' names and parameters, lights,
-/// attributes, camera, filter, and `extra`, where the caller puts its own options. Displays, exposure and places in files do not
-/// count. The text of shaders and textures is not looked at.
+/// 16 hexadecimal digits over everything in the frame that can change a sample: geometry, names and parameters of shaders,
+/// lights, attributes, camera, filter, and `extra`, the caller's own options. Excludes displays, exposure and file positions, and
+/// the contents of shader and texture files.
 std::string sceneDigest(const scene::Frame&, const std::string& extra);
 
 } // namespace alpenglow::render

@@ -1,4 +1,4 @@
-// The door from render/ to transport/: a pair of functions, so that tests can put a scene of closed forms behind it.
+// Interface from render/ to the integrator: a pair of functions, so that tests can replace it by a scene of closed forms.
 #pragma once
 #include "base/stopflag.h"
 #include "integrator/integrator.h"
@@ -8,7 +8,7 @@
 
 namespace alpenglow::render {
 
-/// What one thread asks about rays. See transport::Integrator.
+/// Traces the rays of one thread. See transport::Integrator.
 class Tracer {
 public:
     virtual ~Tracer() = default;
@@ -26,7 +26,7 @@ struct Engine {
     std::function<std::unique_ptr<Tracer>(std::shared_ptr<const transport::World>, Diagnostics&)> tracer;
 };
 
-/// The renderer's own: buildWorld() and Integrator.
+/// The renderer's own engine: buildWorld() and Integrator.
 Engine transportEngine();
 
 } // namespace alpenglow::render

@@ -52,7 +52,7 @@ std::array<double, 2> signScales(double negative, const std::array<uint32_t, kRe
                                  double minusWeights) {
     if (!(minusWeights > 0)) return {plusWeights > 0 ? 1 / plusWeights : 0, 0};
     if (!(plusWeights > 0)) return {0, 1 / minusWeights};
-    // A replica's first numbers are one in each of as many strata, so that it has about `share` times its samples below 0.
+    // The first numbers of a replica are stratified, so it has about `share` times its samples with negative sign.
     const double share = negative / (1 + 2 * negative);
     double none = 1;
     for (uint32_t n : samples) none *= std::max(0.0, 1 - n * share);
@@ -132,7 +132,7 @@ bool Film::add(int x, int y, uint32_t sampleIndex, const FilmSample& s) {
     for (int k = 0; k < 3; ++k) p.rgb[k] += rgb[k];
     p.alpha += toFixed(s.alpha * weight, &saturated);
     if (description_.negative) weights_[at] += toFixed(weight, &saturated);
-    // The square is taken of the rounded luminance, so that the variance of equal samples is exactly 0.
+    // Squares the rounded luminance, so that the variance of equal samples is exactly 0.
     Int128 lum = toFixed(luminance(Vec3d(c)), &saturated);
     p.replicaY[sampleIndex % kReplicas] += lum;
     p.replicaCount[sampleIndex % kReplicas]++;
@@ -217,12 +217,12 @@ bool Film::merge(const Film& o, Diagnostics& diag, const SourcePlace& place) {
                    "the parts have different seeds (" + std::to_string(a.seed) + " and " + std::to_string(b.seed) + ")");
     if (a.scene != b.scene) return bad(Rie::Consistency, "the parts come from different scenes or options");
     if (spread_ || o.spread_)
-        return bad(Rie::Consistency, "pixels have different numbers of samples (--noise); such a render is no part of another");
+        return bad(Rie::Consistency, "pixels have different numbers of samples (--noise); such renders cannot be merged");
     auto next = ranges_;
     for (auto r : o.ranges_)
         if (!insertRange(next, r))
             return bad(Rie::Consistency, "the parts share samples: " + std::to_string(r.begin) + ":" + std::to_string(r.end) +
-                                             " overlaps what is already there");
+                                             " overlaps the samples already present");
     if (total(next) > limits::kSamplesPerPixel)
         return bad(Rie::Limit, "more than " + std::to_string(limits::kSamplesPerPixel) + " samples per pixel");
     ranges_ = std::move(next);
@@ -267,7 +267,7 @@ uint32_t Film::count(int x, int y) const {
     return std::accumulate(counts.begin(), counts.end(), 0u);
 }
 
-/// sumOf: of a pixel of a layer.
+/// sumOf: sum of a pixel, by its index for one sign.
 template <class SumOf> double Film::average(int x, int y, SumOf sumOf) const {
     const size_t at = index(x, y);
     if (!description_.negative) {
@@ -319,7 +319,7 @@ Moments Film::momentsOf(const Pixel& p) {
     m.s1 = fromFixed(sum);
     m.s2 = p.y2.toDouble() * 0x1p-80;
     if (m.n < 2) return m;
-    // n * S2 - S1^2 is never negative (Cauchy-Schwarz on integers) and fits: 27 + 227 bits.
+    // n * S2 - S1^2 is not negative (Cauchy-Schwarz for integers) and fits: 27 + 227 bits.
     UInt256 d = p.y2;
     d *= m.n;
     d -= square(sum);
@@ -330,7 +330,7 @@ Moments Film::momentsOf(const Pixel& p) {
 Moments Film::moments(int x, int y) const {
     const size_t at = index(x, y);
     if (!description_.negative) return momentsOf(pixels_[at]);
-    // The variance that n independent samples would have whose mean is as uncertain as what the two signs make.
+    // The variance of n independent samples whose mean has the same error as the combination of both signs.
     const Moments part[2] = {momentsOf(pixels_[at]), momentsOf(pixels_[below(at)])};
     const auto scale = signScales(*description_.negative, countsAt(at), part[0].n, part[1].n);
     Moments m;

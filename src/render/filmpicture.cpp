@@ -16,13 +16,14 @@ std::string number(double v) {
     return text;
 }
 
-/// The world that runs the imager of a merged film. Null: there is none, or it cannot be made (reported).
+/// The world that runs the imager of a merged film. Returns null if there is no imager, or if the world cannot be made
+/// (reported).
 std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std::string& file, const MergeSettings& settings,
                                                     Diagnostics& diags) {
     const auto text = film.metadata.find(kImagerKey);
     if (text == film.metadata.end()) {
         diags.report(Severity::Error, Rie::Incapable, {file},
-                     "the scene has an imager shader, of which the part file says nothing; it is not run");
+                     "the scene has an imager shader that the part file does not describe; it is not run");
         return nullptr;
     }
     auto scene = imagerFromText(text->second, file, diags);
@@ -39,7 +40,7 @@ std::string rangesText(const std::vector<SampleRange>& ranges) {
     return all;
 }
 
-/// Reports samples that no part has. True: there are such.
+/// Reports samples that no part has. Returns true if there are any.
 bool reportGaps(const Film& film, const MergeSettings& settings, Diagnostics& diags) {
     const std::vector<SampleRange>& have = film.ranges();
     if (have.empty()) return false;
@@ -51,7 +52,7 @@ bool reportGaps(const Film& film, const MergeSettings& settings, Diagnostics& di
     if (!missing.empty())
         diags.report(settings.expect ? Severity::Error : Severity::Warning, Rie::MissingData, {},
                      "no part has the samples " + rangesText(missing) + " of " + rangeText(whole) +
-                         "; the picture is made without them",
+                         "; the picture is written without them",
                      "render them with --samples " + rangeText(missing.front()) + (missing.size() > 1 ? " and so on" : "") +
                          ", and merge them with this picture");
     if (settings.expect && (have.front().begin < whole.begin || have.back().end > whole.end))
@@ -112,7 +113,7 @@ bool writeFilm(const Film& film, const OutputPlan& plan, PictureFacts facts, con
     return writeOutputs(plan, facts, pixels, imager, allowWrite, diags);
 }
 
-/// Puts one picture in the place of those that -o replaces, as displaysOf() has it.
+/// Replaces the pictures that -o replaces by one, as displaysOf() does.
 static void nameOutput(OutputPlan& plan, const std::string& output, Diagnostics& diags) {
     std::vector<OutputSpec> kept{singleOutput(output, plan.basis, diags)};
     for (OutputSpec& s : plan.pictures) {
@@ -141,7 +142,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
     auto plan = planFromText(text->second, files.front(), diags);
     if (!plan) return MergeResult::NoInput;
     if (filmChannels(plan->first) != film->description().channels) {
-        diags.report(Severity::Error, Rie::BadFile, {files.front()}, "the part file's channels are not those of its pictures");
+        diags.report(Severity::Error, Rie::BadFile, {files.front()}, "the part file's channels do not match its pictures");
         return MergeResult::NoInput;
     }
     const bool gaps = reportGaps(*film, settings, diags);
@@ -157,7 +158,7 @@ MergeResult mergePictures(const std::vector<std::string>& parts, const std::stri
                 return true;
             };
     bool written = writeFilm(*film, plan->first, plan->second, imager, settings.allowWrite, diags);
-    // What is not the beginning of a sequence may be merged further.
+    // Incomplete sequences may be merged further.
     const auto& r = film->ranges();
     const std::string part = plan->first.pictures.empty() ? "" : sidecarName(plan->first.pictures.front().name);
     const bool whole = !gaps && r.size() == 1 && r.front().begin == 0;

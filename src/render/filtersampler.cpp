@@ -6,19 +6,19 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr int kPieces = 1024; // straight pieces per axis: the error of the density is below 2e-6 of its peak. A power of two
-constexpr int kCells = 256;   // cells per axis of a filter that is no product
+constexpr int kPieces = 1024; // linear pieces per axis, a power of two: the error of the density is below 2e-6 of its peak
+constexpr int kCells = 256;   // cells per axis of a filter that is not separable
 constexpr double kBelowOne = 1 - 0x1p-53;
 
 // Four-point Gauss-Legendre on [0, 1].
 constexpr double kGaussX[4] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
 constexpr double kGaussW[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693};
 
-// Position in [0,1] of mass fraction u under the straight density from a to b; stable for a == b.
+// Position in [0, 1] with fraction u of the mass below it, for a linear density from a to b; stable for a == b.
 double invertLinear(double a, double b, double u) {
     double s = a + b;
     if (!(s > 0)) return u;
-    a /= s, b /= s; // now the mass is 1/2
+    a /= s, b /= s; // then the mass is 1/2
     return std::clamp(u / (a + std::sqrt(std::max(0.0, a * a + (b * b - a * a) * u))), 0.0, 1.0);
 }
 
@@ -71,7 +71,7 @@ void FilterSampler::Axis::build(const PixelFilter& f, double w) {
 }
 
 double FilterSampler::Axis::invert(double u, const Part& p) const {
-    int k = p.guide[size_t(u * kPieces)]; // find(), a step away on average
+    int k = p.guide[size_t(u * kPieces)]; // find(), with one step on average
     while (k + 2 < int(p.cdf.size()) && p.cdf[size_t(k) + 1] <= u) ++k;
     int i = p.piece[size_t(k)];
     double m = p.cdf[k + 1] - p.cdf[k];
@@ -157,7 +157,7 @@ FilterSample FilterSampler::sample(Vec2 u) const {
         x = filter_.xw * r * cosine;
         y = filter_.yw * r * sine;
     } else if (filter_.separable()) {
-        // The four products of signed parts, those with a positive product first.
+        // The four products of signed parts, positive products first.
         static constexpr int order[4][2] = {{0, 0}, {1, 1}, {0, 1}, {1, 0}};
         double ux = u.x;
         int k = 0;
@@ -166,14 +166,14 @@ FilterSample FilterSampler::sample(Vec2 u) const {
             if (ux < share) break;
             ux -= share;
         }
-        // Rounding may leave the first number beyond the last stratum that has any mass: it belongs to that one's end.
+        // Rounding may put the first number beyond the last stratum with any mass: use the end of that stratum.
         while (k > 0 && x_.part[order[k][0]].mass * y_.part[order[k][1]].mass == 0) --k;
         const Part &px = x_.part[order[k][0]], &py = y_.part[order[k][1]];
         x = x_.invert(std::clamp(ux / (px.mass * py.mass), 0.0, kBelowOne), px);
         y = y_.invert(u.y, py);
         weight = (k < 2 ? 1 : -1) * (absolute_ / total_);
         if (std::fabs(std::fabs(weight) - 1) < 1e-12)
-            weight = 1; // rounding of the two sums; a filter without negative parts has weight 1 exactly
+            weight = 1; // rounding of the two sums: without negative parts the weight is exactly 1
     } else {
         int g = u.x < grid_[0].share || grid_[1].share == 0 ? 0 : 1;
         const Grid& grid = grid_[g];
@@ -185,8 +185,8 @@ FilterSample FilterSampler::sample(Vec2 u) const {
         double cm = grid.cellCdf[at + c + 1] - grid.cellCdf[at + c], h = cm > 0 ? (ux - grid.cellCdf[at + c]) / cm : 0.5;
         x = filter_.xw * ((c + h) / kCells - 0.5);
         y = filter_.yw * ((r + v) / kCells - 0.5);
-        // The density is constant on a cell and the filter is not: the quotient makes the estimate exact all the same. In a
-        // cell that a zero of f crosses, the part of the other sign has weight 0 here and is drawn by the other grid.
+        // The density is constant on a cell and the filter is not: the quotient keeps the estimate exact. In a cell that a zero
+        // of f crosses, the part of the other sign has weight 0 here and is sampled by the other grid.
         double d = grid.mass[size_t(r) * kCells + c] * kCells * kCells / (filter_.xw * filter_.yw), f = filter_(x, y);
         weight = d > 0 && (f < 0) == (g == 1) ? f / (d * total_) : 0;
     }

@@ -7,16 +7,17 @@
 namespace alpenglow::render {
 namespace {
 
-// Straight pieces of length h are off by h^2 / 8 times the second derivative. By pixel that is at most 7.8 (bessel, whose
-// greatest value is pi); by the half width of a filter that grows with its width, 16 (mitchell, whose greatest value is 8/9).
-constexpr int kSegments = 2048; ///< a pixel, or the half width where that is less
+// Linear pieces of length h have an error of at most h^2 / 8 times the second derivative. That is at most 7.8 per pixel (bessel,
+// whose maximum is pi), or 16 relative to the half width for filters that scale with their width (mitchell, whose maximum is
+// 8/9).
+constexpr int kSegments = 2048; ///< pieces per pixel, or per half width if that is less
 
 int piecesOf(double end) { return kSegments * std::max(1, int(std::ceil(end))); }
 
 } // namespace
 
 template <class F> FilterWeights::Table::Table(double end_, int count, const F& f) : end(end_), scale(count / end_) {
-    pieces.resize(size_t(count) + 1); // the last is that of the end itself
+    pieces.resize(size_t(count) + 1); // the last entry is for the end itself
     double next = f(0.0);
     for (int i = 0; i <= count; ++i) {
         const double value = next;
@@ -35,7 +36,7 @@ FilterWeights::FilterWeights(const PixelFilter& f) : filter_(f), separable_(f.se
         down_ = f.yw == f.xw ? across_ : table(f.yw);
         return;
     }
-    // catmull-rom ends at 2 wherever its widths end; of bessel the way to the rim ends it.
+    // catmull-rom ends at 2 for any width; bessel ends at the rim.
     const double end = f.kind == FilterKind::CatmullRom ? 2 : std::max(f.xw, f.yw) / 2;
     const PixelFilter wide{f.kind, 1e9, 1e9}; // its cosine is 1
     byDistance_ = std::make_shared<const Table>(end, piecesOf(end), [&](double r) { return wide(r, 0); });

@@ -1,4 +1,4 @@
-// The weights of samples that are reconstructed: a pixel filter from tables.
+// Weights for reconstruction: a pixel filter from tables.
 #pragma once
 #include "render/pixelfilter.h"
 #include <memory>
@@ -6,29 +6,29 @@
 
 namespace alpenglow::render {
 
-/// A filter between nodes of its exact values, straight from one to the next. Where it ends is exact.
+/// A filter interpolated linearly between exact values. Its support is exact.
 class FilterWeights {
 public:
     explicit FilterWeights(const PixelFilter&);
-    /// A weight is at most this far from the filter's value, by the greatest value of the filter: half of it on each axis.
+    /// Largest error of a weight, relative to the filter's maximum: half of it for each axis.
     static constexpr double kError = 2e-6;
 
     const PixelFilter& filter() const { return filter_; }
     /// The filter at (x, y), in pixels from its centre.
     float operator()(double x, double y) const;
-    /// True when that is the product of across(x) and down(y).
+    /// True if the value is the product of across(x) and down(y).
     bool separable() const { return separable_; }
     float across(double x) const { return axis(across_.get(), x, filter_.xw / 2); }
     float down(double y) const { return axis(down_.get(), y, filter_.yw / 2); }
 
 private:
-    /// A function of [0, end], 0 beyond.
+    /// A function on [0, end], 0 beyond.
     struct Table {
         struct Piece {
-            float value, slope; ///< where it begins; by the piece
+            float value, slope; ///< at the start of the piece; change over the piece
         };
         std::vector<Piece> pieces;
-        double end, scale; ///< scale: pieces by unit
+        double end, scale; ///< scale: pieces per unit
         template <class F> Table(double end_, int count, const F& f);
         float operator()(double t) const {
             if (!(t <= end)) return 0;
@@ -45,8 +45,9 @@ private:
 
     PixelFilter filter_;
     bool separable_;
-    std::shared_ptr<const Table> across_, down_;       ///< separable filters but box
-    std::shared_ptr<const Table> byDistance_, byPart_; ///< the others: of the distance in pixels, and of the way to the rim
+    std::shared_ptr<const Table> across_, down_; ///< separable filters except box
+    /// Other filters: by distance in pixels, and by fraction of the distance to the rim
+    std::shared_ptr<const Table> byDistance_, byPart_;
 };
 
 } // namespace alpenglow::render

@@ -33,7 +33,7 @@ struct UInt256 {
         }
         return *this;
     }
-    /// Times a 32-bit number, modulo 2^256.
+    /// Multiplies by a 32-bit number, modulo 2^256.
     UInt256& operator*=(uint32_t n) {
         uint64_t carry = 0;
         for (int i = 0; i < 4; ++i) {
@@ -44,7 +44,7 @@ struct UInt256 {
         return *this;
     }
     friend bool operator==(const UInt256&, const UInt256&) = default;
-    /// Rounded to within 2^-52 of the value.
+    /// Accurate to 2^-52 relative.
     double toDouble() const {
         double v = 0;
         for (int i = 3; i >= 0; --i) v = v * 0x1p64 + double(limb[i]);

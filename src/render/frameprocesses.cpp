@@ -18,11 +18,10 @@
 namespace alpenglow::render {
 namespace {
 
-// A record among what a process writes to standard error: the mark, its kind, the bytes of its length, the bytes. Text has no
-// zeros.
+// A record in what a process writes to standard error: mark, kind, length, bytes. Text contains no zeros.
 constexpr std::string_view kMark("\0\1alpenglow\2", 12);
 constexpr size_t kHead = kMark.size() + 1 + sizeof(uint64_t);
-constexpr int kLook = 50; ///< milliseconds between looks at the stop flag
+constexpr int kLook = 50; ///< milliseconds between checks of the stop flag
 
 void closeAll(std::initializer_list<int*> fds) {
     for (int* fd : fds) {
@@ -31,7 +30,7 @@ void closeAll(std::initializer_list<int*> fds) {
     }
 }
 
-/// The last part of a name, in small letters: how findFile() may find it.
+/// The last component of a name in lower case: findFile() may find it by that.
 std::string baseOf(const std::string& name) {
     std::string base = name.substr(name.find_last_of("/\\") + 1);
     for (char& c : base) c = char(std::tolower(static_cast<unsigned char>(c)));
@@ -84,7 +83,7 @@ bool FrameProcesses::start(const std::string& what, Writes writes, bool alone) {
     Part& part = parts_.back();
     int out[2] = {-1, -1}, error[2] = {-1, -1}, answer[2] = {-1, -1};
     const pid_t parent = ::getpid();
-    std::fflush(stdout); // a copy must not write it again
+    std::fflush(stdout); // the fork must not write it again
     std::fflush(stderr);
     pid_t process = -1;
     if (::pipe2(out, O_CLOEXEC) == 0 && ::pipe2(error, O_CLOEXEC) == 0 && ::pipe2(answer, O_CLOEXEC) == 0) process = ::fork();
@@ -113,7 +112,7 @@ bool FrameProcesses::start(const std::string& what, Writes writes, bool alone) {
     answers_ = answer[0];
     for (Part& p : parts_) {
         closeAll({&p.out, &p.error, &p.answer});
-        p.process = -1; // it is no child of this one
+        p.process = -1; // not a child of this process
     }
     return true;
 }
@@ -125,7 +124,7 @@ void FrameProcesses::askToStop() {
         if (p.process >= 0 && use_.stopSignal) ::kill(p.process, use_.stopSignal);
 }
 
-/// Reads what processes have written, for so long at most if there is nothing.
+/// Reads output of the processes; waits at most this long if there is none.
 void FrameProcesses::serve(int milliseconds) {
     askToStop();
     std::vector<pollfd> fds;
@@ -133,7 +132,7 @@ void FrameProcesses::serve(int milliseconds) {
     for (Part& p : parts_) {
         if (p.process < 0) continue;
         for (const int fd : {p.error, p.out}) {
-            fds.push_back({fd, POLLIN, 0}); // one below 0 is passed over
+            fds.push_back({fd, POLLIN, 0}); // poll() ignores descriptors below 0
             of.push_back(&p);
         }
     }
@@ -156,7 +155,7 @@ void FrameProcesses::readFrom(Part& p, bool error) {
     split(p);
 }
 
-/// Takes the records and the text that are there out of what was read.
+/// Separates records and text in the data read so far.
 void FrameProcesses::split(Part& p) {
     while (!p.unread.empty()) {
         const size_t zero = std::min(p.unread.find('\0'), p.unread.size());
@@ -167,7 +166,7 @@ void FrameProcesses::split(Part& p) {
         }
         const size_t same = std::min(kMark.size(), p.unread.size());
         if (p.unread.compare(0, same, kMark.substr(0, same)) != 0) {
-            p.unread.erase(0, 1); // a zero that is no record's
+            p.unread.erase(0, 1); // a zero outside of records
             continue;
         }
         uint64_t length = 0;
@@ -188,7 +187,7 @@ void FrameProcesses::take(Part& p, Kind kind, std::string bytes) {
     if (kind == Kind::Message) p.events.push_back({kind, std::move(bytes)});
 }
 
-/// A process that has handed over its result, or is gone, is done with.
+/// Closes a process that has delivered its result, or has ended.
 void FrameProcesses::reap(Part& p) {
     if (p.process < 0) return;
     int status = 0;
@@ -196,7 +195,7 @@ void FrameProcesses::reap(Part& p) {
     while ((ended = ::waitpid(p.process, &status, p.result ? 0 : WNOHANG)) < 0 && errno == EINTR) {}
     if (ended == 0) return;
     p.process = -1;
-    for (const bool error : {true, false}) { // what it had written before
+    for (const bool error : {true, false}) { // reads its remaining output
         int& fd = error ? p.error : p.out;
         if (fd >= 0) ::fcntl(fd, F_SETFL, O_NONBLOCK); // programs that it started may hold the other end
         for (pollfd left{fd, POLLIN, 0}; fd >= 0 && ::poll(&left, 1, 0) > 0;) readFrom(p, error);
@@ -216,12 +215,12 @@ void FrameProcesses::sayLost(Part& p, int status) {
                         : "with status " + std::to_string(WEXITSTATUS(status)));
     p.made = {};
     p.made.outcome.refused = 1;
-    if (!signal) p.made.outcome.outOfMemory = true; // the only way that a program ends without handing over
+    if (!signal) p.made.outcome.outOfMemory = true; // the only way to end without delivering a result
     p.result = true;
     p.events.push_back({Kind::Message, packed(std::move(d))});
 }
 
-/// Whether no frame before this one still draws that may write a file of that name; "": any file.
+/// Whether no earlier frame that is still rendering may write a file of this name; "": any file.
 bool FrameProcesses::mayRead(size_t part, const std::string& name) const {
     const std::string base = baseOf(name);
     return std::none_of(parts_.begin(), parts_.begin() + std::ptrdiff_t(part), [&](const Part& p) {
@@ -238,11 +237,11 @@ void FrameProcesses::answerAll() {
         if (!p.asks || p.process < 0 || !mayRead(i, p.asked)) continue;
         p.asks = false;
         const char yes = 1;
-        [[maybe_unused]] const ssize_t n = ::write(p.answer, &yes, 1); // one that is gone needs none
+        [[maybe_unused]] const ssize_t n = ::write(p.answer, &yes, 1); // a process that has ended needs none
     }
 }
 
-/// Not by `stdout`, which leads to standard error where pictures go to standard output.
+/// Not by `stdout`, which is redirected to standard error if pictures go to standard output.
 void FrameProcesses::writeOut(const std::string& bytes) {
     std::fflush(stdout);
     for (size_t at = 0; at < bytes.size() && !lost_;) {
@@ -250,7 +249,7 @@ void FrameProcesses::writeOut(const std::string& bytes) {
         if (n >= 0) at += size_t(n);
         else if (errno != EINTR) lost_ = true;
     }
-    if (lost_ && errno != EPIPE) // a reader that went away needs no message
+    if (lost_ && errno != EPIPE) // no message if the reader of the pipe has gone
         told_.reportOnce("stdout", {Severity::Error,
                                     errno == ENOSPC ? Rie::DiskFull : Rie::System,
                                     {},
@@ -269,7 +268,7 @@ void FrameProcesses::tellEvent(const Event& e) {
     told_.reportOnce(key, std::move(d));
 }
 
-/// Tells what may be told: all of the parts that are done with, and of the first that is not what there is.
+/// Prints what is due: all finished parts, and what exists of the first unfinished one.
 void FrameProcesses::tell() {
     while (!parts_.empty()) {
         Part& p = parts_.front();
@@ -293,7 +292,7 @@ void FrameProcesses::send(Kind kind, const std::string& bytes) {
     record += char(kind);
     record.append(reinterpret_cast<const char*>(&length), sizeof length);
     record += bytes;
-    std::fwrite(record.data(), 1, record.size(), stderr); // in one piece: the stream is locked meanwhile
+    std::fwrite(record.data(), 1, record.size(), stderr); // in one call: the stream is locked meanwhile
     std::fflush(stderr);
 }
 
@@ -313,7 +312,7 @@ void FrameProcesses::awaitTurn() {
     await("");
 }
 
-/// Once a stop is asked for nobody waits: an answer that comes then is for nobody.
+/// After a stop is requested no process waits; a late answer is ignored.
 void FrameProcesses::await(const std::string& asked) {
     const auto stopped = [&] { return use_.stop && *use_.stop; };
     if (stopped()) return;

@@ -1,5 +1,5 @@
-// Several frames drawn at a time, each in a process that begins as a copy of the one that reads the scene. Their messages and
-// figures come out in the order of the frames.
+// Renders several frames at once, each in a process forked from the one that reads the scene. Messages and figures are printed in
+// frame order.
 #pragma once
 #include "base/diagnostics.h"
 #include "base/stopflag.h"
@@ -15,64 +15,65 @@
 
 namespace alpenglow::render {
 
-/// The process that reads plans a frame and calls start(), which returns twice: false there, true in a copy of it, which draws
-/// the frame and calls finish(). What processes write to standard output and standard error, and what is reported, comes out
-/// frame by frame: of the first frame that is not done at once, of the others when it is their turn. The reading process must not
-/// have other threads. Not thread safe, but for the functions that say so.
+/// The reading process plans a frame and calls start(), which returns twice: false there, and true in the fork, which renders the
+/// frame and calls finish(). Standard output, standard error and messages of the processes are printed in frame order: at once
+/// for the first unfinished frame, later for the others. The reading process must not have other threads. Not thread safe, except
+/// where stated.
 class FrameProcesses {
 public:
     struct Use {
-        int most = 2;                           ///< processes that draw at a time, 1 to limits::kFramesAtOnce
+        int most = 2;                           ///< maximum number of rendering processes, 1 to limits::kFramesAtOnce
         const StopFlag* stop = nullptr;         ///< may be null
-        int stopSignal = 0;                     ///< is sent to each process once *stop is set; 0: none
-        std::function<void(bool alone)> begins; ///< called in each process first; alone: no other draws meanwhile. May be empty
-        std::function<void()> ends;             ///< called in each process last; may be empty
+        int stopSignal = 0;                     ///< sent to each process once *stop is set; 0: none
+        std::function<void(bool alone)> begins; ///< called first in each process; alone: no other process renders. May be empty
+        std::function<void()> ends;             ///< called last in each process; may be empty
     };
-    /// What a process writes, which later frames may read.
+    /// The files that a process writes, which later frames may read.
     struct Writes {
         std::vector<std::string> files; ///< known names
         bool others = false;            ///< and files of names that are not known
-        bool settled = false;           ///< `others` is known; false: the process will say
+        bool settled = false;           ///< `others` is known; false: the process will declare it
     };
     using Take = std::function<void(FrameResult)>;
 
-    /// `told` gets the messages in their order; it outlives this.
+    /// `told` receives the messages in order; it must outlive this object.
     FrameProcesses(Use, Diagnostics& told);
-    /// Ends the processes that still draw.
+    /// Ends the processes that are still rendering.
     ~FrameProcesses();
     FrameProcesses(const FrameProcesses&) = delete;
     FrameProcesses& operator=(const FrameProcesses&) = delete;
 
     int most() const { return use_.most; }
-    bool inProcess() const { return process_; } ///< this is a copy that start() made
+    bool inProcess() const { return process_; } ///< this process was forked by start()
     const Diagnostics& told() const { return told_; }
-    /// Gets the result of each frame, in their order, when all that it said is told.
+    /// Sets the receiver of each frame's result, in frame order, after its messages have been printed.
     void setTake(Take t) { take_ = std::move(t); }
-    /// A message of whoever runs: of the reading process behind those of the frames so far, of a drawing one for its frame. For
+    /// Reports a message: in the reading process after those of earlier frames, in a rendering process for its frame. For
     /// Diagnostics::setHandler().
     void say(const Diagnostic&);
 
-    // --- in the process that reads ---
-    /// Waits until one process more may draw. Messages from here on belong to the frame that comes.
+    // --- in the reading process ---
+    /// Waits until another process may render. Later messages belong to the next frame.
     void openFrame();
-    /// Makes the process. what: names the frame in messages. alone: no other draws meanwhile, openFrame() has been called behind
-    /// settle(). Throws std::system_error where there can be no further process.
+    /// Forks the process. what: names the frame in messages. alone: no other process renders; openFrame() must have been called
+    /// after settle(). Throws std::system_error if no process can be made.
     bool start(const std::string& what, Writes, bool alone);
-    /// Messages from here on belong to the reader again.
+    /// Later messages belong to the reader again.
     void closeFrame();
-    /// Waits until all frames are drawn and told of.
+    /// Waits until all frames are rendered and their messages printed.
     void settle();
 
     // --- in either ---
-    /// Before a file of this name is looked for: waits for earlier frames that may write it. In a process that draws, any thread.
+    /// Call before looking for a file of this name: waits for earlier frames that may write it. In a rendering process callable
+    /// from any thread.
     void awaitRead(const std::string& name);
 
-    // --- in a process that draws ---
-    /// The files that it writes are known now but for none (false) or some (true).
+    // --- in a rendering process ---
+    /// Declares that the files it writes are all known (false), or not (true).
     void declare(bool others);
-    /// Before files are written that earlier frames may read, or write too: waits until these are drawn. Any thread.
+    /// Call before writing files that earlier frames may read or write: waits until these are rendered. Any thread.
     void awaitTurn();
-    /// Hands the result over and ends the process.
+    /// Sends the result to the reader and ends the process.
     [[noreturn]] void finish(FrameResult);
 
 private:
@@ -81,18 +82,18 @@ private:
         Kind kind;
         std::string bytes;
     };
-    struct Part { ///< a frame, or what the reader says between two
+    struct Part { ///< a frame, or messages of the reader between two frames
         std::deque<Event> events;
         std::string what;
-        std::string unread; ///< of standard error, the beginning of a record
-        pid_t process = -1; ///< that runs; -1: none
+        std::string unread; ///< of standard error: start of an incomplete record
+        pid_t process = -1; ///< running process; -1: none
         int out = -1, error = -1, answer = -1;
         Writes writes;
         bool asks = false;            ///< waits for an answer
-        std::string asked;            ///< for the file of this name; "": for its turn
-        bool begun = false;           ///< the two below hold
-        int errors = 0, warnings = 0; ///< told before it
-        bool result = false;          ///< `made` holds
+        std::string asked;            ///< waits for this file; "": for its turn
+        bool begun = false;           ///< errors and warnings are set
+        int errors = 0, warnings = 0; ///< reported before it
+        bool result = false;          ///< `made` is set
         FrameResult made;
     };
     int running() const;
@@ -114,10 +115,10 @@ private:
     Use use_;
     Diagnostics& told_;
     Take take_;
-    std::deque<Part> parts_; ///< those that are not told of, in order
+    std::deque<Part> parts_; ///< those not yet printed, in order
     bool open_ = false;      ///< between openFrame() and closeFrame(): the last part is the frame
     bool stopSent_ = false;
-    bool lost_ = false; ///< standard output takes no more
+    bool lost_ = false; ///< standard output is closed
     bool process_ = false;
     int answers_ = -1; ///< of the reading process
     std::mutex asking_;

@@ -6,7 +6,7 @@
 namespace alpenglow::render {
 namespace {
 
-// The members of what is packed, in one order for both ways.
+// Members in one order for both directions.
 template <class A> void each(A& a, SourcePlace& p) { a(p.file, p.line, p.column); }
 template <class A> void each(A& a, FixIt& f) { a(f.place, f.length, f.text); }
 template <class A> void each(A& a, Diagnostic& d) {
@@ -56,7 +56,7 @@ private:
     }
 };
 
-/// Once bytes are missing, `fine` is false and nothing more is read.
+/// If bytes are missing, sets `fine` to false and reads nothing more.
 class Unpacker {
 public:
     explicit Unpacker(std::string_view b) : bytes_(b) {}
@@ -74,7 +74,7 @@ private:
         if constexpr (std::is_trivially_copyable_v<T>) take(&v, sizeof v);
         else each(*this, v);
     }
-    size_t count() { // what is counted has a byte or more
+    size_t count() { // each element has at least one byte
         uint64_t n = 0;
         get(n);
         if (!(fine_ &= n <= bytes_.size())) return 0;

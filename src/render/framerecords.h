@@ -1,4 +1,4 @@
-// Messages and figures as bytes, between a process and its copies: numbers are as they lie in memory.
+// Serialises messages and figures between a process and its forks: numbers in native byte order.
 #pragma once
 #include "base/diagnostics.h"
 #include "render/outcome.h"
@@ -9,7 +9,7 @@ namespace alpenglow::render {
 
 std::string packed(Diagnostic);
 std::string packed(FrameResult);
-/// False: the bytes are none of packed().
+/// Return false if the bytes are not from packed().
 bool unpack(std::string_view, Diagnostic&);
 bool unpack(std::string_view, FrameResult&);
 

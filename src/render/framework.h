@@ -1,4 +1,4 @@
-// One frame on its way through the renderer, as the files of Renderer share it.
+// State of one frame in the renderer, shared by the files of Renderer.
 #pragma once
 #include "render/imaging.h"
 #include "render/partfile.h"
@@ -12,7 +12,7 @@ namespace alpenglow::render {
 
 using transport::Hider;
 
-/// The hider that runs for the one that the scene names; an unknown one is reported.
+/// The hider that runs for the scene's; reports unknown ones.
 Hider hiderOf(const scene::Options&, Diagnostics&);
 
 struct Renderer::FrameWork {
@@ -22,26 +22,26 @@ struct Renderer::FrameWork {
     Hider hider;
     bool path;
     Camera camera;
-    uint32_t spp = 0;   ///< samples of a pixel
-    int nx = 1, ny = 1; ///< the same as a grid; not under path
+    uint32_t spp = 0;   ///< samples per pixel
+    int nx = 1, ny = 1; ///< the same as a grid; unused under path
     std::optional<SampleRange> part;
     SampleRange wanted{};
     OutputPlan plan;
     std::string checkpoint; ///< "": none
     transport::Settings settings;
-    std::shared_ptr<const scene::Frame> made; ///< the frame with the procedurals that are made by now
-    std::unique_ptr<Diagnostics> later;       ///< of worlds with further procedurals: says what was not said yet
+    std::shared_ptr<const scene::Frame> made; ///< the frame with the procedurals expanded so far
+    std::unique_ptr<Diagnostics> later;       ///< for worlds with further procedurals: reports only new messages
     std::shared_ptr<const transport::World> world;
     PictureFacts picture;
     Imager imager;
-    uint64_t nonFinite = 0; ///< samples that were left out
+    uint64_t nonFinite = 0; ///< samples that were dropped
 
     FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& stats, Diagnostics& d)
         : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d),
           made(frame) {}
 };
 
-/// Notes how many procedurals of a frame waited, and how many were made. procedurals.cpp
+/// Reports how many procedurals of a frame were deferred, and how many were expanded. Defined in procedurals.cpp.
 void sayProcedurals(const scene::Frame&, Diagnostics&);
 
 } // namespace alpenglow::render

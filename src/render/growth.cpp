@@ -18,7 +18,7 @@ Window Growth::tileOf(size_t task) const {
     return {x, y, std::min(x + side_, s.x1), std::min(y + side_, s.y1)};
 }
 
-/// Of a tile: with all tiles from which a filter takes samples for its pixels.
+/// Whether a tile is complete: together with all tiles from which a filter takes samples for its pixels.
 bool Growth::ready(size_t task) const {
     const auto isOver = [&](size_t i) { return over_[i].load(std::memory_order_acquire) != 0; };
     if (!isOver(task) || each_ > 0) return isOver(task);

@@ -1,4 +1,4 @@
-// Which pixels of a band nobody works at any more, while others are still traced.
+// Tracks which pixels of a band are finished while others are still traced.
 #pragma once
 #include "render/samplebuffer.h"
 #include <atomic>
@@ -9,21 +9,21 @@
 
 namespace alpenglow::render {
 
-/// One thread asks; tasks are told to be over by those that do them, each once.
+/// One thread reads; each worker reports its tasks, each once.
 class Growth {
 public:
-    /// Tasks are the tiles of buffer.sampled(), of so many pixels a side, in reading order. `part`: what is reconstructed.
+    /// Tasks are the tiles of buffer.sampled(), with this side in pixels, in reading order. `part`: the pixels to reconstruct.
     Growth(const SampleBuffer& buffer, const Window& part, int side);
-    /// Tasks are so many of these pixels each, alone: what lies beside them does not count.
+    /// Tasks are groups of `each` of these pixels; their neighbours do not matter.
     Growth(const SampleBuffer& buffer, std::vector<std::pair<int, int>> pixels, size_t each);
-    /// A task is over. Any thread.
+    /// Reports that a task is finished. Any thread.
     void over(size_t task) {
         over_[task].store(1, std::memory_order_release);
         count_.fetch_add(1, std::memory_order_relaxed);
     }
-    /// Whether more tasks are over than at the last take(). Quick.
+    /// Whether tasks have finished since the last take(). Fast.
     bool grown() const { return count_.load(std::memory_order_relaxed) != taking_; }
-    /// Calls f(buffer, rectangle) for what can be reconstructed now and could not before.
+    /// Calls f(buffer, rectangle) for all pixels that have become complete.
     void take(const std::function<void(const SampleBuffer&, const Window&)>& f);
 
 private:

@@ -9,17 +9,17 @@ namespace alpenglow::render {
 
 namespace {
 
-constexpr uint32_t kPilot = 0xfffffffeu, kLearned = 0xfffffffdu; ///< passes of photons: others have other numbers
+constexpr uint32_t kPilot = 0xfffffffeu, kLearned = 0xfffffffdu; ///< numbers of photon passes, distinct from others
 constexpr uint32_t kMostTurns = 4;
-constexpr uint64_t kOtherSeed = 0x6775696465ull; ///< so that what is learned knows nothing of the picture's own samples
+constexpr uint64_t kOtherSeed = 0x6775696465ull; ///< makes the guide independent of the picture's own samples
 
 bool refused(const scene::Options& o) {
     const scene::Param* p = scene::find(o.hiderParams, "guide");
     return p && !p->numbers.empty() && p->numbers[0] == 0;
 }
 
-/// Mean luminance of the whole picture, without its brightest fiftieth: a caustic that a path has met by chance says nothing of
-/// the rest. From 1,024 samples that are no samples of the picture.
+/// Mean luminance of the complete picture without its brightest 2 %, because a caustic hit by chance is not representative. From
+/// 1,024 samples that are not samples of the picture.
 float brightnessOf(Job& job) {
     constexpr int kSide = 32;
     const scene::Options& o = job.world->frame().options;
@@ -31,7 +31,7 @@ float brightnessOf(Job& job) {
     std::vector<transport::CameraRay> rays;
     std::vector<float> weights;
     pathRays(job.camera, filter, job.settings.seed ^ kOtherSeed, samples, numbers, rays, weights);
-    for (transport::CameraRay& r : rays) r.sample = 0x40000000u; // no picture has so many
+    for (transport::CameraRay& r : rays) r.sample = 0x40000000u; // larger than any sample number of a picture
     std::vector<transport::SampleResult> results(rays.size());
     Diagnostics silent;
     const auto tracer = job.engine.tracer(job.world, silent);
@@ -55,14 +55,14 @@ bool learnCaustics(Job& job) {
     if (!passes.emission().lights()) return true;
     std::vector<transport::StoredPhoton> found;
     const auto take = [&](uint32_t, std::vector<transport::StoredPhoton> stored) { found = std::move(stored); };
-    // So few for small pictures that nobody waits for them; of the whole picture: a crop shows what the picture shows.
+    // Few enough to cost nothing in small pictures. For the complete picture, so that a crop equals that part of the picture.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
     const auto pilot = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 14)));
     if (!passes.emit(kPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
     if (found.empty()) return true;
     passes.emission().learn(found, kPilot, pilot);
     const auto photons = uint32_t(std::clamp(pixels, double(1u << 13), double(1u << 17)));
-    // Lamps that are no flat ones aim badly: then more are sent.
+    // For emitters that are not flat, emission is inefficient: sends more.
     std::vector<transport::StoredPhoton> all;
     uint32_t turns = 0;
     do {

@@ -23,7 +23,7 @@ uint64_t ownBytes() {
 
 void fillHeap([[maybe_unused]] size_t bytes, [[maybe_unused]] bool oneThread) {
 #if defined(__GLIBC__) && defined(MADV_POPULATE_WRITE)
-    constexpr size_t kBlock = size_t(16) << 20; // below the least size that the C library may map by itself
+    constexpr size_t kBlock = size_t(16) << 20; // below the smallest size that the C library may map separately
     mallopt(M_MMAP_THRESHOLD, int(2 * kBlock));
     mallopt(M_TRIM_THRESHOLD, int(2 * limits::kHeapAtOnce));
     if (oneThread) mallopt(M_ARENA_MAX, 1); // else the thread has a heap of its own

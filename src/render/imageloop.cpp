@@ -21,7 +21,7 @@ struct Wanted {
     int x, y, k;
 };
 
-/// What a worker's rays need, kept from task to task.
+/// Rays of a worker, reused from task to task.
 struct Kept {
     std::vector<Wanted> wanted;
     ImageRays image;
@@ -30,7 +30,7 @@ struct Kept {
     std::vector<size_t> of; ///< by ray of `behind`
 };
 
-/// What the bands of a picture have in common.
+/// State shared by the bands of a picture.
 class ImageLoop {
 public:
     ImageLoop(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples&, Reconstructions&,
@@ -69,24 +69,24 @@ private:
     uint64_t seed_;
     DroppedSamples& dropped_;
     Reconstructions& result_;
-    std::vector<float>& memory_; ///< of a buffer that is gone
+    std::vector<float>& memory_; ///< from an earlier buffer
     const Window window_;
     std::vector<Channel> aovs_;
     std::vector<const OutputSpec*>
-        filtered_;                       ///< displays that share a reconstruction stand for each other: a frame may have hundreds
+        filtered_;                       ///< displays with equal reconstruction are represented by one: a frame may have hundreds
     std::vector<FilterWeights> weights_; ///< by image
     std::vector<Kept> kept_;             ///< by worker
-    bool depthsAlone_ = false;           ///< no display shows more than z
+    bool depthsAlone_ = false;           ///< all displays show z only
     bool unshaded_ = false;              ///< and no shader is needed for that
     bool behindUnshaded_ = false;        ///< nor for the depths of second surfaces
     double xw_ = 1, yw_ = 1;
     int rows_ = 0, bands_ = 0, lower_ = 0;
-    bool movesDown_ = false; ///< bands share the samples of the rows between them
+    bool movesDown_ = false; ///< bands share the samples of rows between them
     std::optional<SampleBuffer> buffer_;
     double reached_ = 0;
     std::mutex mutex_;
-    std::optional<Growth> growth_; ///< of the band under way, where somebody looks on
-    std::vector<uint8_t> there_;   ///< by pixel of the window: it is in the images. Only where somebody looks on
+    std::optional<Growth> growth_; ///< of the current band, if there is a watcher
+    std::vector<uint8_t> there_;   ///< by pixel of the window: complete in the images. Only with a watcher
 };
 
 ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& refinement, uint64_t seed,
@@ -100,14 +100,14 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
     for (int i = 0; i < job.team.threads(); ++i)
         kept_.push_back({{}, ImageRays(job.camera, seed_, nx_, ny_, jitter_), {}, {}, {}, {}});
     plan();
-    // Under motion surfaces are shaded where they were when the shutter opened: what rays meet has other depths.
+    // With motion, surfaces are shaded at shutter open, but rays hit them at other depths.
     const bool still = job.camera.shutterClose() <= job.camera.shutterOpen();
     const bool ofDepth = depthsAlone_ || job.plan.needsDepth(DepthFilter::Midpoint);
     behindUnshaded_ = ofDepth && still && job.world && transport::depthsNeedNoShaders(*job.world);
     unshaded_ = depthsAlone_ && behindUnshaded_;
 }
 
-/// Whether z is all that is shown: then neither filters nor samples about a pixel are needed.
+/// Whether only z is shown: then neither filters nor samples of neighbours are needed.
 bool ImageLoop::showsDepthsAlone() const {
     if (!aovs_.empty() || refinement_.on() || job_.settings.watcher || (job_.world && job_.world->frame().options.imager))
         return false;
@@ -131,7 +131,7 @@ void ImageLoop::plan() {
     }
     depthsAlone_ = showsDepthsAlone();
     if (jitter_ == Jitter::Middle || depthsAlone_) xw_ = yw_ = 1;
-    if (refinement_.on()) xw_ = yw_ = 3; // one pixel around, to compare with
+    if (refinement_.on()) xw_ = yw_ = 3; // one pixel on each side for comparison
     for (size_t p = 0; p < filtered_.size(); ++p) weights_.emplace_back(filterOf(p));
     result_.images.resize(filtered_.size());
     for (Image& i : result_.images) {
@@ -144,7 +144,7 @@ void ImageLoop::plan() {
     if (job_.settings.watcher) there_.assign(window_.pixels(), 0);
 }
 
-/// Bands of rows bound the memory of samples: few for what starts anew in each band, else so small that caches hold them.
+/// Bands of rows bound the memory of samples: few bands if each starts anew, else bands that fit into the cache.
 void ImageLoop::planBands() {
     const int rowsAbout = 2 * int(std::ceil(yw_ / 2));
     const size_t perRow =
@@ -153,12 +153,12 @@ void ImageLoop::planBands() {
     const size_t bytes = movesDown_ ? kBandBytes * size_t(job_.team.threads()) : kPassBytes;
     rows_ = int(std::clamp(bytes / std::max(perRow, size_t(1)), size_t(1), size_t(limits::kImageSide))) - rowsAbout;
     rows_ = (std::max({rows_, 2 * rowsAbout, kTile}) + kTile - 1) / kTile * kTile;
-    // The first band is lower by its samples above and below, so that those after it, which have some already, are whole tiles.
+    // The first band is lower by its border rows, so that later bands, which share those, are complete tiles.
     lower_ = movesDown_ ? 2 * border(yw_) % rows_ : 0;
     bands_ = (window_.height() + lower_ + rows_ - 1) / rows_;
 }
 
-/// Where a band begins; of the one after the last, where the picture ends.
+/// First row of a band; for the band after the last, the end of the picture.
 int ImageLoop::rowOf(int b) const { return std::clamp(window_.y0 + b * rows_ - lower_, window_.y0, window_.y1); }
 
 void ImageLoop::run() {
@@ -169,7 +169,7 @@ void ImageLoop::run() {
     job_.halt = 0;
 }
 
-/// Makes buffer_ hold the samples of a band. Returns the pixels that have none yet.
+/// Prepares buffer_ for a band. Returns the pixels without samples.
 Window ImageLoop::beginBand(const Window& part) {
     if (buffer_ && movesDown_) {
         const int fresh = buffer_->moveDown(part);
@@ -177,7 +177,7 @@ Window ImageLoop::beginBand(const Window& part) {
         return {all.x0, fresh, all.x1, all.y1};
     }
     if (buffer_) memory_ = std::move(*buffer_).takeMemory();
-    if (movesDown_) { // what the bands that follow take, or there would be two at a time
+    if (movesDown_) { // later bands need it; otherwise there would be two
         const int height = std::min(rows_, window_.height());
         const size_t most = SampleBuffer::floats(part.width(), height, xw_, yw_, nx_ * ny_, aovs_.size());
         if (memory_.capacity() < most) memory_ = {}, memory_.reserve(most);
@@ -193,7 +193,7 @@ void ImageLoop::band(int b) {
     SampleBuffer& buffer = *buffer_;
     const std::vector<Window> tiles = tilesOf(fresh);
     const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
-    // Tasks that may be done again, for what their rays came to, are never over while others work.
+    // Tasks that may be repeated after expansion are not complete while others run.
     const bool watched = job_.settings.watcher && !(job_.world && transport::hasUnmade(*job_.world));
     if (watched) growth_.emplace(buffer, part, kTile);
     const uint64_t dropped = buffer.nonFinite();
@@ -213,7 +213,7 @@ void ImageLoop::band(int b) {
     reconstruct(buffer, part);
 }
 
-/// Lets who looks on see what is over.
+/// Shows finished tiles to the watcher.
 void ImageLoop::show() {
     if (!growth_) return;
     Glance g;
@@ -228,7 +228,7 @@ void ImageLoop::show() {
     job_.settings.watcher->look(g);
 }
 
-/// Puts into the images what nobody works at any more.
+/// Reconstructs pixels whose samples are complete.
 void ImageLoop::grow() {
     growth_->take([this](const SampleBuffer& buffer, const Window& w) {
         for (size_t p = 0; p < filtered_.size(); ++p) {
@@ -250,7 +250,7 @@ void ImageLoop::tell(double fraction, bool last) {
     else job_.progress.update(s, job_.what);
 }
 
-/// What hears how many tasks of a band are over; `begin`: 0, of the tasks that refine 1.
+/// Progress callback for a band; `begin`: 0, or 1 for refinement tasks.
 ImageLoop::Done ImageLoop::told(int b, double begin, size_t tasks) {
     return [this, b, begin, tasks](size_t done) {
         job_.pollStop();
@@ -261,7 +261,7 @@ ImageLoop::Done ImageLoop::told(int b, double begin, size_t tasks) {
     };
 }
 
-/// Traces samples of a buffer: those that `list` names of task i.
+/// Traces samples of a buffer: those that `list` returns for task i.
 void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list,
                       const Done& done) {
     job_.run(
@@ -270,7 +270,7 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
             std::vector<Wanted>& wanted = kept_[size_t(worker)].wanted;
             wanted.clear();
             list(i, wanted);
-            // A pixel with thousands of samples is traced in slices, so that one call stays small.
+            // A pixel with thousands of samples is traced in slices, so that each call stays small.
             constexpr size_t slice = 2048;
             for (size_t from = 0; from < wanted.size(); from += slice)
                 if (!traceSlice(buffer, worker, std::span(wanted).subspan(from, std::min(slice, wanted.size() - from)))) return;
@@ -279,10 +279,10 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
         done);
 }
 
-/// The depths of the second surfaces, which a sample has by itself only where the first lets light through: rays that begin
-/// behind the first. False: interrupted.
+/// Traces the depths of second surfaces with rays that start behind the first; samples have them only where the first surface is
+/// transparent. Returns false if interrupted.
 bool ImageLoop::traceBehind(int worker, Kept& k) const {
-    constexpr float kBehind = 1 + 1e-5f; // of the depth: beyond its rounding, before what lies behind it
+    constexpr float kBehind = 1 + 1e-5f; // relative to depth: beyond rounding, before any surface behind
     k.behind.clear();
     k.of.clear();
     const std::vector<transport::CameraRay>& rays = k.image.rays();
@@ -304,8 +304,8 @@ bool ImageLoop::traceBehind(int worker, Kept& k) const {
     return true;
 }
 
-/// Whether the samples of a tile, and all that share a filter with them, are known to see nothing. Then there are no samples:
-/// every pixel that they would be in is empty.
+/// Whether the samples of a tile, and all that share a filter with them, are known to see nothing. No samples are then stored:
+/// all affected pixels are empty.
 bool ImageLoop::seesNothing(const Window& t) const {
     if (refinement_.on()) return false;
     const int bx = 2 * int(std::ceil(xw_)), by = 2 * int(std::ceil(yw_));
@@ -333,7 +333,7 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
         if (r.zSecond < 1e38f) s.zSecond = r.zSecond;
         s.aovs = r.aovs;
         if (buffer.set(rays[k].px, rays[k].py, int(rays[k].sample), kept.image.places()[k], s)) continue;
-        std::lock_guard lock(mutex_); // told is the same whatever thread meets it first
+        std::lock_guard lock(mutex_); // the result is the same for any thread order
         const std::array<int, 3> at{int(rays[k].sample), rays[k].py, rays[k].px};
         if (window_.contains(at[2], at[1]) && (!dropped_.first || at < *dropped_.first)) dropped_.first = at;
     }
@@ -342,9 +342,9 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
 
 void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     const std::vector<Wanted> pixels = differing(buffer, part);
-    constexpr size_t kPixels = 64;                                                      // a task
-    if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // what is there is not traced again
-    if (growth_) { // all that is there so far, while nobody works at it
+    constexpr size_t kPixels = 64;                                                      // in a task
+    if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // existing samples are not traced again
+    if (growth_) { // everything so far, while no worker is active
         reconstruct(buffer, part);
         std::vector<std::pair<int, int>> places;
         for (const Wanted& w : pixels) places.push_back({w.x, w.y});
@@ -363,8 +363,8 @@ void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     result_.refined.rays += pixels.size() * size_t(nx_ * ny_ - 1);
 }
 
-/// The pixels that differ from a neighbour, in reading order, with their samples that are there. The buffer has one more pixel on
-/// all sides, so that neither bands nor crop windows show.
+/// The pixels that differ from a neighbour, in reading order, with their existing samples. The buffer has one more pixel on all
+/// sides, so that bands and crop windows have no effect.
 std::vector<Wanted> ImageLoop::differing(const SampleBuffer& buffer, const Window& part) const {
     const int middle = nx_ * ny_ / 2;
     const auto colour = [&](int x, int y) {
@@ -386,11 +386,11 @@ std::vector<Wanted> ImageLoop::differing(const SampleBuffer& buffer, const Windo
 }
 
 void ImageLoop::reconstruct(const SampleBuffer& buffer, const Window& part) {
-    constexpr int kRows = 16; // a task
+    constexpr int kRows = 16; // in a task
     const size_t tasks = size_t((part.height() + kRows - 1) / kRows), channels = result_.images.front().channels.size();
     const size_t row = size_t(window_.width()) * channels;
     for (size_t p = 0; p < filtered_.size(); ++p) {
-        // Images that differ in their depth filter alone share all the rest.
+        // Images that differ only in their depth filter share everything else.
         size_t like = 0;
         while (!(weights_[like].filter() == weights_[p].filter())) ++like;
         StopFlag go{0};

@@ -1,4 +1,4 @@
-// What options and the parameters of hiders say of image samples.
+// Options and hider parameters for image samples.
 #include "render/rendering.h"
 #include "scene/scene.h"
 #include <algorithm>
@@ -30,7 +30,7 @@ Jitter jitterOf(const scene::Options& o, Diagnostics& diags) {
     if (!p || p->numbers.empty()) return Jitter::Jittered;
     int j = int(p->numbers[0]);
     if (j >= 0 && j <= 2) return Jitter(j);
-    diags.report(Severity::Error, Rie::Range, p->place, "hider parameter \"jitter\" is 0, 1 or 2; 1 is used");
+    diags.report(Severity::Error, Rie::Range, p->place, "hider parameter \"jitter\" must be 0, 1 or 2; 1 is used");
     return Jitter::Jittered;
 }
 
@@ -53,7 +53,7 @@ bool shadesMicropolygons(const scene::Options& o, bool hidden, const Camera& cam
                      "Hider \"hidden\" shades micropolygons once, when the shutter opens, and moves them");
         return false;
     }
-    return !camera.stereo(); // eyes see micropolygons of their own
+    return !camera.stereo(); // each eye sees micropolygons of its own
 }
 
 Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnostics& diags) {
@@ -64,7 +64,7 @@ Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnosti
     if (!first || (samples && samples->numbers.empty())) return r;
     if (o.hider != "raytrace") {
         diags.report(Severity::Warning, Rie::Incapable, first->place,
-                     "\"" + first->name + "\" is for the hider raytrace; it is ignored");
+                     "\"" + first->name + "\" requires the hider raytrace; it is ignored");
         return r;
     }
     r.side = !samples ? 3 : std::isnan(samples->numbers[0]) ? 0 : int(std::clamp(samples->numbers[0], 0.f, 100.f));
@@ -76,7 +76,7 @@ Refinement refinementOf(const scene::Options& o, const Camera& camera, Diagnosti
     }
     if (threshold && !threshold->numbers.empty()) r.threshold = threshold->numbers[0];
     if (!(r.threshold >= 0)) {
-        diags.report(Severity::Error, Rie::Range, threshold->place, "hider parameter \"aaThreshold\" is at least 0; 0.3 is used");
+        diags.report(Severity::Error, Rie::Range, threshold->place, "hider parameter \"aaThreshold\" must be >= 0; 0.3 is used");
         r.threshold = 0.3f;
     }
     if (r.on() && (camera.hasLens() || camera.lensGrid().on() || camera.shutterClose() > camera.shutterOpen())) {

@@ -1,4 +1,4 @@
-// From image samples to camera rays.
+// Camera rays of image samples.
 #include "render/rendering.h"
 
 namespace alpenglow::render {
@@ -39,7 +39,7 @@ void ImageRays::make() {
     }
 }
 
-/// The same where rays differ by their place in the picture alone.
+/// The same for rays that differ by raster position only.
 void ImageRays::makePlain() {
     raster_.resize(asked_.size());
     for (size_t i = 0; i < asked_.size(); ++i) {

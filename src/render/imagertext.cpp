@@ -14,7 +14,7 @@ using scene::Options;
 using scene::Param;
 using scene::ShaderRef;
 
-// All are declared before those that call them by templates: only what stands before a template is found there.
+// Declared before the templates that call them, because only earlier declarations are found there.
 template <class T> Json toJson(const T& v) { return v; }
 template <class T> void fromJson(const Json& j, T& v) { v = j.get<T>(); }
 Json toJson(const ShaderRef&);
@@ -103,7 +103,7 @@ void fromJson(const Json& j, ShaderRef& s) {
     s = std::move(call);
 }
 
-/// Writes each field under its name, or reads it from there: so that both know the same fields.
+/// Writes each field under its name, or reads it: one list of fields for both directions.
 struct ImagerWriter {
     Json j = Json::object();
     template <class T> void operator()(const char* name, const T& v) { j[name] = toJson(v); }
@@ -117,7 +117,7 @@ struct ImagerReader {
     }
 };
 
-/// What attribute() asks for, and the co-shaders.
+/// Fields for attribute(), and the co-shaders.
 template <class Field, class A> void attributeFields(Field& field, A& a) {
     field("color", a.color);
     field("opacity", a.opacity);
@@ -131,7 +131,7 @@ template <class Field, class A> void attributeFields(Field& field, A& a) {
     field("coshaders", a.coshaders);
 }
 
-/// What option() and the named spaces ask for, and the imager.
+/// Fields for option() and named spaces, and the imager.
 template <class Field, class O> void optionFields(Field& field, O& o) {
     field("xres", o.xres);
     field("yres", o.yres);
@@ -198,7 +198,7 @@ std::string imagerToText(const scene::Frame& frame, const transport::Settings& s
         attributeFields(attributes, *frame.options.attributes);
         j["attributes"] = std::move(attributes.j);
     }
-    // Of the displays option("Display") tells the first one's name.
+    // option("Display") returns the name of the first display.
     if (!frame.options.displays.empty()) j["display"] = frame.options.displays.front().name;
     const std::string text = j.dump(-1, ' ', false, Json::error_handler_t::replace);
     return text.size() < limits::kPartHeaderBytes / 2 ? text : "";
@@ -227,7 +227,7 @@ std::optional<ImagerScene> imagerFromText(const std::string& text, const std::st
         scene.frame = std::move(frame);
         return scene;
     } catch (const Json::exception& e) {
-        diags.report(Severity::Error, Rie::BadFile, {file}, std::string("the part file's imager is not readable: ") + e.what());
+        diags.report(Severity::Error, Rie::BadFile, {file}, std::string("cannot read the part file's imager: ") + e.what());
         return std::nullopt;
     }
 }

@@ -1,4 +1,4 @@
-// What an imager sees of its frame as JSON, for part files: merging runs it without the scene.
+// The frame data that an imager reads, as JSON for part files: merging runs the imager without the scene.
 #pragma once
 #include "integrator/integrator.h"
 #include "scene/fwd.h"
@@ -7,19 +7,19 @@
 
 namespace alpenglow::render {
 
-/// The key under which a film keeps what imagerToText() made.
+/// Metadata key of a film for the result of imagerToText().
 inline constexpr const char* kImagerKey = "alpenglow:imager";
 
-/// A frame without geometry and lights, and how it was rendered: all that World::runImager() asks for.
+/// A frame without geometry and lights, and its settings: all that World::runImager() needs.
 struct ImagerScene {
     std::shared_ptr<const scene::Frame> frame;
     transport::Settings settings;
 };
 
-/// "" where the frame has no imager, or where it would fill a part file's header. Folders become absolute: parts are merged
-/// anywhere on the machine. Whether plug-ins may be loaded is not kept: each program is asked anew.
+/// Returns "" if the frame has no imager, or if the text is too long for a part file's header. Folders become absolute, as parts
+/// may be merged anywhere on the machine. The permission to load plug-ins is not stored: each program sets its own.
 std::string imagerToText(const scene::Frame&, const transport::Settings&);
-/// Nothing: the text is not ours (an error was reported).
+/// Returns nothing if the text is invalid (an error is reported).
 std::optional<ImagerScene> imagerFromText(const std::string&, const std::string& file, Diagnostics&);
 
 } // namespace alpenglow::render

@@ -16,14 +16,14 @@ struct QuantizeRule {
     bool floating() const { return one == 0 && zero == 0; }
 };
 
-/// round(zero + v (one - zero) + dither * r), clamped to [min, max]; ties to even; NaN gives min. r in [-1, 1) depends on
-/// (seed, x, y, channel) only. Floating rules return v unchanged, without rounding or clamping.
+/// round(zero + v (one - zero) + dither * r), clamped to [min, max]; ties to even; NaN gives min. r in [-1, 1) depends on (seed,
+/// x, y, channel) only. Floating rules return v unchanged, without rounding or clamping.
 double quantize(double v, const QuantizeRule&, uint64_t seed, int x, int y, int channel);
-/// The r above.
+/// The random number r of quantize().
 double ditherValue(uint64_t seed, int x, int y, int channel);
 
-/// Cap on the brightest channel of one sample, before accumulation: with m = max(r,g,b) > limit > 0 the colour is scaled by
-/// limit / m, hue kept. limit <= 0: off. The only deliberate bias (never applied to means).
+/// Limits the brightest channel of one sample before accumulation: if m = max(r, g, b) > limit > 0, the colour is scaled by limit
+/// / m, which keeps the hue. limit <= 0: off. This is the only deliberate bias; it is never applied to means.
 Color clampSample(Color, float limit);
 
 } // namespace alpenglow::render

@@ -12,11 +12,11 @@ void warn(Diagnostics& diags, const SourcePlace& place, std::string message, std
     diags.report(Severity::Warning, Rie::MissingData, place, std::move(message), std::move(hint));
 }
 
-/// Where to look when the camera sees none of these shapes.
+/// Hint for a camera that sees none of these shapes.
 std::string unseenHint(size_t shapes, size_t before) {
     if (shapes == 0) return "the world has no primitives that are drawn";
     const std::string camera = "the camera looks along +z, and requests before WorldBegin place the world before it";
-    if (before == 0) return "all of it lies behind the camera: " + camera + "; Translate 0 0 5, for example, moves it 5 away";
+    if (before == 0) return "everything is behind the camera: " + camera + "; Translate 0 0 5, for example, moves it 5 away";
     return "check the camera: " + camera + "; " + counted(before, "shape") + " of " + std::to_string(shapes) +
            (before == 1 ? " lies" : " lie") +
            " before it, outside the picture or hidden from it by Attribute \"visibility\" or Sides 1";
@@ -45,8 +45,8 @@ void sayEmptyClouds(const Job& job, Diagnostics& diags) {
     const Camera& c = job.camera;
     if (job.interrupted || !job.world || c.window().width() < c.width() || c.window().height() < c.height()) return;
     for (const auto& [name, place] : job.world->cloudsFoundEmpty())
-        warn(diags, place, "texture3d(): \"" + name + "\" has no point near any place that was looked up",
-             "alpenglow ptc info tells where its points are; \"coordsystem\" must name the space in which they were baked, and "
+        warn(diags, place, "texture3d(): \"" + name + "\" has no point near any lookup position",
+             "alpenglow ptc info shows where its points are; \"coordsystem\" must name the space in which they were baked, and "
              "normals must fit");
 }
 
@@ -58,8 +58,7 @@ void sayTurnedAway(const Job& job, Diagnostics& diags) {
         warn(diags, f.call,
              f.shadeop + "(): all over " + (f.primitives == 1 ? "a primitive" : counted(f.primitives, "primitive")) + where +
                  " its normal faces away from the viewer, and " +
-                 (f.shadeop == "occlusion" ? "all that it looks at is blocked: it is 1"
-                                           : "what it sees is the inside of the primitive itself"),
+                 (f.shadeop == "occlusion" ? "all its rays are blocked: it returns 1" : "the primitive itself blocks its rays"),
              "faceforward(normalize(N), I) is the normal of the side that is seen; ReverseOrientation turns those of the "
              "primitive");
     }
@@ -71,7 +70,7 @@ void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& dia
         c.window().height() < c.height())
         return;
     const transport::World::Facts facts = job.world->facts();
-    if (!job.met && frame.options.imager) return; // it may paint all of the picture
+    if (!job.met && frame.options.imager) return; // it may paint the complete picture
     if (!job.met) {
         warn(diags, {}, "the picture is empty: the camera sees nothing of the scene", unseenHint(facts.shapes, facts.before));
         return;

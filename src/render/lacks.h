@@ -1,22 +1,22 @@
-// What a picture lacks, said once a frame: channels that nothing gives, a camera that sees nothing, surfaces that nothing lights.
+// Warnings about empty results, once a frame: channels without a source, a camera that sees nothing, surfaces without light.
 #pragma once
 #include "render/rendering.h"
 
 namespace alpenglow::render {
 
-/// A warning for each variable of a display that no shader of the frame and no predefined variable gives: its channels are 0.
+/// Warns for each display variable that is neither a shader output of the frame nor predefined: its channels are 0.
 void sayMissingOutputs(const OutputPlan&, const transport::World&, Diagnostics&);
 
-/// A warning when the frame is done: no camera ray met a surface or light, or surfaces were met and all of them are black.
-/// Nothing of pictures without colour, of parts of a picture, and of what was interrupted.
+/// After the frame: warns if no camera ray hit a surface or light, or if all surfaces are black. Says nothing about pictures
+/// without colour, parts of a picture, and interrupted frames.
 void sayEmptyPicture(const Job&, const scene::Frame&, Diagnostics&);
 
-/// A warning when the frame is done for each call of occlusion(), indirectdiffuse() and gather() that makes whole primitives
-/// black as its normals are turned.
+/// After the frame: warns about each call of occlusion(), indirectdiffuse() and gather() that renders complete primitives black
+/// because its normals are flipped.
 void sayTurnedAway(const Job&, Diagnostics&);
 
-/// A warning when the frame is done for each point cloud in which texture3d() found nothing at any point. Nothing of parts of a
-/// picture and of what was interrupted.
+/// After the frame: warns about each point cloud in which no texture3d() found anything. Says nothing about parts of a picture
+/// and interrupted frames.
 void sayEmptyClouds(const Job&, Diagnostics&);
 
 } // namespace alpenglow::render

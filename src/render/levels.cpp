@@ -10,7 +10,7 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr float kUnlimited = 1e38f; // RI_INFINITY and what is written for it
+constexpr float kUnlimited = 1e38f; // RI_INFINITY and similar values
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Point {
@@ -28,7 +28,7 @@ double hullArea(std::vector<Point> p) {
             while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), q) <= 0) hull.pop_back();
             hull.push_back(q);
         }
-        hull.pop_back(); // the other chain begins there
+        hull.pop_back(); // the other chain starts there
         std::reverse(p.begin(), p.end());
     }
     double twice = 0;
@@ -47,18 +47,18 @@ class Levels {
 public:
     Levels(const scene::Frame& f, const Camera& camera) : frame_(f), camera_(camera) {}
 
-    /// The attributes of what is drawn: null where nothing is, others where it fades.
+    /// The attributes of a drawn primitive: null if not drawn, modified if it fades.
     scene::AttributesRef drawn(const scene::AttributesRef& a) {
         if (!a || !ranged(*a)) return a;
         auto [known, fresh] = known_.try_emplace(a.get());
         if (fresh) {
-            kept_.push_back(a); // else another's may come to lie at its address
+            kept_.push_back(a); // keeps the address unique
             const double size =
                 a->detail ? detailSize(*a->detail, a->detailSpace, camera_) * double(frame_.options.relativeDetail) : kInfinite;
             const float* r = a->detailRange;
             const bool unlimited = r[3] >= kUnlimited;
-            // Every sample has a number from 0 to 1 and sees what it lies within: in a transition one level ends where the other
-            // begins.
+            // Every sample has a number from 0 to 1 and sees the levels whose interval contains it: in a transition one level
+            // ends where the next begins.
             const auto within = [&](double from, double to) {
                 return to > from ? std::clamp((size - from) / (to - from), 0., 1.) : size >= from ? 1. : 0.;
             };
@@ -102,12 +102,12 @@ double detailSize(const std::vector<float>& bound, const Matrix& toWorld, const 
 
 std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Frame> frame, const Camera& camera) {
     Levels levels(*frame, camera);
-    std::shared_ptr<scene::Frame> out; // once something is left out
+    std::shared_ptr<scene::Frame> out; // made when a primitive is left out
     auto changed = [&]() -> scene::Frame& {
         if (!out) out = std::make_shared<scene::Frame>(*frame);
         return *out;
     };
-    // Leaves out of a list what is not drawn, and marks what fades; `of` tells the attributes that count.
+    // Removes what is not drawn from a list, and marks what fades; `of` returns the attributes that apply.
     const auto draw = [&](std::vector<scene::PrimitiveRef>& list, auto&& of) {
         bool differs = false;
         for (scene::PrimitiveRef& p : list) {
@@ -118,7 +118,7 @@ std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Fra
             std::shared_ptr<scene::Primitive> other;
             if (after) {
                 other = std::make_shared<scene::Primitive>(*p);
-                auto marked = std::make_shared<scene::Attributes>(*p->attributes); // an instance lays its own over them
+                auto marked = std::make_shared<scene::Attributes>(*p->attributes); // an instance combines its own with them
                 marked->values[transport::kLevelAttribute] = *after->value(transport::kLevelAttribute);
                 other->attributesBefore = p->attributesInside ? p->attributesBefore : p->attributes;
                 other->attributesInside = true;
@@ -131,13 +131,13 @@ std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Fra
     };
     std::vector<scene::PrimitiveRef> primitives = frame->primitives;
     if (draw(primitives, [](const scene::Primitive& p) { return p.attributes; })) changed().primitives = std::move(primitives);
-    std::vector<char> ranges; // of each object: whether one of its primitives has a range of its own
+    std::vector<char> ranges; // by object: whether one of its primitives has a range of its own
     for (const scene::Object& o : frame->objects)
         ranges.push_back(std::any_of(o.primitives.begin(), o.primitives.end(),
                                      [](const scene::PrimitiveRef& p) { return p && p->attributes && ranged(*p->attributes); }));
     for (size_t i = 0; i < frame->instances.size(); ++i) {
         const scene::Instance& instance = frame->instances[i];
-        if (instance.object < 0 || size_t(instance.object) >= frame->objects.size()) continue; // reported where shapes are made
+        if (instance.object < 0 || size_t(instance.object) >= frame->objects.size()) continue; // reported when shapes are made
         if (!ranges[size_t(instance.object)] && !(instance.attributes && ranged(*instance.attributes))) continue;
         const scene::Object& object = frame->objects[size_t(instance.object)];
         std::vector<scene::PrimitiveRef> drawn = object.primitives;

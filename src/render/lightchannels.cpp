@@ -1,4 +1,4 @@
-// Outputs that are no outputs of shaders: light by its path, what the camera sees first, figures of the pixel.
+// Outputs that are not shader outputs: light by path, first visible surface, pixel statistics.
 #include "render/outputs.h"
 #include "scene/scene.h"
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr std::pair<const char*, Source> kWords[] = {
 
 size_t widthOf(Source s) { return s == Source::Variance || s == Source::Samples ? 1 : 3; }
 
-/// The number of an expression in the plan.
+/// Index of an expression in the plan.
 int lightOf(OutputPlan& plan, const std::string& expression, const SourcePlace& place) {
     for (size_t i = 0; i < plan.lights.size(); ++i)
         if (plan.lights[i].expression == expression) return int(i);
@@ -24,7 +24,7 @@ int lightOf(OutputPlan& plan, const std::string& expression, const SourcePlace& 
     return int(plan.lights.size()) - 1;
 }
 
-/// What stands behind a type ("color direct").
+/// The text after a type ("color direct").
 std::string withoutType(const std::string& s) {
     const size_t space = s.find_last_of(" \t");
     return space == std::string::npos ? s : s.substr(space + 1);
@@ -38,7 +38,7 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
     const scene::Param* given = params == o.displayChannelParams.end() ? nullptr : scene::find(params->second, "source");
     const std::string source = given && !given->strings.empty() ? given->strings[0] : "";
     const SourcePlace& place = given ? given->place : display;
-    const auto only = [&](Source s) { // under path alone, and as wide as it is
+    const auto only = [&](Source s) { // under path only, with a fixed width
         if (!plan.basis.path)
             diags.report(Severity::Error, Rie::Incapable, place,
                          "\"" + v.name +
@@ -150,7 +150,7 @@ void addLightPixels(const OutputPlan& plan, const Film& film, int x, int y, floa
         }
     for (int at : {albedo, normal})
         for (int k = 0; k < 3; ++k) *to++ = at >= 0 ? film.aov(x, y, at + k) : 0;
-    // Of the mean luminance of the pixel, from two scrambles that know nothing of each other: unbiased.
+    // Variance of the pixel's mean luminance, from two independently scrambled replicas: unbiased.
     double sum[2];
     uint32_t n[2];
     for (uint32_t r = 0; r < 2; ++r) film.replica(x, y, r, &sum[r], &n[r]);

@@ -1,11 +1,11 @@
-// Limits of this room (base/limits.h says what they are for).
+// Limits of this folder (purpose: base/limits.h).
 #pragma once
 #include <cstddef>
 
 namespace alpenglow::limits {
 
-inline constexpr int kFramesAtOnce = 256; ///< processes that draw frames at a time (--frames-at-once)
-inline constexpr int kFramesAhead = 4;    ///< times their number: frames behind the first that is not told of, drawn or not
-inline constexpr size_t kHeapAtOnce = size_t(256) << 20; ///< that such a process takes at once, before it draws
+inline constexpr int kFramesAtOnce = 256; ///< processes that render frames at once (--frames-at-once)
+inline constexpr int kFramesAhead = 4;    ///< factor: frames after the first that is not yet printed, rendered or not
+inline constexpr size_t kHeapAtOnce = size_t(256) << 20; ///< memory that such a process allocates before it renders
 
 } // namespace alpenglow::limits

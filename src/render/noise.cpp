@@ -131,7 +131,7 @@ double noiseBound(double sum, double sumOfSquares, int replicas) {
 
 namespace {
 
-/// Sums of the squared errors of pixels.
+/// Sums of squared errors of pixels.
 struct Variances {
     double sum = 0, square = 0, mean = 0;
     int pixels = 0, degrees = 0;
@@ -166,7 +166,7 @@ PooledError pixelError(const Film& film, int x, int y, int radius) {
     for (int j = std::max(y - radius, w.y0); j < std::min(y + radius + 1, w.y1); ++j)
         for (int i = std::max(x - radius, w.x0); i < std::min(x + radius + 1, w.x1); ++i) {
             ReplicaError e = replicaError(film, i, j);
-            if (own > 0) e.se *= std::sqrt(film.count(i, j) / own); // as of a pixel with so many samples as this
+            if (own > 0) e.se *= std::sqrt(film.count(i, j) / own); // scaled to the sample count of this pixel
             near.add(e);
         }
     if (near.degrees == 0) return {replicaError(film, x, y).mean, 0, 0};

@@ -1,4 +1,4 @@
-// What came of the frames of a run.
+// Results of the frames of a run.
 #pragma once
 #include "render/framestats.h"
 #include <cstdint>
@@ -7,9 +7,9 @@
 namespace alpenglow::render {
 
 struct Outcome {
-    int rendered = 0;          ///< frames of which something could be rendered
-    int refused = 0;           ///< frames of which nothing could be
-    int textures = 0;          ///< Make requests that were obeyed
+    int rendered = 0;          ///< frames with some rendered output
+    int refused = 0;           ///< frames without any
+    int textures = 0;          ///< Make requests carried out
     bool outputFailed = false; ///< a file could not be written
     bool outOfMemory = false;
     bool interrupted = false;
@@ -23,12 +23,12 @@ struct Outcome {
     }
 };
 
-/// What a process has made of a frame, or of a Make request.
+/// Result of a process for a frame, or for a Make request.
 struct FrameResult {
     Outcome outcome;
-    std::optional<FrameStats> told; ///< of a frame of which something was rendered
-    double parseSec = 0;            ///< of another
-    uint64_t grown = 0;             ///< bytes that its process took for it; 0 where it took them at once
+    std::optional<FrameStats> told; ///< for a rendered frame
+    double parseSec = 0;            ///< for other frames
+    uint64_t grown = 0;             ///< memory in bytes that its process allocated for it; 0 if allocated at once
 };
 
 } // namespace alpenglow::render

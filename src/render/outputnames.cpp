@@ -9,7 +9,7 @@
 namespace alpenglow::render {
 namespace {
 
-/// Where the number of a frame stands in a name: [begin, end), how wide, and with what it is padded. end = 0: nowhere.
+/// Place of the frame number in a name: [begin, end), width and padding. end = 0: none.
 struct NumberPlace {
     size_t begin = 0, end = 0;
     int width = 0;
@@ -33,7 +33,7 @@ NumberPlace numberPlace(const std::string& name) {
     return {};
 }
 
-/// The name with .text before its extension.
+/// Inserts .text before the extension of a name.
 std::string beforeExtension(const std::string& name, const std::string& text) {
     const std::string e = extensionOf(name);
     const size_t dot = name.size() - (e.empty() ? 0 : e.size() + 1);
@@ -128,7 +128,7 @@ std::string pictureOptions(const RenderSettings& s) {
     return all;
 }
 
-/// A display that -o leaves: one behind the first whose file holds more than the picture.
+/// Whether -o keeps a display: not the first, with a file that holds more than the picture.
 static bool isBeside(const scene::Display& d, const scene::Options& o, const RenderSettings& s) {
     if (s.output.empty() || &d == &o.displays.front()) return false;
     const display::DriverDescriptor* driver = display::findDriver(d.type);

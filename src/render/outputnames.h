@@ -1,4 +1,4 @@
-// Names of what a run writes: the numbers of frames in them, which displays are maps, and that no two outputs share a file.
+// Names of output files: frame numbers, which displays are maps, and unique files for all outputs.
 #pragma once
 #include "render/settings.h"
 #include "scene/fwd.h"
@@ -8,48 +8,47 @@
 
 namespace alpenglow::render {
 
-/// Whether a name says where the number of a frame stands: a run of '#', or %d with or without a width (%04d, up to 16).
+/// Whether a name has a place for the frame number: a run of '#', or %d with optional width (%04d, up to 16).
 bool hasFrameNumber(const std::string& name);
-/// The name with the number in the first such place, padded with zeros to as many digits as there are '#'. Others stay as they
-/// are.
+/// Puts the number into the first such place, padded with zeros to as many digits as there are '#'. Other names are unchanged.
 std::string withFrame(const std::string& name, int frame);
-/// withFrame() where there is such a place, else name.ext becomes name.<number>.ext, number with four digits at least.
+/// withFrame() if there is such a place; else name.ext becomes name.<number>.ext, with at least four digits.
 std::string numberedName(const std::string& name, int number);
-/// In lower case and without the dot; "" when there is none.
+/// Lower case, without the dot; "" if there is none.
 std::string extensionOf(const std::string& file);
-/// Whether a frame has a number: it is between FrameBegin and FrameEnd.
+/// Whether a frame has a number, i.e. is between FrameBegin and FrameEnd.
 bool isNumbered(const scene::Options&);
 
-/// Whether a display is a map for later frames and no picture to look at: of the types zfile, shadow, deepshad, depth alone, or
-/// read by a Make request.
+/// Whether a display is a map for later frames rather than a picture: types zfile, shadow, deepshad, depth only, or read by a
+/// Make request.
 bool isMap(const scene::Display&);
-/// Whether all files of a frame are maps. The command line's options about pictures do not concern such a frame.
+/// Whether all files of a frame are maps. Picture options of the command line do not apply to such a frame.
 bool isMapPass(const scene::Options&);
-/// The settings without what concerns pictures (-o, --hider, --format, --gamma, --spp, --samples, --pixel ...).
+/// The settings without picture options (-o, --hider, --format, --gamma, --spp, --samples, --pixel ...).
 RenderSettings settingsOfMaps(const RenderSettings&);
-/// The options about pictures that were given, for messages: "-o, --hider"; "" when none was.
+/// The picture options that were given, for messages: "-o, --hider"; "" if none.
 std::string pictureOptions(const RenderSettings&);
 
-/// A display of a frame under the name of its file.
+/// A display of a frame with its final file name.
 struct NamedDisplay {
     scene::Display display;
-    bool user = false; ///< by --display: it may lie anywhere
+    bool user = false; ///< by --display: may be in any folder
 };
-/// The scene's displays and those of --display, numbers of frames put in; "ri.pic" when there are none. `pictures` false: only
-/// maps, those of --display and, beside the picture of -o, those behind the first that hold other outputs.
+/// The displays of the scene and of --display with frame numbers filled in; "ri.pic" if there are none. `pictures` false: only
+/// maps, those of --display, and next to the picture of -o those after the first that hold other outputs.
 std::vector<NamedDisplay> displaysOf(const scene::Options&, const RenderSettings&, bool pictures = true);
 
 /// The files that a run has written or will write. Not thread safe.
 class OutputNames {
 public:
-    /// A world begins: what earlier ones wrote is not overwritten, but for maps by maps.
+    /// Starts a world: files of earlier worlds are not overwritten, except maps by maps.
     void nextWorld() { ++world_; }
-    /// The name under which an output is written: its own, or where another output of this run has that file, one beside it: with
-    /// the number of the frame when an earlier frame has it, else with .2, .3 ... before the extension. A change of name is
-    /// reported unless `diags` is null. kind: "display", "checkpoint" for the message.
+    /// The name for an output: its own, or if another output of this run has that file, a variant: with the frame number if an
+    /// earlier frame has it, else with .2, .3 ... before the extension. A change is reported unless `diags` is null. kind:
+    /// "display", "checkpoint" for the message.
     std::string take(const std::string& kind, const std::string& name, bool map, const scene::Options&, const SourcePlace&,
                      Diagnostics* diags);
-    /// A Make request has read this file; the next frame may use the name again.
+    /// A Make request has read this file; the next frame may reuse the name.
     void release(const std::string& name);
 
 private:

@@ -24,7 +24,7 @@ const scene::Param* numbers(const scene::ParamList& list, std::string_view name,
     if (!p) return nullptr;
     if (p->numbers.size() == count) return p;
     diags.report(Severity::Error, Rie::BadToken, p->place,
-                 "display parameter \"" + std::string(name) + "\" takes " + std::to_string(count) + " numbers; it is left out");
+                 "display parameter \"" + std::string(name) + "\" takes " + std::to_string(count) + " numbers; it is dropped");
     return nullptr;
 }
 
@@ -185,7 +185,7 @@ OutputSpec singleOutput(const std::string& file, const OutputBasis& basis, Diagn
 }
 
 namespace {
-/// What "-o -" writes: the format that the first display's type names, else PNG.
+/// Format for "-o -": that of the first display's type, else PNG.
 display::Format formatOf(const std::vector<scene::Display>& displays) {
     if (displays.empty()) return display::Format::Png;
     const scene::Display& d = displays.front();
@@ -193,7 +193,7 @@ display::Format formatOf(const std::vector<scene::Display>& displays) {
     return display::formatOfExtension(likeAName).value_or(display::Format::Png);
 }
 
-/// A window has no file of its own: where another display writes the file of its name, that is kept.
+/// A window has no file of its own: it is dropped if another display writes the file of its name.
 void leaveOutWindows(std::vector<OutputSpec>& pictures) {
     auto is = [](const OutputSpec& s, const char* driver) {
         const display::DriverDescriptor* d = display::findDriver(s.type);
@@ -327,7 +327,7 @@ Image filmImage(const Film& film, const OutputPlan& plan, DepthFilter depth) {
 }
 
 namespace {
-/// Where a variable of the engine, or by light path, stands behind the first eight floats of a pixel.
+/// Position of an engine or light path variable after the first eight floats of a pixel.
 size_t floatOf(const OutputPlan& plan, const OutputVariable& v, const std::vector<int>& firstFloat) {
     if (v.source == Source::Engine) return size_t(firstFloat[size_t(v.engine)]);
     return size_t(plan.engineFloats()) + lightFloat(plan, v);
@@ -340,7 +340,7 @@ std::optional<display::Image> finishedPicture(const OutputPlan& plan, const Outp
     for (size_t i = 0, n = 0; i < firstFloat.size(); n += size_t(plan.engineWidths[i++])) firstFloat[i] = int(n);
     const int w = facts.window.width(), h = facts.window.height();
     std::vector<float> rx(size_t(w), 0.f), ry(size_t(w), 0.f), row(size_t(w) * 4);
-    const float zeros[16] = {}; // hidden and raytrace have no light by path
+    const float zeros[16] = {}; // hidden and raytrace have no light path outputs
     display::Image out = display::makeImage(w, h, s.channels());
     size_t stride = in.channels.size();
     for (int y = 0; y < h; ++y) {
@@ -356,7 +356,7 @@ std::optional<display::Image> finishedPicture(const OutputPlan& plan, const Outp
             ry[size_t(x)] = float(facts.window.y0 + y) + 0.5f;
         }
         if (imager && !imager(w, rx.data(), ry.data(), r, g, b, a)) return {};
-        if (s.srgb) // after the imager, which works on light
+        if (s.srgb) // after the imager, which works on linear light
             for (int i = 0; i < 3 * w; ++i) r[i] = srgbEncode(r[i]);
         for (int x = 0; x < w; ++x) {
             const float* p = src + size_t(x) * stride;

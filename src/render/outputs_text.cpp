@@ -1,4 +1,4 @@
-// The plan of a frame's pictures as JSON, for part files.
+// Converts the plan of a frame's pictures to JSON for part files.
 #include "render/outputs.h"
 #include <nlohmann/json.hpp>
 
@@ -193,7 +193,7 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
         return result;
     } catch (const std::exception& e) {
         diags.report(Severity::Error, Rie::BadFile, {file},
-                     std::string("part file: what it says about its pictures is damaged: ") + e.what());
+                     std::string("part file: the description of its pictures is damaged: ") + e.what());
         return std::nullopt;
     }
 }

@@ -12,12 +12,12 @@ namespace alpenglow::render {
 namespace {
 
 constexpr char kMagic[8] = {'A', 'L', 'P', 'G', 'P', 'A', 'R', 'T'};
-constexpr uint32_t kVersion = 3;       // 1 had no sums of the samples that met a surface, 2 had eight replicas a pixel
-constexpr uint32_t kSpreadVersion = 4; // of a film that is spread; others stay what older programs read
-constexpr uint32_t kSignedVersion = 5; // of a film whose samples have weights, spread or not
+constexpr uint32_t kVersion = 3;       // 1 had no sums of samples that hit a surface, 2 had eight replicas per pixel
+constexpr uint32_t kSpreadVersion = 4; // adaptive films; others stay readable by older programs
+constexpr uint32_t kSignedVersion = 5; // films whose samples have weights, adaptive or not
 constexpr size_t kPrefix = 20;         // magic, version, header size, header CRC
 constexpr size_t kPixelBytes = 16 * 4 + 16 * kReplicas + 32 + 4 * kReplicas + 16 + 4 * kReplicas;
-constexpr size_t kDeflateRatio = 1040; // deflate cannot pack better than 1032 : 1
+constexpr size_t kDeflateRatio = 1040; // deflate cannot compress better than 1032 : 1
 
 struct PartWriter {
     std::vector<uint8_t> bytes;
@@ -108,7 +108,7 @@ public:
     ~Unpacker() {
         if (ready_) inflateEnd(&z_);
     }
-    /// Fills the buffer; false when the stream is damaged or ends early.
+    /// Fills the buffer; returns false if the stream is damaged or ends early.
     bool get(std::vector<uint8_t>& out) {
         if (!ready_) return false;
         for (size_t at = 0; at < out.size();) {
@@ -116,7 +116,7 @@ public:
         }
         return true;
     }
-    /// True when nothing follows.
+    /// True at the end of the stream.
     bool atEnd() {
         uint8_t extra;
         size_t got = 0;
@@ -150,7 +150,7 @@ private:
 
 } // namespace
 
-/// The only one besides Film that knows its integers.
+/// Accesses the integers of Film.
 struct FilmIo {
     static std::vector<uint8_t> header(const Film& f) {
         const FilmDescription& d = f.description_;
@@ -182,7 +182,7 @@ struct FilmIo {
         return std::move(w.bytes);
     }
 
-    /// The sums of a pixel of a layer.
+    /// Writes the sums of one entry of pixels_.
     static void sums(const Film& f, size_t i, PartWriter& w) {
         const size_t n = f.description_.channels.size();
         const Film::Pixel& p = f.pixels_[i];
@@ -211,7 +211,7 @@ struct FilmIo {
     }
     static size_t pixelBytes(const Film& f) { return sumsBytes(f.description_) + (f.spread_ ? sizeof f.spread_->rates[0] : 0); }
 
-    /// False when the sums cannot come from the counted samples: then later arithmetic could overflow.
+    /// Returns false if the sums cannot result from the counted samples, because later arithmetic could overflow.
     static bool readSums(Film& f, size_t i, PartReader& r) {
         const size_t n = f.description_.channels.size();
         Film::Pixel& p = f.pixels_[i];
@@ -251,7 +251,7 @@ struct FilmIo {
         return r.ok;
     }
 
-    /// The film without its sums; null when the header is not sound. packed = bytes of packed sums in the file.
+    /// Makes the film without sums; returns null if the header is invalid. packed: bytes of packed sums in the file.
     static std::unique_ptr<Film> parseHeader(PartReader& r, uint32_t version, size_t packed, const std::string& name,
                                              Diagnostics& diag) {
         FilmDescription d;

@@ -1,4 +1,4 @@
-// `path`: whole passes of samples over all pixels, into a film of exact sums.
+// `path`: complete passes of samples over all pixels, into a film of exact sums.
 #include "base/limits.h"
 #include "base/numberlanes.h"
 #include "render/adaptive.h"
@@ -16,11 +16,11 @@ namespace alpenglow::render {
 namespace {
 
 constexpr size_t kRaysPerCall =
-    8192; // of one trace(): enough to fill the lanes of rare shaders too, and few ends of calls, when lanes run empty
-constexpr int kPathTile = 32; // pixels a side: eight samples of each are one call
-constexpr uint32_t kPass = 8; // samples a pixel; a multiple of kReplicas, so that noise is judged on replicas of equal size
+    8192; // of one trace(): enough to fill the lanes of rare shaders, with few partly filled batches at the end
+constexpr int kPathTile = 32; // side in pixels: eight samples of each form one call
+constexpr uint32_t kPass = 8; // samples per pixel; a multiple of kReplicas, so that noise is measured on replicas of equal size
 static_assert(kPass % kReplicas == 0 && kPilotSamples % kPass == 0);
-constexpr uint32_t kMostOfPass = 32; // samples a pixel, of passes that bring some pixels few
+constexpr uint32_t kMostOfPass = 32; // samples per pixel, for passes that add few to some pixels
 
 } // namespace
 
@@ -64,7 +64,7 @@ void pathRays(const Camera& camera, const FilterSampler& filter, uint64_t seed, 
 
 namespace {
 
-/// What the camera rays of a call need, kept from call to call.
+/// Camera rays of a call, reused from call to call.
 struct Rays {
     std::vector<PixelSample> samples;
     NumberRows numbers;
@@ -73,13 +73,13 @@ struct Rays {
     std::vector<float> weights;
 };
 
-/// What all pixels get next: `count` samples from `first` on, or, where they differ, `steps` (Spread).
+/// Next samples of all pixels: `count` from `first` on, or for adaptive films `steps` (Spread).
 struct Pass {
     uint32_t first = 0, count = 0, steps = 0;
-    uint32_t samples() const { return count + kReplicas * steps; } ///< of a pixel whose rate is 1
+    uint32_t samples() const { return count + kReplicas * steps; } ///< for a pixel with rate 1
 };
 
-/// One run of renderPath().
+/// One execution of renderPath().
 class PathLoop {
 public:
     PathLoop(Job&, Film&, SampleRange wanted, uint64_t seed);
@@ -110,24 +110,24 @@ private:
     const uint64_t seed_;
     const FilterSampler filter_;
     const std::vector<Channel>& channels_;
-    const size_t stride_; ///< floats of a sample that is held: colour, alpha, whether a surface was met, weight, the rest
+    const size_t stride_; ///< floats of a stored sample: colour, alpha, whether a surface was hit, weight, the rest
     std::vector<Window> tiles_;
-    std::vector<std::vector<float>> held_; ///< by tile: the samples of the pass
+    std::vector<std::vector<float>> held_; ///< by tile: samples of the pass
     uint32_t next_;                        ///< the first sample that no pixel has
-    const bool adapts_;                    ///< pixels get samples by their noise once there are kPilotSamples
-    bool any_;                             ///< some pass is whole
-    double samples_;                       ///< a pixel, on average
+    const bool adapts_;                    ///< sampling adapts to noise after kPilotSamples
+    bool any_;                             ///< some pass is complete
+    double samples_;                       ///< per pixel, on average
     NoiseFigures noise_;
-    uint32_t nextNoise_; ///< samples a pixel at which noise is judged again
+    uint32_t nextNoise_; ///< samples per pixel at the next noise test
     bool judged_ = false;
     double secondsPerSample_ = 0; ///< of the last pass
     CausticPasses caustics_;
 };
 
-/// The first sample from `begin` on that the film has not.
+/// The first sample from `begin` on that is not in the film.
 uint32_t behind(const Film& film, SampleRange wanted) {
     uint32_t next = wanted.begin;
-    while (next < wanted.end) { // behind what a checkpoint brought
+    while (next < wanted.end) { // after those of a checkpoint
         const auto in = std::find_if(film.ranges().begin(), film.ranges().end(),
                                      [&](SampleRange r) { return r.begin <= next && next < r.end; });
         if (in == film.ranges().end()) break;
@@ -143,7 +143,7 @@ PathLoop::PathLoop(Job& job, Film& film, SampleRange wanted, uint64_t seed)
     if (filter_.degenerate())
         job.diagnostics.report(Severity::Error, Rie::Range, {},
                                "PixelFilter: its integral is not positive; a box of its widths is used");
-    // Large tiles where every thread still gets many.
+    // Large tiles, if every thread still gets many.
     const bool large = film.window().pixels() >= size_t(kPathTile) * kPathTile * 8 * size_t(job.team.threads());
     tiles_ = tilesOf(film.window(), large ? kPathTile : kTile);
     held_.resize(tiles_.size());
@@ -168,7 +168,7 @@ void PathLoop::tell(double inPass, bool last) {
     else job_.progress.update(s, job_.what);
 }
 
-/// Lets who looks on see the whole passes.
+/// Shows complete passes to the watcher.
 void PathLoop::show(bool grown) {
     if (!settings_.watcher || !any_) return;
     Glance g;
@@ -180,8 +180,7 @@ void PathLoop::show(bool grown) {
     settings_.watcher->look(g);
 }
 
-/// Only where a render is one by itself: parts have the samples they are asked for. Photons of caustics belong to one sample of
-/// all pixels.
+/// Adaptive sampling requires a complete render: parts have fixed samples. Caustic photons belong to one sample of all pixels.
 bool PathLoop::mayAdapt() const {
     const scene::Options& o = job_.world->frame().options;
     const scene::Param* asked = scene::find(o.hiderParams, "adaptive");
@@ -189,13 +188,13 @@ bool PathLoop::mayAdapt() const {
     return settings_.noise > 0 && !settings_.samples && !settings_.part && !refused && !CausticPasses::asked(o);
 }
 
-/// Samples a pixel that fit the memory which holds them back.
+/// Samples per pixel that fit into the memory for a pass.
 uint32_t PathLoop::mostOfPass() const {
     const size_t perSample = film_.window().pixels() * stride_ * sizeof(float);
     return uint32_t(std::clamp(kPassBytes / std::max(perSample, size_t(1)), size_t(1), size_t(kMostOfPass)));
 }
 
-/// Of so many samples those for which there is time; 0: none.
+/// Number of these samples that fit into the remaining time; 0: none.
 uint32_t PathLoop::samplesWithinTime(uint32_t count) const {
     if (!(settings_.seconds > 0) || !any_) return count;
     const double left = settings_.seconds - job_.elapsed();
@@ -204,16 +203,16 @@ uint32_t PathLoop::samplesWithinTime(uint32_t count) const {
     return left < 0.5 * secondsPerSample_ ? 0 : std::clamp(uint32_t(left / secondsPerSample_), 1u, count);
 }
 
-/// Passes are of 8 samples while they fit their memory. The first eight come in passes of 1, 1, 2 and 4, so that there is soon
-/// something to keep. 0: the time is over.
+/// Passes have 8 samples if they fit into memory. The first eight come in passes of 1, 1, 2 and 4, so that a result exists early.
+/// 0: out of time.
 uint32_t PathLoop::samplesOfPass() const {
     uint32_t count = std::min({mostOfPass(), kPass, wanted_.end - next_});
-    if (next_ % kPass != 0) count = std::min(count, kPass - next_ % kPass); // so that noise is judged on whole nets
+    if (next_ % kPass != 0) count = std::min(count, kPass - next_ % kPass); // so that noise is measured on complete nets
     if (film_.samplesPerPixel() < kPass) count = std::min(count, std::max(1u, film_.samplesPerPixel()));
     return samplesWithinTime(count);
 }
 
-/// Steps to where noise is judged next, as many as fit. 0: the time, or the samples that are wanted, are over.
+/// Steps to the next noise test, as many as fit. 0: out of time, or all samples are done.
 uint32_t PathLoop::stepsOfPass() const {
     uint32_t samples = std::min(mostOfPass(), nextNoise_ > reached() ? nextNoise_ - reached() : kReplicas);
     samples = samplesWithinTime(std::max(samples, kReplicas));
@@ -222,7 +221,7 @@ uint32_t PathLoop::stepsOfPass() const {
     return steps;
 }
 
-/// Nothing in it: the end.
+/// An empty pass ends rendering.
 Pass PathLoop::nextPass() {
     if (adapts_ && !film_.spread() && film_.samplesPerPixel() >= kPilotSamples && film_.samplesPerPixel() % kPass == 0 &&
         film_.ranges().size() == 1 && film_.ranges().front().begin == 0 && film_.spread(ratesOf(film_)))
@@ -238,7 +237,7 @@ SampleRange PathLoop::samplesOf(const Pass& p, int x, int y) const {
     return p.steps ? film_.samplesOfSteps(x, y, p.steps) : SampleRange{p.first, p.first + p.count};
 }
 
-/// Traces the samples that are noted and appends them to `out`. False: halted.
+/// Traces the listed samples and appends the results to `out`. Returns false if stopped.
 bool PathLoop::take(int worker, std::vector<float>& out, Rays& r) {
     pathRays(job_.camera, filter_, seed_, r.samples, r.numbers, r.rays, r.weights);
     r.results.resize(r.rays.size());
@@ -276,7 +275,7 @@ void PathLoop::traceTile(int worker, size_t tile, const Pass& pass) {
     if (!rays.samples.empty()) take(worker, out, rays);
 }
 
-/// False: not whole, because of the user, the time, or memory.
+/// Returns false if incomplete, because of the user, time or memory.
 bool PathLoop::tracePass(const Pass& pass) {
     bool whole = false;
     try {
@@ -289,12 +288,12 @@ bool PathLoop::tracePass(const Pass& pass) {
                         tell(double(pass.samples()) * double(done) / double(tiles_.size()), false);
                         show(false);
                     });
-    } catch (const std::bad_alloc&) { job_.outOfMemory = std::current_exception(); } // the film has whole passes only
+    } catch (const std::bad_alloc&) { job_.outOfMemory = std::current_exception(); } // the film has complete passes only
     if (job_.world) job_.world->flushPrints(whole);
     return whole;
 }
 
-/// Puts a whole pass into the film. False: there is no room, which is reported.
+/// Adds a complete pass to the film. Returns false if a limit is reached, which is reported.
 bool PathLoop::addPass(const Pass& pass) {
     StopFlag go{0};
     job_.team.run(
@@ -323,15 +322,15 @@ bool PathLoop::addPass(const Pass& pass) {
     return false;
 }
 
-/// Samples of a pixel whose rate is 1, as if none had been there when pixels were spread.
+/// Samples of a pixel with rate 1, as if sampling had always been adaptive.
 uint32_t PathLoop::reached() const {
     return film_.spread() ? uint32_t(film_.spread()->ofOne(film_.spread()->steps)) : film_.samplesPerPixel();
 }
 
-/// Where noise is judged after so many samples.
+/// Number of samples at the next noise test after n.
 uint32_t judgedAfter(uint32_t n) { return n + std::max(kPass, n / 8 / kPass * kPass); }
 
-/// The first such number that is not behind; where pixels are spread, not before all have their share.
+/// The first such number that is still ahead; for adaptive films, after all pixels have their share.
 uint32_t PathLoop::firstJudged() const {
     const uint32_t from = film_.spread() ? std::max(reached(), film_.spread()->base) : reached();
     uint32_t n = kPilotSamples;
@@ -347,7 +346,7 @@ void PathLoop::judge() {
 }
 
 bool PathLoop::run(const std::function<void(Film&)>& afterPass) {
-    judge(); // what a checkpoint brought may do
+    judge(); // the samples of a checkpoint may suffice
     while (!job_.pollStop() && !(settings_.noise > 0 && judged_ && noise_.reached(settings_.noise))) {
         const Pass pass = nextPass();
         const double begun = clockSeconds();

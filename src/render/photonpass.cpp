@@ -11,21 +11,21 @@ namespace alpenglow::render {
 
 namespace {
 
-constexpr uint32_t kBlock = 8192;      ///< photons of a task
-constexpr uint64_t kBlocksAtOnce = 16; ///< of an emission, before what came to rest is counted
-constexpr size_t kBlocksOfPasses = 32; ///< of passes for samples, before what came to rest is counted
-constexpr float kWidth = .1f;          ///< radians: lobes that spread less are followed
+constexpr uint32_t kBlock = 8192;      ///< photons in a task
+constexpr uint64_t kBlocksAtOnce = 16; ///< of an emission, between counts of stored photons
+constexpr size_t kBlocksOfPasses = 32; ///< of passes for samples, between counts of stored photons
+constexpr float kWidth = .1f;          ///< radians: lobes with a smaller spread are followed
 constexpr float kMostWidth = .5f;
 constexpr uint64_t kDefaultEmit = 200000;
-constexpr uint32_t kPilot = 0xffffffffu; ///< pass by which caustics are found
-constexpr int kTypical = 12;             ///< photons within the first radius, about, where they are dense
+constexpr uint32_t kPilot = 0xffffffffu; ///< pass for finding caustics
+constexpr int kTypical = 12;             ///< typical number of photons within the first radius, where they are dense
 
 const scene::Param* hiderParam(const scene::Options& o, const char* name) {
     const scene::Param* p = scene::find(o.hiderParams, name);
     return p && !p->numbers.empty() ? p : nullptr;
 }
 
-/// About `most` of photons that are more, by chance: what is left carries the light of all.
+/// Reduces photons to about `most` at random; the remaining ones carry the light of all.
 void thin(std::vector<transport::StoredPhoton>& stored, size_t most, uint32_t pass) {
     if (stored.size() <= most) return;
     const double part = double(most) / double(stored.size());
@@ -104,7 +104,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<transport::St
                                 "photon maps hold no more than " + std::to_string(limits::kPhotons) +
                                     " photons: emission ends after " + std::to_string(done * kBlock) + " of " +
                                     std::to_string(count),
-                                "they share the light of all lights, so maps are right, and coarser");
+                                "they carry the light of all lights, so maps are correct but coarser");
             break;
         }
         for (const auto& o : of) stored.insert(stored.end(), o.begin(), o.end());
@@ -116,7 +116,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<transport::St
     return true;
 }
 
-/// Blocks begin to end - 1, those of all passes from `first` on in a row: what came to rest, by block.
+/// Emits blocks begin to end - 1, counted over all passes from `first` on; returns the stored photons by block.
 bool PhotonPasses::emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end,
                               std::vector<std::vector<transport::StoredPhoton>>& of) {
     const size_t blocks = (count + kBlock - 1) / kBlock;
@@ -134,8 +134,8 @@ bool PhotonPasses::emitBlocks(uint32_t first, uint32_t count, size_t begin, size
 bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
                         const std::function<void(uint32_t, std::vector<transport::StoredPhoton>)>& take) {
     const size_t blocks = (count + kBlock - 1) / kBlock;
-    // Small passes together, for all threads to have something to do; of large ones a part at a time. Where they are parted
-    // depends on nothing else, so that a pass is the same whatever comes with it.
+    // Combines small passes, so that all threads have work, and divides large ones. The division depends on nothing else, so a
+    // pass is independent of what is emitted with it.
     const size_t together = std::max<size_t>(1, kBlocksOfPasses / blocks);
     std::vector<std::vector<transport::StoredPhoton>> of;
     for (uint32_t pass = 0; pass < passes; pass += uint32_t(together)) {
@@ -160,9 +160,9 @@ bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t 
                                     {Severity::Warning,
                                      Rie::Limit,
                                      {},
-                                     "more than " + std::to_string(most) + " photons of a pass came to rest: it ends after " +
+                                     "more than " + std::to_string(most) + " photons of a pass were stored: it ends after " +
                                          std::to_string(emitted) + " of " + std::to_string(count),
-                                     "they share the light of all lights, so caustics are right, and coarser",
+                                     "they carry the light of all lights, so caustics are correct but coarser",
                                      {}});
             thin(stored, most, first + pass);
             take(pass, std::exchange(stored, {}));
@@ -186,13 +186,13 @@ bool CausticPasses::asked(const scene::Options& o) {
 
 CausticPasses::CausticPasses(Job& job) : job_(job) {}
 
-/// Where caustics come from, and how large they are: by photons that nobody gathers. False: stopped.
+/// Finds origin and size of caustics by photons that are not gathered. Returns false if stopped.
 bool CausticPasses::begin() {
     const scene::Options& o = job_.world->frame().options;
     begun_ = true;
     if (!asked(o)) return learnCaustics(job_);
     if (!job_.world->photons()) return true;
-    // One photon for four pixels, of the whole picture: a crop shows what the picture shows.
+    // One photon for four pixels of the complete picture, so that a crop equals that part of the picture.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
     count_ = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 18)));
     if (const scene::Param* p = hiderParam(o, "emit")) {
@@ -207,7 +207,7 @@ bool CausticPasses::begin() {
     const auto take = [&](uint32_t, std::vector<transport::StoredPhoton> stored) { found = std::move(stored); };
     const uint32_t pilot = std::clamp(count_ * 4, 1u << 14, 1u << 17);
     if (!passes->emit(kPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
-    if (found.empty()) return true; // then paths find what there is
+    if (found.empty()) return true; // then paths sample what there is
     passes->emission().learn(found, kPilot, pilot);
     if (!passes->emit(0, 1, count_, limits::kPhotonsAtRest, take)) return false;
     std::vector<photons::Photon> some;
@@ -231,7 +231,7 @@ float CausticPasses::widthOf(const scene::Options& o) {
     const scene::Param* p = hiderParam(o, "causticwidth");
     if (!p) return kWidth;
     if (!(p->numbers[0] >= 0 && p->numbers[0] <= kMostWidth))
-        job_.diagnostics.report(Severity::Error, Rie::Range, p->place, "\"causticwidth\" is an angle in radians, 0 to 0.5");
+        job_.diagnostics.report(Severity::Error, Rie::Range, p->place, "\"causticwidth\" must be an angle of 0 to 0.5 radians");
     return p->numbers[0] >= 0 ? std::min(float(p->numbers[0]), kMostWidth) : 0;
 }
 
@@ -250,7 +250,7 @@ bool CausticPasses::ready(uint32_t first, uint32_t count) {
         const float radius = photons::radiusOfPass(radius_, first + pass);
         grids[pass] = std::make_unique<photons::PhotonGrid>(std::move(all), radius, times, window_ * (radius / radius_));
     };
-    transport::setPhotonPasses(*job_.world, first, {}); // those of the samples before are not held beside
+    transport::setPhotonPasses(*job_.world, first, {}); // photons of earlier samples are freed first
     if (!passes_->emit(first, count, count_, limits::kPhotonsAtRest, take)) return false;
     transport::setPhotonPasses(*job_.world, first, std::move(grids));
     return true;

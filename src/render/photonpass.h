@@ -1,4 +1,4 @@
-// Photon passes of a frame: maps that are written or made for its shaders, and the caustics of the hider path. Inside render/.
+// Photon passes of a frame: maps to write or for its shaders, and caustics under path. Internal to render/.
 #pragma once
 #include "integrator/photons.h"
 #include "render/rendering.h"
@@ -6,23 +6,23 @@
 
 namespace alpenglow::render {
 
-/// Emits photons on the threads of a job, with progress.
+/// Emits photons on the threads of a job and shows progress.
 class PhotonPasses {
 public:
     PhotonPasses(Job&, std::shared_ptr<const transport::World>, const transport::PhotonUse&);
-    /// The same, with messages for somebody else.
+    /// The same with other diagnostics.
     PhotonPasses(Job&, std::shared_ptr<const transport::World>, const transport::PhotonUse&, Diagnostics&);
     transport::PhotonEmission& emission() { return emission_; }
-    /// All photons that come to rest of `count` of a pass. False: stopped, or more than limits::kPhotons came to rest, which was
-    /// reported; then *emitted is how many were emitted of which these are.
+    /// Emits `count` photons of a pass and collects the stored ones. Returns false if stopped, or if more than limits::kPhotons
+    /// were stored, which is reported; *emitted is then the number of photons emitted for these.
     bool emit(uint32_t pass, uint64_t count, std::vector<transport::StoredPhoton>& stored, const std::string& what,
               uint64_t* emitted);
-    /// Of passes first to first + passes - 1 each by itself: take(pass, stored) has what came to rest of `count` photons, pass by
-    /// pass. Once more than `most` did, no more are emitted of that pass, which is reported once; these then carry the light of
-    /// all. False: stopped.
+    /// Emits passes first to first + passes - 1 independently: take(pass, stored) receives the stored photons of `count` emitted
+    /// ones, pass by pass. A pass ends when more than `most` are stored, which is reported once; these then carry the light of
+    /// all. Returns false if stopped.
     bool emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
               const std::function<void(uint32_t pass, std::vector<transport::StoredPhoton>)>& take);
-    /// How far lights, and the surfaces that photons have met so far, move while the shutter is open.
+    /// Distance that lights, and surfaces hit by photons so far, move while the shutter is open.
     float travel() const;
 
 private:
@@ -35,29 +35,29 @@ private:
     std::vector<std::unique_ptr<transport::PhotonEmission::Thread>> threads_; ///< by worker
 };
 
-/// Photons that Hider or Option "photon" "emit" asks for, at most limits::kPhotonsEmitted; more are reported.
+/// Number of photons by Hider or Option "photon" "emit", at most limits::kPhotonsEmitted; larger numbers are reported.
 uint64_t photonsToEmit(const scene::Options&, Diagnostics&);
 
-/// Caustics of the hider path: for each sample of all pixels photons of their own (design: docs/light.md).
+/// Caustics under path by photons: each sample of all pixels has photons of its own (docs/light.md).
 class CausticPasses {
 public:
     explicit CausticPasses(Job&);
-    /// Whether Hider "path" "caustics" asks for them.
+    /// Whether Hider "path" "caustics" is set.
     static bool asked(const scene::Options&);
-    /// Before anything is traced: finds caustics by photons, which paths then aim at, or which stand for them. False: stopped.
+    /// Call before tracing: finds caustics by photons, for guiding or for density estimation. Returns false if stopped.
     bool prepare() { return begun_ || begin(); }
-    /// Before samples first to first + count - 1 of any pixel are traced. False: stopped.
+    /// Call before samples first to first + count - 1 of any pixel are traced. Returns false if stopped.
     bool ready(uint32_t first, uint32_t count);
 
 private:
     bool begin();
     float widthOf(const scene::Options&);
     Job& job_;
-    std::unique_ptr<PhotonPasses> passes_; ///< null: there are no caustics, or nobody asks for them
+    std::unique_ptr<PhotonPasses> passes_; ///< null: no caustics, or not requested
     bool begun_ = false;
     uint32_t count_ = 0; ///< photons of a pass
     float radius_ = 0;   ///< of the first pass
-    float window_ = 1;   ///< and for how long its photons are there, of the time that the shutter is open
+    float window_ = 1;   ///< time window of its photons, as a fraction of the open shutter
     bool moves_ = false;
 };
 

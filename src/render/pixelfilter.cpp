@@ -85,8 +85,7 @@ double PixelFilter::operator()(double x, double y) const {
     if (!(std::fabs(x) <= xw / 2 && std::fabs(y) <= yw / 2)) return 0;
     if (separable()) return axis(x, xw) * axis(y, yw);
     double r = std::sqrt(x * x + y * y), q = (2 * x / xw) * (2 * x / xw) + (2 * y / yw) * (2 * y / yw);
-    if (kind == FilterKind::CatmullRom)
-        return 2 * cubicBC(r, 0, 0.5); // RISpec gives twice the usual kernel; the factor drops out
+    if (kind == FilterKind::CatmullRom) return 2 * cubicBC(r, 0, 0.5); // RISpec has twice the usual kernel; the factor cancels
     if (q >= 1) return 0;
     if (kind == FilterKind::Disk) return 1;
     return r < 1e-8 ? kPi : exact::cos(kPi / 2 * std::sqrt(q)) * 2 * besselJ1(kPi * r) / r;

@@ -5,7 +5,7 @@
 namespace alpenglow::render {
 namespace {
 
-/// Irreducible polynomials of degree 1 to 12 over two elements: those of the fields of 2 to 4096.
+/// Irreducible polynomials of degree 1 to 12 over GF(2), for the fields with 2 to 4096 elements.
 constexpr int kPolynomials[12] = {0x3, 0x7, 0xb, 0x13, 0x25, 0x43, 0x83, 0x11d, 0x211, 0x409, 0x805, 0x1053};
 
 bool prime(int n) {
@@ -14,7 +14,7 @@ bool prime(int n) {
     return n >= 2;
 }
 
-/// The product of two elements of the field of 2^degree.
+/// Product of two elements of the field with 2^degree elements.
 int productOfTwos(int a, int b, int degree) {
     int r = 0;
     for (int i = 0; i < degree; ++i)
@@ -24,8 +24,7 @@ int productOfTwos(int a, int b, int degree) {
     return r;
 }
 
-/// Where number i of n stands in an order that the seed chooses: the hash of Kensler, "Correlated multi-jittered sampling"
-/// (2013).
+/// Position of number i of n in a permutation by seed: hash of Kensler, "Correlated multi-jittered sampling" (2013).
 uint32_t permuted(uint32_t i, uint32_t n, uint32_t seed) {
     uint32_t w = n - 1;
     for (int shift : {1, 2, 4, 8, 16}) w |= w >> shift;
@@ -52,7 +51,7 @@ uint32_t permuted(uint32_t i, uint32_t n, uint32_t seed) {
     return (i + seed) % n;
 }
 
-/// (whole + part) / n, never 1.
+/// (whole + part) / n, less than 1.
 float strataNumber(uint32_t whole, double part, double n) { return std::min(float((double(whole) + part) / n), 1 - 0x1p-24f); }
 
 } // namespace
@@ -72,7 +71,7 @@ PixelNet::PixelNet(int nx, int ny, bool moves, bool lens) : nx_(nx), count_(nx *
 PixelNet::Column PixelNet::column(int g) const {
     int degree = 0;
     while (1 << degree < side_) ++degree;
-    const int cut = g < factors_ ? g + 1 : 0; // 0: its levels are cut by rows
+    const int cut = g < factors_ ? g + 1 : 0; // 0: rows divide its levels
     Column c;
     for (int y = 0; y < side_; ++y) {
         c.level.push_back(two_ ? productOfTwos(g, y, degree) : g * y % side_);

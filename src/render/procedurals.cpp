@@ -1,5 +1,4 @@
-// Procedurals that wait until a ray comes to their bound: whose content the frame needs from the beginning, and worlds with
-// what was met.
+// Deferred procedurals: expands those that a frame needs from the start, and builds worlds with those that rays reached.
 #include "integrator/unmade.h"
 #include "render/framework.h"
 #include "render/lacks.h"
@@ -18,7 +17,7 @@ void Renderer::makeAll(FrameWork& f) {
 }
 
 bool Renderer::buildFrame(FrameWork& f) {
-    // Maps and shadows of everything that there is.
+    // Maps and shadows need all geometry.
     if (f.plan.anyDeep() || CausticPasses::asked(f.o)) makeAll(f);
     const auto build = [&] { return engine_.build(drawnLevels(f.made, f.camera), f.settings, diagnostics_); };
     f.settings = engineSettings(f);
@@ -65,7 +64,7 @@ void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
     };
 }
 
-/// How many procedurals waited, and how many of them are made now.
+/// Reports how many procedurals were deferred, and how many of them have been expanded.
 void sayProcedurals(const scene::Frame& f, Diagnostics& d) {
     size_t all = 0, left = 0;
     for (const scene::PrimitiveRef& p : f.primitives)

@@ -77,7 +77,7 @@ void Progress::update(const ProgressState& s, std::string_view what) {
             int width = std::min(room, 40), full = int(std::clamp(s.fraction, 0.0, 1.0) * width);
             text = "[" + std::string(size_t(full), '#') + std::string(size_t(width - full), '.') + "] " + text;
         }
-        // A line that wraps would leave its first half on the screen at every redraw.
+        // A wrapped line would leave its first half on the screen at every redraw.
         if (int(text.size()) > columns_ - 1) text.resize(size_t(std::max(0, columns_ - 1)));
         sink_("\r" + text + "\x1b[K");
         visible_ = true;

@@ -1,4 +1,4 @@
-// Progress while rendering: a bar on a terminal, plain lines elsewhere. Writes to standard error, never to standard output.
+// Progress during rendering: a bar on a terminal, plain lines elsewhere. Writes to standard error, never to standard output.
 #pragma once
 #include <cstdint>
 #include <cstdio>
@@ -13,34 +13,34 @@ enum class ProgressMode { Auto, Bar, Plain, None };
 /// "auto" "bar" "plain" "none" (--progress MODE).
 std::optional<ProgressMode> progressModeByName(std::string_view);
 
-/// What a reporter is told.
+/// State to show.
 struct ProgressState {
-    double fraction = 0;       ///< of the work, 0..1; below 0 when nobody knows
+    double fraction = 0;       ///< of the work, 0..1; < 0 if unknown
     double samplesDone = 0;    ///< samples per pixel so far (a fraction inside a pass)
-    uint64_t samplesTotal = 0; ///< per pixel; 0 when it is not known (--noise, --time)
-    double noise = -1;         ///< relative noise so far; < 0: not known yet
+    uint64_t samplesTotal = 0; ///< per pixel; 0 if unknown (--noise, --time)
+    double noise = -1;         ///< relative noise so far; < 0: unknown
     double raysPerMS = 0;
 };
 
 class Progress {
 public:
     using Sink = std::function<void(std::string_view)>;
-    using Clock = std::function<double()>;        ///< seconds, any origin, never backwards
+    using Clock = std::function<double()>;        ///< seconds, any origin, monotonic
     static constexpr double kBarSeconds = 0.5;    ///< a bar is redrawn at most twice a second
-    static constexpr double kPlainSeconds = 5;    ///< a line after this time, if there is progress to tell,
-    static constexpr double kPlainFraction = 0.1; ///< or after this much of the work, but not more often than
-    static constexpr double kPlainLeast = 1;      ///< this many seconds
+    static constexpr double kPlainSeconds = 5;    ///< a line after this time, if there is progress,
+    static constexpr double kPlainFraction = 0.1; ///< or after this fraction of the work, but no more often than
+    static constexpr double kPlainLeast = 1;      ///< every so many seconds
 
-    /// For use: Auto is Bar when the file is a terminal, else Plain. The file is not closed.
+    /// For use: Auto becomes Bar if the file is a terminal, else Plain. The file is not closed.
     explicit Progress(ProgressMode, std::FILE* = stderr);
-    /// For tests and viewers: terminal says what Auto becomes, columns how wide a bar line may be.
+    /// For tests and viewers: terminal selects the meaning of Auto, columns the width of a bar line.
     Progress(ProgressMode, Sink, Clock, bool terminal, int columns = 80);
 
-    /// Tells the state; prints when it is time to. `what` names the picture, in front of the line; may be empty.
+    /// Updates the state; prints when due. `what`: name of the picture before the line; may be empty.
     void update(const ProgressState&, std::string_view what = {});
-    /// The last line, printed whatever the time, and a line end. Further calls begin a new picture.
+    /// Prints the last line regardless of time, and a line end. Further calls start a new picture.
     void finish(const ProgressState&, std::string_view what = {});
-    /// Takes the bar off the terminal so that a message can be printed; the next update redraws it.
+    /// Removes the bar from the terminal so that a message can be printed; the next update redraws it.
     void clear();
     ProgressMode mode() const { return mode_; } ///< never Auto
 

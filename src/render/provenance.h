@@ -1,4 +1,4 @@
-// What made a picture: program, scene, options. It is written into pictures and into --stats.
+// Provenance of a picture: program, scene, options. Written into pictures and --stats.
 #pragma once
 #include "render/outputs.h"
 #include "render/settings.h"
@@ -6,20 +6,19 @@
 
 namespace alpenglow::render {
 
-/// The options of the command line that change pixels, as one would write them again ("--hider path --max-depth 3"); without
-/// those that say how many samples there are, and which, because the parts of a picture differ in them.
+/// The command line options that change pixels, in a form that can be given again ("--hider path --max-depth 3"); without number
+/// and range of samples, which differ between the parts of a picture.
 std::string pixelOptions(const RenderSettings&);
 
-/// Adds Software, scene, sceneHash, frame, hider, fov, options. Equal for equal pixels of one scene and program, whatever the
-/// machine, the time and the number of threads: files of the same picture are equal byte by byte, and so are those that merge
-/// makes of parts.
+/// Adds Software, scene, sceneHash, frame, hider, fov, options. They are equal for equal pixels of one scene and program,
+/// independent of machine, time and threads: so files of the same picture are equal byte by byte, also those merged from parts.
 void addProvenance(PictureFacts&, const RenderSettings&, const scene::Frame&, const std::string& hider,
                    const std::string& sceneHash);
 
 /// --stamp: adds command, host, date, seconds, threads, which differ from run to run.
 void addStamp(PictureFacts&, const RenderSettings&, double seconds);
 
-/// This machine's name; "" when it has none.
+/// This machine's name; "" if it has none.
 std::string hostName();
 /// Now, UTC, "2026-03-01T12:30:05Z".
 std::string dateText();

@@ -1,4 +1,4 @@
-// From image samples to pixels: weighted sums, in blocks of pixels, and what a pixel takes from its own samples alone.
+// Converts image samples to pixels: weighted sums, in blocks of pixels, and values from a pixel's own samples only.
 #include "base/parallel.h"
 #include "render/samplebuffer.h"
 #include <algorithm>
@@ -9,16 +9,16 @@ namespace alpenglow::render {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr int kRows = 16;           // of a block
-constexpr int kSamplesOfRow = 2048; // of a row of a block, about: their weights stay in the nearest cache
-constexpr size_t kFixedSums = 8;    // of a pixel: weights, their absolute values, colour, opacity; then the AOVs
+constexpr int kRows = 16;           // in a block
+constexpr int kSamplesOfRow = 2048; // in a row of a block, about: their weights stay in the L1 cache
+constexpr size_t kFixedSums = 8;    // for a pixel: weights, their absolute values, colour, opacity; then the AOVs
 
 } // namespace
 
-/// What a block of pixels needs. Weights are by column beside the pixel, then by sample of a row.
+/// Scratch memory for a block of pixels. Weights are by column relative to the pixel, then by sample of a row.
 struct SampleBuffer::Scratch {
     int bx = 0, by = 0;
-    size_t samples = 0; ///< of a row: those of the block and of bx pixels on both sides
+    size_t samples = 0; ///< in a row: those of the block and of bx pixels on both sides
     std::vector<float> across, down, weights;
     std::vector<double> sums; ///< by pixel of the block
 };
@@ -30,7 +30,7 @@ FilterWeights SampleBuffer::weights(const PixelFilter& filter) const {
     return FilterWeights(f);
 }
 
-/// Of a row of samples: for each column beside a pixel, the factor of x of a filter that is a product. 0: there is no sample.
+/// For a row of samples: x factors of a separable filter for each column around a pixel. 0: no sample.
 void SampleBuffer::weigh(const FilterWeights& f, const Window& block, int row, Scratch& to) const {
     const float* s = &data_[base(block.x0 - to.bx, row, 0)];
     for (size_t i = 0; i < to.samples; ++i, s += stride_)
@@ -38,7 +38,7 @@ void SampleBuffer::weigh(const FilterWeights& f, const Window& block, int row, S
             to.across[size_t(di + to.bx) * to.samples + i] = s[0] < 0 ? 0 : f.across(double(di) + s[0] - 0.5);
 }
 
-/// Makes the weights of a row of samples for row y of a block: of a filter that is a product, by its factors.
+/// Weights of a row of samples for row y of a block, for separable filters.
 void SampleBuffer::multiply(const FilterWeights& f, const Window& block, int row, int y, Scratch& to) const {
     const float* s = &data_[base(block.x0 - to.bx, row, 0)];
     for (size_t i = 0; i < to.samples; ++i, s += stride_) to.down[i] = f.down(double(row - y) + s[1] - 0.5);
@@ -50,7 +50,7 @@ void SampleBuffer::multiply(const FilterWeights& f, const Window& block, int row
     }
 }
 
-/// The same of any filter.
+/// The same for any filter.
 void SampleBuffer::weighEach(const FilterWeights& f, const Window& block, int row, int y, Scratch& to) const {
     const float* s = &data_[base(block.x0 - to.bx, row, 0)];
     for (size_t i = 0; i < to.samples; ++i, s += stride_)
@@ -122,7 +122,7 @@ void SampleBuffer::addSample(const float* s, double w, double* sum) const {
     for (size_t c = 0; c < aovs_.size(); ++c) sum[kFixedSums + c] += w * double(s[kAovs + c]);
 }
 
-/// All channels of a pixel but z.
+/// All channels of a pixel except z.
 void SampleBuffer::finish(double* sum, int x, int y, float* out) const {
     if (!(sum[0] > 1e-6 * sum[1])) {
         std::fill_n(sum, kFixedSums + aovs_.size(), 0);
@@ -139,7 +139,7 @@ void SampleBuffer::finish(double* sum, int x, int y, float* out) const {
     if (!averagesAll_) ownValues(x, y, out);
 }
 
-/// The AOVs that are least or greatest values.
+/// AOVs with rules Min and Max.
 void SampleBuffer::ownValues(int x, int y, float* out) const {
     for (size_t i = 0; i < aovs_.size(); ++i) {
         if (aovs_[i].rule == ChannelRule::Average) continue;

@@ -1,18 +1,17 @@
-// Passes before the picture: where shaders want light of hemispheres interpolated, it is measured on grids of pixels, coarse to
-// fine.
+// Irradiance caching passes before the picture: records are made on grids of pixels, coarse to fine.
 #include "render/rendering.h"
 
 namespace alpenglow::render {
 
 namespace {
-constexpr int kCoarse = 32, kFine = 2; ///< pixels between the points of the first and of the last grid
-constexpr size_t kRays = 32;           ///< of one trace(): each may send thousands, whose ends all wait in memory
-constexpr int kSide = 64;              ///< of the squares that threads take
+constexpr int kCoarse = 32, kFine = 2; ///< spacing in pixels of the first and the last grid
+constexpr size_t kRays = 32;           ///< of one trace(): each may send thousands, whose results stay in memory
+constexpr int kSide = 64;              ///< side of the tiles that threads take
 } // namespace
 
 bool findRecords(Job& job) {
     if (!job.world || !job.world->interpolates()) return true;
-    // The whole frame, whatever part of it is wanted: a pixel does not depend on that.
+    // The complete frame, even for a crop: a pixel must not depend on that.
     const std::vector<Window> tiles = tilesOf({0, 0, job.camera.width(), job.camera.height()}, kSide);
     for (int step = kCoarse; step >= kFine; step /= 2) {
         const auto work = [&](int worker, size_t i) {

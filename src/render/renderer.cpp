@@ -97,7 +97,7 @@ std::vector<std::string> Renderer::searchPaths(const scene::Options& o, const ch
     if (auto i = o.values.find(std::string("searchpath:") + kind); i != o.values.end() && !i->second.strings.empty())
         for (const std::string& p : splitSearchPath(i->second.strings[0], after)) {
             all.push_back(p);
-            // Old scenes name folders from where they lie, whatever the folder the renderer is started in.
+            // Old scenes name folders relative to their own, independent of the current folder.
             if (!p.empty() && p[0] != '/' && !settings_.scenePath.empty() && settings_.scenePath != ".")
                 all.push_back(settings_.scenePath + "/" + p);
         }
@@ -130,7 +130,7 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
                             settings_.memoryLimit ? "the limit is " + memorySizeText(settings_.memoryLimit) + ofEachFrame() +
                                                         "; --memory-limit sets another"
                                                   : "");
-    } catch (const std::exception& e) { // of libraries that could not get what they need: threads, mostly
+    } catch (const std::exception& e) { // of libraries that could not get resources: mostly threads
         outcome_.outOfMemory = true;
         ++outcome_.refused;
         diagnostics_.report(Severity::Severe, Rie::System, {}, std::string("this frame is given up: ") + e.what());
@@ -161,8 +161,8 @@ void Renderer::reportDropped(uint64_t count, int x, int y, int64_t sample) {
     diagnostics_.report(
         Severity::Warning, Rie::Math, {},
         std::to_string(count) +
-            (count == 1 ? " sample was not finite and is left out" : " samples were not finite and are left out") +
-            (sample < 0 ? "" : "; the first is made by --pixel " + at + " --seed " + std::to_string(settings_.seed)));
+            (count == 1 ? " sample was not finite and is dropped" : " samples were not finite and are dropped") +
+            (sample < 0 ? "" : "; reproduce the first with --pixel " + at + " --seed " + std::to_string(settings_.seed)));
 }
 
 void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted, bool path) {
@@ -187,7 +187,7 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
         diagnostics_.report(Severity::Error, Rie::Range, {}, "--pixel: a pixel has " + std::to_string(nx * ny) + " samples");
         return;
     }
-    double sum[2][5] = {}; // of weight above and below 0: colour, alpha, weights
+    double sum[2][5] = {}; // of samples with weight above and below 0: colour, alpha, weights
     std::array<uint32_t, kReplicas> counts{};
     CausticPasses caustics(job);
     for (uint32_t s = begin; s < end && !job.pollStop(); ++s) {
@@ -220,7 +220,7 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
 }
 
 RenderStats Renderer::stats() const {
-    RenderStats s = all_, rest = stats_; // rest: a frame that was given up, maps made after the last one
+    RenderStats s = all_, rest = stats_; // rest: an abandoned frame, maps made after the last one
     if (frames_.empty()) s = rest;
     else s.parseSec += rest.parseSec;
     s.threads = settings_.threads;

@@ -1,4 +1,4 @@
-// The renderer: takes frames as RIB streams finish them, renders them, writes their pictures.
+// The renderer: receives complete frames from the RIB reader, renders them, writes their pictures.
 #pragma once
 #include "render/engine.h"
 #include "render/framestats.h"
@@ -19,26 +19,26 @@ class FrameProcesses;
 
 class Renderer final : public scene::FrameConsumer {
 public:
-    /// Where `--pixel` prints; one line a call, without its end.
+    /// Prints the results of `--pixel`, one line a call, without line end.
     using Print = std::function<void(const std::string&)>;
     /// Diagnostics and progress must outlive the renderer. `print` may be empty.
     Renderer(RenderSettings, Engine, Diagnostics&, Progress&, Print print = {});
     ~Renderer() override;
 
-    /// For ri::ReaderOptions::overrides: what the command line says about a frame's options.
+    /// For ri::ReaderOptions::overrides: applies the command line to a frame's options.
     void override(scene::Options&) const;
-    /// The scene file that is read next; its folder is looked into for shaders and textures. `read`: pictures that its Make
+    /// Sets the scene file that is read next; its folder is searched for shaders and textures. `read`: pictures that its Make
     /// requests read, as far as known.
     void setScene(const std::string& path, const std::set<std::string>& read = {});
-    /// For ri::ReaderOptions::defers: makes what is in procedurals of a frame that is being rendered (ri::RibReader::make()).
+    /// For ri::ReaderOptions::defers: expands procedurals of a frame during rendering (ri::RibReader::make()).
     using MakeProcedurals = std::function<std::shared_ptr<const scene::Frame>(const scene::Frame&, std::span<const int>)>;
     void setProcedurals(MakeProcedurals make) { makeProcedurals_ = std::move(make); }
-    /// Frames are drawn by these from here on, which outlive the renderer and tell what its diagnostics get.
+    /// Frames are rendered by these processes from here on. They must outlive the renderer, and report its diagnostics.
     void setProcesses(FrameProcesses&);
-    /// Waits until all frames are drawn that were handed over.
+    /// Waits until all submitted frames are rendered.
     void settle();
-    /// Whether the files that are known before a scene is read (-o, --checkpoint, --stats) can be written. False: an error was
-    /// reported.
+    /// Whether the files known before a scene is read (-o, --checkpoint, --stats) can be written. Returns false after an error,
+    /// which is reported.
     bool canBegin();
 
     void render(std::shared_ptr<const scene::Frame>) override;
@@ -47,11 +47,11 @@ public:
     void passOver(const scene::Options&) override;
     void passOverTexture(const std::vector<std::string>& files) override;
     void beforeRead(const std::string& name) override;
-    /// To be called after the last scene: says so when options about pictures found maps only, which they leave alone.
+    /// Call after the last scene: reports if picture options had no effect because all frames were maps.
     void finish();
 
     using Outcome = render::Outcome;
-    /// Of what is drawn by now; settle() makes that everything.
+    /// For frames rendered so far; complete after settle().
     const Outcome& outcome() const { return outcome_; }
     /// Figures of all frames so far: times, rays and counts are sums; size, samples and noise are the last frame's.
     RenderStats stats() const;
@@ -75,59 +75,60 @@ private:
     void describeFrame(FrameWork&);
     void writtenPictures(FrameWork&, bool fine);
     // rendererprocesses.cpp
-    bool inProcess() const; ///< this is a process of setProcesses()
-    /// Hands a frame that is planned to a process. True: this is that process, or there are none.
+    bool inProcess() const; ///< this process was forked for a frame
+    /// Passes a planned frame to a process. Returns true in that process, or if there are no processes.
     bool drawsHere(const FrameWork&);
     void beginProcess(bool alone);
     std::string ofEachFrame() const; ///< for messages: whose memory is limited
-    /// Ends the process, or in the one that reads what was begun for the frame.
+    /// Ends the process; in the reading process, ends the frame.
     void endFrame();
     void takeResult(FrameResult);
-    /// Says, in a process, whether the frame bakes, since later frames may read what it does.
+    /// In a process: declares whether the frame bakes, because later frames may read the result.
     void declareBakes(const FrameWork&);
-    /// Waits, in a process, until what this frame writes may be written.
+    /// In a process: waits until the files of this frame may be written.
     void awaitTurn();
-    void awaitTurn(const FrameWork&); ///< where there is a map among its pictures
+    void awaitTurn(const FrameWork&); ///< only if a picture is a map
     // rendermaps.cpp
     void makeInProcess(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
                        const SourcePlace&);
     void runMakeRequest(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
                         const SourcePlace&);
-    /// Where names of maps in the scene may lead.
+    /// Restricts where map names of the scene may lead.
     ReadPolicy readPolicy() const;
     FilmDescription filmOf(const FrameWork&) const;
     bool renderSamples(FrameWork&, struct Job&);
     void writeFrameFilm(FrameWork&, Film&, double renderSec);
     bool makeDepths(FrameWork&, struct Job&);
     void renderGrid(FrameWork&, struct Job&);
-    /// Hider "photon": writes the photon maps that the frame names. renderphotons.cpp
+    /// Hider "photon": writes the photon maps that the frame names. Defined in renderphotons.cpp.
     void renderPhotons(FrameWork&, int threads);
-    /// Makes the maps that shaders ask for and that are not there, where lights emit photons.
+    /// Makes missing photon maps that shaders read, if lights emit photons.
     void makePhotonMaps(FrameWork&, struct Job&);
     void writeBaked(FrameWork&, const struct Job&);
     void takeFigures(const FrameWork&, struct Job&);
-    /// Takes the figures of the frame just rendered over into those of the run.
+    /// Adds the figures of the last frame to those of the run.
     void closeFrame(FrameStats);
-    /// Says of each display whether a Make request reads it.
+    /// Marks the displays that a Make request reads.
     void markRead(scene::Options&) const;
     std::string fileFor(const scene::Options&, uint32_t spp);
-    /// A frame with a picture for -o comes: the first has the name as it is, until a second comes. True: this one has its number.
+    /// Called for a frame with a picture for -o: the first keeps the name until there is a second. Returns true if this one gets
+    /// a number.
     bool numbersFrame();
-    /// Gives the picture of the first frame, and its part file, the number of the frame.
+    /// Renames the picture of the first frame, and its part file, to include the frame number.
     void numberFirstPicture();
     std::vector<std::string> searchPaths(const scene::Options&, const char* kind, const std::vector<std::string>& own,
                                          bool shaders) const;
-    /// Says that samples were left out, and how to make the first of them again. `sample` < 0: it is not known.
+    /// Reports dropped samples, and how to reproduce the first. `sample` < 0: unknown.
     void reportDropped(uint64_t count, int x, int y, int64_t sample);
-    /// --checkpoint; frames have their number in it, and so do further worlds, so that each can be resumed.
+    /// --checkpoint; with the frame number, and numbered for further worlds, so that each can be resumed.
     std::string checkpointFile(const scene::Options&);
-    /// Gives each output of the frame a file that no other of this run has.
+    /// Assigns each output of the frame a file of its own within this run.
     void nameOutputs(struct OutputPlan&, const scene::Options&);
-    /// Whether the files of this frame can be written, as far as can be known before its first ray. Errors were reported.
+    /// Whether the files of this frame can be written, as far as known before its first ray. Errors are reported.
     bool canWrite(const struct OutputPlan&, const std::string& checkpoint, bool part);
-    /// Whether a checkpoint that is there may be replaced (--resume, --restart). False: an error was reported.
+    /// Whether an existing checkpoint may be replaced (--resume, --restart). Returns false after an error, which is reported.
     bool mayReplace(const std::string& checkpoint);
-    /// What the checkpoint holds, if there is one. False: it is of something else or damaged (an error was reported).
+    /// Reads the checkpoint, if there is one. Returns false if it is of another render or damaged (reported).
     bool resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film);
     void printPixel(struct Job&, const scene::Options&, SampleRange, bool path);
 
@@ -137,24 +138,24 @@ private:
     Progress& progress_;
     Print print_;
     MakeProcedurals makeProcedurals_;
-    FrameProcesses* processes_ = nullptr; ///< null: frames are drawn here
-    bool handedOver_ = false;             ///< the frame that came last is drawn by a process
-    uint64_t grown_ = 0;                  ///< bytes that the first frames took in their processes
-    uint64_t begun_ = 0;                  ///< that a process began with
+    FrameProcesses* processes_ = nullptr; ///< null: frames are rendered in this process
+    bool handedOver_ = false;             ///< the last frame was passed to a process
+    uint64_t grown_ = 0;                  ///< memory in bytes that the first frames allocated in their processes
+    uint64_t begun_ = 0;                  ///< memory that a process started with
     std::set<std::string> read_;          ///< fileIdentity() of setScene()'s pictures
-    std::vector<std::string> written_;    ///< pictures and maps of this run, with links followed: scenes may read them
+    std::vector<std::string> written_;    ///< pictures and maps of this run, with links resolved: scenes may read them
     Outcome outcome_;
     std::vector<float> sampleMemory_; ///< renderImages()
-    RenderStats stats_;               ///< of the frame being rendered
-    RenderStats all_;                 ///< of the frames before
+    RenderStats stats_;               ///< of the current frame
+    RenderStats all_;                 ///< of earlier frames
     std::vector<FrameStats> frames_;  ///< those that were rendered
-    double parseMark_ = 0;            ///< since when the reader is at work
+    double parseMark_ = 0;            ///< time since which the reader is active
     OutputNames names_;
     int pictures_ = 0, maps_ = 0; ///< frames of either kind
     int checkpoints_ = 0;         ///< worlds outside of frames that had one
     int saved_ = 0;               ///< pictures of worlds outside of frames that were made for -o, or of the save pattern
-    int framesForOutput_ = 0;     ///< frames with a number and a picture for -o so far, rendered or passed over
-    /// Of the only one of these, where it is rendered: its file, once that is known.
+    int framesForOutput_ = 0;     ///< numbered frames with a picture for -o so far, rendered or skipped
+    /// The first such frame, if it is rendered: its file, once known.
     struct FirstPicture {
         int frame;
         std::string file;

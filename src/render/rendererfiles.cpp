@@ -1,4 +1,4 @@
-// The files of a run: what they are called, whether they can be written, and what is there already.
+// The files of a run: their names, whether they can be written, and existing ones.
 #include "display/driver.h"
 #include "render/filmpicture.h"
 #include "render/frameprocesses.h"
@@ -13,7 +13,7 @@ namespace alpenglow::render {
 
 namespace {
 
-/// What two renders do not have in common: "seed (3, not 4)".
+/// Differences between two renders: "seed (3, not 4)".
 std::string differing(const FilmDescription& a, const FilmDescription& b) {
     const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
     if (a.width != b.width || a.height != b.height)
@@ -27,7 +27,7 @@ std::string differing(const FilmDescription& a, const FilmDescription& b) {
 } // namespace
 
 std::string Renderer::fileFor(const scene::Options& o, uint32_t spp) {
-    if (settings_.output == "-") return "-"; // frame after frame
+    if (settings_.output == "-") return "-"; // one frame after the other
     if (!settings_.output.empty()) {
         if (isNumbered(o)) {
             if (numbersFrame()) return numberedName(settings_.output, o.frameNumber);
@@ -56,10 +56,10 @@ bool Renderer::numbersFrame() {
 
 void Renderer::numberFirstPicture() {
     if (!firstPicture_) return;
-    settle(); // it is to be there
+    settle(); // it must exist
     const FirstPicture first = *std::exchange(firstPicture_, {});
     std::error_code e;
-    // What could not be written is not there; a name may also lead to a device.
+    // A file that could not be written does not exist; a name may also refer to a device.
     if (first.file.empty() || !std::filesystem::is_regular_file(first.file, e)) return;
     names_.release(first.file);
     scene::Options o;
@@ -114,7 +114,7 @@ void Renderer::passOverTexture(const std::vector<std::string>& files) {
 
 ReadPolicy Renderer::readPolicy() const {
     ReadPolicy policy = readPolicyOf(settings_.scenePath, settings_.allowRead);
-    policy.folders.insert(policy.folders.end(), written_.begin(), written_.end()); // each below itself
+    policy.folders.insert(policy.folders.end(), written_.begin(), written_.end()); // each includes its subfolders
     if (inProcess()) policy.before = [p = processes_](const std::string& name) { p->awaitRead(name); };
     return policy;
 }
@@ -159,8 +159,12 @@ bool Renderer::canWrite(const OutputPlan& plan, const std::string& checkpoint, b
 
 bool Renderer::resume(const std::string& checkpoint, const FilmDescription& wanted, std::unique_ptr<Film>& film) {
     if (std::error_code e; !std::filesystem::exists(checkpoint, e)) {
-        Diagnostic begins{
-            Severity::Info, Rie::NoError, {checkpoint}, "there is no checkpoint yet; rendering begins anew", {}, {}};
+        Diagnostic begins{Severity::Info,
+                          Rie::NoError,
+                          {checkpoint},
+                          "there is no checkpoint yet; rendering starts from the beginning",
+                          {},
+                          {}};
         begins.always = true;
         diagnostics_.report(std::move(begins));
         return true;
@@ -168,14 +172,15 @@ bool Renderer::resume(const std::string& checkpoint, const FilmDescription& want
     film = loadPart(checkpoint, diagnostics_);
     if (film && film->description() == wanted) return true;
     if (film)
-        diagnostics_.report(Severity::Error, Rie::Consistency, {checkpoint},
-                            "the checkpoint belongs to another " + differing(film->description(), wanted) +
-                                "; it is left as it is, and nothing is rendered",
-                            "render what it belongs to, name another file, or give --restart instead of --resume to replace it");
+        diagnostics_.report(
+            Severity::Error, Rie::Consistency, {checkpoint},
+            "the checkpoint belongs to another " + differing(film->description(), wanted) +
+                "; it is not changed, and nothing is rendered",
+            "render the scene it belongs to, choose another file, or replace it with --restart instead of --resume");
     else
         diagnostics_.report(Severity::Warning, Rie::NoError, {checkpoint},
-                            "the checkpoint is left as it is, and nothing is rendered",
-                            "--restart instead of --resume begins anew and replaces it");
+                            "the checkpoint is not changed, and nothing is rendered",
+                            "--restart instead of --resume starts from the beginning and replaces it");
     film.reset();
     return false;
 }
@@ -184,8 +189,8 @@ bool Renderer::mayReplace(const std::string& checkpoint) {
     std::error_code e;
     if (settings_.resume || settings_.restart || checkpoint.empty() || !std::filesystem::exists(checkpoint, e)) return true;
     diagnostics_.report(Severity::Error, Rie::BadFile, {checkpoint},
-                        "the checkpoint is there already; it is left as it is, and nothing is rendered",
-                        "--resume goes on with it, --restart begins anew and replaces it");
+                        "the checkpoint already exists; it is not changed, and nothing is rendered",
+                        "--resume continues it, --restart starts from the beginning and replaces it");
     return false;
 }
 

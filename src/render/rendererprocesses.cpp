@@ -1,4 +1,4 @@
-// The renderer's part in frames that processes draw (frameprocesses.h): what is handed to them, and what comes back.
+// The renderer's part in frames rendered by processes (frameprocesses.h): what they receive and return.
 #include "base/realpath.h"
 #include "display/driver.h"
 #include "integrator/bakes.h"
@@ -15,7 +15,7 @@ namespace alpenglow::render {
 
 void Renderer::setProcesses(FrameProcesses& p) {
     processes_ = &p;
-    // Each process would do these again: tables of the language, and TBB's look for its allocator.
+    // Each process would repeat these: tables of the language, and TBB's search for its allocator.
     rsl::runtimeHash();
     tbb::cache_aligned_allocator<char> allocator;
     allocator.deallocate(allocator.allocate(1), 1);
@@ -52,7 +52,7 @@ void Renderer::beginProcess(bool alone) {
     settings_.threads = std::max(1, settings_.threads / processes_->most());
     settings_.memoryLimit /= size_t(processes_->most());
     begun_ = ownBytes();
-    fillHeap(grown_, settings_.threads == 1); // frames are like each other
+    fillHeap(grown_, settings_.threads == 1); // frames are similar
 }
 
 void Renderer::endFrame() {
@@ -88,7 +88,7 @@ void Renderer::beforeRead(const std::string& name) {
 }
 
 void Renderer::declareBakes(const FrameWork& f) {
-    // A procedural that is made later may bring shaders that bake.
+    // A procedural expanded later may contain shaders that bake.
     if (inProcess()) processes_->declare(transport::bakes(*f.world) || transport::hasUnmade(*f.world));
 }
 

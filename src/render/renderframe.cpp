@@ -1,4 +1,4 @@
-// One frame on its way through the renderer: what it needs, its rays, its pictures and its figures.
+// Renders one frame: preparation, rays, pictures and figures.
 #include "base/limits.h"
 #include "base/processors.h"
 #include "base/realpath.h"
@@ -27,10 +27,10 @@ namespace {
 
 using transport::Hider;
 
-/// Whether pictures become files.
+/// Whether pictures are written to files.
 bool writesFiles(const RenderSettings& s) { return !s.watcher || s.watcher->writes(); }
 
-constexpr uint32_t kBakeSamples = 256; ///< of a baked point, at most: --noise and --time have no number of their own
+constexpr uint32_t kBakeSamples = 256; ///< maximum for a baked point: --noise and --time set no number
 
 uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
     if (s.spp > 0) return std::min(s.spp, limits::kSamplesPerPixel);
@@ -40,15 +40,14 @@ uint32_t pathSamples(const scene::Options& o, const RenderSettings& s) {
     return uint32_t(std::clamp(n, 1.0, double(limits::kSamplesPerPixel)));
 }
 
-/// The samples that --samples or --part asks for; nothing: all. Parts share the samples evenly, and a later part gets what is
-/// left.
+/// The samples by --samples or --part; nothing: all. Parts have equal sizes; the last gets the remainder.
 std::optional<SampleRange> partOf(const RenderSettings& s, uint32_t spp) {
     if (!s.part) return s.samples;
     const uint64_t k = (*s.part)[0], n = (*s.part)[1];
     return SampleRange{uint32_t((k - 1) * spp / n), uint32_t(k * spp / n)};
 }
 
-/// For frames of deep shadow maps alone: no colour is asked for.
+/// For frames with deep shadow maps only: no colour.
 Reconstructions noImages(const Job& job) {
     Reconstructions r;
     Image black;
@@ -83,7 +82,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     if (!drawsHere(f)) return;
     drawFrame(f);
     if (!inProcess()) return;
-    [[maybe_unused]] const FrameWork* kept = work.release(); // the process ends: to take it apart would copy its pages
+    [[maybe_unused]] const FrameWork* kept = work.release(); // the process ends: destruction would copy its pages
 }
 
 void Renderer::drawFrame(FrameWork& f) {
@@ -93,7 +92,7 @@ void Renderer::drawFrame(FrameWork& f) {
                                             Rie::System,
                                             {},
                                             "only " + std::to_string(team) + " of " + std::to_string(settings_.threads) +
-                                                " threads can be started; the picture is the same, later",
+                                                " threads can be started; rendering takes longer",
                                             {},
                                             {}});
     tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
@@ -132,7 +131,7 @@ void Renderer::drawPictures(FrameWork& f, int team) {
     takeFigures(f, job);
 }
 
-/// What is to be rendered, and into which files. False: nothing, which was reported.
+/// Plans pictures and files. Returns false if there is nothing to render, which is reported.
 bool Renderer::planFrame(FrameWork& f) {
     f.spp = f.path ? pathSamples(f.o, settings_) : 0;
     if (!f.path) {
@@ -162,7 +161,7 @@ bool Renderer::planFrame(FrameWork& f) {
     f.plan = planOutputs(f.o, settings_, f.path, file, diagnostics_);
     if (f.plan.pictures.empty()) {
         ++outcome_.refused;
-        diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be made; it is not rendered");
+        diagnostics_.report(Severity::Error, Rie::MissingData, {}, "no Display of this frame can be written; it is not rendered");
         return false;
     }
     if (!writesFiles(settings_)) return true;
@@ -208,11 +207,11 @@ transport::Settings Renderer::engineSettings(const FrameWork& f) const {
     return t;
 }
 
-/// Runs the imager of the frame; false: it was stopped.
+/// Runs the imager of the frame; returns false if stopped.
 std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> Renderer::imagerOf(FrameWork& f) {
     return [&f, this, poll = static_cast<const StopFlag*>(nullptr),
             begun = false](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) mutable {
-        // A stop that was asked for while rendering is obeyed by now: it must not end the imager's loops.
+        // A stop during rendering has been handled by now: it must not end the imager's loops.
         if (!begun) poll = settings_.stop && !*settings_.stop ? settings_.stop : nullptr;
         begun = true;
         f.world->runImager(n, x, y, r, g, b, a, diagnostics_, poll);
@@ -246,13 +245,13 @@ void Renderer::describeFrame(FrameWork& f) {
     stats_.height = f.camera.window().height();
 }
 
-/// Tells of the pictures, or of what was in their way.
+/// Reports the pictures, or what prevented them.
 void Renderer::writtenPictures(FrameWork& f, bool fine) {
     outcome_.outputFailed |= !fine;
     for (const OutputSpec& s : f.plan.pictures)
         if (fine) f.told.pictures.push_back({s.name, s.type, s.channels()}), written_.push_back(followedPath(s.name));
     if (!fine) return;
-    for (const OutputSpec& s : f.plan.pictures) // of an older picture: merge would take it for this one's
+    for (const OutputSpec& s : f.plan.pictures) // of an older picture: merge would mistake it for this one's
         if (!extensionOf(s.name).empty() && (f.checkpoint.empty() || !sameFile(sidecarName(s.name), f.checkpoint)))
             removePart(sidecarName(s.name));
 }
@@ -277,7 +276,7 @@ FilmDescription Renderer::filmOf(const FrameWork& f) const {
     return d;
 }
 
-/// The hider path. False: nothing could be rendered, which was reported.
+/// Renders under path. Returns false if nothing could be rendered, which is reported.
 bool Renderer::renderSamples(FrameWork& f, Job& job) {
     const FilmDescription d = filmOf(f);
     if (!Film::check(d, diagnostics_)) {
@@ -303,7 +302,7 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
         saved = clockSeconds();
     };
     const bool goesOn = film->samplesPerPixel() > 0;
-    if (goesOn) job.met = job.shone = true; // who began has said what is missing
+    if (goesOn) job.met = job.shone = true; // the first run has reported what is missing
     const uint64_t raysBefore = job.rayTotal;
     bool any = renderPath(job, *film, f.wanted, settings_.seed, keep);
     if (any && goesOn && !settings_.watcher && job.rayTotal == raysBefore) {
@@ -315,7 +314,7 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
     double renderSec = job.elapsed();
     stats_.renderSec += renderSec;
     outcome_.interrupted |= job.interrupted;
-    if (job.outOfMemory) { // the old picture is better than few samples; a checkpoint goes on later
+    if (job.outOfMemory) { // the old picture is better than few samples; a checkpoint can be continued
         if (any) keep(*film, true);
         std::rethrow_exception(job.outOfMemory);
     }
@@ -323,7 +322,7 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
         ++outcome_.refused;
         if (job.interrupted && writesFiles(settings_))
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                                "interrupted before the first pass was whole; nothing is written");
+                                "interrupted before the first pass was complete; no picture is written");
     } else {
         writeFrameFilm(f, *film, renderSec);
     }
@@ -338,13 +337,13 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
     return true;
 }
 
-/// The picture of a film in which some pass is whole, and its part files.
+/// Writes the picture of a film with a complete pass, and its part files.
 void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
     ++outcome_.rendered;
     if (auto first = film.firstDropped()) reportDropped(film.nonFinite(), first->x, first->y, first->sample);
     if (film.saturated())
         diagnostics_.report(Severity::Warning, Rie::Range, {},
-                            std::to_string(film.saturated()) + " values beyond 2^60 were cut there");
+                            std::to_string(film.saturated()) + " values beyond 2^60 were clamped");
     if (!writesFiles(settings_)) return;
     if (settings_.stamp) addStamp(f.picture, settings_, renderSec);
     awaitTurn(f);
@@ -357,21 +356,21 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
     if (!f.checkpoint.empty()) outcome_.outputFailed |= !savePart(film, f.checkpoint, OutputPolicy{".", true}, diagnostics_);
 }
 
-/// The pixels of deep shadow maps. Where these are refused, which was reported, the frame has its other pictures. False: it has
-/// none.
+/// Makes the pixels of deep shadow maps. If they are rejected (reported), the frame still has its other pictures. Returns false
+/// if there are none.
 bool Renderer::makeDepths(FrameWork& f, Job& job) {
     if (f.path) gridOf(f.o, settings_, &f.nx, &f.ny);
     f.picture.deep = seeDepths(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), settings_.seed, deepShadowError(f.o, diagnostics_));
     outcome_.interrupted |= job.interrupted;
     if (job.interrupted)
         diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                            "interrupted before the deep shadow map was whole; nothing is written");
+                            "interrupted before the deep shadow map was complete; it is not written");
     if (f.picture.deep || job.interrupted) return f.picture.deep != nullptr;
     std::erase_if(f.plan.pictures, [](const OutputSpec& p) { return p.deep; });
     return !f.plan.pictures.empty();
 }
 
-/// The hiders hidden and raytrace.
+/// Renders under hidden and raytrace.
 void Renderer::renderGrid(FrameWork& f, Job& job) {
     DroppedSamples dropped;
     Reconstructions made;
@@ -384,11 +383,11 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     f.nonFinite = dropped.count;
     stats_.renderSec += job.elapsed();
     stats_.spp = stats_.sppLeast = stats_.sppMost = f.spp;
-    stats_.noise = {}; // not known: neighbouring pixels share samples
+    stats_.noise = {}; // unknown: neighbouring pixels share samples
     outcome_.interrupted |= job.interrupted;
     ++outcome_.rendered;
     if (job.interrupted && writesFiles(settings_))
-        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what was not reached stays black in the picture");
+        diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: unfinished parts of the picture are black");
     if (f.nonFinite) {
         const auto at = dropped.first.value_or(std::array{-1, -1, -1});
         reportDropped(f.nonFinite, at[2], at[1], at[0]);
@@ -407,11 +406,11 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     writtenPictures(f, writeOutputs(f.plan, f.picture, pixels, f.imager, settings_.allowWrite, diagnostics_));
 }
 
-/// Files of bake() and bake3d(), where the frame was not interrupted.
+/// Writes the files of bake() and bake3d(), unless the frame was interrupted.
 void Renderer::writeBaked(FrameWork& f, const Job& job) {
     if (!transport::bakes(*f.world)) return;
     if (job.interrupted)
-        return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: what shaders bake is not written");
+        return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: baked files are not written");
     awaitTurn();
     clouds::FileOwners others;
     for (const OutputSpec& s : f.plan.pictures) {
@@ -452,7 +451,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
         sayEmptyClouds(job, diagnostics_);
         sayTurnedAway(job, diagnostics_);
     }
-    const transport::World::Facts facts = f.world->facts(); // kernels may be compiled while rendering
+    const transport::World::Facts facts = f.world->facts(); // kernels may be compiled during rendering
     stats_.shading.kernels = facts.kernels;
     stats_.shading.affineKernels = facts.affine;
     stats_.shading.suspendingKernels = facts.suspending;
@@ -461,10 +460,10 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     if (c.overLimit)
         diagnostics_.report(Severity::Error, Rie::Limit, {},
                             std::to_string(c.overLimit) +
-                                " ray calls were beyond the memory for waiting shaders and brought nothing");
+                                " ray calls exceeded the memory for waiting shaders and returned no light");
     if (c.depthCap && f.path)
         diagnostics_.report(Severity::Info, Rie::NoError, {},
-                            std::to_string(c.depthCap) + " paths were cut at the greatest depth, which is a bias (--max-depth)");
+                            std::to_string(c.depthCap) + " paths ended at the maximum depth, which is a bias (--max-depth)");
 }
 
 } // namespace alpenglow::render

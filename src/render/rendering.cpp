@@ -33,7 +33,7 @@ bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const 
         };
         if (!team.run(left.size(), &halt, task, [&](size_t done) { tick(before + done); })) return false;
         if (std::find(again.begin(), again.end(), 1) == again.end()) return true;
-        if (!transport::hasPrints(*world)) { // else nobody knows whose they are
+        if (!transport::hasPrints(*world)) { // otherwise prints could not be assigned to a world
             size_t kept = 0;
             for (size_t i = 0; i < left.size(); ++i)
                 if (again[i]) left[kept++] = left[i];
@@ -51,11 +51,11 @@ bool Job::makeMet() {
     const std::vector<int> numbers = transport::procedurals(*world);
     std::shared_ptr<const transport::World> next = make && !numbers.empty() ? make(numbers) : nullptr;
     if (!next) {
-        if (!pollStop()) throw std::runtime_error("procedurals that rays came to cannot be made");
+        if (!pollStop()) throw std::runtime_error("procedurals that rays reached cannot be expanded");
         return false;
     }
     transport::takeOver(*next, *world);
-    // The nearest first; then twice as many each time, so that a long row of them does not take as many rounds.
+    // Nearest first; then twice as many each round, so that a long row of procedurals needs few rounds.
     transport::askForProcedurals(*next, 1 << std::min(++rounds_, 20));
     earlier_ = counters();
     world = std::move(next);
@@ -73,7 +73,7 @@ bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<
     rays[size_t(worker)] = now;
     if (whole && !t.unfinished() && !(met && shone))
         for (const transport::SampleResult& r : out) {
-            if (!r.left.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // of depths no light is asked
+            if (!r.left.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // depth renders need no light
             if (r.z < 1e38f || luminance(r.opacity) > 0) met = true;
             if (r.color.x != 0 || r.color.y != 0 || r.color.z != 0) shone = true;
         }

@@ -1,4 +1,4 @@
-// The two loops that turn camera rays into pixels, and what they share. Inside render/.
+// The two loops that turn camera rays into pixels, and their shared parts. Internal to render/.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/photons.h"
@@ -17,18 +17,17 @@
 
 namespace alpenglow::render {
 
-/// Dimensions of a camera sample, above all call sites and uses of transport/ (answers/random.h).
+/// Dimensions of a camera sample, beyond all call sites and uses of the integrator (answers/random.h).
 enum CameraUse : uint32_t { kUseFilter = 1u << 24, kUseLens, kUseTime, kUseNet };
 
-/// Pixels a side of the squares that threads take.
+/// Side in pixels of the tiles that threads take.
 inline constexpr int kTile = 16;
-/// Bytes of samples that are held back until their pass is whole, and of image samples that wait for their filter where bands
-/// share none.
+/// Memory in bytes for samples of an incomplete pass, and for unfiltered image samples if bands share none.
 inline constexpr size_t kPassBytes = size_t(256) << 20;
-/// Bytes of image samples that wait for their filter, a thread, where bands share those between them: what caches hold.
+/// Memory in bytes for unfiltered image samples of a thread if bands share them: fits into the cache.
 inline constexpr size_t kBandBytes = size_t(2) << 20;
 
-/// One frame while it is rendered.
+/// A frame during rendering.
 struct Job {
     const RenderSettings& settings;
     const Camera& camera;
@@ -38,32 +37,32 @@ struct Job {
     Team team;
     Progress& progress;
     Diagnostics& diagnostics;
-    std::string what;                             ///< the picture's name, for the progress line
-    double startSeconds = 0;                      ///< clock() when rendering began
-    StopFlag halt{0};                             ///< what tracers poll
-    bool interrupted = false;                     ///< the user's stop was seen
-    std::exception_ptr outOfMemory;               ///< why the samples of a pass did not fit; what is whole stays
+    std::string what;                             ///< name of the picture, for the progress line
+    double startSeconds = 0;                      ///< clock() at the start of rendering
+    StopFlag halt{0};                             ///< polled by tracers
+    bool interrupted = false;                     ///< the user has stopped rendering
+    std::exception_ptr outOfMemory;               ///< set if the samples of a pass did not fit; complete passes remain
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
-    std::vector<uint64_t> rays;                   ///< by worker, as last told
+    std::vector<uint64_t> rays;                   ///< by worker, at the last report
     std::atomic<uint64_t> rayTotal{0};
     transport::GuideFigures guide;              ///< of path
-    std::atomic<bool> met{false}, shone{false}; ///< some camera ray met a surface; brought light
+    std::atomic<bool> met{false}, shone{false}; ///< some camera ray hit a surface; carried light
 
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,
         Progress&, Diagnostics&);
-    /// The world with procedurals that rays came to (integrator/unmade.h), by number; null: there is none, because the user
-    /// wants to end or because it was reported. Unset: there are no such procedurals.
+    /// Builds the world with procedurals that rays reached (integrator/unmade.h), by number; returns null if the user stops, or
+    /// after an error (reported). Unset: no deferred procedurals.
     std::function<std::shared_ptr<const transport::World>(std::span<const int>)> make;
-    /// Does tasks 0 to count - 1 as Team::run() does. Those whose rays came to procedurals that are not made yet are done
-    /// again once they are: what a task leaves behind must be that of its last time.
+    /// Runs tasks 0 to count - 1 like Team::run(). Tasks whose rays reached deferred procedurals are repeated after expansion, so
+    /// the results of a task must be those of its last run.
     bool run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick);
-    /// Whether rays of the task that a worker does came to such procedurals: its results are void.
+    /// Whether rays of the worker's current task reached such procedurals; its results are then undefined.
     bool unfinished(int worker) const { return unfinished_[size_t(worker)] != 0; }
-    /// Makes what rays came to, between tasks. False: halted.
+    /// Expands the procedurals that rays reached, between tasks. Returns false if stopped.
     bool makeMet();
-    /// Traces on a worker and counts its rays. False: halted, the results are void.
+    /// Traces on a worker and counts its rays. Returns false if stopped; the results are then undefined.
     bool trace(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>);
-    /// Hands the user's stop on to the tracers; true when the user wants to end.
+    /// Forwards the user's stop to the tracers; returns true if the user has stopped.
     bool pollStop();
     transport::Counters counters() const;
     double elapsed() const;
@@ -71,17 +70,17 @@ struct Job {
 private:
     void begin();
     std::vector<uint8_t> unfinished_; ///< by worker
-    transport::Counters earlier_;     ///< of tracers that are gone
-    int rounds_ = 0;                  ///< that procedurals were made in
+    transport::Counters earlier_;     ///< of replaced tracers
+    int rounds_ = 0;                  ///< expansion rounds
 };
 
-/// Seconds of a clock that never goes backwards.
+/// Seconds of a monotonic clock.
 double clockSeconds();
 uint64_t totalRays(const transport::Counters&);
 /// The tiles of a window, in reading order.
 std::vector<Window> tilesOf(const Window&, int side = kTile);
 
-/// The camera ray of a sample of `path`: its place is drawn from the filter. *weight is FilmSample::weight.
+/// The camera ray of a sample of `path`, at a position sampled from the filter. *weight is FilmSample::weight.
 transport::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
 /// The same for many samples at a time.
 struct PixelSample {
@@ -90,31 +89,30 @@ struct PixelSample {
 };
 void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<const PixelSample>, NumberRows&,
               std::vector<transport::CameraRay>& rays, std::vector<float>& weights);
-/// Adds samples to the film in whole passes until the range is done, the noise or time asked for is reached, or the user stops.
-/// spp: samples `first` .. `first + spp` of every pixel; fewer may be added. Returns false when not one whole pass could be
-/// added.
+/// Adds samples to the film in complete passes until the range is done, the requested noise or time is reached, or the user
+/// stops. `wanted`: sample indices of every pixel. Returns false if not a single pass was completed.
 bool renderPath(Job&, Film&, SampleRange wanted, uint64_t seed, const std::function<void(Film&)>& afterPass);
 
-/// Lets the world find what it interpolates between (World::interpolates()). Before anything else is traced. False: halted.
+/// Makes the irradiance records of the world (World::interpolates()). Call before anything else is traced. Returns false if
+/// stopped.
 bool findRecords(Job&);
 
-/// The samples nx x ny of a pixel under hidden and raytrace.
+/// The nx x ny samples of a pixel under hidden and raytrace.
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
 Jitter jitterOf(const scene::Options&, Diagnostics&);
-/// Where `hidden`, or else raytrace, shades, as the hider's parameter "shading" or Option "hidden" "shading" says: "micropolygon"
-/// or "sample". What is no answer is reported, as is raytrace with a lens or an open shutter, which cannot do the former.
+/// Where `hidden`, or else raytrace, shades, by the hider's parameter "shading" or Option "hidden" "shading": "micropolygon" or
+/// "sample". Reports invalid values, and raytrace with a lens or an open shutter, which cannot shade micropolygons.
 bool shadesMicropolygons(const scene::Options&, bool hidden, const Camera&, Diagnostics&);
-/// Anti-aliasing by difference of colours, of the hider raytrace: a ray through the middle of each pixel; where two pixels
-/// side by side or one above the other differ, both get side x side of them, evenly spaced. A pixel is the mean of its own
-/// rays.
+/// Adaptive antialiasing by colour difference, of the hider raytrace: one ray through the centre of each pixel; if two horizontal
+/// or vertical neighbours differ, both get side x side rays in a uniform grid. A pixel is the mean of its own rays.
 struct Refinement {
     int side = 1;           ///< 3, 5, 7 or 9; 1: none
-    float threshold = 0.3f; ///< sum of the differences of red, green and blue, each cut to 0 .. 1, above which pixels differ
+    float threshold = 0.3f; ///< threshold for the sum of the differences of red, green and blue, each clamped to 0 .. 1
     bool on() const { return side > 1; }
 };
-/// What the hider's parameters aaSamples and aaThreshold say; none where a lens or motion needs more rays, which is reported.
+/// The hider's parameters aaSamples and aaThreshold; none if a lens or motion needs more rays, which is reported.
 Refinement refinementOf(const scene::Options&, const Camera&, Diagnostics&);
-/// How many pixels were refined, and the rays for it.
+/// Number of refined pixels, and of their rays.
 struct Refined {
     uint64_t pixels = 0, rays = 0;
 };
@@ -124,7 +122,7 @@ public:
     ImageRays(const Camera&, uint64_t seed, int nx, int ny, Jitter);
     void clear();
     void ask(int x, int y, int k);
-    /// Makes what was asked for since clear(): places()[i] in its pixel and rays()[i] belong to the i-th.
+    /// Makes the rays requested since clear(): places()[i] in its pixel and rays()[i] belong to the i-th request.
     void make();
     std::span<const Vec2> places() const { return places_.places(); }
     std::vector<transport::CameraRay>& rays() { return rays_; }
@@ -142,19 +140,19 @@ private:
     std::vector<Vec2> raster_;
     std::vector<transport::CameraRay> rays_;
 };
-/// Samples that are not finite numbers: how many, and sample, y and x of the first in the picture.
+/// Samples with values that are not finite: their number, and sample, y and x of the first.
 struct DroppedSamples {
     uint64_t count = 0;
     std::optional<std::array<int, 3>> first;
 };
-/// Reconstructed pictures: that of plan.pictures[i] is images[of[i]].
+/// Reconstructed pictures: plan.pictures[i] has images[of[i]].
 struct Reconstructions {
     std::vector<Image> images;
     std::vector<size_t> of;
     Refined refined;
 };
-/// When the user stops, pixels not reached stay black. `memory`: of the samples, kept from frame to frame where it is little:
-/// pages that the system hands out anew are a tenth of the time of simple frames.
+/// If the user stops, unreached pixels stay black. `memory`: of the samples, reused from frame to frame if small, because new
+/// pages cost a tenth of the time of simple frames.
 Reconstructions renderImages(Job&, int nx, int ny, Jitter, const Refinement&, uint64_t seed, DroppedSamples*,
                              std::vector<float>& memory);
 

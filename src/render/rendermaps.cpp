@@ -1,4 +1,4 @@
-// Make requests of a scene: maps of pictures that were rendered before, or that lie there.
+// Make requests of a scene: maps from pictures that were rendered before, or that exist.
 #include "base/realpath.h"
 #include "render/frameprocesses.h"
 #include "render/renderer.h"
@@ -25,8 +25,8 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
     parseMark_ = clockSeconds();
 }
 
-/// The process that reads has no threads; maps are made by several. What a map is made of, or replaces, earlier frames may write
-/// or read.
+/// The reading process has no threads, and maps use several. Earlier frames may write or read the files that a map is made of, or
+/// replaces.
 void Renderer::makeInProcess(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
                              const SourcePlace& place) {
     processes_->settle();

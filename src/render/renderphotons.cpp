@@ -1,4 +1,4 @@
-// Photon maps: those that Hider "photon" writes, and those that a frame's shaders ask for.
+// Photon maps: those that Hider "photon" writes, and those that shaders of a frame read.
 #include "render/framework.h"
 #include "render/levels.h"
 #include "render/photonpass.h"
@@ -26,7 +26,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     PhotonPasses passes(job, f.world, {});
     if (!passes.emission().lights())
         return refuse("Hider \"photon\": no light of the frame emits photons",
-                      "ambient lights do not, nor do lights without a place");
+                      "ambient lights and lights without a position emit none");
     std::vector<transport::StoredPhoton> stored;
     uint64_t emitted = 0;
     const bool whole = passes.emit(0, photonsToEmit(f.o, diagnostics_), stored, maps.front(), &emitted);
@@ -44,7 +44,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     for (const auto& [name, photons] : transport::photonsByMap(*f.world, maps, stored)) {
         if (photons.empty())
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
-                                "photon map \"" + name + "\" is empty: no photon came to rest on its surfaces");
+                                "photon map \"" + name + "\" is empty: no photon was stored on its surfaces");
         const bool saved = transport::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
         outcome_.outputFailed |= !saved;
         if (saved)
@@ -58,8 +58,8 @@ void Renderer::makePhotonMaps(FrameWork& f, Job& job) {
     if (!f.world->photons()) return;
     const std::vector<std::string> maps = transport::photonMapsOf(*f.world, false);
     if (maps.empty()) return;
-    // Lobes are what shaders ask for under path; elsewhere they look at lights themselves.
-    Diagnostics silent; // what it says was said when the frame was made
+    // Under path shaders request lobes; under the other hiders they evaluate lights themselves.
+    Diagnostics silent; // its messages were reported when the frame was built
     std::shared_ptr<const transport::World> world = f.world;
     if (!f.path) {
         transport::Settings settings = f.settings;
@@ -68,7 +68,7 @@ void Renderer::makePhotonMaps(FrameWork& f, Job& job) {
         if (!world || !world->photons()) return;
     }
     PhotonPasses passes(job, world, {.all = false});
-    if (!passes.emission().lights()) return; // who looks a map up is told
+    if (!passes.emission().lights()) return; // lookups report a missing map
     std::vector<transport::StoredPhoton> stored;
     uint64_t emitted = 0;
     if (!passes.emit(0, photonsToEmit(f.path ? scene::Options(f.o) : f.o, diagnostics_), stored, "photons", &emitted)) return;

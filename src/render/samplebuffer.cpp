@@ -12,10 +12,10 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 
 bool drawn(Jitter j) { return j == Jitter::Jittered || j == Jitter::Scrambled; }
 
-// u: the two numbers of the sample, where they are drawn.
+// u: the two random numbers of the sample, if needed.
 Vec2 placeOf(int k, int nx, int ny, Jitter jitter, Vec2 u) {
     if (jitter == Jitter::Scrambled || jitter == Jitter::Middle) return u;
-    // float rounding could reach 1, which is the next pixel's
+    // Float rounding could reach 1, which belongs to the next pixel.
     constexpr float below = 1 - 0x1p-24f;
     return {std::min(below, (float(k % nx) + u.x) / float(nx)), std::min(below, (float(k / nx) + u.y) / float(ny))};
 }
@@ -65,7 +65,7 @@ SampleBuffer::SampleBuffer(Window w, double maxXw, double maxYw, int nx, int ny,
     sampled_ = {w.x0 - bx, w.y0 - by, w.x1 + bx, w.y1 + by};
     const size_t floats = sampled_.pixels() * size_t(nx * ny) * stride_;
     if (memory.capacity() >= floats) data_ = std::move(memory);
-    else memory = {}; // not two at a time
+    else memory = {}; // frees one before the other
     data_.assign(floats, 0);
     for (size_t i = 0; i < data_.size(); i += stride_) data_[i] = -1;
 }
@@ -95,7 +95,7 @@ bool SampleBuffer::set(int x, int y, int k, const ImageSample& s) {
 
 bool SampleBuffer::set(int x, int y, int k, Vec2 place, const ImageSample& s) {
     float* d = &data_[base(x, y, k)];
-    const bool again = d[0] >= 0 || d[1] > 0; // a task that is done again counts once
+    const bool again = d[0] >= 0 || d[1] > 0; // a repeated task counts once
     const auto drop = [&] {
         if (!again) std::atomic_ref<uint64_t>(nonFinite_).fetch_add(1, std::memory_order_relaxed);
     };

@@ -1,8 +1,8 @@
-// Image samples of `hidden` and `raytrace` and their reconstruction as RISpec says: stratified samples, shared between
-// neighbouring pixels, weighted by each display's own filter; depth by its depth filter.
+// Image samples of `hidden` and `raytrace` and their reconstruction by RISpec: stratified samples, shared between neighbouring
+// pixels, weighted by each display's own filter; depth by its depth filter.
 //
-// The value of a pixel is a sum over the samples near it in a fixed order, each sample a function of (seed, pixel, number).
-// Tiles, bands and threads change nothing: a buffer over a part of the raster, border included, gives the same bits.
+// The value of a pixel is a sum over nearby samples in a fixed order; each sample is a function of (seed, pixel, index). Tiles,
+// bands and threads change nothing: a buffer over a part of the raster, with its border, gives the same bits.
 #pragma once
 #include "base/numberlanes.h"
 #include "render/film.h"
@@ -14,22 +14,22 @@ namespace alpenglow::render {
 /// Hider parameter "jitter".
 enum class Jitter {
     Grid = 0,      ///< centres of the nx x ny cells of a pixel
-    Jittered = 1,  ///< one random place per cell
+    Jittered = 1,  ///< one random position per cell
     Scrambled = 2, ///< the pixel's own (0,2)-sequence (sampler.h), no cells
-    Middle = 3     ///< all of them in the middle of the pixel ("lensSamples")
+    Middle = 3     ///< all at the centre of the pixel ("lensSamples")
 };
 
-/// Place of sample k (0 <= k < nx * ny) inside its pixel, each in [0,1).
+/// Position of sample k (0 <= k < nx * ny) inside its pixel, each in [0,1).
 Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter);
 
-/// Draws the places of many samples, with the same bits.
+/// Computes the positions of many samples, with the same bits.
 class PlaceRows {
 public:
     PlaceRows(uint64_t seed, int nx, int ny, Jitter jitter) : seed_(seed), nx_(nx), ny_(ny), jitter_(jitter) {}
     void clear();
     void ask(int x, int y, int k);
     void draw();
-    /// After draw(): places()[i] is that of the i-th that was asked for.
+    /// After draw(): places()[i] is the position of the i-th request.
     std::span<const Vec2> places() const { return places_; }
 
 private:
@@ -43,11 +43,11 @@ private:
     std::vector<Vec2> places_;
 };
 
-/// One image sample. Colour and AOVs as composited over the sample's surfaces, premultiplied by opacity.
+/// An image sample: colour and AOVs composited over its surfaces, premultiplied by opacity.
 struct ImageSample {
     Color color, opacity;
     float z = std::numeric_limits<float>::infinity();       ///< camera-space depth of the first surface that counts; inf: none
-    float zSecond = std::numeric_limits<float>::infinity(); ///< of the one behind it, for depth filter "midpoint"
+    float zSecond = std::numeric_limits<float>::infinity(); ///< of the second surface, for depth filter "midpoint"
     std::span<const float> aovs;
 };
 
@@ -66,50 +66,49 @@ struct Image {
 };
 inline constexpr int kImageFixedChannels = 8;
 
-/// Whole pixels beyond its own that a filter of full width w pixels, centred on a pixel, can reach.
+/// Number of pixels beyond its own that a filter of full width w pixels, centred on a pixel, can reach.
 int border(double w);
 
 class SampleBuffer {
 public:
     /// Samples for reconstructing `window` with filters whose full widths do not exceed maxXw, maxYw. nx, ny >= 1 per pixel.
-    /// `memory`: of a buffer that is gone (takeMemory()), whatever it held.
+    /// `memory`: from another buffer's takeMemory(), with any contents.
     SampleBuffer(Window window, double maxXw, double maxYw, int nx, int ny, std::vector<Channel> aovs, uint64_t seed, Jitter,
                  std::vector<float> memory = {});
-    /// Numbers that are kept for a window of so many pixels.
+    /// Number of floats for a window of so many pixels.
     static size_t floats(int width, int height, double maxXw, double maxYw, int samplesPerPixel, size_t aovs) {
         return size_t(width + 2 * border(maxXw)) * size_t(height + 2 * border(maxYw)) * size_t(samplesPerPixel) * (kAovs + aovs);
     }
     std::vector<float> takeMemory() && { return std::move(data_); }
-    /// Goes on to the window below, of the same width, and keeps the samples of rows that both need. Returns the first row that
-    /// has none.
+    /// Moves to the window below, of the same width, and keeps the samples of shared rows. Returns the first row without samples.
     int moveDown(const Window&);
 
-    /// All pixels that need samples: the window and its border. Parts of it may lie outside the picture.
+    /// All pixels that need samples: the window and its border. It may extend beyond the picture.
     const Window& sampled() const { return sampled_; }
     int samplesPerPixel() const { return nx_ * ny_; }
     /// Raster position of a sample, pixels.
     Vec2 position(int x, int y, int k) const;
-    /// Stores sample k of a pixel of sampled(), whose place in the pixel is stratifiedOffset(). One pixel by one thread at a
-    /// time. A sample whose colour or opacity is not finite is dropped and counted, once, false; a NaN in an AOV or depth makes
-    /// that value 0 or "none", counted.
+    /// Stores sample k of a pixel of sampled(), at stratifiedOffset() in the pixel. One thread for a pixel at a time. A sample
+    /// whose colour or opacity is not finite is dropped and counted, and false is returned; a NaN in an AOV or depth becomes 0 or
+    /// "none", counted.
     bool set(int x, int y, int k, Vec2 place, const ImageSample&);
     bool set(int x, int y, int k, const ImageSample&);
-    /// Colour of a sample; black where there is none.
+    /// Colour of a sample; black if there is none.
     Color color(int x, int y, int k) const;
     uint64_t nonFinite() const { return nonFinite_; }
 
-    /// The pixels of `out`, which must lie inside the constructor's window. Colours, opacities and averaged AOVs: weighted by
-    /// the filter and divided by the sum of weights; where the filter meets no sample, or its weights cancel, the plain mean
-    /// of the pixel's own samples. Alpha: mean of the three opacities. z and Min/Max AOVs: from the pixel's own samples.
-    /// z: "max" counts misses as infinite; "average" is over hits; "midpoint" is the least of the mid-depths of two
-    /// surfaces, infinite where no sample has a second surface (nothing lies behind that could be shadowed).
+    /// The pixels of `out`, which must be inside the constructor's window. Colours, opacities and averaged AOVs: weighted by the
+    /// filter and divided by the sum of weights; if the filter covers no sample, or its weights cancel, the mean of the pixel's
+    /// own samples. Alpha: mean of the three opacities. z and Min/Max AOVs: from the pixel's own samples. z: "max" counts misses
+    /// as infinite; "average" is over hits; "midpoint" is the smallest mid-depth of two surfaces, infinite if no sample has a
+    /// second surface (nothing behind could be shadowed).
     Image reconstruct(const PixelFilter&, DepthFilter, Window out) const;
-    /// The same into rows of pixels with all channels, `rowFloats` from one to the next. No filter is wider than the buffer was
-    /// made for (weights()).
+    /// The same into rows of pixels with all channels, at a distance of `rowFloats`. The filter must not be wider than the buffer
+    /// supports (weights()).
     void reconstruct(const FilterWeights&, DepthFilter, Window out, float* to, size_t rowFloats) const;
     /// Only the channel z.
     void reconstructDepth(DepthFilter, Window out, float* to, size_t rowFloats) const;
-    /// The weights of a filter: one that is wider than the border was made for is cut.
+    /// Weights of a filter, cut to the border of the buffer if it is wider.
     FilterWeights weights(const PixelFilter&) const;
 
 private:
@@ -135,11 +134,11 @@ private:
     Window window_, sampled_;
     int nx_, ny_;
     std::vector<Channel> aovs_;
-    bool averagesAll_; ///< no AOV is a least or a greatest value
+    bool averagesAll_; ///< no AOV has rule Min or Max
     uint64_t seed_;
     Jitter jitter_;
     size_t stride_;
-    /// Per sample: offset x (-1: no sample), offset y (of no sample, 1: it was dropped), colour, opacity, z, second z, AOVs.
+    /// For each sample: offset x (-1: no sample), offset y (of no sample, 1: dropped), colour, opacity, z, second z, AOVs.
     std::vector<float> data_;
     uint64_t nonFinite_ = 0;
 };

@@ -21,7 +21,7 @@ ShutterOpening::ShutterOpening(const scene::Options& o, Diagnostics& diag) {
 
 double ShutterOpening::at(double u) const {
     if (wide == 0 && closing == 1) return u;
-    // The inverse of the area under a trapezium.
+    // Inverse of the area under a trapezoid.
     const double flat = closing - wide, all = flat + 0.5 * (1 - flat), area = u * all;
     if (area < 0.5 * wide) return std::sqrt(2 * wide * area);
     if (area < 0.5 * wide + flat) return wide + area - 0.5 * wide;

@@ -1,18 +1,18 @@
-// How a shutter opens.
+// Shutter opening over time.
 #pragma once
 #include "base/diagnostics.h"
 #include "scene/fwd.h"
 
 namespace alpenglow::render {
 
-/// Option "shutter" "float[2] shutteropening" [a b]: it is wide open from the part a of its time to the part b; before and after,
-/// it opens and closes linearly.
+/// Option "shutter" "float[2] shutteropening" [a b]: fully open from fraction a of its time to fraction b; opens and closes
+/// linearly before and after.
 struct ShutterOpening {
     double wide = 0, closing = 1;
     ShutterOpening() = default;
-    /// What is not 0 <= a <= b <= 1 is reported, and the shutter opens and closes at once.
+    /// Values other than 0 <= a <= b <= 1 are reported; the shutter then opens and closes at once.
     ShutterOpening(const scene::Options&, Diagnostics&);
-    /// The part of the time, 0 to 1, of a sample with a number of [0, 1): more samples where the shutter is wider open.
+    /// Time of a sample, 0 to 1, from a number in [0, 1): more samples where the shutter is wider open.
     double at(double u) const;
 };
 

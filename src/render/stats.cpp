@@ -75,7 +75,7 @@ std::string toJson(const RenderStats& s) {
     j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
     j["errors"] = s.errors;
     j["warnings"] = s.warnings;
-    // Ray types come from the renderer, but a stranger's bytes must not throw here either.
+    // Ray types come from the renderer; other bytes must not throw here either.
     return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

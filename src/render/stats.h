@@ -1,4 +1,4 @@
-// The figures of one render: `--stats FILE.json` and the table at the end.
+// Figures of a render: `--stats FILE.json` and the table at the end.
 #pragma once
 #include "render/noise.h"
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace alpenglow::render {
 
-/// Field names are the keys of the JSON object (design, "Fixed from outside").
+/// Field names are the keys of the JSON object, which must stay as they are.
 struct RenderStats {
     int width = 0, height = 0;
     uint64_t spp = 0;                   ///< samples per pixel, on average
@@ -15,16 +15,16 @@ struct RenderStats {
     double renderSec = 0, cpuSec = 0;   ///< wall and processor time of rendering
     uint64_t totalRays = 0;             ///< primary, reflected, refracted, internally reflected, sub-sampled and shadow rays
     NoiseFigures noise;
-    std::string curve; ///< of the pictures (curve.h); "" = not known
+    std::string curve; ///< of the pictures (curve.h); "" = unknown
     int threads = 0;
     uint64_t peakMemoryBytes = 0;
     double parseSec = 0, compileSec = 0, buildSec = 0;
     uint64_t nonFinite = 0;               ///< samples dropped
     uint64_t saturated = 0;               ///< values clamped by the exact sums
-    std::map<std::string, uint64_t> rays; ///< by type; camera, diffuse, specular, transmission, shadow are written even when 0
-    /// What a classic ray tracer counts. primary: camera rays but subsampledRays; reflected, refracted: of the specular rays
-    /// those that stay on their side of a surface, and the others; totalReflected: those that shaders call so. ignored: rays
-    /// whose weight is 0, which were not sent. tests, hits: how often rays were followed to the next surface, and met one.
+    std::map<std::string, uint64_t> rays; ///< by type; camera, diffuse, specular, transmission, shadow are written even if 0
+    /// Counts of classic ray tracers. primary: camera rays without subsampledRays; reflected, refracted: specular rays that stay
+    /// on their side of a surface, and those that cross it; totalReflected: those labelled so by shaders. ignored: rays of weight
+    /// 0, which were not sent. tests, hits: intersection queries, and those with a hit.
     struct Classic {
         uint64_t primary = 0, reflected = 0, refracted = 0, totalReflected = 0, ignored = 0, subsampledPixels = 0,
                  subsampledRays = 0, tests = 0, hits = 0;
@@ -34,8 +34,8 @@ struct RenderStats {
         double laneOccupancy = 0; ///< active lanes / lanes, 0..1
         int affineKernels = 0, suspendingKernels = 0, kernels = 0, cacheHits = 0;
     } shading;
-    /// The caustic guide of path (docs/light.md): photons of mirrors and glass that it was learned from, cells and lobes, and
-    /// the rays that it aimed, which are among `rays`, too.
+    /// The caustic guide under path (docs/light.md): photons that it was built from, cells and lobes, and guide rays, which also
+    /// count in `rays`.
     struct Guide {
         uint64_t photons = 0, cells = 0, lobes = 0, rays = 0;
     } guide;
@@ -44,7 +44,7 @@ struct RenderStats {
         double average = 0;
     } depth;
     int errors = 0, warnings = 0;
-    /// Sums behind shading.laneOccupancy and depth.average, which settle() makes of them; not written.
+    /// Sums for shading.laneOccupancy and depth.average, which settle() computes; not written.
     double lanesUsed = 0, lanesRun = 0, depthSum = 0, paths = 0;
     void settle() {
         shading.laneOccupancy = lanesRun > 0 ? lanesUsed / lanesRun : 0;
@@ -52,12 +52,12 @@ struct RenderStats {
     }
 };
 
-/// One JSON object, keys as above plus raysPerMS and efficiency, ending with a newline. Numbers that are not finite become 0.
+/// One JSON object with the keys above, raysPerMS and efficiency, and a newline. Numbers that are not finite become 0.
 std::string toJson(const RenderStats&);
 /// The table printed at the end of a render, one figure a line, ending with a newline.
 std::string toTable(const RenderStats&);
 
-/// Largest resident size of this process so far, bytes; 0 when the system does not say.
+/// Largest resident size of this process so far, bytes; 0 if the system does not tell.
 uint64_t peakMemoryBytes();
 /// Processor time of all threads of this process so far, seconds.
 double processCpuSeconds();

@@ -1,5 +1,5 @@
-// Threads that work through a list of tasks. Plain threads, not TBB: a tracer is busy with one call at a time, and a TBB thread
-// that waits inside a trace may begin another task of the same list with the same tracer.
+// Threads that work through a list of tasks. Plain threads, not TBB: a tracer handles one call at a time, and a TBB thread that
+// waits inside a trace could start another task with the same tracer.
 #pragma once
 #include "base/stopflag.h"
 #include <atomic>
@@ -20,10 +20,10 @@ public:
     explicit Team(int threads) : threads_(threads < 1 ? 1 : threads) {}
     int threads() const { return threads_; }
 
-    /// Calls work(worker, task) for tasks 0 .. count-1, each once, on `threads` threads; worker < threads. Meanwhile tick(done)
-    /// runs on the calling thread about every 20 ms. Once *halt is set no further task begins. Throws what a task or tick()
-    /// threw, after all have ended. True when every task was done. A thread that cannot be started (no memory, or no more
-    /// processes for this user) is done without; if none can be, the calling thread works, with tick() between its tasks.
+    /// Calls work(worker, task) for tasks 0 to count - 1, each once, on `threads` threads; worker < threads. Meanwhile tick(done)
+    /// runs on the calling thread about every 20 ms. Once *halt is set no further task starts. Rethrows exceptions of tasks or
+    /// tick() after all have ended. Returns true if every task was done. If a thread cannot be started (no memory, or too many
+    /// processes of this user), the others do its work; if none can, the calling thread works, with tick() between its tasks.
     template <class Work, class Tick> bool run(size_t count, StopFlag* halt, Work work, Tick tick) {
         std::atomic<size_t> next{0}, done{0};
         int running = 0;
@@ -85,7 +85,7 @@ public:
         return done == count && !*halt;
     }
 
-    /// How many of `wanted` threads can be started at one time beside the calling one; at least 1, which may then be that one.
+    /// How many of `wanted` threads can run at once in addition to the calling one; at least 1, which may be the calling one.
     static int startable(int wanted) {
         std::vector<std::thread> threads;
         threads.reserve(size_t(wanted));

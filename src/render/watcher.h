@@ -1,4 +1,4 @@
-// Who looks on while frames are rendered: a viewer, a preview in the terminal.
+// Observers of rendering: a viewer, a preview in the terminal.
 #pragma once
 #include "integrator/integrator.h"
 #include "render/outputs.h"
@@ -7,7 +7,7 @@
 
 namespace alpenglow::render {
 
-/// A frame that is about to be rendered. All of it lives until Watcher::finished().
+/// A frame that is about to be rendered. All of it is valid until Watcher::finished().
 struct WatchedFrame {
     const OutputPlan& plan;
     const PictureFacts& picture;
@@ -17,29 +17,29 @@ struct WatchedFrame {
 
 /// The picture so far.
 struct Glance {
-    std::function<Image(const OutputSpec&)> pixels; ///< what writeOutputs() takes for a picture of the plan
-    const Film* film = nullptr;                     ///< path: whole passes; else null
-    /// hidden and raytrace, while the picture grows: by pixel of its window in reading order whether it is there, as of the last
-    /// call of pixels(). What is not there is black. Null: all is there.
+    std::function<Image(const OutputSpec&)> pixels; ///< pixels of a picture of the plan, in the form for writeOutputs()
+    const Film* film = nullptr;                     ///< path: complete passes; else null
+    /// hidden and raytrace, while the picture grows: for each pixel of its window in reading order, whether it is complete, as of
+    /// the last call of pixels(). Incomplete pixels are black. Null: all are complete.
     const std::vector<uint8_t>* there = nullptr;
-    bool whole() const { return !film && !there; } ///< nothing comes behind it
+    bool whole() const { return !film && !there; } ///< the final state
     double seconds = 0;                            ///< since rendering began
-    uint64_t rays = 0;                             ///< traced so far, those of the pass under way too
-    bool grown = true;                             ///< a pass, or some tile, came in; false: only time went by
+    uint64_t rays = 0;                             ///< traced so far, including the current pass
+    bool grown = true;                             ///< a pass, or some tile, was completed; false: only time has passed
 };
 
-/// All calls come from the thread that called Renderer::render().
+/// All calls are made by the thread that called Renderer::render().
 class Watcher {
 public:
     virtual ~Watcher() = default;
-    /// False: pictures are only looked at. No file is written, and no name of one is checked.
+    /// False: pictures are only displayed. No file is written, and file names are not checked.
     virtual bool writes() const { return true; }
     /// Whether the noise figures of the frame are wanted in Renderer::stats(), which takes a look at every pixel.
     virtual bool wantsNoise() const { return writes(); }
     virtual void begin(const WatchedFrame&) {}
-    /// Under path the samples to go on with; null: none. What comes is of this description.
+    /// Under path: a film to continue; null: none. The result must match this description.
     virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }
-    /// Under path after each pass, else when the picture is whole; and about every 20 ms between.
+    /// Called under path after each pass, else when the picture is complete; and about every 20 ms in between.
     virtual void look(const Glance&) {}
     /// How far the samples of a frame are, as often as the progress line is told. what: the picture.
     virtual void progress(const ProgressState&, const std::string& what) { (void)what; }

@@ -1,4 +1,4 @@
-// A batch: points that one kernel shades together, laid out as the kernel reads them (rsl/kernel.h), and what came out.
+// A batch: points that one kernel shades together, in the layout of the kernel (rsl/kernel.h), and its outputs.
 #pragma once
 #include "rsl/front/protocol.h"
 #include "rsl/kernel.h"
@@ -9,60 +9,58 @@
 
 namespace alpenglow::shading {
 
-/// Values of a shader instance's numeric parameters, in current space: flattened elements. Strings are part of the kernel.
+/// Numeric parameters of a shader instance in current space, as flattened elements. Strings are compiled into the kernel.
 struct ParameterBlock {
     std::map<std::string, std::vector<float>> numbers;
     std::map<std::string, std::string> strings;
 };
 
-/// Resolves inputs of the kind rsl::InputName::Kind::Space: one of both is "current".
+/// Resolves inputs of kind rsl::InputName::Kind::Space: one of the two spaces is "current".
 class SpaceResolver {
 public:
     virtual ~SpaceResolver() = default;
-    /// Matrix from `from` to `to`; null when there is no such space. "object" and "shader" are the point's own.
+    /// Sets the matrix from `from` to `to`; returns false for unknown spaces. "object" and "shader" are those of the point.
     virtual bool matrix(const std::string& from, const std::string& to, Matrix& out) const = 0;
 };
 
-/// Shader space that moves: its matrices, and the parameters that were given in it, at times of the shutter (0 to 1); between
-/// them both are linear.
+/// A moving shader space: its matrices, and parameters given in it, at times of the shutter (0 to 1); linear in between.
 struct MovingSpace {
     std::vector<float> times;
     std::vector<Matrix> toCurrent;
     std::vector<ParameterBlock> parameters;
     size_t keyAt(float time, float& way) const;
     Matrix at(float time) const;
-    /// What a number of a parameter is more at a time than at the first.
+    /// Difference of a parameter's component between a time and the first time.
     float change(const std::string& parameter, size_t component, float time) const;
 };
 
-/// What the points of a batch may differ in beyond their ShadePoint: one an instance.
+/// Per-instance data of the points in a batch, in addition to ShadePoint.
 struct InstanceView {
     const ParameterBlock* parameters = nullptr;
     const Matrix* shaderToCurrent = nullptr;
-    const MovingSpace* moving = nullptr;       ///< null: both are the same at all times
-    const class ParameterRows* rows = nullptr; ///< the parameters again as the batch's kernel reads them; null: looked up by name
+    const MovingSpace* moving = nullptr;       ///< null: constant in time
+    const class ParameterRows* rows = nullptr; ///< the parameters in the kernel's order; null: looked up by name
 };
 
-/// Where the inputs of a kernel come from and where its rows lie: worked out once per kernel.
+/// Sources of a kernel's inputs and positions of its rows: computed once for each kernel.
 class BatchPlan {
 public:
     explicit BatchPlan(const rsl::CompiledKernel&, bool mixed);
-    /// Index of an output, -1 when the kernel has none of that name.
+    /// Index of an output, or -1.
     int output(const rsl::OutputName&) const;
-    /// The same of a variable or a whole output parameter.
+    /// The same for a variable or a complete output parameter.
     int output(std::string_view name) const;
     int Ci = -1, Oi = -1, P = -1, N = -1;
-    /// Whether du or dv is read.
+    /// Whether the kernel reads du or dv.
     bool usesFootprint() const { return footprint_; }
-    /// geometry::PointNeed: what of ShadePoint::surface is read, and of ShadePoint::lit.
+    /// geometry::PointNeed: what the kernel reads of ShadePoint::surface, and of ShadePoint::lit.
     uint32_t needs() const { return needs_; }
     uint32_t litNeeds() const { return litNeeds_; }
-    /// Whether LightRows and the values of parameters are all that is read, where no variable of a primitive stands for one.
+    /// Whether the kernel reads only LightRows and parameters, and no parameter is overridden by a primitive variable.
     bool readsLightRows() const { return lightRows_; }
-    /// Whether a variable of the shape has the name of a parameter that it may stand for.
+    /// Whether a variable of the shape overrides a parameter.
     bool overriddenBy(const geometry::Shape&) const;
-    /// The same for SurfaceRows: nothing of time and of what moves. Variables of primitives that stand
-    /// for parameters are read as well.
+    /// The same for SurfaceRows, without time and motion. Parameters overridden by primitive variables are allowed.
     bool readsSurfaceRows() const { return surfaceRows_; }
 
 private:
@@ -75,11 +73,11 @@ private:
         bool varying = false; ///< a parameter that primitive variables may override
         int components = 1, parts = 1, elements = 1;
         size_t rows = 0, firstRow = 0; ///< rows of `stride` floats
-        size_t firstNumber = 0;        ///< Parameter: of ParameterRows
+        size_t firstNumber = 0;        ///< Parameter: index in ParameterRows
         int16_t offset[6] = {-1, -1, -1,
-                             -1, -1, -1}; ///< Variable: bytes into ShadePoint of each part; -1: zero, -2: one, -3: three, -4: Ngs
+                             -1, -1, -1}; ///< Variable: byte offset in ShadePoint, by part; -1: zero, -2: one, -3: three, -4: Ngs
         rsl::InputName name;
-        /// Told: outputs of the displacement shader's run that fill it, by element and part.
+        /// Told: outputs of the displacement shader's run that supply the value, by element and part.
         struct Heard {
             rsl::OutputName output;
             int element, part;
@@ -89,15 +87,15 @@ private:
     std::vector<Source> inputs_;
     std::vector<size_t> outputRow_;
     std::vector<rsl::OutputName> outputs_;
-    size_t rows_ = 0, numbers_ = 0; ///< of ParameterRows
+    size_t rows_ = 0, numbers_ = 0; ///< in ParameterRows
     bool footprint_ = false;
     uint32_t needs_ = 0, litNeeds_ = 0;
     bool lightRows_ = true, surfaceRows_ = true;
 };
 
-/// What kernels of lights mostly read: three rows each, as long as there are points.
+/// Inputs that most light kernels read: three rows each, one column for each point.
 struct LightRows {
-    /// Of which nothing more is known.
+    /// A point without further data.
     struct Point {
         const geometry::Shape* shape;
         const geometry::SurfacePoint& surface;
@@ -108,7 +106,7 @@ struct LightRows {
     Point operator[](size_t) const;
 };
 
-/// What kernels of surfaces mostly read: points where rays met surfaces that stand still.
+/// Inputs that most surface kernels read: points on surfaces that do not move.
 struct SurfaceRows {
     struct Point {
         const geometry::Shape* shape;
@@ -116,15 +114,15 @@ struct SurfaceRows {
         float shutter = 0;
     };
     std::span<const geometry::SurfacePoint> surfaces;
-    std::span<const geometry::Shape* const> shapes; ///< of these
-    std::span<const float> I, E;                    ///< incident vector, and where the ray began: three rows each
-    std::span<const float> du, dv;                  ///< where the plan usesFootprint()
+    std::span<const geometry::Shape* const> shapes; ///< by surface
+    std::span<const float> I, E;                    ///< incident vector, and ray origin: three rows each
+    std::span<const float> du, dv;                  ///< if the plan usesFootprint()
     size_t size() const { return surfaces.size(); }
     Point operator[](size_t i) const { return {shapes[i], surfaces[i]}; }
 };
 
-/// A ParameterBlock as one kernel reads it: numbers in the order of its plan, so that none is looked for by name while rendering.
-/// Only for batches of that plan, which must outlive it.
+/// A ParameterBlock in the order of a kernel's plan, so that no name is looked up during rendering. For batches of that plan
+/// only, which must outlive it.
 class ParameterRows {
 public:
     ParameterRows(const BatchPlan&, const ParameterBlock&);
@@ -133,33 +131,33 @@ public:
 private:
     friend class Batch;
     const BatchPlan* plan_;
-    std::vector<float> numbers_; ///< of all parameters, flattened; absent ones are zero
+    std::vector<float> numbers_; ///< of all parameters, flattened; missing ones are zero
 };
 
-/// Aligned rows for the inputs and outputs of one kernel call. Lives as long as the call, across suspensions.
+/// Aligned rows for inputs and outputs of one kernel call. Must outlive the call, including its suspensions.
 class Batch {
 public:
     Batch() = default;
-    /// views[i] belongs to points[i]; with `mixed` false they are all the same.
+    /// views[i] belongs to points[i]; with `mixed` false all are equal.
     Batch(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
           std::span<const InstanceView> views, const SpaceResolver&);
     Batch(const Batch&) = delete;
     Batch& operator=(const Batch&) = delete;
-    /// A new call in the memory of the last one. views[viewOf[i]] belongs to points[i]; viewOf empty: views[0] to all. What the
-    /// call's user and functions are is left as it was.
+    /// Starts a new call in the memory of the last one. views[viewOf[i]] belongs to points[i]; viewOf empty: views[0] to all.
+    /// Does not change the user data and callbacks of the call.
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, std::span<const ShadePoint> points,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
-    /// The same for a plan that readsLightRows(), of instances that do not move.
+    /// The same for a plan that readsLightRows(), with instances that do not move.
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const LightRows&,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf);
-    /// The same for a plan that readsSurfaceRows(), of instances that do not move.
+    /// The same for a plan that readsSurfaceRows(), with instances that do not move.
     void assign(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, const SurfaceRows&,
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
-    /// Fills the inputs that the displacement shader gives from the outputs of its run at the same points, derivatives too.
+    /// Fills inputs that come from the displacement shader, including derivatives, from its run at the same points.
     void tell(const Batch& displaced);
-    /// Gives a varying parameter that has so many components another value at a point, without slope.
+    /// Overrides a varying parameter with this number of components at a point; derivatives become 0.
     void give(std::string_view parameter, int point, std::span<const float> value);
 
     rsl::KernelCall& call() { return call_; }
@@ -185,7 +183,7 @@ private:
         const InstanceView& operator[](int point) const { return views[index(point)]; }
     };
     void layOut(std::shared_ptr<const rsl::CompiledKernel>, const BatchPlan&, size_t points);
-    // Points: std::span<const ShadePoint>, or SurfaceRows; of parameters LightRows, too
+    // Points: std::span<const ShadePoint>, or SurfaceRows; for parameters also LightRows.
     template <class Points> void fillInputs(const Points&, const Views&, const SpaceResolver&);
     template <class Points> void fill(const BatchPlan::Source&, float* row, const Points&, const Views&, const SpaceResolver&);
     template <class Points> void fillColor(const BatchPlan::Source&, float* row, const Points&);
@@ -206,10 +204,10 @@ private:
     std::unique_ptr<float[], Free> storage_;
     size_t capacity_ = 0;               ///< floats
     bool primvars_ = false;             ///< some shape of the points has primitive variables
-    size_t padded_ = 0;                 ///< points rounded up to whole strips of the kernel
-    std::vector<float> valueOf_;        ///< by view: one component of it
-    std::vector<const float*> numbers_; ///< by view: the parameter that is filled in
-    std::vector<float> found_;          ///< what numbers_ points to where it was looked up
+    size_t padded_ = 0;                 ///< points rounded up to complete strips of the kernel
+    std::vector<float> valueOf_;        ///< by view: one component of the current parameter
+    std::vector<const float*> numbers_; ///< by view: the current parameter
+    std::vector<float> found_;          ///< storage for numbers_ looked up by name
     std::vector<const float*> in_;
     std::vector<float*> out_;
     rsl::KernelCall call_{};

@@ -1,4 +1,4 @@
-// The shader parameter that gets the number of the face where the primitive has no variable of its name.
+// Name of the shader parameter that receives the face number, unless the primitive has a variable of this name.
 #pragma once
 
 namespace alpenglow::shading {

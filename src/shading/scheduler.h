@@ -1,12 +1,12 @@
 // The scheduler: coroutine shaders and rays without recursion (docs/design/rsl.md).
 //
-// A unit of work is a Task (a ray to follow) or a Strip (a suspended kernel). A task adds what it finds to its Target. A strip
-// that suspends makes one target a lane, spawns tasks for them, and waits; when the last of them is complete the strip is ready.
-// Work is taken deepest first, tasks in slices of at most limits::kSliceRays, so memory grows with depth and not with the size of
-// the image. While no strip waits a slice is filled up with less deep tasks, so that the long tails of paths share batches with
-// fresh ones. Sums are exact (base/exactsum.h), so no order of work, slice or batch changes a bit.
+// A unit of work is a Task (a ray to trace) or a Strip (a suspended kernel). A task adds its light to its Target. A strip that
+// suspends makes one target for each lane, spawns tasks for them, and waits; when the last of them is complete the strip is
+// ready. Work is done deepest first, tasks in slices of at most limits::kSliceRays, so memory grows with depth and not with image
+// size. While no strip waits, a slice is filled with less deep tasks, so that the long tails of paths share batches with new
+// paths. Sums are exact (base/exactsum.h), so the order of work, slices and batches changes no bit.
 //
-// One scheduler serves one thread. It knows no geometry and no shader: the RayService does; tests use a fake one.
+// One scheduler serves one thread. Geometry and shading are in the RayService; tests use a fake one.
 #pragma once
 #include "base/exactsum.h"
 #include "base/limits.h"
@@ -29,8 +29,8 @@ namespace alpenglow::shading {
 using TargetId = int32_t;
 inline constexpr TargetId kNoTarget = -1;
 
-/// What a request for light comes back with. `radiance` is a sum over all tasks that aim at the target; the rest is written at
-/// most once, by the task that was spawned first.
+/// Result of a request for light. `radiance` is a sum over all tasks of the target; the rest is written at most once, by the
+/// first task spawned.
 struct TargetValue {
     Color radiance{0};
     Color transmission{1};
@@ -52,9 +52,9 @@ public:
     public:
         virtual ~Strip() = default;
         virtual int depth() const = 0;
-        /// Bytes its frame holds while it waits.
+        /// Memory of its frame while it waits, in bytes.
         virtual size_t frameBytes() const = 0;
-        /// All children are complete: `results[i]` belongs to the i-th target of the last wait. Runs on to the next suspension
+        /// All its targets are complete: `results[i]` belongs to the i-th target of the last wait. Runs to the next suspension
         /// (calls Scheduler::wait again and returns false) or to its end (returns true and is destroyed).
         virtual bool resume(Scheduler&, std::span<const TargetValue> results) = 0;
     };
@@ -62,15 +62,16 @@ public:
     class RayService {
     public:
         virtual ~RayService() = default;
-        /// Follows every task of the slice: adds to targets, spawns children, starts strips. The deepest tasks come first.
+        /// Traces every task of the slice: adds to targets, spawns tasks, starts strips. The deepest tasks come first.
         virtual void follow(std::span<const Task> slice, Scheduler&) = 0;
-        /// All strips that were ready at a depth have gone on: what they ask for now may be followed together.
+        /// Called after all strips that were ready at a depth have resumed: their new requests may be processed together.
         virtual void followStrips(Scheduler&) {}
-        /// No task and no strip is left: goes on with what follow() has held back, whose targets it holds. False: there is none.
+        /// Called when no task and no strip is left: continues with hits that follow() has held back with their targets. Returns
+        /// false if there are none.
         virtual bool settle(Scheduler&) { return false; }
     };
 
-    /// `stop`: polled between slices; when it is set run() gives up what is left. May be null.
+    /// `stop`: polled between slices; once set, run() abandons the remaining work. May be null.
     explicit Scheduler(RayService& service, const StopFlag* stop = nullptr, size_t frameLimit = limits::kFrameBytesPerThread,
                        int sliceRays = limits::kSliceRays)
         : service_(service), stop_(stop), frameLimit_(frameLimit), sliceRays_(sliceRays) {}
@@ -78,7 +79,7 @@ public:
     /// A root target, read with value() after run().
     TargetId newRoot() { return newTarget(-1); }
     void spawn(Task t) { spawn(t.depth, t.target, t.payload); }
-    /// The same for a payload that is made from another and changed in place: good until the next task is spawned.
+    /// For a payload made from another and modified in place; the reference is valid until the next spawn.
     Task& spawn(int depth, TargetId target, const Payload& from = {}) {
         hold(target);
         Tasks& chunk = chunkAt(depth, 1);
@@ -86,17 +87,16 @@ public:
         ++queued_;
         return chunk.back();
     }
-    /// Whether no strip has waited so far: then it is all the same in which order tasks are followed, and nobody waits for
-    /// targets.
+    /// Whether no strip has waited so far: then the order of tasks is irrelevant, and targets are not counted.
     bool plain() const { return strips_.empty(); }
-    /// Where plain(): memory for some tasks that are written in one go, and `behind` more that may be overwritten; then
-    /// spawned() says how many there are.
+    /// Requires plain(): memory for some tasks written at once, plus `behind` more that may be overwritten; then call spawned()
+    /// with their number.
     Task* room(size_t tasks, size_t behind) { return chunkAt(0, tasks).room(tasks + behind); }
     void spawned(size_t count) {
         queues_[0].back().taken(count);
         queued_ += count;
     }
-    /// Adds light to a target. Order does not matter: the sum is exact. Non-finite values are counted and dropped.
+    /// Adds light to a target. The sum is exact, so order does not matter. Non-finite values are counted and dropped.
     void add(TargetId id, const Color& c) {
         if (c.x == 0 && c.y == 0 && c.z == 0) return;
         Target& t = targets_[id];
@@ -114,16 +114,15 @@ public:
         targets_[id].value.normal = normal;
     }
 
-    /// The same, when this hit is nearer than what is known. Order does not matter.
+    /// Sets the distance if this hit is nearer. Order does not matter.
     void setNearer(TargetId id, float d, const Vec3& normal) {
         TargetValue& v = targets_[id].value;
         const auto key = [](const Vec3& n) { return std::array<float, 3>{n.x, n.y, n.z}; };
         if (d < v.distance || (d == v.distance && key(normal) < key(v.normal))) setDistance(id, d, normal);
     }
 
-    /// Called by a strip (or whoever starts it) when it suspends: makes `count` targets, calls make(i, target) so that the caller
-    /// spawns the tasks of each, and keeps the strip until all are complete. A target for which nothing is spawned is complete at
-    /// once.
+    /// Called when a strip suspends: makes `count` targets, calls make(i, target) so that the caller spawns the tasks of each,
+    /// and keeps the strip until all are complete. A target without tasks is complete at once.
     template <class Make> void wait(std::unique_ptr<Strip> strip, int count, Make make) {
         int slot = newStrip();
         Waiting& w = strips_[slot];
@@ -142,7 +141,7 @@ public:
         closeChild(slot);
     }
 
-    /// Works until everything is done or stop is set. Returns false when it was stopped.
+    /// Works until everything is done or stop is set. Returns false if stopped.
     bool run() {
         Tasks slice;
         while (queued_ > 0 || !ready_.empty() || service_.settle(*this)) {
@@ -153,19 +152,19 @@ public:
             }
             int rayDepth = queued_ > 0 ? deepestBelow(queues_.size()) : -1;
             if (!ready_.empty() && ready_.rbegin()->first >= rayDepth) {
-                // All that are ready at this depth go on together, so that what they ask for next is one stream again.
+                // All strips that are ready at this depth resume together, so that their next requests form one stream.
                 for (size_t n = ready_.rbegin()->second.size(); n > 0; --n) resumeOne();
                 service_.followStrips(*this);
                 continue;
             }
-            // Near the frame limit only as many rays are taken as one strip can hold, so that depth, not breadth, uses what is
-            // left.
+            // Near the frame limit takes only as many rays as one strip has, so that depth rather than breadth uses the remaining
+            // memory.
             size_t most = frameBytes_ > frameLimit_ / 2 ? std::min(kStripRays, size_t(sliceRays_)) : size_t(sliceRays_);
             takeSlice(slice, most);
             size_t n = slice.size();
             queued_ -= n;
             if (frameBytes_ > frameLimit_) {
-                overLimit_ += n; // these rays bring nothing: a bias, counted and reported by the caller
+                overLimit_ += n; // these rays are dropped: a bias, counted and reported by the caller
             } else {
                 ++slices_;
                 largestSlice_ = std::max(largestSlice_, n);
@@ -176,7 +175,7 @@ public:
         if (stop_ && *stop_) {
             abandon();
             return false;
-        } // what kernels left early is void
+        } // early exits of kernels are void
         return true;
     }
 
@@ -186,7 +185,7 @@ public:
         v.radiance = {t.sum[0].toFloat(), t.sum[1].toFloat(), t.sum[2].toFloat()};
         return v;
     }
-    /// As new, in the memory that is there.
+    /// Resets the scheduler and keeps its memory.
     void restart(const StopFlag* stop) {
         stop_ = stop;
         targets_.clear();
@@ -201,7 +200,7 @@ public:
         suspensions_ = overLimit_ = nonFinite_ = slices_ = 0;
     }
 
-    size_t frameBytes() const { return frameBytes_; } ///< that wait now
+    size_t frameBytes() const { return frameBytes_; } ///< of waiting strips
     size_t frameLimit() const { return frameLimit_; }
     size_t peakFrameBytes() const { return peakFrameBytes_; }
     size_t largestSlice() const { return largestSlice_; }
@@ -209,14 +208,14 @@ public:
     uint64_t overLimit() const { return overLimit_; }
     uint64_t nonFinite() const { return nonFinite_; }
 
-    static constexpr size_t kStripRays = 64; ///< the widest strip
+    static constexpr size_t kStripRays = 64; ///< lanes of the widest strip
 
 private:
     struct Target {
         ExactSum sum[3];
         TargetValue value;
     };
-    /// What a target waits for: by itself, since it is asked for at every ray, and the rest only where there is light.
+    /// Pending work of a target: separate from the rest, as it changes with every ray.
     struct Open {
         int pending = 0;
         int strip = -1; ///< -1: a root
@@ -259,7 +258,7 @@ private:
         Waiting& w = strips_[slot];
         if (--w.open == 0) ready_[w.strip->depth()].push_back(slot);
     }
-    /// The last chunk of the tasks of a depth, with room for some more.
+    /// The last chunk of tasks of a depth, with space for some more.
     Tasks& chunkAt(int depth, size_t more) {
         if (size_t(depth) >= queues_.size()) {
             queues_.resize(size_t(depth) + 1);
@@ -282,7 +281,7 @@ private:
         chunk.clear();
         freeChunks_.push_back(std::move(chunk));
     }
-    /// The deepest tasks. Where no strip waits, a slice that would not be half full gets less deep ones, too.
+    /// Takes the deepest tasks. If no strip waits, a slice that would be less than half full also gets less deep ones.
     void takeSlice(Tasks& slice, size_t most) {
         slice.clear();
         for (int depth = deepestBelow(queues_.size()); depth >= 0 && slice.size() * 2 < most;
@@ -293,7 +292,7 @@ private:
                 std::swap(chunks[chunks.size() - 2], chunks.back());
             while (!chunks.empty() && slice.size() < most) {
                 Tasks& q = chunks.back();
-                if (slice.empty() && q.size() <= most) slice.swap(q); // no task is moved
+                if (slice.empty() && q.size() <= most) slice.swap(q); // without moving tasks
                 else slice.takeLast(q, std::min(q.size(), most - slice.size()));
                 if (!q.empty()) break;
                 freeChunk(std::move(q));
@@ -303,8 +302,7 @@ private:
             if (chunks.empty()) filled_[size_t(depth) / 64] &= ~(uint64_t(1) << depth % 64);
         }
     }
-    /// The deepest queue below `depth` that is not empty; -1: none. A path of ten thousand bounces leaves as many empty ones
-    /// behind.
+    /// The deepest non-empty queue below `depth`; -1: none. A path of ten thousand bounces leaves as many empty ones.
     int deepestBelow(size_t depth) const {
         size_t word = std::min(depth / 64, filled_.size());
         uint64_t bits = word < filled_.size() ? filled_[word] & ((uint64_t(1) << depth % 64) - 1) : 0;
@@ -312,7 +310,7 @@ private:
         return bits != 0 ? int(word * 64 + 63) - std::countl_zero(bits) : -1;
     }
     void resumeOne() {
-        auto last = std::prev(ready_.end()); // strips that become ready meanwhile join behind, at most at this depth
+        auto last = std::prev(ready_.end()); // strips that become ready meanwhile are appended, at most at this depth
         int slot = last->second.front();
         last->second.pop_front();
         if (last->second.empty()) ready_.erase(last);
@@ -346,10 +344,9 @@ private:
     }
 
 public:
-    /// For Strip::resume: takes ownership of the strip that is being resumed, to hand it to wait() again.
+    /// For Strip::resume: takes ownership of the strip being resumed, to pass it to wait() again.
     std::unique_ptr<Strip> takeResuming() { return std::move(resuming_); }
-    /// A strip that holds a task's target open until it ends: the task's own count is closed by run(), so the strip adds one
-    /// more.
+    /// For a strip that keeps a task's target open until it ends: run() closes the task's own count, so the strip adds one.
     void hold(TargetId id) {
         if (!plain()) ++open_[size_t(id)].pending;
     }
@@ -363,7 +360,7 @@ private:
     size_t frameLimit_;
     int sliceRays_;
     std::vector<Target> targets_;
-    std::vector<Open> open_; ///< of targets_
+    std::vector<Open> open_; ///< by target
     std::vector<TargetId> freeTargets_;
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;

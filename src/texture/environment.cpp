@@ -1,5 +1,5 @@
-// Environment maps: latitude-longitude and cube faces. Known limit: reduced levels weigh texels by area on the map, not by solid
-// angle, so very wide blurs give the poles too much weight. A footprint stays on one cube face.
+// Environment maps: latitude-longitude and cube faces. Known limit: reduced levels weight texels by area on the map, not by solid
+// angle, so very wide blurs overweight the poles. A footprint stays on one cube face.
 #include "base/exact.h"
 #include "texture/lookup.h"
 #include <algorithm>
@@ -14,7 +14,7 @@ double angleOf(double y, double x) {
     if (ax == 0 && ay == 0) return 0;
     bool steep = ay > ax;
     double q = steep ? ax / ay : ay / ax, offset = 0; // in [0, 1]
-    if (q > 0.41421356237309503) {                    // tan(pi/8): turn by pi/4 towards 0
+    if (q > 0.41421356237309503) {                    // tan(pi/8): rotates by pi/4 toward 0
         q = (q - 1) / (q + 1);
         offset = kPi / 4;
     }
@@ -49,7 +49,7 @@ void fillAll(int count, const LookupOptions& o, float* out, float* slopes, float
 struct Jacobian {
     Vec3 s, t;
     template <class Differentiate> Jacobian(const Vec3& d, Differentiate differentiate) {
-        // Changes that differentiate() would limit lie beside a pole: small steps, and nothing where even they are limited.
+        // Differences that differentiate() would clamp are next to a pole: uses small steps, and 0 if even these are clamped.
         const float step = length(d) / 1024;
         for (int k = 0; k < 3; ++k) {
             float a = 0, b = 0;

@@ -1,6 +1,5 @@
-// indirectdiffuse(map, direction): the cosine-weighted mean of an environment map about a direction. Each map becomes a table of
-// cells that know their light times direction, summed: of a cell that lies wholly before the plane that is exact, whatever is in
-// it.
+// indirectdiffuse(map, direction): cosine-weighted mean of an environment map around a direction. Each map becomes a table of
+// cells with their sum of light times direction: exact for a cell entirely above the plane, regardless of its contents.
 #include "texture/irradiance.h"
 #include "base/exact.h"
 
@@ -17,7 +16,7 @@ IrradianceTable::IrradianceTable(Handle map, const LatLong& axes) {
     colours.filter = Filter::Box;
     cells_.resize(kAround * kDown);
     for (int y = 0; y < kDown * kInside; ++y) {
-        // Evenly in height: all directions stand for the same part of the ball.
+        // Uniform in height: all directions represent equal solid angles.
         const float z = 1 - 2 * (float(y) + .5f) / float(kDown * kInside), r = std::sqrt(std::max(0.f, 1 - z * z));
         for (int x = 0; x < kAround * kInside; ++x) {
             const double turn = 2 * kPi * (x + .5) / (kAround * kInside);

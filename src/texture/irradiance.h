@@ -9,8 +9,8 @@
 
 namespace alpenglow::texture {
 
-/// What a map sends to a plane, by the plane's normal. Noiseless; where light lies right at the horizon it is off by what a cell
-/// of some degrees makes of the cosine there.
+/// Irradiance of a plane by a map, by the plane's normal. Free of noise; light at the horizon has the error of a cell of some
+/// degrees.
 class IrradianceTable {
 public:
     /// Null: black. `axes`: of maps that are no cubes.
@@ -25,7 +25,7 @@ private:
     std::vector<Cell> cells_;
 };
 
-/// Those of a world, made when first asked for. Thread safe.
+/// The tables of a world, made at first use. Thread safe.
 class IrradianceTables {
 public:
     const IrradianceTable& of(Handle, const LatLong& axes) const;

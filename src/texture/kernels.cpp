@@ -35,7 +35,7 @@ double besselOf(double x) {
     return sum / n;
 }
 
-/// RISpec 3.2, appendix E, at the widths by which these filters are known: disk 1, the cubics, sinc and lanczos 4.
+/// RISpec 3.2, appendix E, at the usual widths of these filters: disk 1, the cubics, sinc and lanczos 4.
 double shapeAt(Filter f, double r) {
     switch (f) {
     case Filter::CatmullRom:
@@ -97,7 +97,7 @@ struct KernelPlace {
         const float r = std::sqrt(x * x + y * y);
         return soft > 0 ? std::clamp((kernel.radius - r) / soft + .5f, 0.f, 1.f) : kernel.at(r);
     }
-    /// Where a row at height dy over the centre may meet it.
+    /// Range of a row at height dy above the centre that the filter covers.
     std::pair<float, float> reach(float dy) const {
         const float r = kernel.radius + soft / 2;
         float low = -1e30f, high = 1e30f;
@@ -127,19 +127,19 @@ template <class F> void eachTexel(const KernelPlace& k, float width, float heigh
     }
 }
 
-/// Where a coordinate lies, so that the numbers of texels about it are small.
+/// Reduces a coordinate so that texel indices around it are small.
 float nearMap(float coordinate, Wrap wrap) {
     if (!std::isfinite(coordinate)) return 0;
     if (wrap == Wrap::Periodic) return coordinate - std::floor(coordinate);
     if (wrap == Wrap::Mirror) return coordinate - 2 * std::floor(coordinate * .5f);
-    return std::clamp(coordinate, -100.f, 101.f); // further out nothing changes
+    return std::clamp(coordinate, -100.f, 101.f); // constant beyond
 }
 
 } // namespace
 
 void shapedLookup(const Texture& tex, float s, float t, const Ellipse& e, Filter filter, Wrap swrap, Wrap twrap,
                   const Sums& sums) {
-    if (!(e.major > 0)) return sums.add(tex, {}, s, t, swrap, twrap, 1); // no footprint: nothing but the interpolation
+    if (!(e.major > 0)) return sums.add(tex, {}, s, t, swrap, twrap, 1); // no footprint: interpolation only
     constexpr float kMost = 16;                                          // texels along a side of the footprint
     const Kernel2& kernel = filterKernel(filter);
     const float W = float(tex.width()), H = float(tex.height());
@@ -153,7 +153,7 @@ void shapedLookup(const Texture& tex, float s, float t, const Ellipse& e, Filter
     for (int i = 0; i < (blend.next > 0 ? 2 : 1); ++i) {
         const Level& level = tex.levels[size_t(blend.level + i)];
         const float width = W / float(level.width), height = H / float(level.height), least = std::max(width, height);
-        // Beyond that many texels of the last level nothing but the map's mean is seen.
+        // With more texels of the last level only the map's mean is visible.
         const auto side = [&](float size) { return std::clamp(size, least, 2 * kMost * least); };
         KernelPlace place{kernel, {s * W, t * H}, {e.x, e.y}, side(major), side(minor), 0};
         if (filter == Filter::Disk) place.soft = least / place.minor;

@@ -12,8 +12,8 @@ namespace {
 /// Variance of a filter over a box of width 1: box of width 1; triangle of full width 2; gaussian exp(-2x^2) cut at width 2.
 float varianceOf(Filter f) { return f == Filter::Box ? 1.0f / 12 : f == Filter::Triangle ? 1.0f / 6 : 0.1934f; }
 
-/// Positions (in standard deviations of the whole) and weights of n probes along the major axis. Uniform for the box, else
-/// (1 - x^2)^2, which is near a gaussian and needs no library function.
+/// Positions (in standard deviations of the complete kernel) and weights of n probes along the major axis. Uniform for the box,
+/// else (1 - x^2)^2, which approximates a gaussian without library functions.
 void placeProbes(int n, Filter f, float* position, float* weight) {
     float sum = 0, squares = 0;
     for (int i = 0; i < n; ++i) {
@@ -50,7 +50,7 @@ Footprint Footprint::sides(float dsdx, float dtdx, float dsdy, float dtdy) {
     return {dsdx * dsdx + dsdy * dsdy, dsdx * dtdx + dsdy * dtdy, dtdx * dtdx + dtdy * dtdy};
 }
 
-/// The footprint as an ellipse, with what the options do to it.
+/// The footprint as an ellipse, including the effect of the options.
 static Ellipse ellipseOf(const Footprint& fp, const LookupOptions& o, float W, float H) {
     // Squared widths in texels of level 0. A footprint beyond a thousand maps is the average of all.
     constexpr float most = 1e6f;
@@ -89,21 +89,21 @@ void Sums::add(const Texture& tex, const LevelBlend& b, float s, float t, Wrap s
     if (ds) each([&](const Level& l, float w) { l.addSlopes(s, t, swrap, twrap, first, count, w, ds, dt, asLight); });
 }
 
-/// A lookup by a filter that is known by its variance.
+/// A lookup with a filter defined by its variance.
 static void probedLookup(const Texture& tex, float s, float t, const Ellipse& e, Filter filter, Wrap swrap, Wrap twrap,
                          const Sums& sums) {
     const float W = float(tex.width()), H = float(tex.height());
-    // Trilinear interpolation at texel size u has variance u^2/4 (box 1/12 + tent 1/6). u: that of the filter across the minor
+    // Trilinear interpolation at texel size u has variance u^2/4 (box 1/12 + tent 1/6). u: size of the filter across the minor
     // axis, at least a texel, and large enough for the probes to cover the major axis without gaps.
     constexpr float cap = float(limits::kTextureTaps);
     float v = varianceOf(filter);
     float u = std::max({1.0f, 2 * std::sqrt(v * e.minor), std::sqrt(12 * v * e.major / (cap * cap + 2))});
-    // A footprint that covers the map in every direction means the whole map, not its edges again and again: from half a map (k)
-    // on, the level goes to the last, continuously.
+    // A footprint that covers the map in every direction represents the complete map, without repeated edges: from half a map (k)
+    // on, the level approaches the last one continuously.
     float k = 2 * std::sqrt(v * e.across);
     if (k > 0.5f) u = std::max(u, std::max(W, H) * (2 * k - 1));
     float spread = std::max(0.0f, v * e.major - u * u / 4); // variance left to the probes
-    // n uniform probes at distance d have variance d^2 (n^2 - 1) / 12; d <= u. Tails of the smooth weights take 1.53 times the
+    // n uniform probes at distance d have variance d^2 (n^2 - 1) / 12; d <= u. The tails of smooth weights need 1.53 times the
     // length.
     float length = std::sqrt(12 * spread) * (filter == Filter::Box ? 1.0f : 1.53f);
     const int n = std::clamp(int(std::ceil(std::sqrt(1 + (length / u) * (length / u)) - 0.25f)), 1, limits::kTextureTaps);
@@ -137,7 +137,7 @@ void lookup(Handle h, int first, int count, float s, float t, const Footprint& f
             float* slopes, float* curves) {
     const Texture* tex = h;
     if (tex && tex->kind != Kind::Cube && !tex->tiles.empty()) {
-        // Tiles are numbered in rows of ten; outside them, and where none was found, there is nothing.
+        // Tiles are numbered in rows of ten; missing ones are empty.
         float fs = std::floor(finiteOr(s, -1)), ft = std::floor(finiteOr(t, -1));
         tex = tex->tileAt(fs, ft);
         s -= fs;
@@ -160,7 +160,7 @@ void lookup2D(Handle h, int first, int count, float s, float t, float dsdx, floa
 void lookupQuad(Handle h, int first, int count, const float s[4], const float t[4], const LookupOptions& o, float* out,
                 float* slopes, float* curves) {
     float ms = (s[0] + s[1] + s[2] + s[3]) / 4, mt = (t[0] + t[1] + t[2] + t[3]) / 4;
-    // Corners of a parallelogram lie at +-a/2 +-b/2: the sum of their outer products is that of a and b.
+    // The corners of a parallelogram are +-a/2 +-b/2: the sum of their outer products equals that of a and b.
     Footprint fp;
     for (int i = 0; i < 4; ++i) {
         float x = s[i] - ms, y = t[i] - mt;
@@ -171,7 +171,7 @@ void lookupQuad(Handle h, int first, int count, const float s[4], const float t[
     lookup(h, first, count, ms, mt, fp, o, out, slopes, curves);
 }
 
-// One for each file made from lanes/lookup.inc.
+// One for each file compiled from lanes/lookup.inc.
 void lookupLanes4(const LaneJob&, LookupLanes&, float*);
 void lookupLanes8(const LaneJob&, LookupLanes&, float*);
 void lookupLanes16(const LaneJob&, LookupLanes&, float*);
@@ -195,7 +195,7 @@ void LookupLanes::set(const LookupOptions& o) {
 
 namespace {
 
-/// Lanes whose filters have a shape: one by one. They leave the mask.
+/// Processes lanes with shaped filters one by one, and removes them from the mask.
 void lookUpShaped(const Texture& tex, int first, int count, bool asLight, LookupLanes& l) {
     for (uint32_t left = l.mask; left; left &= left - 1) {
         const int i = std::countr_zero(left);
@@ -211,7 +211,7 @@ void lookUpShaped(const Texture& tex, int first, int count, bool asLight, Lookup
     }
 }
 
-/// Those of a mask that lie in one map that has levels.
+/// The lanes of a mask in one map with levels.
 void lookInOne(const Texture& tex, int first, int count, bool asLight, LookupLanes& l, LookUpLanes look) {
     const int skip = first < -count ? count : first < 0 ? -first : 0;
     const int present = first < -count ? 0 : std::clamp(int(tex.channels.size()) - (first + skip), 0, count - skip);
@@ -267,7 +267,7 @@ void lookup2DLanes(Handle h, int first, int count, bool asLight, LookupLanes& l)
         l.mask = all;
         return;
     }
-    if (h && h->kind != Kind::Cube && !h->tiles.empty()) { // tile by tile; each lane's place on its own
+    if (h && h->kind != Kind::Cube && !h->tiles.empty()) { // tile by tile; each lane with its own coordinates
         const uint32_t all = l.mask;
         const Texture* tiles[LookupLanes::kLanes] = {};
         for (uint32_t left = all; left; left &= left - 1) {

@@ -6,9 +6,9 @@ namespace alpenglow::texture {
 
 /// "textureformat" of a cube map: six square faces from top to bottom, px nx py ny pz nz; "fovcot" holds 1 / tan(fov / 2).
 extern const char* const cubeFormat;
-/// "colorspace" of a map of floats that was made of a picture of 8 bits which declares nothing.
+/// "colorspace" of a float map made from an 8-bit picture without a declared colour space.
 inline constexpr const char* kEightBits = "8 bits";
-/// "colorspace" of a map whose numbers are light.
+/// "colorspace" of a map with linear light.
 inline constexpr const char* kLight = "light";
 
 /// A footprint in texels of level 0: squared widths along the axes of its ellipse, and the unit vector of the longer.
@@ -24,7 +24,7 @@ struct LevelBlend {
 };
 LevelBlend blendOf(float u, int last);
 
-/// What a lookup gets: all channels are present. Slopes (ds, dt) and curves may be null.
+/// Destination of a lookup: all channels exist. Slopes (ds, dt) and curves may be null.
 struct Sums {
     float *out, *ds, *dt, *dss, *dst, *dtt;
     int first, count;
@@ -41,7 +41,7 @@ void shapedLookup(const Texture&, float s, float t, const Ellipse&, Filter, Wrap
 void filteredLookup(const Texture&, int first, int count, float s, float t, const Footprint&, const LookupOptions&, Wrap swrap,
                     Wrap twrap, float* out, float* slopes = nullptr, float* curves = nullptr);
 
-/// Lookups in 4, 8 or 16 lanes at a time; null: this processor cannot. All give the same bits.
+/// Lookups in 4, 8 or 16 lanes; null: not supported by this processor. All give the same bits.
 LookUpLanes lookUpLanes(int lanes);
 
 /// A text attribute; empty when it is not there.

@@ -1,5 +1,5 @@
-// Many lookups at a time: what the lanes (texture/lanes/lookup.inc) and what prepares them share. Plain data, and no header that
-// brings code: the lanes are compiled for several processors.
+// Many lookups at once: shared by the lanes (texture/lanes/lookup.inc) and their preparation. Plain data, and no header with
+// code, because the lanes are compiled for several processors.
 #pragma once
 #include <cstdint>
 
@@ -7,13 +7,13 @@ namespace alpenglow::texture {
 
 struct LookupOptions;
 
-/// Lookup filters. The first three are known by their variances; the others are summed by their shapes (texture/kernels.h), which
-/// lanes leave to filteredLookup().
+/// Lookup filters. The first three are defined by their variances; the others are sums over their shapes (texture/kernels.h),
+/// which lanes leave to filteredLookup().
 enum class Filter { Box, Triangle, Gaussian, Disk, CatmullRom, SeparableCatmullRom, Mitchell, Sinc, Lanczos, Bessel };
 inline constexpr int kFilters = int(Filter::Bessel) + 1;
 inline constexpr bool hasShape(Filter f) { return int(f) > int(Filter::Gaussian); }
 
-/// Sixteen lookups in one map, or fewer. Each gives the bits that lookup2D() would.
+/// Up to sixteen lookups in one map. Each gives the bits of lookup2D().
 struct LookupLanes {
     static constexpr int kLanes = 16;
     uint32_t mask = 0; ///< bit i: lane i looks up; the rows of the others are not looked at, and their results stay
@@ -22,7 +22,7 @@ struct LookupLanes {
     Filter filter[kLanes];
     float squeeze = 0;                ///< as in LookupOptions, of all lanes
     alignas(64) float out[4][kLanes]; ///< channels first, first + 1, ... of each lane of the mask
-    /// All lanes take these options.
+    /// Sets these options for all lanes.
     void set(const LookupOptions&);
 };
 
@@ -30,17 +30,17 @@ struct LookupLanes {
 struct LaneLevel {
     const float* numbers; ///< null: `codes`
     const uint8_t* codes;
-    const float* tables[4]; ///< what codes of the channels that are asked for mean
+    const float* tables[4]; ///< values of codes of the requested channels
     int width, height, channels;
 };
 
-/// Where the probes of a lookup lie, and their weights, by filter, number less one, and probe.
+/// Positions and weights of the probes of a lookup, by filter, number less one, and probe.
 struct LaneProbes {
     static constexpr int kMost = 32;
     float position[3][kMost][kMost], weight[3][kMost][kMost];
 };
 
-/// What the lookups of a batch have in common.
+/// Common data of the lookups of a batch.
 struct LaneJob {
     const LaneLevel* levels;
     int last;            ///< level

@@ -10,9 +10,9 @@
 namespace alpenglow::texture {
 namespace {
 
-constexpr int tileSide = 64; // 48 KiB of rgb floats: a disk read, a few cache ways
+constexpr int tileSide = 64; // 48 KiB of rgb floats: one disk read, a few cache ways
 
-/// What shaders have baked, as a picture of light or data.
+/// Reads baked data as a picture of light or data.
 std::optional<display::Image> readBaked(const std::string& path, const MakeOptions& o, Diagnostics& diags) {
     const auto baked = clouds::loadBaked(path, diags, o.place);
     if (!baked) return {};
@@ -20,14 +20,14 @@ std::optional<display::Image> readBaked(const std::string& path, const MakeOptio
     if (p.outside > 0)
         diags.report(Severity::Warning, Rie::Range, o.place,
                      "\"" + path + "\": " + std::to_string(p.outside) + " of " + std::to_string(baked->size()) +
-                         " points have an s or t that is not of 0 to 1; they are left out");
+                         " points have s or t outside of 0 to 1; they are dropped");
     display::Image image = display::makeImage(p.side, p.side, display::defaultChannels(p.channels));
     image.data = std::move(p.pixels);
     image.metadata["colorspace"] = kLight;
     return image;
 }
 
-/// Whether a map would take the place of what it is made of. That is an error, which is reported.
+/// Whether a map would replace its own source, which is an error and reported.
 bool replacesIts(const char* source, const std::string& path, const std::string& map, const MakeOptions& o, Diagnostics& diags) {
     if (!sameFile(path, map)) return false;
     diags.report(Severity::Error, Rie::Consistency, o.place,
@@ -36,7 +36,7 @@ bool replacesIts(const char* source, const std::string& path, const std::string&
     return true;
 }
 
-/// The picture of which `map` is made.
+/// Reads the picture for `map`.
 std::optional<display::Image> readPicture(const std::string& given, const std::string& map, const MakeOptions& o,
                                           Diagnostics& diags) {
     bool binary = false;
@@ -60,7 +60,7 @@ std::optional<display::Image> readPicture(const std::string& given, const std::s
     r.place = o.place;
     auto image = display::readImage(found->path, diags, r);
     if (image) {
-        // A map has no place in a larger picture.
+        // A map is not part of a larger picture.
         image->originX = image->originY = image->fullWidth = image->fullHeight = 0;
         if (o.colours == MakeOptions::Colours::Auto) {
             if (image->bits == 8 && !image->floating && !image->metadata.contains("colorspace") &&
@@ -101,7 +101,7 @@ Reduction reductionOf(const MakeOptions& o, Diagnostics& diags) {
     }
     for (float* w : {&r.swidth, &r.twidth})
         if (!(*w > 0 && *w <= 1024)) {
-            diags.report(Severity::Error, Rie::Range, o.place, "a filter width is above 0 and at most 1024; 1 is used");
+            diags.report(Severity::Error, Rie::Range, o.place, "a filter width must be > 0 and at most 1024; 1 is used");
             *w = 1;
         }
     return r;
@@ -145,7 +145,7 @@ bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeO
     z.bits = 32;
     if (!z.worldToCamera || !z.worldToNDC)
         diags.report(Severity::Warning, Rie::MissingData, o.place,
-                     "depth picture \"" + zfile + "\" has no matrices; shadow() cannot place the map");
+                     "depth picture \"" + zfile + "\" has no matrices; shadow() cannot use the map");
     return writeMap(shadow, z, o, diags);
 }
 
@@ -156,7 +156,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
         return false;
     };
     if (pictures.size() != 6) return refuse("it takes six pictures, not " + std::to_string(pictures.size()));
-    if (!(fov > 0 && fov < 180)) return refuse("its field of view is above 0 and below 180 degrees");
+    if (!(fov > 0 && fov < 180)) return refuse("its field of view must be between 0 and 180 degrees");
     display::Image all;
     int height = 0; // of one face
     for (const std::string& name : pictures) {
@@ -175,7 +175,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
         for (const char* key : {"colorspace", "gamma"})
             if (textOf(*face, key) != textOf(all, key))
                 return refuse("\"" + name +
-                              "\" declares other colours than the first picture; --srgb or --linear says what they are");
+                              "\" declares another colour space than the first picture; choose one with --srgb or --linear");
         all.height += face->height;
         all.data.insert(all.data.end(), face->data.begin(), face->data.end());
     }

@@ -21,8 +21,7 @@ float position(float coordinate, int n, Wrap wrap) {
     if (wrap == Wrap::Periodic) coordinate -= std::floor(coordinate);
     if (wrap == Wrap::Mirror) coordinate -= 2 * std::floor(coordinate * 0.5f);
     float x = coordinate * float(n) - 0.5f;
-    return wrap == Wrap::Periodic || wrap == Wrap::Mirror ? x
-                                                          : std::clamp(x, -2.0f, float(n) + 1.0f); // beyond there nothing changes
+    return wrap == Wrap::Periodic || wrap == Wrap::Mirror ? x : std::clamp(x, -2.0f, float(n) + 1.0f); // constant beyond
 }
 
 /// The texel that texel i of an endless row shows; -1: none, black.
@@ -182,7 +181,7 @@ void Level::addBilinear(float s, float t, Wrap swrap, Wrap twrap, int first, int
         at[i] = outside ? 0 : (size_t(ys[i]) * size_t(width) + size_t(xs[i])) * size_t(channels) + size_t(first);
         k[i] = outside ? 0 : w[i];
     }
-    // Where the values lie is the same for all texels of a channel.
+    // The positions of the values are equal for all texels of a channel.
     const float* numbers = codes.empty() ? (asLight && !light.empty() ? light : values).data() : nullptr;
     for (int c = 0; c < count; ++c) {
         const CodeTable& ofCode = codes.empty() ? kCodeValues : tableOf(first + c, asLight);
@@ -241,8 +240,7 @@ void Level::addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int c
 }
 
 namespace {
-/// Rows of a picture that are reduced along themselves: the last ones that were asked for are kept. In double, so that the mean
-/// survives many levels.
+/// Rows of a picture, reduced horizontally; caches the last ones. In double, so that the mean is preserved over many levels.
 class ReducedRows {
 public:
     ReducedRows(const PictureRows& m, int width, const Taps& taps, size_t kept)

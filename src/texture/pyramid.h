@@ -12,7 +12,7 @@
 
 namespace alpenglow::texture {
 
-/// What lies outside 0..1. Black: zeros. Mirror: the map again, each copy turned over.
+/// Continuation outside of 0..1. Black: zeros. Mirror: alternately mirrored copies.
 enum class Wrap { Black, Clamp, Periodic, Mirror };
 std::optional<Wrap> wrapByName(std::string_view name);
 const char* nameOf(Wrap);
@@ -25,8 +25,8 @@ inline constexpr CodeTable kCodeValues = [] {
     return v;
 }();
 
-/// Numbers of a level, never changed once they are there: in memory of their own, or in a mapped scratch file
-/// (texture/scratch.h). kBeyond more may be read behind the last; they mean nothing. Copies share the numbers.
+/// Numbers of a level, immutable: in memory, or in a mapped scratch file (texture/scratch.h). kBeyond undefined numbers may be
+/// read after the last. Copies share the numbers.
 template <class T> class Texels {
 public:
     static constexpr size_t kBeyond = 4;
@@ -38,7 +38,7 @@ public:
         data_ = kept->data();
         owner_ = kept;
     }
-    /// Mapped: `owner` keeps what `data` points into.
+    /// Mapped: `owner` keeps the memory of `data` alive.
     Texels(std::shared_ptr<const void> owner, const T* data, size_t size)
         : owner_(std::move(owner)), data_(data), size_(size), mapped_(true) {}
     bool empty() const { return size_ == 0; }
@@ -46,7 +46,7 @@ public:
     const T* data() const { return data_; }
     const T& operator[](size_t i) const { return data_[i]; }
     bool mapped() const { return mapped_; }
-    /// Bytes of memory of its own.
+    /// Size of its memory in bytes.
     size_t bytes() const { return mapped_ ? 0 : size_ * sizeof(T); }
 
 private:
@@ -56,9 +56,9 @@ private:
     bool mapped_ = false;
 };
 
-/// One level. 8-bit pictures, and maps made of them, keep codes at level 0 (a quarter of the memory; the values k/255 are the
-/// same floats); reduced levels are floats. A map whose numbers are a curve of light has both readings: the numbers of the file,
-/// and light. Each level holds means of either, since the light of a mean is not the mean of light.
+/// One level. 8-bit pictures, and maps made of them, store codes at level 0 (a quarter of the memory; the values k/255 are the
+/// same floats); reduced levels are floats. A map with a transfer curve has both the numbers of the file, and linear light. Each
+/// level holds the mean of either, because the light of a mean is not the mean of the light.
 struct Level {
     int width = 0, height = 0, channels = 0;
     Texels<float> values;
@@ -83,28 +83,28 @@ struct Level {
                      bool asLight = false) const;
     /// Adds weight times the channels of texel (x, y) of an endless map: also beyond the sides, by the wrap modes.
     void addTexel(int x, int y, Wrap swrap, Wrap twrap, int first, int count, float weight, float* sum, bool asLight) const;
-    /// Adds weight times the slopes of the same channels by s and by t (change over the whole map) to ds[0..count) and
-    /// dt[0..count): what addBilinear would give half a texel further, less what it would give half a texel before. So slopes go
-    /// on from texel to texel without a jump; they are exact on ramps, and exactly 0 where the map is flat.
+    /// Adds weight times the derivatives of the same channels by s and t (change over the complete map) to ds[0..count) and
+    /// dt[0..count): the difference of addBilinear half a texel further and half a texel before. So they are continuous, exact on
+    /// ramps, and exactly 0 on constant maps.
     void addSlopes(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ds, float* dt,
                    bool asLight = false) const;
-    /// Adds weight times the second derivatives by s twice, by s and t, by t twice: of addSlopes() in the same way, half a texel
-    /// further less half a texel before. Exact on parabolas.
+    /// Adds weight times the second derivatives by s twice, s and t, t twice: differences of addSlopes() over one texel. Exact on
+    /// parabolas.
     void addCurves(float s, float t, Wrap swrap, Wrap twrap, int first, int count, float weight, float* ss, float* st, float* tt,
                    bool asLight = false) const;
 };
 
-/// Kernel of the reduction, in texels of the level that is made. Widths are full widths and multiply the filter's own:
-/// box 1, triangle 2, gaussian 2, catmull-rom, mitchell 4, lanczos 4 (sinc is lanczos, disk is box, bessel and others gaussian).
+/// Reduction kernel, in texels of the resulting level. Widths are full widths and multiply the filter's own: box 1, triangle 2,
+/// gaussian 2, catmull-rom, mitchell 4, lanczos 4 (sinc is lanczos, disk is box, bessel and others gaussian).
 struct Reduction {
     std::string_view filter = "box";
     float swidth = 1, twidth = 1;
 };
-/// Whether Reduction knows the filter by name.
+/// Whether Reduction supports a filter.
 bool isReductionFilter(std::string_view name);
 
-/// The next level: each side max(1, n / 2). Each texel weighs the texels that it covers by exact overlap (box), so that the mean
-/// of the picture is kept whatever its size; other kernels are sampled at texel centres and normalised.
+/// The next level: each side max(1, n / 2). A texel weights the texels that it covers by exact overlap (box), which preserves the
+/// mean for any size; other kernels are sampled at texel centres and normalised.
 display::Image reduced(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
 /// All levels below a picture, down to 1x1.
 std::vector<display::Image> reducedLevels(const display::Image&, const Reduction& = {}, Wrap swrap = Wrap::Clamp,

@@ -27,7 +27,7 @@ std::shared_ptr<ScratchFile> ScratchFile::create(std::string& why) {
     const std::string folder = scratchFolder();
     auto f = std::make_shared<ScratchFile>();
     f->file_ = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (f->file_ < 0) { // not every file system knows files without a name
+    if (f->file_ < 0) { // not supported by every file system
         std::string name = folder + "/alpenglow-XXXXXX";
         f->file_ = mkostemp(name.data(), O_CLOEXEC);
         if (f->file_ >= 0) unlink(name.c_str());
@@ -60,7 +60,7 @@ bool ScratchFile::append(const void* bytes, size_t n, size_t& at, std::string& w
 
 bool ScratchFile::map(std::string& why) {
     mapped_ = (size_ / pageSize() + 2) * pageSize();
-    // Its last page and the one behind it are there, so that what is read beyond the end is zeros and no fault.
+    // The last page and one beyond it exist, so that reads beyond the end give zeros rather than faults.
     void* p = ftruncate(file_, off_t(mapped_)) == 0 ? mmap(nullptr, mapped_, PROT_READ, MAP_SHARED, file_, 0) : MAP_FAILED;
     if (p == MAP_FAILED) {
         why = std::string("the scratch file cannot be mapped: ") + std::strerror(errno);
@@ -73,7 +73,7 @@ bool ScratchFile::map(std::string& why) {
 size_t ScratchFile::residentIn(size_t from, size_t bytes) const {
     if (!data_) return 0;
     const int pages = open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC);
-    if (pages < 0) return bytes; // not known: as if all were
+    if (pages < 0) return bytes; // unknown: as if all were resident
     size_t count = 0;
     std::vector<uint64_t> entries(std::min<size_t>(8192, bytes / pageSize() + 1));
     const size_t first = reinterpret_cast<uintptr_t>(data_ + from) / pageSize(), all = bytes / pageSize();

@@ -1,6 +1,6 @@
-// Scratch files: where the levels of maps lie that do not fit into memory. A file without a name, mapped for reading: the system
-// fetches pages when they are looked at, and takes them back when it is asked to, whoever reads them meanwhile. So lookups take
-// no lock and find the same numbers whether a page is there or not.
+// Scratch files for levels of maps that do not fit into memory. An unnamed file, mapped for reading: the system loads pages at
+// access and reclaims them on request at any time. So lookups take no lock and get the same numbers whether a page is resident or
+// not.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -9,20 +9,20 @@
 
 namespace alpenglow::texture {
 
-/// The folder of scratch files: TMPDIR, else /var/tmp, which lies on a disk.
+/// The folder of scratch files: TMPDIR, else /var/tmp, which is on a disk.
 std::string scratchFolder();
 
 class ScratchFile {
 public:
-    /// An empty file in scratchFolder(). Null: `why` says what went wrong.
+    /// Creates an empty file in scratchFolder(). Returns null after an error, with `why`.
     static std::shared_ptr<ScratchFile> create(std::string& why);
     ScratchFile() = default;
     ScratchFile(const ScratchFile&) = delete;
     ScratchFile& operator=(const ScratchFile&) = delete;
     ~ScratchFile();
-    /// Appends; where it begins in the file, a multiple of 64. False: the disk is full or broken, `why` says so.
+    /// Appends data; `at`: its offset in the file, a multiple of 64. Returns false if the disk is full or broken, with `why`.
     bool append(const void* bytes, size_t n, size_t& at, std::string& why);
-    /// Maps what was appended. Once; nothing is appended after it. A page more than the file has can be read.
+    /// Maps the appended data. Call once, after the last append. One page beyond the end can be read.
     bool map(std::string& why);
     const char* data() const { return data_; }
     size_t size() const { return size_; }
@@ -33,7 +33,7 @@ public:
     size_t release(size_t from, size_t bytes) const;
 
 private:
-    size_t residentIn(size_t from, size_t bytes) const; ///< whole pages
+    size_t residentIn(size_t from, size_t bytes) const; ///< complete pages
     int file_ = -1;
     char* data_ = nullptr;
     size_t size_ = 0, mapped_ = 0;

@@ -1,5 +1,5 @@
-// TextureSystem: what maps may hold in memory. Maps stay in memory as long as all of them fit into the limit; the one that does
-// not goes to a scratch file, with all of its levels.
+// TextureSystem: memory limit of maps. Maps stay in memory while all of them fit into the limit; a map that does not fit goes to
+// a scratch file with all of its levels.
 #include "base/memory.h"
 #include "texture/scratch.h"
 #include "texture/texture.h"
@@ -18,7 +18,7 @@ void eachArray(Texture& t, const std::function<void(Level&)>& of) {
     for (auto& [number, tile] : t.tiles) eachArray(const_cast<Texture&>(*tile), of);
 }
 
-/// Where the arrays of a level begin in the file.
+/// Offsets of the arrays of a level in the file.
 struct Places {
     size_t values = 0, codes = 0, light = 0;
 };
@@ -31,7 +31,7 @@ template <class T> void pointInto(Texels<T>& texels, const std::shared_ptr<const
 
 void TextureSystem::settle(Texture& t, const SourcePlace& place) {
     const size_t bytes = t.bytes();
-    // A quarter is left to pages of scratch files, which would otherwise come and go for every lookup.
+    // A quarter is reserved for pages of scratch files, which would otherwise be reloaded for every lookup.
     if (held_.fetch_add(bytes) + bytes <= limit_ - limit_ / 4 || t.kind == Kind::Shadow || bytes < kSmall) return;
     std::string why;
     const std::shared_ptr<ScratchFile> file = ScratchFile::create(why);
@@ -51,7 +51,7 @@ void TextureSystem::settle(Texture& t, const SourcePlace& place) {
                           {Severity::Warning,
                            Rie::System,
                            place,
-                           "maps take more than " + memorySizeText(limit_) + " and stay in memory all the same: " + why,
+                           "maps take more than " + memorySizeText(limit_) + " and stay in memory: " + why,
                            "TMPDIR names the folder of scratch files; Option \"limits\" \"texturememory\" the limit, in kB",
                            {}});
         return;
@@ -82,7 +82,7 @@ void TextureSystem::trim() {
     const size_t own = held_.load(), allowed = limit_ > own ? limit_ - own : 0, now = bytesOfFiles();
     if (now < filesAtTrim_.load(std::memory_order_relaxed) + allowed / 4) return;
     std::unique_lock lock(trimming_, std::try_to_lock);
-    if (!lock) return; // somebody is at it
+    if (!lock) return; // another thread does it
     size_t resident = 0, all = 0;
     std::vector<std::shared_ptr<const ScratchFile>> files;
     for (const auto& weak : files_)
@@ -92,7 +92,7 @@ void TextureSystem::trim() {
             all += file->size();
         }
     if (!files.empty() && resident > allowed - allowed / 4) {
-        // A hand goes round over all files: what it passes is given back, and what is still wanted comes again.
+        // Clock algorithm over all files: releases pages as it passes; those still in use are reloaded.
         for (size_t passed = 0; resident > allowed / 2 && passed <= all;) {
             if (handFile_ >= files.size()) handFile_ = handByte_ = 0;
             const ScratchFile& f = *files[handFile_];

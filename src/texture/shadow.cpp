@@ -14,7 +14,7 @@ bool project(const Matrix& m, const Vec3d& p, double& x, double& y) {
     return std::isfinite(x) && std::isfinite(y);
 }
 
-/// Bilinear part of the four texels around (s, t) whose depth passes the test; texels outside do not.
+/// Bilinear fraction of the four texels around (s, t) whose depth passes the test; texels outside do not.
 template <class Test> double part(const Level& map, double s, double t, Test&& test) {
     double x = std::clamp(s * map.width - 0.5, -2.0, map.width + 1.0),
            y = std::clamp(t * map.height - 0.5, -2.0, map.height + 1.0);
@@ -31,7 +31,7 @@ template <class Test> double part(const Level& map, double s, double t, Test&& t
     return sum;
 }
 
-/// The same of what a deep map has taken at depth z, channel by channel.
+/// Opacity of a deep map at depth z, by channel.
 Vec3d deepPart(const Texture& map, double s, double t, double z) {
     const int width = map.width(), height = map.height();
     const double x = std::clamp(s * width - 0.5, -2.0, width + 1.0), y = std::clamp(t * height - 0.5, -2.0, height + 1.0);
@@ -54,13 +54,13 @@ int gridOf(const ShadowOptions& o) {
     return int(std::ceil(std::sqrt(std::clamp(std::isfinite(o.samples) ? double(o.samples) : 1.0, 1.0, 1024.0))));
 }
 
-/// Evenly spread numbers between 0 and 1 that have nothing to do with a place in the grid (the golden ratio's multiples).
+/// Low-discrepancy numbers in [0, 1), multiples of the golden ratio, uncorrelated with grid positions.
 double spread(int i) {
     const double g = 0.6180339887498949 * (i + 0.5);
     return g - std::floor(g);
 }
 
-/// A regular grid over a box of NDC: bilinear comparison makes it continuous, and the same everywhere.
+/// Samples a regular grid over a box in NDC: bilinear comparison makes it continuous, without noise.
 Color overBox(const Texture& of, double s, double t, double ws, double wt, double z, const ShadowOptions& o) {
     const Level& map = of.levels[0];
     ws = std::isfinite(ws) ? std::clamp(ws, 0.0, 1.0) : 0;
@@ -79,8 +79,9 @@ Color overBox(const Texture& of, double s, double t, double ws, double wt, doubl
     return of.deep ? Color(sums / (double(k) * k)) : Color(float(sum / (double(k) * k)));
 }
 
-/// The part of an area light that a point does not see. Between the point and each of k x k places on the source the map is asked
-/// at even steps: a surface is met where the way is behind it by no more than a step is deep, or than surfaces are thick.
+/// Fraction of an area light that is hidden from a point. On the segment from the point to each of k x k positions on the source
+/// the map is tested at uniform steps: a surface is hit if the segment is behind it by at most the depth of a step, or the
+/// thickness of surfaces.
 Color overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& source, const ShadowOptions& o) {
     constexpr int kSteps = 64;
     const int k = gridOf(o);
@@ -89,11 +90,11 @@ Color overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& s
         const double u = (n % k + 0.5) / k, v = (n / k + 0.5) / k;
         const Vec3d q = (source[0] * (1 - u) + source[1] * u) * (1 - v) + (source[3] * (1 - u) + source[2] * u) * v;
         const double bias = o.bias0 + (double(o.bias1) - o.bias0) * spread(n);
-        // A way that passes a surface is behind it by at most this at one of its steps.
+        // Largest depth behind a surface at the first step after crossing it.
         const double deep = std::fabs(transformPoint(*h.worldToCamera, q).z - transformPoint(*h.worldToCamera, p).z) / kSteps;
         const double gap = std::max(double(o.gapbias), deep * (1 + 1e-9));
         double blocked = 0;
-        Vec3d left(1.0); // of a deep map: each step takes what surfaces between it and the gap before it do
+        Vec3d left(1.0); // for a deep map: each step applies the opacity between it and the gap before it
         for (int i = 0; i < kSteps && blocked < 1; ++i) {
             const Vec3d at = p + (q - p) * ((i + 0.5) / kSteps);
             double s, t;
@@ -111,7 +112,8 @@ Color overSource(const Texture& h, const Vec3d& p, const std::array<Vec3d, 4>& s
     return Color(sum / (double(k) * k));
 }
 
-/// Of a map with faces, the one in whose middle the point lies most; the map itself where it has none. Null: no face sees it.
+/// For a map with faces, the face whose centre is nearest to the point; the map itself without faces. Null: no face sees the
+/// point.
 const Texture* faceOf(Handle h, const Vec3d& p) {
     if (!h) return nullptr;
     const auto usable = [](const Texture& t) { return !t.levels.empty() && t.worldToCamera && t.worldToNDC; };

@@ -7,7 +7,7 @@ namespace alpenglow::texture {
 
 namespace {
 
-constexpr int kCellsAround = 128, kCellsDown = 64; ///< cells, all of the same size: even in height and around
+constexpr int kCellsAround = 128, kCellsDown = 64; ///< cells of equal size: uniform in height and azimuth
 
 Vec3 directionAt(double x, double y) {
     const double z = 1 - 2 * y / kCellsDown, r = std::sqrt(std::max(0.0, 1 - z * z)), turn = 2 * kPi * x / kCellsAround;
@@ -43,7 +43,7 @@ SkyDirections::SkyDirections(Handle map, const LatLong& axes) : map_(map), axes_
             light.push_back(std::isfinite(v) ? v : 0);
             all += light.back();
         }
-    // A tenth of all goes everywhere alike: what a cell's middle says of it may be wrong.
+    // A tenth is uniform, because the value at a cell's centre may not be representative.
     double sum = 0;
     for (const float v : light)
         sums_.push_back(float(sum += .9 * (all > 0 ? v / all : 1.0 / double(light.size())) + .1 / double(light.size())));
@@ -53,7 +53,7 @@ SkyDirections::Direction SkyDirections::at(Vec2 e) const {
     const size_t cell = size_t(
         std::min<ptrdiff_t>(std::upper_bound(sums_.begin(), sums_.end(), e.x) - sums_.begin(), ptrdiff_t(sums_.size()) - 1));
     const float before = cell ? sums_[cell - 1] : 0, chance = sums_[cell] - before;
-    const float inside = std::clamp((e.x - before) / chance, 0.f, 1.f); // what is left of the first number
+    const float inside = std::clamp((e.x - before) / chance, 0.f, 1.f); // remainder of the first number
     Direction d;
     d.w = directionAt(double(cell % kCellsAround) + inside, double(cell / kCellsAround) + e.y);
     d.density = chance * float(kCellsAround * kCellsDown / (4 * kPi));

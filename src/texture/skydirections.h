@@ -9,13 +9,13 @@
 
 namespace alpenglow::texture {
 
-/// Directions in the space of a map, drawn by what it shows there, from a table over the sphere. A part of them goes everywhere
-/// alike, so that no direction has a density of 0.
+/// Directions sampled in proportion to a map's radiance, from a table over the sphere in the map's space. A fraction is uniform,
+/// so that no direction has density 0.
 class SkyDirections {
 public:
     /// Null: all directions alike. `axes`: of maps that are no cubes.
     SkyDirections(Handle, const LatLong& axes);
-    /// w: of length 1. density: per steradian, > 0. light: what the map shows there, as light.
+    /// w: unit. density: per steradian, > 0. light: linear radiance of the map.
     struct Direction {
         Vec3 w;
         float density;
@@ -23,16 +23,16 @@ public:
     };
     /// random: two numbers from 0 to 1; strata of them stay strata.
     Direction at(Vec2 random) const;
-    /// The density with which at() gives a direction of length 1, and the light there.
+    /// Density of at() for a unit direction, and the radiance there.
     Direction of(const Vec3& w) const;
 
 private:
     Handle map_;
     LatLong axes_;
-    std::vector<float> sums_; ///< by cell, of its chance and all before
+    std::vector<float> sums_; ///< cumulative probabilities, by cell
 };
 
-/// Those of a world, made when first asked for. Thread safe.
+/// The tables of a world, made at first use. Thread safe.
 class SkyDirectionTables {
 public:
     const SkyDirections& of(Handle, const LatLong& axes) const;

@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kFace = "<FACE>";
 constexpr const char* kFaceNames[] = {"px", "nx", "py", "ny", "pz", "nz"};
 
-/// A level of the picture's numbers, which it takes along.
+/// Makes a level from the numbers of a picture, which it moves.
 Level levelOf(display::Image& m, bool codes) {
     Level l;
     l.width = m.width;
@@ -44,7 +44,7 @@ Level levelOf(display::Image& m, bool codes) {
 /// The curve by which the numbers of a picture are light. Empty: they are light.
 using Decode = std::function<float(float)>;
 
-/// What a file declares, else, when asked for, that of pictures of 8 bits.
+/// The declared curve of a file; optionally a default for 8-bit pictures.
 Decode decodeOf(const display::Image& m, bool undeclared) {
     const std::string space = textOf(m, "colorspace");
     if (space == "sRGB") return [](float v) { return srgbDecode(std::max(0.0f, v)); };
@@ -53,7 +53,7 @@ Decode decodeOf(const display::Image& m, bool undeclared) {
         if (std::fabs(gamma - 1) < 0.01) return {};
         return [gamma](float v) { return float(exact::pow(std::max(0.0, double(v)), 1 / gamma)); };
     }
-    // Maps of maketx are floats: they say what their picture was.
+    // Maps of maketx are floats: metadata tells the kind of their picture.
     const bool eight = (m.bits == 8 && !m.floating && space.empty()) || space == kEightBits;
     if (undeclared && eight && textOf(m, "textureformat") != "Shadow")
         return [](float v) { return srgbDecode(std::max(0.0f, v)); };
@@ -75,8 +75,8 @@ void decode(display::Image& m, const Decode& curve) {
         if (i % n < 32 && (colours >> (i % n) & 1)) m.data[i] = curve(m.data[i]);
 }
 
-/// Whether each number is one of the 256 of 8 bits: codes then hold them exactly, in a quarter of the memory. Maps that were
-/// made of such pictures are files of floats.
+/// Whether all numbers are one of the 256 values of 8 bits: codes then store them exactly, in a quarter of the memory. Maps made
+/// of such pictures are float files.
 bool fitsCodes(const display::Image& m) {
     for (float v : m.data) {
         const float code = v * 255.0f + 0.5f;
@@ -93,7 +93,7 @@ display::Image lightOf(const display::Image& picture, const Level& level, const 
     return light;
 }
 
-/// The same of a level of codes, row by row: as floats they would take four times the memory.
+/// The same for a level of codes, row by row: floats would take four times the memory.
 PictureRows lightRowsOf(const display::Image& picture, const Level& level) {
     const auto read = [&level](int y, float* to) {
         const auto n = size_t(level.channels), row = size_t(level.width) * n, first = size_t(y) * row;
@@ -199,7 +199,7 @@ std::shared_ptr<const Texture> makeTextureFrom(display::Image image, const Textu
         tex->deep = image.deep;
         return tex;
     }
-    // The levels that the file has; below the last of them (files may end at 2x1) they are made.
+    // The levels in the file; those below the last (files may end at 2x1) are computed.
     const size_t stored = storedLevels(image);
     const bool round = tex->kind == Kind::LatLong;
     const Wrap swrap = round ? Wrap::Periodic : tex->swrap, twrap = round ? Wrap::Clamp : tex->twrap;
@@ -212,14 +212,14 @@ std::shared_ptr<const Texture> makeTextureFrom(display::Image image, const Textu
     return tex;
 }
 
-/// One file or request: loaded once, by whoever comes first.
+/// One file or request, loaded once by the first thread.
 struct TextureSystem::Entry {
     std::once_flag once;
     std::shared_ptr<const Texture> texture;
 };
 
 TextureSystem::TextureSystem(Diagnostics& d, TextureSettings s) : diags_(d), settings_(std::move(s)), limit_(settings_.memory) {
-    constexpr size_t unknown = size_t(1) << 30; // where the system does not say what it has
+    constexpr size_t unknown = size_t(1) << 30; // if the system does not report its memory
     if (!limit_) limit_ = machineMemory() ? machineMemory() / 4 : unknown;
 }
 TextureSystem::~TextureSystem() = default;

@@ -47,8 +47,8 @@ struct Texture {
     std::shared_ptr<const display::DeepSamples> deep; ///< of a deep shadow map; levels[0] has its first surfaces
     float fovCotangent = 1;                           ///< of a cube face: 1 / tan(fov / 2)
     float gamma = 0;                                  ///< that the file declares; 0: none
-    std::shared_ptr<const ScratchFile> scratch;       ///< where its levels lie, when not in memory
-    /// The tile of a UDIM set that (floor(s), floor(t)) lies on; null: none.
+    std::shared_ptr<const ScratchFile> scratch;       ///< holds its levels, if they are not in memory
+    /// The tile of a UDIM set at (floor(s), floor(t)); null: none.
     const Texture* tileAt(float column, float row) const {
         if (!(column >= 0 && column < 10 && row >= 0 && row < 10)) return nullptr;
         const auto i = tiles.find(1001 + int(column) + 10 * int(row));
@@ -58,11 +58,11 @@ struct Texture {
     int height() const { return levels.empty() ? 0 : levels[0].height; }
     size_t bytes() const;
 };
-/// Null: the map is missing; every lookup gives the fill value (colourOfMissing() is what shaders see). Valid as long as the
-/// system is, or until forget().
+/// Null: the map is missing; lookups give the fill value (colourOfMissing() is what shaders see). Valid until the system ends, or
+/// forget().
 using Handle = const Texture*;
 
-/// By RISpec name; nothing when unknown.
+/// By RISpec name; nothing if unknown.
 std::optional<Filter> filterByName(std::string_view name);
 
 /// 3Delight manual, table 6.16.
@@ -70,7 +70,7 @@ struct LookupOptions {
     float swidth = 1, twidth = 1; ///< multiply the derivatives
     float sblur = 0, tblur = 0;   ///< as a fraction of the map
     Filter filter = Filter::Gaussian;
-    bool asLight = false; ///< colours of maps whose numbers are a curve of light: as light (TextureSettings::light)
+    bool asLight = false; ///< colours of maps with a transfer curve: as linear light (TextureSettings::light)
     float squeeze = 0;    ///< 1 / n^2: the footprint is widened until its sides are at most n to 1; 0: any
     float fill = 0;       ///< value of channels that the map does not have
     float lerp = 0;       ///< accepted; levels are always interpolated, a switch would show as an edge
@@ -82,10 +82,10 @@ struct Footprint {
     static Footprint sides(float dsdx, float dtdx, float dsdy, float dtdy);
 };
 
-/// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count). When
-/// `slopes` is given: their derivatives by s into slopes[0..count), by t into slopes[count..2 count), per unit of s and t (a
-/// whole map), at a fixed footprint; 0 where there is no map or channel. `curves`, likewise: second derivatives by s twice, by s
-/// and t, by t twice.
+/// Channels first, first+1, ... (count of them) of the map at (s, t), filtered over the footprint, into out[0..count). With
+/// `slopes`: their derivatives by s into slopes[0..count), by t into slopes[count..2 count), per unit of s and t (a complete
+/// map), for a fixed footprint; 0 without a map or channel. With `curves`, likewise: second derivatives by s twice, by s and t,
+/// by t twice.
 void lookup(Handle, int first, int count, float s, float t, const Footprint&, const LookupOptions&, float* out,
             float* slopes = nullptr, float* curves = nullptr);
 /// The same with the change of (s, t) from pixel to pixel (or sample to sample).
@@ -98,14 +98,14 @@ void lookupQuad(Handle, int first, int count, const float s[4], const float t[4]
 /// Sixteen at a time (texture/lookuplanes.h), of one map; count: 1 to 4.
 void lookup2DLanes(Handle, int first, int count, bool asLight, LookupLanes&);
 
-/// Where a direction lies on a lat-long map: latitude +90 (along pole) at the top, longitude 0 (towards zero) at the left edge,
-/// growing towards `quarter`. Renderers differ in axes and sense. The default has z up, as old maps have it,
-/// longitude from +x towards +y.
+/// Orientation of a lat-long map: latitude +90 (along pole) at the top, longitude 0 (toward zero) at the left edge, increasing
+/// toward `quarter`. Renderers differ in axes and direction. The default has z up, as in old maps, and longitude from +x toward
+/// +y.
 struct LatLong {
     Vec3 pole{0, 0, 1}, zero{1, 0, 0}, quarter{0, 1, 0};
-    /// (s, t) of a direction of any length but 0 (which gives the middle).
+    /// (s, t) of a direction of any nonzero length (0 gives the centre).
     void project(const Vec3& direction, float& s, float& t) const;
-    /// Change of (s, t) when the direction changes by d. At the poles s changes by at most the whole map.
+    /// Change of (s, t) for a change of the direction by d. At the poles s changes by at most the complete map.
     void differentiate(const Vec3& direction, const Vec3& d, float& ds, float& dt) const;
     /// The direction of length 1 at (s, t).
     Vec3 direction(float s, float t) const;
@@ -120,8 +120,8 @@ void environment(Handle, const LatLong&, int first, int count, const Vec3& direc
 void environmentQuad(Handle, const LatLong&, int first, int count, const Vec3 directions[4], const LookupOptions&, float* out,
                      float* slopes = nullptr, float* curves = nullptr);
 
-/// Where a direction meets a cube face (0..5: px nx py ny pz nz) of the given cotangent of half the field of view. Faces are seen
-/// from inside: pz has x to the right and y up, the side faces follow by turning about y, py has -z up, ny has +z up.
+/// Position of a direction on a cube face (0..5: px nx py ny pz nz) with this cotangent of half the field of view. Faces are seen
+/// from inside: pz has x to the right and y up, the side faces follow by rotation about y, py has -z up, ny has +z up.
 int cubeFace(const Vec3& direction, float fovCotangent, float& s, float& t);
 /// Change of (s, t) on that face when the direction changes by d.
 void cubeDifferentiate(int face, const Vec3& direction, const Vec3& d, float fovCotangent, float& ds, float& dt);
@@ -148,14 +148,14 @@ struct TextureInfo {
 struct TextureSettings {
     Wrap plainWrap = Wrap::Clamp; ///< of pictures that state none
     bool linearise = true;        ///< colours of files that declare a gamma (PNG) become linear on loading, in every lookup
-    /// Instead of linearise: maps keep their numbers, and lookups that ask for light (LookupOptions::asLight) get it: of files
-    /// that declare sRGB or a gamma by that, of other pictures of 8 bits by sRGB. Alpha and depth are never changed.
+    /// Instead of linearise: maps keep their numbers, and lookups for light (LookupOptions::asLight) convert: by sRGB or gamma if
+    /// the file declares it, by sRGB for other 8-bit pictures. Alpha and depth are never converted.
     bool light = false;
     LatLong latLong;
     ReadPolicy read{};                ///< where the names of maps may lead
     std::shared_ptr<ReadLog> reads{}; ///< gets every file that is read or missed; may be null
-    std::optional<Color> missing{};   ///< of maps that cannot be read; nothing: lookups give their fill value
-    /// Bytes that maps hold in memory; what is more lies in scratch files. 0: a quarter of what the machine has.
+    std::optional<Color> missing{};   ///< colour of unreadable maps; nothing: lookups give their fill value
+    /// Memory for maps in bytes; the rest is in scratch files. 0: a quarter of the machine's.
     size_t memory = 0;
     float squeeze = 0; ///< of lookups: LookupOptions::squeeze
 };
@@ -165,35 +165,32 @@ class TextureSystem {
 public:
     explicit TextureSystem(Diagnostics&, TextureSettings = {});
     ~TextureSystem();
-    /// The map called name along a search path (base/file.h findFile: also with other case, backslashes, or by its base name,
-    /// which is said). "UDIM" in the name opens tiles 1001 to 1100 that exist. A missing or damaged file is reported once; the
-    /// handle is null. Other spellings of "UDIM": "<UDIM>", "<udim>", "%(UDIM)d", "_MAPID_".
-    /// "<FACE>" in a name stands for six pictures, px nx py ny pz nz, that are a cube map. Threads that ask for the same file
-    /// wait for one load.
+    /// Opens the map called name along a search path (base/file.h findFile: also by other case, backslashes, or base name, which
+    /// is reported). "UDIM" in the name opens tiles 1001 to 1100 that exist; also "<UDIM>", "<udim>", "%(UDIM)d", "_MAPID_".
+    /// "<FACE>" in a name opens six pictures, px nx py ny pz nz, as a cube map. A missing or damaged file is reported once; the
+    /// handle is null. Threads that need the same file wait for one load.
     Handle open(const std::string& name, const std::vector<std::string>& searchPath = {""}, const SourcePlace& = {});
-    /// Whether open() finds a file of that name, or a tile. Says nothing.
+    /// Whether open() would find a file of that name, or a tile. Reports nothing.
     bool present(const std::string& name, const std::vector<std::string>& searchPath = {""});
     std::optional<TextureInfo> info(Handle) const;
     const LatLong& latLong() const { return settings_.latLong; }
     const TextureSettings& settings() const { return settings_; }
-    /// Memory that maps hold, in bytes, and how many of them lie in pages of scratch files.
+    /// Memory of maps in bytes, and its part in pages of scratch files.
     size_t bytes() const;
     size_t scratchBytes() const;
-    /// The files that were read, by name: bytes of each on the disk, of its map in memory, and of the levels that lie in a
-    /// scratch file instead.
+    /// The files read, by name: bytes on disk, of the map in memory, and of levels in a scratch file.
     struct File {
         std::string path;
         size_t bytes = 0, memory = 0, scratch = 0;
     };
     std::vector<File> files() const;
-    /// What they may hold (TextureSettings::memory).
+    /// Their limit (TextureSettings::memory).
     size_t memoryLimit() const { return limit_; }
-    /// Gives pages of scratch files back when there are more than the limit allows. To be called now and then while maps are
-    /// looked up; any thread may, while others look up. Nothing to do, and next to no time, as long as all maps fit.
+    /// Releases pages of scratch files above the limit. Call now and then during lookups, from any thread. Fast if all maps fit.
     void keepWithinLimit() {
         if (scratches_.load(std::memory_order_relaxed)) trim();
     }
-    /// Drops every map, so that files made anew are read anew. No handle survives; no lookup may run.
+    /// Drops all maps, so that changed files are read again. Invalidates all handles; no lookup may run.
     void forget();
 
 private:
@@ -205,18 +202,17 @@ private:
     std::shared_ptr<const Texture> loadTiles(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
     void trim();
-    /// Moves the levels of a map into a scratch file where they do not fit into memory. Where the disk has no room they stay,
-    /// with a warning.
+    /// Moves the levels of a map to a scratch file if they do not fit into memory. If the disk is full they stay, with a warning.
     void settle(Texture&, const SourcePlace&);
     std::shared_ptr<const Texture> loadFaces(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
     Diagnostics& diags_;
     TextureSettings settings_;
     size_t limit_ = 0;
-    std::atomic<size_t> held_{0};   ///< bytes of maps in memory of their own
+    std::atomic<size_t> held_{0};   ///< memory of maps in bytes, without scratch files
     std::atomic<int> scratches_{0}; ///< scratch files
     std::atomic<size_t> filesAtTrim_{0};
-    mutable std::mutex trimming_; ///< of what follows
+    mutable std::mutex trimming_; ///< guards the following
     std::vector<std::weak_ptr<const ScratchFile>> files_;
     size_t handFile_ = 0, handByte_ = 0;  ///< where the next pages are given back
     std::map<std::string, bool> present_; ///< by name and search path
@@ -224,7 +220,7 @@ private:
     std::map<std::string, std::shared_ptr<Entry>> byRequest_, byPath_;
 };
 
-/// Where a name says the number of a tile: position and length of "UDIM" in any of its spellings. Nothing: it names one file.
+/// Position and length of the tile number ("UDIM" in any spelling) in a name. Nothing: a single file.
 std::optional<std::pair<size_t, size_t>> tileNumberIn(const std::string& name);
 
 /// A texture from a picture already in memory (its levels are used when complete, else built).

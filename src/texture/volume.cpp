@@ -13,7 +13,7 @@ const char* const volumeFormat = "Volume";
 
 namespace {
 
-/// Where the number of a slice stands in a name, and how many digits it has. Length 0: nowhere.
+/// Position of the slice number in a name, and its number of digits. Length 0: none.
 struct SliceNumber {
     size_t at = 0, length = 0;
     int digits = 1;
@@ -116,9 +116,9 @@ public:
         if (!m) return {};
         const bool known = textOf(*m, "textureformat") == volumeFormat;
         if (depth == 0) depth = known ? std::atoi(textOf(*m, "depth").c_str()) : 1;
-        if (depth < 1 || depth > limits::kImageSide) return refuse("its depth is no number from 1 on");
+        if (depth < 1 || depth > limits::kImageSide) return refuse("its depth must be at least 1");
         if (m->height % depth == 0 && (known || m->height / depth >= m->width)) return strip(std::move(*m), depth);
-        if (known) return refuse("its height is no multiple of its depth");
+        if (known) return refuse("its height is not a multiple of its depth");
         if (m->data.size() * size_t(depth) * sizeof(float) > limits::kImageBytes)
             return refuse("its slices would take more than " + std::to_string(limits::kImageBytes >> 30) + " GiB", Rie::Limit);
         Volume v = *strip(*m, 1);
@@ -198,8 +198,8 @@ Volume gradientsOf(const Volume& v, int radius) {
 
 void smoothGradients(Volume& v, int radius) {
     if (radius < 1 || v.channels() < 3) return;
-    // One axis after the other: the mean over a box is the mean of means, weighed by how many voxels each has, which depends on
-    // the other axes in the same way for all.
+    // One axis after the other: the mean over a box is a mean of means, weighted by the number of voxels, which is a product over
+    // the axes.
     const int sizes[3] = {v.width, v.height, v.depth};
     const size_t n = v.names.size();
     const size_t steps[3] = {n, n * size_t(v.width), n * size_t(v.width) * size_t(v.height)};

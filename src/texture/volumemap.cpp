@@ -7,7 +7,7 @@ namespace alpenglow::texture {
 
 namespace {
 
-/// What texture3d() sees of a volume: the channels that it may ask for, side by side, in all levels.
+/// A volume for texture3d(): its channels interleaved, in all levels.
 class VolumeMap : public clouds::CloudMap {
 public:
     explicit VolumeMap(Volume v) {
@@ -68,7 +68,7 @@ public:
     }
 
 private:
-    /// Half as many voxels a side, at least one; each the mean of what it covers.
+    /// Halves the number of voxels along each side, at least one; each is the mean of what it covers.
     static Volume half(const Volume& v) {
         Volume to{std::max(1, v.width / 2), std::max(1, v.height / 2), std::max(1, v.depth / 2), v.names, {}};
         const size_t n = v.names.size();

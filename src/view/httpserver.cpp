@@ -99,22 +99,23 @@ HttpResponse refusalOf(const boost::system::error_code& e, std::string_view head
     if (e == http::error::header_limit) return refusal(431, "The headers are too long.\n");
     if (e == http::error::body_limit || (e == http::error::bad_content_length && lengthIsHuge(head)))
         return refusal(413, "The request is too long.\n");
-    if (e == http::error::bad_content_length) return refusal(400, "Content-Length makes no sense.\n");
-    return refusal(400, "This is no request of HTTP/1.\n");
+    if (e == http::error::bad_content_length) return refusal(400, "Content-Length is invalid.\n");
+    return refusal(400, "This is not an HTTP/1 request.\n");
 }
 
-/// The answer to a request that is refused by its headers; nothing when it is not.
+/// The response to a request that its headers disqualify; otherwise nothing.
 std::optional<HttpResponse> refusalOf(const Parser& p) {
     const auto& m = p.get();
-    if (m.target().empty() || m.target()[0] != '/') return refusal(400, "This is no request of HTTP/1.\n");
-    if (m.method() != http::verb::get && m.method() != http::verb::post) return refusal(405, "Only GET and POST are known.\n");
-    for (const http::field f : {http::field::host, http::field::origin}) // which of them a proxy or a browser meant is not known
+    if (m.target().empty() || m.target()[0] != '/') return refusal(400, "This is not an HTTP/1 request.\n");
+    if (m.method() != http::verb::get && m.method() != http::verb::post)
+        return refusal(405, "Only GET and POST are supported.\n");
+    for (const http::field f : {http::field::host, http::field::origin}) // ambiguous between proxy and browser
         if (m.count(f) > 1) return refusal(400, "Host and Origin may be given once.\n");
     if (p.chunked()) return refusal(411, "A request needs Content-Length.\n");
     return {};
 }
 
-/// Draining: the last answer is written; what still comes in is thrown away, so that closing does not take the answer back.
+/// Draining: the last response is written; discards further input, so that closing does not abort the response.
 enum class State { Reading, Waiting, Writing, Draining };
 constexpr double kDrainSeconds = 1;
 constexpr size_t kDrainBytes = 1 << 18;
@@ -124,12 +125,12 @@ struct Connection {
     State state = State::Reading;
     std::string in, out;
     size_t written = 0;
-    std::optional<Parser> parser; ///< of the request that comes in
+    std::optional<Parser> parser; ///< for the incoming request
     HttpRequest request;
     bool close = false, known = false;
-    double since = 0;   ///< when its state began, or its request
+    double since = 0;   ///< start of its state, or of its request
     double taken = 0;   ///< when a part of the answer was last taken
-    bool begun = false; ///< a byte of the request is there
+    bool begun = false; ///< a byte of the request has arrived
     ~Connection() {
         if (fd >= 0) ::close(fd);
     }
@@ -200,7 +201,7 @@ void HttpServer::Loop::run() {
 }
 
 void HttpServer::Loop::accept() {
-    for (int n = 0; n < 64; ++n) { // then those that are there get their turn
+    for (int n = 0; n < 64; ++n) { // then handles existing connections
         const int fd = ::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (fd < 0) {
             const bool full = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
@@ -213,7 +214,7 @@ void HttpServer::Loop::accept() {
                 oldest = std::find_if(connections.begin(), connections.end(),
                                       [](const Connection& c) { return c.state == State::Reading && !c.begun; });
             if (oldest == connections.end()) {
-                const HttpResponse r = refusal(503, "Too many viewers at a time.\n");
+                const HttpResponse r = refusal(503, "Too many viewers.\n");
                 const std::string text = headOf(r, true) + r.body;
                 [[maybe_unused]] ssize_t k = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
                 ::close(fd);
@@ -256,7 +257,7 @@ void HttpServer::Loop::answer(Connection& c, HttpResponse r, bool close) {
     c.since = c.taken = secondsNow();
 }
 
-/// Takes a request out of what has come in, once it is whole.
+/// Takes a complete request out of the input.
 bool HttpServer::Loop::advance(Connection& c) {
     if (c.state != State::Reading) return true;
     if (!c.parser) {
@@ -294,8 +295,8 @@ bool HttpServer::Loop::ask(Connection& c, bool last) {
     std::optional<HttpResponse> r;
     try {
         r = handler(c.request, last, &c.known);
-    } catch (const std::exception&) { // no room for the answer
-        answer(c, refusal(503, "There is no memory for this.\n"), true);
+    } catch (const std::exception&) { // out of memory for the response
+        answer(c, refusal(503, "Out of memory.\n"), true);
         return write(c);
     }
     if (r) {

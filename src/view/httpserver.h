@@ -12,7 +12,7 @@ namespace alpenglow::view {
 
 struct HttpRequest {
     std::string method;                           ///< "GET" or "POST"
-    std::string path;                             ///< what stands before ?, as it was sent: nothing in it is decoded
+    std::string path;                             ///< the part before ?, not decoded
     std::map<std::string, std::string> arguments; ///< behind ?, decoded
     std::string body;
     std::string host, origin; ///< headers; "" when missing
@@ -24,25 +24,25 @@ struct HttpResponse {
     std::string body;
 };
 
-/// What a stranger may take of this process.
+/// Limits on the resources that clients can use.
 struct HttpLimits {
-    size_t connections = 64;    ///< at a time; a further one takes the place of the oldest that has asked for nothing known
+    size_t connections = 64;    ///< open connections; a further one replaces the oldest without a known request
     size_t headerBytes = 16384; ///< of request line and headers
     size_t bodyBytes = 1 << 16; ///< of a request
     double requestSeconds = 10; ///< from a request's first byte to its last
     double idleSeconds = 120;   ///< between two requests
-    double stallSeconds = 5;    ///< in which a viewer takes nothing of its answer
+    double stallSeconds = 5;    ///< time in which a client accepts no data
     double writeSeconds = 60;   ///< for an answer to be taken
     double waitSeconds = 15;    ///< that an answer may be put off
 };
 
 class HttpServer {
 public:
-    /// Runs on the server's thread. Nothing: not yet; it is asked again after wake(), and with `last` when the time is over, when
-    /// it must answer. *known: set where the request comes from somebody who may ask.
+    /// Runs on the server's thread. Returns nothing if there is no response yet; called again after wake(), and with `last` at
+    /// the deadline, when it must respond. *known: set for requests with permission.
     using Handler = std::function<std::optional<HttpResponse>(const HttpRequest&, bool last, bool* known)>;
 
-    /// Listens on 127.0.0.1; port 0: a free one. Null: *fault says why.
+    /// Listens on 127.0.0.1; port 0: any free port. Returns null after an error, with *fault.
     static std::unique_ptr<HttpServer> listen(int port, std::string* fault, HttpLimits = {});
     ~HttpServer();
     int port() const { return port_; }
@@ -50,7 +50,7 @@ public:
     void start(Handler);
     /// Answers no more; the handler is not called again.
     void stop();
-    /// From any thread: what was put off may be answered now.
+    /// From any thread: postponed requests may have a response now.
     void wake();
 
 private:
@@ -60,7 +60,7 @@ private:
     std::unique_ptr<Loop> loop_;
 };
 
-/// 32 hexadecimal digits that nobody can guess.
+/// 32 unpredictable hexadecimal digits.
 std::string randomToken();
 /// Compares without telling by its time where the difference is.
 bool sameText(const std::string&, const std::string&);

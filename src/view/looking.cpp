@@ -1,4 +1,4 @@
-// What a view sees of a render that is under way: shots for viewers, and pictures that are saved.
+// Observes the current render for the view: shots for viewers, and saved pictures.
 #include "render/filmpicture.h"
 #include "render/imaging.h"
 #include "render/noise.h"
@@ -11,7 +11,7 @@
 namespace alpenglow::view {
 namespace {
 
-constexpr double kShotShare = 0.02; ///< of the time of rendering, that shots may take
+constexpr double kShotShare = 0.02; ///< largest fraction of rendering time for shots
 constexpr double kShotLeast = 0.08; ///< seconds between two
 constexpr size_t kMostPoints = 4000;
 
@@ -43,18 +43,18 @@ void Session::begin(const render::WatchedFrame& f) {
     plan_ = &f.plan;
     Diagnostics quiet;
     render::OutputSpec png = render::singleOutput("view.png", f.plan.basis, quiet);
-    for (render::OutputSpec& s : means->plan.pictures) { // light, not what is shown of it
+    for (render::OutputSpec& s : means->plan.pictures) { // linear light, without the display curve
         s.gain = s.gamma = 1;
         s.srgb = false;
         s.ownExposure = false;
     }
-    if (f.picture.imager) { // it works on what Exposure made: this is behind it, and the page's curve comes last
+    if (f.picture.imager) { // the imager runs after exposure; the page's curve comes last
         render::OutputSpec& first = means->plan.pictures.front();
         first.gain = png.gain;
         first.gamma = png.gamma;
         png.gain = png.gamma = 1;
         for (render::OutputSpec& s : means->plan.pictures)
-            if (s.name.starts_with("light:")) { // parts of what is seen
+            if (s.name.starts_with("light:")) { // parts of the picture
                 s.gain = first.gain;
                 s.ownExposure = true;
             }
@@ -75,7 +75,7 @@ std::unique_ptr<render::Film> Session::filmFor(const render::FilmDescription& d)
 }
 
 void Session::look(const render::Glance& g) {
-    if (pass_.phase != Phase::Coarse && overtaken()) stop_ = 1; // asked for while it was built, which is not interrupted
+    if (pass_.phase != Phase::Coarse && overtaken()) stop_ = 1; // requested during the build, which is not interrupted
     passSeconds_ = g.seconds;
     passRays_ = double(g.rays);
     if (g.film && g.grown && pass_.phase == Phase::Whole && g.film->samplesPerPixel() > 0)
@@ -86,7 +86,7 @@ void Session::look(const render::Glance& g) {
     if (!g.there && pass_.phase == Phase::Whole) savePending(*means_, g.film, [&] { return g.pixels(plan_->pictures.front()); });
     stale_ |= g.grown;
     grew_ |= g.grown;
-    if (g.there && (!grew_ || pass_.factor != 1)) return; // there is nothing yet, or all will be there at once
+    if (g.there && (!grew_ || pass_.factor != 1)) return; // nothing yet, or everything arrives at once
     if (g.whole() || shotIsDue()) shoot(g, *means_);
 }
 
@@ -126,7 +126,7 @@ bool Session::shotIsDue() const {
     return stale_ && Seconds(Clock::now() - lastShot_).count() >= std::max(kShotLeast, shotSeconds_ / kShotShare);
 }
 
-/// When nothing is under way: what was not shown yet, and what is asked for.
+/// While nothing renders: shows what was not shown yet, and handles requests.
 void Session::lookAtRest() {
     if (!kept_.means || (!kept_.film && !kept_.image)) return;
     const auto image = [&] {
@@ -168,7 +168,7 @@ void Session::shoot(const render::Glance& g, const Means& means) {
             finished->channels = {"r", "g", "b"};
         if (finished) picture->planes.push_back({s.name, std::make_shared<display::Image>(std::move(*finished))});
     }
-    if (g.there && shownOf_) { // what was shown of the same before
+    if (g.there && shownOf_) { // earlier shots of this round
         const std::shared_ptr<const Picture> before = [&] {
             std::lock_guard lock(mutex_);
             return picture_;
@@ -206,7 +206,7 @@ void Session::shoot(const render::Glance& g, const Means& means) {
     shotSeconds_ = Seconds(lastShot_ - begun).count();
     {
         std::lock_guard lock(mutex_);
-        // Around a crop stays what was there; a page that comes now shall see it, too.
+        // Around a crop the earlier picture remains; new pages shall see it, too.
         if (pass_.phase == Phase::Crop && picture_ && picture_->stepX == 1 && picture_->width == picture->width) {
             auto both = std::make_shared<Picture>(*picture_);
             overlay(*both, *picture);
@@ -215,7 +215,7 @@ void Session::shoot(const render::Glance& g, const Means& means) {
             picture_ = both;
         } else picture_ = picture;
         if (whole && g.film && (curve_.empty() || curve_.back()[1] < f.spp)) {
-            if (curve_.size() >= kMostPoints) { // every other one goes
+            if (curve_.size() >= kMostPoints) { // drops every other point
                 for (size_t i = 0; i < curve_.size() / 2; ++i) curve_[i] = curve_[2 * i + 1];
                 curve_.resize(curve_.size() / 2);
                 ++curveOf_;
@@ -247,7 +247,7 @@ void Session::savePending(const Means& means, const render::Film* film, const st
     tell();
 }
 
-/// As render -o writes it: PNG with the curve of the page, EXR with the numbers of the scene. Lights as they are dimmed.
+/// Saves like render -o: PNG with the curve of the page, EXR with linear values. Lights as dimmed.
 bool Session::save(const Save& s, const Means& means, const render::Film* film, const render::Image& image) {
     const std::string name = freeName(s.type, film);
     render::OutputPlan plan = means.plan;

@@ -40,7 +40,7 @@ private:
     std::unordered_map<const ShaderCall*, size_t> numbers_;
 };
 
-/// Copies with other shaders, made once for each.
+/// Copies of attributes with other shaders, each made once.
 class Changer {
 public:
     std::unordered_map<const ShaderCall*, ShaderRef> calls;
@@ -81,7 +81,7 @@ std::vector<ShaderUse> shadersOf(const scene::Frame& f, size_t most) {
     Collector c(most);
     for (const scene::Light& l : f.lights) {
         c.take("light", l.shader, l.handle, l.area);
-        if (l.attributes) // what its shader calls
+        if (l.attributes) // co-shaders
             for (const auto& [handle, call] : l.attributes->coshaders) c.take("coshader", call, handle);
     }
     for (const scene::PrimitiveRef& p : f.primitives) c.take(p->attributes);

@@ -19,9 +19,9 @@ struct ShaderUse {
 /// In the order of the scene; the first `most` of them.
 std::vector<ShaderUse> shadersOf(const scene::Frame&, size_t most);
 
-/// By number in shadersOf(): parameters that take the place of the call's own of those names.
+/// By index in shadersOf(): parameters that replace those of the call.
 using ParameterChanges = std::map<size_t, scene::ParamList>;
-/// The frame with these changes. What they do not reach is shared with it.
+/// The frame with these changes; unchanged parts are shared.
 std::shared_ptr<const scene::Frame> changed(const std::shared_ptr<const scene::Frame>&, const std::vector<ShaderUse>&,
                                             const ParameterChanges&);
 

@@ -1,4 +1,4 @@
-// The picture so far, as viewers get it.
+// The current picture for viewers.
 #pragma once
 #include "display/image.h"
 #include "render/film.h"
@@ -10,7 +10,7 @@
 
 namespace alpenglow::view {
 
-/// What is looked at under one name. Planes of one picture have the same size; floats, linear, channels interleaved.
+/// A named plane of the picture. Planes of one picture have the same size; linear floats, channels interleaved.
 struct Plane {
     std::string name; ///< "picture" (r g b a z), "noise", "light:HANDLE", or as a display's mode has it
     std::shared_ptr<const display::Image> image;
@@ -19,14 +19,14 @@ struct Plane {
 struct Figures {
     double seconds = 0, spp = 0, raysPerMS = 0;
     double noiseRSE = 0, noiseRSE999 = 0, efficiency = 0;
-    double noise = 0, noiseAtMost = 0; ///< what render prints, and what --noise compares
+    double noise = 0, noiseAtMost = 0; ///< as printed by render, and the bound compared with --noise
 };
 
 struct Picture {
-    int width = 0, height = 0; ///< of the whole picture
+    int width = 0, height = 0; ///< of the complete picture
     render::Window window;     ///< that the planes cover, in their own pixels
     double stepX = 1,
-           stepY = 1; ///< pixels of the whole picture that one of the planes is wide and high: more than 1 for a coarse one
+           stepY = 1;          ///< pixels of the complete picture per pixel of the planes: more than 1 for a coarse one
     std::vector<Plane> planes; ///< "picture" first
     Figures figures;
     uint64_t number = 0; ///< of all pictures of a session: no two have the same
@@ -36,7 +36,7 @@ struct Picture {
 /// The relative error of each pixel, as noiseRSE has it.
 display::Image noisePlane(const render::Film&);
 
-/// The pixels of `from` in `onto`, where planes of the same name are there.
+/// Copies the pixels of `from` into the planes of `onto` with the same names.
 void overlay(Picture& onto, const Picture& from);
 
 /// The pixels of `from`, larger ones too, in `onto` where these are not there: `there` by pixel of its window, in reading order.

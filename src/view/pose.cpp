@@ -21,7 +21,7 @@ Pose::Pose(const scene::Options& o) : home_(o.worldToCamera.first()), view_(home
     if (aspect >= 1) height_ = 2;
     if (o.screenWindow && o.screenWindow->size() == 4) height_ = std::fabs((*o.screenWindow)[3] - (*o.screenWindow)[2]);
     if (perspective_) height_ *= std::tan(std::clamp(fov, 0.1, 179.0) * M_PI / 360);
-    // Where the origin of the world is in front of the camera it is a good guess at what the picture shows.
+    // If the origin of the world is in front of the camera, it is a good guess of the subject.
     const double z = transformPoint(home_, {0, 0, 0}).z;
     distance_ = z > 1e-3 && std::isfinite(z) ? z : 1;
 }

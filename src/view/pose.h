@@ -1,4 +1,4 @@
-// Where a view looks from: the scene's camera, and what the mouse has done to it since.
+// The viewpoint of a view: the scene's camera and changes by the mouse.
 #pragma once
 #include "base/matrix.h"
 #include "render/engine.h"
@@ -11,18 +11,17 @@ class Pose {
 public:
     /// As the scene has it.
     explicit Pose(const scene::Options&);
-    /// Turns what is in front of the pivot about it: degrees to the right (about the world's axis that is upright at first), and
-    /// down.
+    /// Orbits around the pivot: degrees to the right (about the world axis that is initially upright), and down.
     void orbit(double right, double down);
     /// Nearer by a factor: 2 halves the distance to the pivot, or shows half as much under a projection without perspective.
     void dolly(double factor);
     /// Moves the scene by parts of the picture's height, to the right and up, at the distance of the pivot.
     void pan(double right, double up);
-    /// The pivot is in the middle of the picture, at this depth of the camera; not positive or not finite: it stays.
+    /// Moves the pivot to the centre of the picture at this camera depth; no effect if not positive or not finite.
     void setDistance(double);
     /// Whether it has moved since the scene was read.
     bool moved() const { return moved_; }
-    /// The same turn of another version of the scene, where its own camera did not move meanwhile.
+    /// Applies the same changes to another version of the scene, if its own camera has not changed.
     void keepFrom(const Pose& old);
     /// The frame's options with this camera.
     void apply(scene::Options&) const;

@@ -18,7 +18,7 @@ void Preview::begin(const render::WatchedFrame& f) {
     own_ = &f.plan;
     plan_ = f.plan;
     for (render::OutputSpec& s : plan_->pictures) {
-        if (!f.picture.imager) s.gain = s.gamma = 1; // an imager works on what Exposure made
+        if (!f.picture.imager) s.gain = s.gamma = 1; // an imager needs the result of exposure
         s.srgb = s.ownExposure = false;
     }
     facts_ = f.picture;
@@ -41,7 +41,7 @@ void Preview::look(const render::Glance& g) {
 
 void Preview::show(const render::Glance& g, const render::OutputPlan& own) {
     render::Imager imager;
-    if (facts_.imager) // not the renderer's, which minds the first time that it is asked
+    if (facts_.imager) // a separate one: the renderer's stores when it was first called
         imager = [this](int n, const float* x, const float* y, float* r, float* gr, float* b, float* a) {
             world_->runImager(n, x, y, r, gr, b, a, diagnostics_);
             return true;

@@ -9,7 +9,7 @@
 
 namespace alpenglow::view {
 
-/// Looks at a render from time to time, for at most a fiftieth of its time, and hands on what it sees: light, as floats.
+/// Observes a render, for at most a fiftieth of its time, and forwards linear float pictures.
 class Preview : public render::Watcher {
 public:
     explicit Preview(Diagnostics& d) : diagnostics_(d) {}
@@ -20,7 +20,7 @@ public:
 protected:
     /// Which pictures of the frame are wanted.
     virtual bool wants(const render::OutputSpec&) const = 0;
-    /// One of them, with its window in the whole.
+    /// Shows a picture, with its window in the complete one.
     virtual void show(const render::OutputSpec&, const render::PictureFacts&, const display::Image&) = 0;
     Diagnostics& diagnostics_;
 
@@ -54,11 +54,11 @@ struct Bytes {
     int width = 0, height = 0;
     std::vector<uint8_t> rgb;
 };
-/// The red, green and blue of a picture, each pixel the mean of what it covers, as sRGB.
+/// The red, green and blue of a picture as sRGB, each pixel the mean of what it covers.
 Bytes shrunk(const display::Image&, int width, int height);
 /// Two pixels a character, the upper half block in 24-bit colours: lines, each with its end.
 std::string halfBlocks(const Bytes&);
-/// DEC's sixels: 216 colours, dithered evenly.
+/// DEC sixels: 216 colours with ordered dither.
 std::string sixels(const Bytes&);
 /// The graphics protocol of kitty; the cursor stays.
 std::string kittyGraphics(const Bytes&);
@@ -66,7 +66,7 @@ std::string kittyGraphics(const Bytes&);
 enum class TerminalKind { Blocks, Sixel, Kitty };
 /// "blocks", "sixel", "kitty".
 std::optional<TerminalKind> terminalKindByName(const std::string&);
-/// What the terminal of this process can do: by its variables, and by asking it for its attributes.
+/// Capabilities of this process's terminal: from environment variables and its device attributes.
 TerminalKind terminalKind();
 
 struct TerminalSize {
@@ -75,13 +75,13 @@ struct TerminalSize {
 /// Of standard error; defaults where it is no terminal.
 TerminalSize terminalSize();
 
-/// Draws over what it drew before, above the line of the progress.
+/// Draws over its previous picture, above the progress line.
 class TerminalPreview final : public Preview {
 public:
     using Sink = std::function<void(const std::string&)>;
     TerminalPreview(Diagnostics& d, TerminalKind k, TerminalSize s, Sink sink)
         : Preview(d), kind_(k), size_(s), sink_(std::move(sink)) {}
-    /// Something else was printed: the next picture comes below it.
+    /// Other output was printed: the next picture is drawn below it.
     void scrolled() { shown_ = 0; }
 
 private:
@@ -103,7 +103,8 @@ std::string tevUpdate(const std::string& name, int x, int y, int width, int heig
 
 class TevPreview final : public Preview {
 public:
-    /// Connects. Null where nobody listens, or the name means nothing: a warning says so, and the render goes on without it.
+    /// Connects to the viewer. Returns null, with a warning, if it does not respond or the name is invalid; rendering continues
+    /// without it.
     static std::unique_ptr<TevPreview> connect(const std::string& host, int port, Diagnostics&);
     ~TevPreview() override;
 
@@ -114,7 +115,7 @@ private:
     void send(const std::string&);
     int socket_;
     const std::string where_;
-    std::vector<std::string> made_; ///< images that are there, with their sizes
+    std::vector<std::string> made_; ///< images created, with their sizes
 };
 
 } // namespace alpenglow::view

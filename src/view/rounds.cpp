@@ -1,4 +1,4 @@
-// What a view renders, in which order: coarse first, then what was cropped, then the whole.
+// Order of rendering in a view: coarse first, then the crop, then the complete picture.
 #include "base/limits.h"
 #include "render/camera.h"
 #include "render/levels.h"
@@ -11,9 +11,9 @@
 namespace alpenglow::view {
 namespace {
 
-constexpr double kCoarseSeconds = 0.06; ///< what a coarse picture may take
-constexpr double kCoarsePixels = 6000;  ///< of it, as long as nobody knows how long they take
-constexpr uint32_t kCropSamples = 256;  ///< of what is rendered first, where the whole goes on for ever
+constexpr double kCoarseSeconds = 0.06; ///< time for a coarse picture
+constexpr double kCoarsePixels = 6000;  ///< its size in pixels while timing is unknown
+constexpr uint32_t kCropSamples = 256;  ///< limit of the crop's samples before the complete picture, if that has none
 
 std::string keyOf(const Pose& p) {
     char text[64];
@@ -41,7 +41,7 @@ bool Session::overtaken() const {
     return generation_ != round_.generation;
 }
 
-/// The picture, and what else is asked for, as displays that are never written.
+/// Adds the picture, and requested outputs, as displays that are not written.
 void Session::addOutputs(scene::Options& o) const {
     o.displays.clear();
     const auto add = [&](const std::string& name, const std::string& mode) {
@@ -98,7 +98,7 @@ render::Engine Session::engine() {
         if (there && (round_.dragging || samePlace(*worldPose_, *round_.pose))) return world_;
         setPhase(Phase::Building);
         world_.reset();
-        // For the whole picture, whatever the resolution of this pass: it is kept.
+        // For the complete picture, whatever the resolution of this pass, because it is kept.
         auto frame =
             std::make_shared<scene::Frame>(*render::drawnLevels(round_.frame, render::Camera(round_.frame->options, diags)));
         frame->options.values[scene::kAnyCamera] = {}; // while it is turned, rays go through this world from elsewhere
@@ -122,7 +122,7 @@ render::Engine Session::engine() {
     return e;
 }
 
-/// What is still to be done for this round, in order.
+/// The remaining passes of this round, in order.
 std::vector<Session::Pass> Session::passes() const {
     std::vector<Pass> all;
     int width, height;
@@ -182,7 +182,7 @@ void Session::render() {
     done_ = round_.generation;
 }
 
-/// False: it was interrupted, or there is nothing to see.
+/// Returns false if interrupted, or if there is nothing to see.
 bool Session::renderPass(const Pass& p) {
     pass_ = p;
     passSeconds_ = passRays_ = 0;

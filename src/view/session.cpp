@@ -1,4 +1,4 @@
-// The thread of a view, and what viewers ask of it.
+// The thread of a view, and requests of viewers.
 #include "view/session.h"
 #include "render/outputnames.h"
 #include "scene/scene.h"
@@ -49,7 +49,7 @@ double one(const Json& j, size_t i) { return j.is_array() && i < j.size() && j[i
 
 Json failed(const std::string& why) { return {{"error", why}}; }
 
-/// The default of a float parameter in what `describe` says of a shader.
+/// Default value of a float parameter in the result of `describe`.
 std::optional<double> defaultOf(const Json& about, const std::string& name) {
     if (!about.is_object() || !about.contains("parameters")) return {};
     for (const Json& p : about["parameters"]) {
@@ -119,7 +119,7 @@ void Session::say(const Diagnostic& d) {
     tell();
 }
 
-/// With mutex_ held: what is under way gives way.
+/// Requires mutex_. Interrupts the current pass.
 void Session::interrupt() {
     ++generation_;
     ++serial_;
@@ -140,7 +140,7 @@ bool Session::readScene() {
         ++sceneSerial_;
         return scene_;
     }();
-    // What was built keeps its place to report to; all of it goes.
+    // It refers to the diagnostics, so it is dropped first.
     world_.reset();
     means_.reset();
     kept_ = {};
@@ -148,7 +148,7 @@ bool Session::readScene() {
     worldKey_.clear();
     filmKey_.clear();
     diags_ = std::make_unique<Diagnostics>([this](const Diagnostic& d) { say(d); });
-    // Before the thread is there, who waits for the scene may end it.
+    // Before the thread exists, the caller's stop flag applies.
     const StopFlag* const stop = begun_ || !options_.settings.stop ? &end_ : options_.settings.stop;
     render::RenderSettings s = options_.settings;
     s.stop = stop;
@@ -186,7 +186,7 @@ bool Session::readScene() {
     Pose pose(keeper.frame->options);
     if (pose_) pose.keepFrom(*pose_);
     pose_ = pose;
-    if (before) // shaders that are what they were keep what was set
+    if (before) // unchanged shaders keep their settings
         std::erase_if(wishes_.parameters, [&](const auto& p) {
             return p.first >= loaded->shaders.size() || p.first >= before->shaders.size() ||
                    loaded->shaders[p.first].call->name != before->shaders[p.first].call->name;
@@ -210,7 +210,7 @@ void Session::run() {
             if (reload) there = readScene();
             if (there && !end_) {
                 render();
-                if (!end_) lookAtRest(); // what was not due before
+                if (!end_) lookAtRest(); // overdue shots
             } else {
                 std::lock_guard lock(mutex_);
                 done_ = generation_;
@@ -222,7 +222,7 @@ void Session::run() {
         }
 }
 
-/// What was begun is over; what is asked for next may fit.
+/// Ends the current work after a failure; the next request may succeed.
 void Session::giveUp(const std::string& why) {
     plan_ = nullptr;
     kept_ = {};
@@ -242,7 +242,7 @@ void Session::giveUp(const std::string& why) {
     tell();
 }
 
-/// On a thread of its own, because a pass may take minutes.
+/// On a separate thread, because a pass may take minutes.
 void Session::watchFiles() {
     std::unique_lock lock(mutex_);
     while (!end_) {
@@ -260,7 +260,7 @@ void Session::watchFiles() {
     }
 }
 
-/// Until there is something to render. False: the end.
+/// Waits until there is something to render. Returns false at the end.
 bool Session::waitForWork() {
     while (true) {
         if (!end_) lookAtRest();
@@ -314,12 +314,12 @@ Json Session::moveCamera(const Json& j) {
 Json Session::askSave(const Json& j) {
     Save s;
     s.type = j.value("type", "png");
-    if (s.type != "png" && s.type != "exr") return failed("pictures are saved as png or exr");
+    if (s.type != "png" && s.type != "exr") return failed("pictures can be saved as png or exr");
     s.gain = j.value("gain", 1.f);
     s.gamma = j.value("gamma", 1.f);
     s.srgb = j.value("srgb", false);
     if (!(s.gain > 0 && s.gain < 1e9f && s.gamma >= 0.01f && s.gamma <= 100))
-        return failed("gain and gamma are positive numbers");
+        return failed("gain and gamma must be positive numbers");
     if (saves_.size() > 20) return failed("pictures are still being saved");
     saves_.push_back(s);
     work_.notify_all();
@@ -334,9 +334,9 @@ Json Session::act(const Json& j) try {
         std::lock_guard lock(mutex_);
         if (what == "set") {
             const Json wishes = j.value("wishes", Json::object());
-            if (!wishes.is_object()) return failed("\"wishes\" is an object");
+            if (!wishes.is_object()) return failed("\"wishes\" must be an object");
             if (const std::string fault = wishes_.take(wishes); !fault.empty()) return failed(fault);
-            if (wishes.size() == 1 && wishes.contains("dim")) ++serial_; // nothing is rendered anew
+            if (wishes.size() == 1 && wishes.contains("dim")) ++serial_; // needs no rendering
             else interrupt();
         } else if (what == "camera") answer = moveCamera(j);
         else if (what == "save") answer = askSave(j);
@@ -348,7 +348,7 @@ Json Session::act(const Json& j) try {
         } else if (what == "reload") {
             reload_ = true;
             interrupt();
-        } else return failed("there is nothing called \"" + what + "\" to do");
+        } else return failed("unknown action \"" + what + "\"");
     }
     changed_();
     return answer;
@@ -409,7 +409,7 @@ Json Session::scene() {
         j["outputs"] = outputs_;
         j["scene"] = sceneSerial_;
     }
-    if (s) // what the scene itself has declared
+    if (s) // declared by the scene
         for (const auto& [name, declaration] : s->frame->options.displayChannels) j["outputs"].push_back(name);
     j["lights"] = s ? Json(s->lights) : Json::array();
     j["frames"] = s ? Json(s->frames) : Json::array();

@@ -1,5 +1,4 @@
-// A scene that is rendered while it is looked at: read, built, rendered pass by pass on a thread of its own, begun again whenever
-// somebody changes something, and shown.
+// A scene rendered interactively: read, built, rendered pass by pass on its own thread, restarted after each change, and shown.
 #pragma once
 #include "base/readlog.h"
 #include "render/renderer.h"
@@ -20,20 +19,20 @@
 
 namespace alpenglow::view {
 
-/// What the command line says.
+/// Options of the command line.
 struct ViewOptions {
     render::RenderSettings settings;
     ri::ReaderOptions reader;
     std::string scene;                        ///< a file
-    std::optional<int> frame;                 ///< by its number; nothing: the first with a picture
+    std::optional<int> frame;                 ///< frame number; nothing: the first with a picture
     bool watch = false;                       ///< read again when a file of the scene changes
     std::function<void(ri::RibReader&)> read; ///< hands the scene to the reader
-    /// What a shader is (alpenglow info --json), found in these folders; null: nobody knows.
+    /// Describes a shader (alpenglow info --json) found in these folders; null: unknown.
     std::function<nlohmann::json(const std::string& name, const std::vector<std::string>& folders)> describe;
     Diagnostics::Handler print; ///< gets every message too
 };
 
-/// A message for the page, which may stand for several that are alike.
+/// A message for the page; may represent several similar ones.
 struct Message {
     Diagnostic diagnostic;
     int count = 1;
@@ -45,12 +44,11 @@ public:
     Session(ViewOptions, std::function<void()> changed);
     ~Session() override;
 
-    /// Reads the scene for the first time. False: there is no picture in it (reported).
+    /// Reads the scene for the first time. Returns false if it has no picture (reported).
     bool load();
     void start();
 
-    // From the thread of the server.
-    /// What a viewer asks for: {"do": "set", ...}. The answer has "error" when it cannot be.
+    // Handles a viewer's request on the server's thread: {"do": "set", ...}. The response has "error" on failure.
     nlohmann::json act(const nlohmann::json&);
     /// Counts whatever viewers see. Grows.
     uint64_t serial() const;
@@ -69,13 +67,13 @@ public:
 private:
     enum class Phase { Reading, Building, Coarse, Crop, Whole, Idle };
     using Clock = std::chrono::steady_clock;
-    /// What turns sums into pictures.
+    /// Data for converting sums to pictures.
     struct Means {
         render::OutputPlan plan;
         render::PictureFacts facts;
         std::shared_ptr<const transport::World> world;
     };
-    struct Kept { ///< of the whole picture: to render on with, to show and to save
+    struct Kept { ///< of the complete picture: for continuing, showing and saving
         std::shared_ptr<const Means> means;
         std::unique_ptr<render::Film> film;         ///< path
         std::shared_ptr<const render::Image> image; ///< hidden and raytrace
@@ -91,7 +89,7 @@ private:
     struct Loaded {
         std::shared_ptr<const scene::Frame> frame;
         std::vector<ShaderUse> shaders;
-        std::vector<std::string> lights; ///< handles, each once
+        std::vector<std::string> lights; ///< handles, unique
         std::vector<int> frames;         ///< the numbers of all
     };
 
@@ -164,9 +162,9 @@ private:
     uint64_t curveOf_ = 0;                     ///< counts curves
     std::vector<Save> saves_;
     std::vector<std::string> saved_;
-    std::map<std::string, Clock::time_point> viewers_; ///< planes, and when somebody last looked
+    std::map<std::string, Clock::time_point> viewers_; ///< planes, and time of the last request
     std::shared_ptr<const Loaded> scene_;
-    std::vector<std::string> outputs_; ///< that shaders have, as far as is known
+    std::vector<std::string> outputs_; ///< outputs of the shaders, as far as known
     std::vector<std::string> shaderFolders_;
     std::array<double, 3> curveAtFirst_{1, 1, 1}; ///< how render would show the picture: gain, gamma, whether as sRGB
     int width_ = 0, height_ = 0;                  ///< of the picture
@@ -175,7 +173,7 @@ private:
     // The rendering thread's own.
     std::unique_ptr<Diagnostics> diags_;
     uint64_t done_ = 0; ///< the generation that was rendered to its end
-    struct Round {      ///< what is being rendered
+    struct Round {      ///< the current round
         Wishes wishes;
         std::optional<Pose> pose;
         bool dragging = false;
@@ -188,19 +186,19 @@ private:
     std::shared_ptr<const transport::World> world_;
     std::string worldKey_, filmKey_;
     std::optional<Pose> worldPose_;
-    std::shared_ptr<const Means> means_;       ///< of the pass under way
+    std::shared_ptr<const Means> means_;       ///< of the current pass
     const render::OutputPlan* plan_ = nullptr; ///< the renderer's own, for Glance::pixels
-    double passSeconds_ = 0, passRays_ = 0;    ///< of the pass under way
-    double sampleSeconds_ = 0;                 ///< that a sample of a pixel took last; 0: not known
+    double passSeconds_ = 0, passRays_ = 0;    ///< of the current pass
+    double sampleSeconds_ = 0;                 ///< last time for one sample of a pixel; 0: unknown
     Kept kept_;
-    std::shared_ptr<const Picture> crop_;         ///< what was rendered first, for as long as it has more samples
+    std::shared_ptr<const Picture> crop_;         ///< the crop, while it has more samples
     std::optional<std::array<double, 4>> cropOf_; ///< which part that is
-    double shotSeconds_ = 0;                      ///< what the last shot cost
-    uint64_t pictures_ = 0;                       ///< that were made
+    double shotSeconds_ = 0;                      ///< time of the last shot
+    uint64_t pictures_ = 0;                       ///< pictures made
     Clock::time_point lastShot_{};
     bool stale_ = true;            ///< there is more than was shown
-    bool grew_ = false;            ///< tiles of the pass under way are there
-    std::optional<Phase> shownOf_; ///< what the last shot of this round was of
+    bool grew_ = false;            ///< the current pass has finished tiles
+    std::optional<Phase> shownOf_; ///< phase of the last shot in this round
     std::set<std::string> shotPlanes_;
 };
 

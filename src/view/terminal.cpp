@@ -40,7 +40,7 @@ int cubeColour(const Bytes& b, int x, int y) {
     return at;
 }
 
-/// One colour of a band of six rows, runs told by their length.
+/// Encodes one colour of a band of six rows with run lengths.
 void appendBand(std::string& out, const std::string& row) {
     for (size_t i = 0; i < row.size();) {
         size_t n = 1;
@@ -120,7 +120,7 @@ std::optional<TerminalKind> terminalKindByName(const std::string& n) {
 
 namespace {
 
-/// The answer of the terminal to "what are you", or "" after a fifth of a second.
+/// The terminal's device attributes, or "" after a fifth of a second.
 std::string deviceAttributes() {
     const int tty = ::open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY);
     if (tty < 0) return "";
@@ -187,7 +187,7 @@ void TerminalPreview::show(const render::OutputSpec&, const render::PictureFacts
     std::string out = "\r\x1b[K";
     if (shown_ > 0) out += "\x1b[" + number(shown_) + "A";
     if (blocks) out += halfBlocks(b);
-    else { // room first, so that the screen does not roll under the picture
+    else { // makes room first, so that the screen does not scroll under the picture
         for (int i = 0; shown_ == 0 && i < lines; ++i) out += "\n";
         if (shown_ == 0) out += "\x1b[" + number(lines) + "A";
         out += "\x1b"

@@ -78,7 +78,7 @@ std::string tevUpdate(const std::string& name, int x, int y, int width, int heig
     p.put(int32_t(channels.size()));
     for (const std::string& c : channels) p.put(c);
     for (int v : {x, y, width, height}) p.put(int32_t(v));
-    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(i));               // where each channel begins,
+    for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(i));               // start of each channel,
     for (size_t i = 0; i < channels.size(); ++i) p.put(int64_t(channels.size())); // and how far its pixels are apart
     p.raw(data.data(), data.size() * sizeof(float));
     return std::move(p).whole();
@@ -90,7 +90,7 @@ std::unique_ptr<TevPreview> TevPreview::connect(const std::string& host, int por
     wanted.ai_socktype = SOCK_STREAM;
     if (const int fault = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &all); fault != 0) {
         diags.report(Severity::Warning, Rie::System, {},
-                     "--display tev:" + where + ": " + gai_strerror(fault) + "; rendering goes on without it");
+                     "--display tev:" + where + ": " + gai_strerror(fault) + "; rendering continues without it");
         return nullptr;
     }
     int s = -1;
@@ -98,7 +98,7 @@ std::unique_ptr<TevPreview> TevPreview::connect(const std::string& host, int por
     freeaddrinfo(all);
     if (s < 0) {
         diags.report(Severity::Warning, Rie::System, {},
-                     "--display tev:" + where + ": nobody listens there; rendering goes on without it",
+                     "--display tev:" + where + ": no viewer listens there; rendering continues without it",
                      "start tev first; it listens at 127.0.0.1:14158");
         return nullptr;
     }
@@ -123,7 +123,7 @@ void TevPreview::send(const std::string& bytes) {
         ::close(socket_);
         socket_ = -1;
         diagnostics_.report(Severity::Warning, Rie::System, {},
-                            "tev at " + where_ + " takes no more pictures; rendering goes on without it");
+                            "tev at " + where_ + " takes no more pictures; rendering continues without it");
     }
 }
 

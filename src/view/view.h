@@ -1,11 +1,11 @@
-// alpenglow view: the whole of it behind one function.
+// alpenglow view, behind a single function.
 #pragma once
 #include "view/session.h"
 
 namespace alpenglow::view {
 
 enum class ViewEnd { Done, PortTaken, NoScene };
-/// Serves the page until *stop is set. `announce` gets the address once it is there. port 0: a free one.
+/// Serves the page until *stop is set. `announce` receives the address once it is available. port 0: any free port.
 ViewEnd view(ViewOptions, int port, const StopFlag* stop, const std::function<void(const std::string&)>& announce,
              std::string* fault);
 

@@ -32,28 +32,28 @@ ViewServer::ViewServer(Session& s, HttpServer& h, std::string token) : session_(
 
 std::string ViewServer::address() const { return "http://127.0.0.1:" + std::to_string(port_) + "/" + token_ + "/"; }
 
-/// A name that leads here by itself: another could be a stranger's page that had its name point to this machine.
+/// Whether a host name refers to this machine: another could be a foreign page whose name was pointed here (DNS rebinding).
 bool ViewServer::isOurs(const std::string& host) const {
     const std::string port = ":" + std::to_string(port_);
     return host == "127.0.0.1" + port || host == "localhost" + port;
 }
 
 std::optional<HttpResponse> ViewServer::answer(const HttpRequest& r, bool last, bool* known) {
-    if (!isOurs(r.host)) return refused(403, "This server is for 127.0.0.1 alone.\n");
+    if (!isOurs(r.host)) return refused(403, "This server is for 127.0.0.1 only.\n");
     if (!r.origin.empty() && (!r.origin.starts_with("http://") || !isOurs(r.origin.substr(7))))
-        return refused(403, "Pages from elsewhere may not ask.\n");
+        return refused(403, "Requests from other sites are rejected.\n");
     const size_t end = r.path.find('/', 1);
     if (end == r.path.npos || !sameText(r.path.substr(1, end - 1), token_))
         return refused(403, "The address needs the token that alpenglow view has printed.\n");
     *known = true;
     const std::string name = r.path.substr(end + 1);
-    if (r.method == "POST") return name == "do" ? act(r) : refused(404, "There is nothing of that name.\n");
+    if (r.method == "POST") return name == "do" ? act(r) : refused(404, "Not found.\n");
     if (name == "picture") return picture(r, last);
     if (name == "pixel") return pixel(r);
     if (name == "scene") return json(session_.scene());
     if (const PageFile* f = pageFile(name.empty() ? "index.html" : name))
         return HttpResponse{200, f->type, std::string(f->text, f->size)};
-    return refused(404, "There is nothing of that name.\n");
+    return refused(404, "Not found.\n");
 }
 
 /// The bytes of a text, little-endian count first, and the pixels behind it.
@@ -89,7 +89,7 @@ std::optional<HttpResponse> ViewServer::picture(const HttpRequest& r, bool last)
     }
     state["serial"] = shot.serial;
     std::string text = textOf(state);
-    text.resize((text.size() + 7) / 8 * 8 + 4, ' '); // so that pixels begin at a multiple of eight
+    text.resize((text.size() + 7) / 8 * 8 + 4, ' '); // aligns pixels to eight bytes
     std::string body(4, '\0');
     const uint32_t n = uint32_t(text.size());
     for (int k = 0; k < 4; ++k) body[size_t(k)] = char(n >> 8 * k);

@@ -1,11 +1,11 @@
-// The page of a view, and what it asks for: pixels, figures, switches.
+// The page of a view, and its requests: pixels, figures, settings.
 #pragma once
 #include "view/httpserver.h"
 #include "view/session.h"
 
 namespace alpenglow::view {
 
-/// Answers requests that name the token and come to this port under a name of this machine. Everything else is refused in a line.
+/// Answers requests with the token that come to this port under a name of this machine; rejects all others.
 class ViewServer {
 public:
     ViewServer(Session&, HttpServer&, std::string token);

@@ -89,7 +89,7 @@ std::string Wishes::take(const Json& j) {
         } else if (name == "crop") fine = cropOf(value, &w.crop);
         else if (name == "channels") fine = channelsOf(value, &w.channels);
         else if (name == "dim") fine = dimOf(value, &w.dim);
-        else return "there is no switch \"" + name + "\"";
+        else return "there is no setting \"" + name + "\"";
         if (!fine) return "\"" + name + "\" cannot be that";
     }
     *this = std::move(w);
@@ -117,7 +117,7 @@ std::string takeParameter(const Json& j, const std::vector<ShaderUse>& uses, Par
         return "there is no such shader";
     if (!j.contains("name") || !j["name"].is_string() || !j.contains("value") || !j["value"].is_array() || j["value"].empty() ||
         j["value"].size() > 64)
-        return "a parameter has a name, and a list of values";
+        return "a parameter needs a name and a list of values";
     const size_t number = j["shader"].get<size_t>();
     scene::Param p;
     p.name = j["name"].get<std::string>();

@@ -1,4 +1,4 @@
-// What viewers have set: the switches of the page. As JSON on the way to and from it.
+// Settings of viewers: the controls of the page, to and from JSON.
 #pragma once
 #include "view/materials.h"
 #include <array>
@@ -10,33 +10,34 @@
 
 namespace alpenglow::view {
 
-/// Outputs beside the picture at one time.
+/// Maximum number of outputs in addition to the picture.
 inline constexpr size_t kMostChannels = 16;
-/// Lights that can be told apart: one less than light path expressions have labels, with room for the scene's own.
+/// Maximum number of distinguishable lights: one less than light path labels, with room for the scene's own.
 inline constexpr size_t kMostLights = 24;
 
 struct Wishes {
     bool continuous = true, paused = false;
     uint32_t spp = 64; ///< samples a pixel, where it is not continuous
-    int depth = -1;    ///< -1: as the scene says
+    int depth = -1;    ///< -1: as in the scene
     bool direct = true, indirect = true;
     double factor = 1;                         ///< of the resolution
     double clamp = 0;                          ///< of samples; 0: off
     std::string hider;                         ///< "": the scene's
     std::optional<std::array<double, 4>> crop; ///< x0 x1 y0 y1 in 0..1: rendered first
-    std::vector<std::string> channels;         ///< outputs beside the picture, as a display's mode names them, or "lpe:..."
+    std::vector<std::string> channels;         ///< outputs in addition to the picture: mode of a display, or "lpe:..."
     bool lights = false;                       ///< lights apart, so that they can be dimmed
     std::map<std::string, double> dim;         ///< by a light's handle: times its light
     ParameterChanges parameters;               ///< of shaders
 
-    /// Takes what the object names, and leaves the rest. "": fine; else what is wrong, and then nothing was taken.
+    /// Applies the members of the object. Returns "", or an error; then nothing is changed.
     std::string take(const nlohmann::json&);
     nlohmann::json json() const;
-    /// What another world has to be built for.
+    /// Key of the settings that need a new world.
     std::string worldKey() const;
 };
 
-/// A parameter of a shader call: {"shader": 0, "name": "Kd", "value": [.5]}; a type for what the call does not name. "": fine.
+/// Reads a parameter of a shader call: {"shader": 0, "name": "Kd", "value": [.5]}; a type is required if the call does not name
+/// it. Returns "" or an error.
 std::string takeParameter(const nlohmann::json&, const std::vector<ShaderUse>&, ParameterChanges&);
 
 } // namespace alpenglow::view

@@ -67,7 +67,7 @@ void Emitter::takeDiced(const std::function<bool(const geometry::Shape&)>& seenT
     shinesTo(Shines::Both);
 }
 
-/// Makes areas of the entries shares of the choice, and leaves out those that have none.
+/// Converts the areas of the entries to probabilities, and drops entries without area.
 void Emitter::weigh() {
     std::erase_if(entries_, [](const Entry& e) { return !(e.share > 0) || !std::isfinite(e.share); });
     area_ = 0;
@@ -103,7 +103,7 @@ Cone Emitter::front() const {
 
 void Emitter::makeChooser() {
     chooser_ = {};
-    // A few shapes that all shine everywhere are chosen by area alone.
+    // A few shapes that all emit in every direction are chosen by area alone.
     const bool faces = std::any_of(entries_.begin(), entries_.end(), [](const Entry& e) { return !e.front.all(); });
     if (entries_.size() <= (faces ? 1 : size_t(limits::kLightsSampled))) return;
     std::vector<LightBound> bounds;
@@ -161,7 +161,7 @@ bool Emitter::outside(const Entry& e, const Vec3& from, double& cap) {
 bool Emitter::sampleSphere(const Entry& e, const Vec3& from, Vec2 u, double cap, double share, Sample& out,
                            geometry::SurfacePoint& point, uint32_t needs) const {
     bool far = e.inner;
-    if (e.through) { // each side with half of the chance
+    if (e.through) { // each side with probability 1/2
         far = u.x >= .5f;
         u.x = far ? 2 * u.x - 1 : 2 * u.x;
         share *= .5;
@@ -169,7 +169,7 @@ bool Emitter::sampleSphere(const Entry& e, const Vec3& from, Vec2 u, double cap,
     const Vec3 w = Basis(normalize(e.centre - from)).toWorld(sampleCone(float(cap), u));
     geometry::ExactHit hits[4];
     const int n = e.shape->exactHits(Vec3d(from), Vec3d(w), hits);
-    // The line grazes the rim in rounding: then this draw is lost, with a probability of the order of float epsilon.
+    // Rounding at the silhouette: this sample is lost, with a probability of about float epsilon.
     int k = 0;
     while (k < n && !(hits[k].t > 0)) ++k;
     if (k == n) return false;
@@ -216,13 +216,13 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
-    out.pdf = float(density(e, point) * e.share * area_); // the share of a shape is its part of the area
+    out.pdf = float(density(e, point) * e.share * area_); // the share of a shape is its fraction of the area
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
 const geometry::Shape* Emitter::samplePoint(Vec2 u, float choose, float time, const Vec3& toward, geometry::SurfacePoint& point,
                                             float& perArea) const {
-    constexpr float kFar = 1e6f; // of the shape's size: from there all rays to it are parallel but for rounding
+    constexpr float kFar = 1e6f; // relative to the shape's size: from there rays to it are parallel within rounding
     const Entry& e = entryAt(choose);
     bool there = true;
     const auto eye = [&] {

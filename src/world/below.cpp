@@ -7,7 +7,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Defaults: marble, 1/mm (Jensen and others, A Practical Model for Subsurface Light Transport, 2001).
+/// Defaults: marble, per mm (Jensen and others, A Practical Model for Subsurface Light Transport, 2001).
 const Color kScattering{2.19f, 2.62f, 3.f}, kAbsorption{.0021f, .0041f, .0071f};
 
 Color above0(const Color& c, float most) {
@@ -68,7 +68,7 @@ Below belowOf(const SubsurfaceSite& site, const SubsurfaceValues& of, const std:
     const bool coefficients = site.scattering >= 0 || site.absorption >= 0;
     const bool said = site.reflectance >= 0 || site.path >= 0 || site.diffusePath >= 0 ||
                       (!coefficients && of.scattering.x < 0 && of.absorption.x < 0 && (of.reflectance.x >= 0 || of.path.x >= 0));
-    if (said) { // of light that scatters evenly, whatever "anisotropy" says: the numbers are of what is seen
+    if (said) { // for isotropic scattering, regardless of "anisotropy": the values describe the appearance
         b.anisotropy = 0;
         const Color r = above0(colour(site.reflectance, of.reflectance.x >= 0 ? of.reflectance : Color(0.8f)), 0.9999f);
         const Color path = colour(site.path, of.path.x >= 0 ? of.path : Color(1));

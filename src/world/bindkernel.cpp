@@ -1,4 +1,4 @@
-// What the call sites of a kernel mean to the integrator, worked out once per kernel.
+// Resolves the call sites of a kernel, once per kernel.
 #include "scene/scene.h"
 #include "shadeops/distributions.h"
 #include "shadeops/specular.h"
@@ -79,7 +79,7 @@ SiteKind kindOf(const std::string& op) {
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
 
-/// Records hold the light of whole hemispheres about a normal, nothing else: a call with other outputs or directions has none.
+/// Records hold irradiance of whole hemispheres around a normal: calls with other outputs or directions cannot use them.
 RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& world) {
     const auto row = [&](const char* name) {
         auto f = i.named.find(name);
@@ -93,7 +93,7 @@ RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& worl
     return r;
 }
 
-/// The parameters of a trace() beyond the common ones. Parameters that are ignored are reported once each.
+/// Reads the parameters of a trace() beyond the common ones. Reports each ignored parameter once.
 std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
                                            WorldImpl& world) {
     auto t = std::make_shared<TraceSite>();
@@ -118,7 +118,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     t->weight = row("weight");
     const std::string part = text(rsl::kPairPart);
     if (!part.empty()) t->part = part[0] - '0';
-    std::map<int, int> ends; // by row: where the value ends
+    std::map<int, int> ends; // by row: end of the value
     int at = 0;
     for (auto kind : s.argKinds) {
         const int begin = at;
@@ -130,8 +130,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
     t->distribution = row("distribution") >= 0 ? row("distribution") : row("bsdf");
     for (const char* name : {"environmentmap", "environmentspace"})
-        if (row(name) >= 0)
-            said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+        if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     if (const std::string map = text("environmentmap"); !map.empty()) {
         t->map = world.textures_->open(map, world.settings_.texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
@@ -144,7 +143,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         i.resultRows.count("arealightcontribution") + i.resultRows.count("unshadowedarealight") == i.resultRows.size();
     t->openness = i.results.transmission >= 0 || i.results.open >= 0;
     t->hemisphere = i.text.count(rsl::kPairHemisphere) > 0;
-    if (t->hemisphere) { // trace() itself has no such parameters: the compiler has said so
+    if (t->hemisphere) { // trace() itself has no such parameters: the compiler has reported that
         t->apart = i.text.count(rsl::kPairApart) > 0;
         t->axis = i.rowHorizon >= 0;
         t->fade = {row("falloff"), row("falloffmode")};
@@ -170,7 +169,7 @@ std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl:
     return o;
 }
 
-/// What shadow() takes beyond texture(): numbers of the call, else of Option "shadow".
+/// Parameters of shadow() beyond texture(): from the call, else from Option "shadow".
 void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options) {
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
@@ -223,19 +222,17 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] == rsl::ir::Kind::Triple) (b->point < 0 ? b->point : b->normal) = i.rows[a];
     for (const char* name : {"model", "groupname"})
-        if (row({name}) >= 0)
-            said(name, "\"" + std::string(name) + "\" must be known when the shader is compiled; it is taken as not given");
+        if (row({name}) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
-        said("type", "a point cloud is read where \"filename\" names one; light is found by rays here");
+        said("type", "name a point cloud by \"filename\"; without one rays compute the light");
     else if (!type.empty() && type != "pointcloud" && type != "raytrace")
-        said("type " + type, "there is no type \"" + type + "\"; light is found by rays here",
-             "types are raytrace and pointcloud");
+        said("type " + type, "unknown type \"" + type + "\"; rays compute the light", "types are raytrace and pointcloud");
     const std::string model = text("model");
     if (model == "jensen") b->model = SubsurfaceSite::Model::Dipole;
     else if (model == "grosjean") b->model = SubsurfaceSite::Model::BetterDipole;
     else if (!model.empty() && model != "walk")
-        said("model " + model, "there is no model \"" + model + "\"; light is followed as it walks below the surface",
+        said("model " + model, "unknown model \"" + model + "\"; random walks below the surface are used",
              "models are walk, jensen and grosjean");
     return b;
 }
@@ -269,7 +266,7 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
     t->computed = t->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
     t->count = s.resultKinds.empty() ? 0 : std::min(rsl::ir::components(s.resultKinds[0]), 3);
     t->options.squeeze = world.textures_->settings().squeeze;
-    t->options.asLight = t->count == 3; // what is read as a float is data: a height, an opacity, a mask
+    t->options.asLight = t->count == 3; // a float lookup reads data: a height, an opacity, a mask
     t->slopes = std::min(i.resultRowCount - t->count, 27);
     t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
     if (i.kind == SiteKind::Shadow) {
@@ -300,7 +297,7 @@ size_t rowsOf(const SiteInfo& i, int row) {
     return 0;
 }
 
-/// What a site says of the values that surfaces tell lights.
+/// Reads the values that a call site sends to lights.
 static void bindSent(SiteInfo& i) {
     using rsl::PairName;
     for (const std::string& pair : i.site->names) {
@@ -324,7 +321,7 @@ static void bindSent(SiteInfo& i) {
     for (rsl::ir::Kind k : i.site->argKinds) rows += rsl::ir::components(k);
     for (const auto& [name, row] : i.named) {
         if (name == "N") i.rowN = row;
-        if (name == "category") continue; // no matter of the lights: what was kept stays good under another
+        if (name == "category") continue; // does not affect lights: cached values stay valid for another category
         int end = rows;
         for (const auto& [other, following] : i.named)
             if (following > row) end = std::min(end, following);
@@ -332,7 +329,7 @@ static void bindSent(SiteInfo& i) {
     }
 }
 
-/// The distribution of a trace(), and what only some calls use.
+/// Reads the distribution of a trace(), and rare parameters.
 static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k, WorldImpl& world) {
     auto text = [&](const char* name, const char* fallback) {
         auto f = i.text.find(name);
@@ -340,7 +337,7 @@ static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKe
     };
     std::string distribution = text("distribution", text("bsdf", "uniform").c_str());
     i.lobe = findLobe(distribution);
-    if (!i.lobe) { // of a kernel that the compiler has refused, else
+    if (!i.lobe) { // only in a kernel that the compiler has rejected
         i.lobe = findLobe("uniform");
         world.diagnostics_->reportOnce("distribution:" + distribution,
                                        {Severity::Error,
@@ -353,7 +350,7 @@ static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKe
     i.trace = traceSite(i, s, k, world);
 }
 
-/// The lobe of a lighting shadeop.
+/// Sets the lobe of a lighting shadeop.
 static void bindLobe(SiteInfo& i) {
     if (i.kind == SiteKind::Specular) i.lobe = findLobe("specular");
     if (i.kind == SiteKind::Phong) i.lobe = findLobe("phong");
@@ -365,7 +362,7 @@ static void bindLobe(SiteInfo& i) {
     i.trace = std::move(apart);
 }
 
-/// Where the arguments and results of a call lie.
+/// Finds the rows of a call's arguments and results.
 static void bindRows(SiteInfo& i, const rsl::ir::Site& s) {
     int row = 0;
     std::vector<int> starts;
@@ -464,7 +461,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         }
         if (i.kind == SiteKind::Trace) bindTrace(i, s, *k, *world);
         if (i.kind == SiteKind::Subsurface) {
-            i.lobe = findLobe("uniform"); // of no width: its rays walk
+            i.lobe = findLobe("uniform"); // its rays walk; it has no width
             i.subsurface = subsurfaceSite(i, s, *k, *world);
         }
         if (i.kind == SiteKind::Occlusion) {
@@ -477,7 +474,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     linkGathers(b, *k, *world);
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
     world->footprints_ |= b.plan->usesFootprint();
-    for (const SiteInfo& i : b.sites) world->footprints_ |= i.rays && i.rays->base >= 0; // "samplebase" is a part of it
+    // "samplebase" is a fraction of the footprint
+    for (const SiteInfo& i : b.sites) world->footprints_ |= i.rays && i.rays->base >= 0;
     b.kernel = std::move(k);
     b.blocks = asksBlocks(b);
     return b;

@@ -1,5 +1,5 @@
-// Lights of a frame bound to their kernels. A shader with several illuminate or solar statements becomes several lights: the
-// first keeps the frame's index, the others are its parts, numbered behind all of the frame's.
+// Binds the lights of a frame to kernels. A shader with several illuminate or solar statements makes several lights: the first
+// keeps the frame's index, the others are its parts, numbered after all lights of the frame.
 #include "scene/scene.h"
 #include "world/impl.h"
 #include "world/lightobjects.h"
@@ -11,7 +11,7 @@ using rsl::OutputName;
 
 namespace {
 
-// The power-over-distance bound needs an idea of how bright a light is: its kernel is asked from these directions.
+// Number of directions from which a light's kernel is evaluated to estimate its brightness, for the power-over-distance bound.
 constexpr int kProbes = 26;
 
 std::vector<std::string> outputsOf(const rsl::ir::KernelFacts& f, const std::vector<std::string>& extra) {
@@ -32,7 +32,7 @@ float numberOf(const scene::AttributesRef& a, const char* key, float fallback) {
     return p && !p->numbers.empty() ? p->numbers[0] : fallback;
 }
 
-/// Whether an area light gives the mean of its Cl over samples of its geometry, as BMRT and 3Delight had it, and not radiance.
+/// Whether an area light returns the mean of Cl over samples of its geometry, as in BMRT and 3Delight, instead of radiance.
 bool givesMean(const scene::Light& source, const std::string& shader, bool path, Diagnostics& d) {
     static const std::set<std::string> kRadiance = {"slrect", "slpoint", "slspot", "sldirect"}; // as they ship
     const scene::Param* p = source.attributes ? source.attributes->value("light:units") : nullptr;
@@ -48,7 +48,7 @@ bool givesMean(const scene::Light& source, const std::string& shader, bool path,
     return units != "radiance" && !path && !kRadiance.count(shader);
 }
 
-/// What Attribute "light" says of a light whose kernel is known.
+/// Reads Attribute "light" for a light with a kernel.
 void readLightAttributes(BoundLight& l, bool path, Diagnostics& d) {
     l.samples = std::clamp(
         int(numberOf(l.source->attributes, "light:samples", numberOf(l.source->attributes, "light:nsamples", 1))), 1, 1024);
@@ -68,37 +68,37 @@ void readLightAttributes(BoundLight& l, bool path, Diagnostics& d) {
     }
 }
 
-/// Shaders for Pixie mean the point being lit.
+/// Warns: in shaders for Pixie, P is the lit point.
 void warnOfOwnPoint(const ShaderInstance& light, Diagnostics& d) {
     d.reportOnce("ownpoint:" + light.name, {Severity::Warning,
                                             Rie::NoError,
                                             light.place,
-                                            "light \"" + light.name + "\": P is its own place, as it has no area",
+                                            "light \"" + light.name + "\": P is the position of the light, as it has no area",
                                             "Ps is the point being lit; --dialect pixie reads P so",
                                             {}});
 }
 
-/// What the statement that a light comes from makes of it.
+/// Sets the kind of a light by its statement.
 void setLightKind(BoundLight& part, const std::string& block, bool area, bool path, Diagnostics& d) {
     bool solar = block.starts_with(rsl::kBlockSolar);
     if (block == rsl::kBlockOutside) part.kind = LightKind::Ambient;
     else if (block == rsl::kBlockSky || part.instance->name == "envlight") part.kind = LightKind::Environment;
     else if (solar) part.kind = LightKind::Distant;
-    else part.kind = area && part.sentCl < 0 ? LightKind::Area : LightKind::Point; // samples need no geometry
+    else part.kind = area && part.sentCl < 0 ? LightKind::Area : LightKind::Point; // generated samples need no geometry
     part.cone = block == rsl::kBlockCone;
     if (part.kind != LightKind::Area && !((part.kind == LightKind::Environment || part.cone) && path)) part.samples = 1;
-    if (part.sentCl >= 0) { // its samples: each has a turn
+    if (part.sentCl >= 0) { // each of its samples is one iteration
         part.samples = limits::kLightTurns;
         part.shadows |= !path && part.instance->parameters.numbers.count(rsl::kSentShadows) > 0;
     }
     const bool emits = part.instance->parameters.numbers.count(rsl::kEmits) > 0;
     if (part.kind == LightKind::Area && givesMean(*part.source, part.instance->name, path || emits, d)) {
         part.mean = true;
-        part.strategy = LightStrategy::Illuminance; // it has no radiance that trace() could find
+        part.strategy = LightStrategy::Illuminance; // it has no radiance for trace() to find
     }
     if (part.kind != LightKind::Area) part.emitter = nullptr;
-    if (part.instance->name == "slbackground" && !path) part.strategy = LightStrategy::Trace; // rays see it, and nobody is lit
-    if (part.kind != LightKind::Point) part.shadowRadius = -1; // shadows of the others are cast by their geometry, or their angle
+    if (part.instance->name == "slbackground" && !path) part.strategy = LightStrategy::Trace; // rays see it; it lights nothing
+    if (part.kind != LightKind::Point) part.shadowRadius = -1; // other kinds cast shadows by their geometry or angle
     const auto& numbers = part.instance->parameters.numbers;
     if (const auto i = numbers.find(rsl::kImportanceSample); i != numbers.end())
         part.importance = i->second.empty() || i->second[0] != 0;
@@ -112,7 +112,7 @@ static bool givesPhotons(const std::string& name) {
     return std::any_of(std::begin(kPhotonNames), std::end(kPhotonNames), [&](const char* n) { return name == n; });
 }
 
-/// The kernel of a light, with its output parameters and what it gives to the outputs of surfaces.
+/// The kernel of a light, with its output parameters and the outputs that it writes for surfaces.
 BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, bool photons, Diagnostics& d) {
     BoundKernel k;
     std::vector<std::string> extra, outputs;
@@ -125,17 +125,17 @@ BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, bool photons, Di
         else if (const std::string name = OutputName::parameterOf(p.name).text();
                  p.output && p.type.base != rsl::Base::String && std::find(extra.begin(), extra.end(), name) == extra.end())
             extra.push_back(name);
-    // What it gives to the outputs of the surface by outputchannel(), where a display asks for it.
+    // Values for outputs of the surface by outputchannel(), if a display requests them.
     for (const OutputName& name : wanted_)
         if (givesChannel(light, name)) addOutput(light, name, extra);
     for (const char* name : kPhotonNames)
         if (photons) extra.push_back(OutputName::parameterOf(name).text());
-    if (!extra.empty() || sends) { // the kernel of its photons has its outputs, and more behind them
+    if (!extra.empty() || sends) { // the kernel for its photons has the same outputs, followed by more
         outputs = {"L", "Cl", "Ol", "lit"};
         outputs.insert(outputs.end(), extra.begin(), extra.end());
     }
     k = kernel(light, outputs, {}, false, false, d);
-    if (k && !outputs.empty() && k.kernel->facts().blocks.size() != 1) // more outputs than was thought
+    if (k && !outputs.empty() && k.kernel->facts().blocks.size() != 1) // more outputs than estimated
         k = kernel(light, outputsOf(k.kernel->facts(), extra), {}, false, false, d);
     return k;
 }
@@ -151,16 +151,16 @@ void WorldImpl::bindPhotons(BoundLight& l, Diagnostics& d) {
             if (OutputName::parse(outputs[i].name) == OutputName::parameterOf(kPhotonNames[n])) l.photonOutputs[n] = int(i);
 }
 
-/// Where the outputs of one statement of a light lie, and its values.
+/// Finds the outputs of one statement of a light, and its values.
 void WorldImpl::bindLightOutputs(BoundLight& part, int block) {
-    const auto aovsOf = [&](const OutputName& name) { // by number; measureOutputs() makes the place of its first number of them
-        std::vector<int> all;                         // "list[1]" is also one of "list"
+    const auto aovsOf = [&](const OutputName& name) { // by index; measureOutputs() converts to the first component
+        std::vector<int> all;                         // "list[1]" also belongs to "list"
         for (size_t i = 0; i < wanted_.size(); ++i)
             if (wanted_[i] == name || wanted_[i] == OutputName::of(name.name)) all.push_back(int(i));
         return all;
     };
     const auto& outputs = part.kernel.kernel->outputs();
-    std::set<std::string> channels; // "list[1]" may be there twice: of "list", and by itself
+    std::set<std::string> channels; // "list[1]" can occur twice: in "list", and by itself
     for (size_t i = 0; i < outputs.size(); ++i) {
         const OutputName n = OutputName::parse(outputs[i].name);
         const auto ofBlock = [&](const char* name) { return n == OutputName::ofBlock(name, block); };
@@ -307,8 +307,8 @@ scene::LightSet WorldImpl::withParts(const scene::LightSet& lights) const {
     return all;
 }
 
-/// About which directions light leaves an emitter, by how bright it is before points of it and behind them. shared: by lights of
-/// other statements of the same shader.
+/// Estimates the directions in which light leaves an emitter, from its brightness before and behind points of it. shared: lights
+/// of other statements of the shader use the same emitter.
 static void tellFront(BoundLight& l, std::span<const float> front, std::span<const float> back, bool shared) {
     using Shines = Emitter::Shines;
     const auto shines = [](std::span<const float> side) {
@@ -319,7 +319,7 @@ static void tellFront(BoundLight& l, std::span<const float> front, std::span<con
     if (shared) l.emitter->shinesTo(Shines::Both);
 }
 
-/// A point of a light with normal n, asked for its light at `lit`, which faces it.
+/// A query for light at `lit` from a point on the light with normal n, facing it.
 static ShadePoint askedAt(const Vec3& p, const Vec3& n, const Vec3& lit) {
     ShadePoint q;
     q.P = p;
@@ -348,8 +348,8 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
             geometry::Bounds box = l.emitter->bounds();
             l.centre = (box.lo + box.hi) * 0.5f;
             l.radius = length(box.hi - box.lo) * 0.5f;
-            // Radiance does not change along a ray. A kernel whose Cl falls off with the square of the distance along the normal
-            // divides by it itself: what it means is an intensity.
+            // Radiance is constant along a ray. A kernel whose Cl falls off with squared distance along the normal divides by it
+            // itself: its Cl is an intensity.
             float step = std::max(std::sqrt(float(l.emitter->area())), 1e-6f), mean = 0;
             int square = 0, seen = 0;
             std::vector<float> front, back;
@@ -384,7 +384,7 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
                               l.instance->place,
                               "area light \"" + l.instance->name +
                                   "\" divides by the distance itself; its Cl is read as intensity, spread over its surface",
-                              "the Cl of an area light is the radiance that leaves it: without the division it needs no guess",
+                              "Cl of an area light is its radiance: remove the division",
                               {}});
             }
             l.power = mean * float(l.emitter->area()) / float(kPi);

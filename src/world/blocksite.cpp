@@ -4,13 +4,13 @@
 namespace alpenglow::transport {
 
 namespace {
-/// Whether a call asks for lobes.
+/// Whether a call requests lobes.
 bool asksLobes(SiteKind k) {
     return k == SiteKind::Diffuse || k == SiteKind::Specular || k == SiteKind::Phong || k == SiteKind::Trace ||
            k == SiteKind::Subsurface || k == SiteKind::Gather;
 }
 
-/// Whether a trace() has parameters that only Requests::request() knows.
+/// Whether a trace() has only parameters that blocks support.
 bool isPlainTrace(const SiteInfo& s) {
     const TraceSite& t = *s.trace;
     const RaySite& r = *s.rays;
@@ -21,7 +21,7 @@ bool isPlainTrace(const SiteInfo& s) {
            !t.axis && !t.openness && t.fade.strength < 0 && t.records.call == 0;
 }
 
-/// Where the numbers of a distribution lie: those of DistributionParams, row by row.
+/// Finds the rows of a distribution's parameters (DistributionParams).
 void bindDistribution(const SiteInfo& s, LobeArguments& a) {
     const TraceSite& t = *s.trace;
     a.surface = true;

@@ -1,14 +1,14 @@
-// Calls whose lobes are made for whole blocks of points (lanes/stages.h).
+// Calls whose lobes can be processed in blocks of points (lanes/stages.h).
 #pragma once
 #include "world/sites.h"
 
 namespace alpenglow::transport {
 
-/// Where the arguments of a call lie that asks for a lobe and nothing that needs a look at each point; null: another call.
+/// Argument rows of a call that requests a lobe without any work for each point; null: another kind of call.
 std::shared_ptr<const LobeArguments> blockSite(const SiteInfo&);
-/// The index of refraction of a distribution whose call gives none.
+/// Index of refraction of a distribution whose call gives none.
 float defaultEta(const LobeKind&);
-/// Whether lobes are asked for by such calls alone.
+/// Whether all lobe requests of the kernel are such calls.
 bool asksBlocks(const BoundKernel&);
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// How photons become cells and lobes, and what paths ask of them.
+// Builds cells and lobes from photons, and evaluates and samples them.
 #include "world/causticguide.h"
 #include "lobes/sampling.h"
 #include <algorithm>
@@ -11,12 +11,13 @@ namespace alpenglow::transport {
 namespace {
 
 constexpr int32_t kNone = INT32_MIN;
-constexpr size_t kSplit = 40;        ///< photons above which a cell is halved
-constexpr size_t kEnough = 8;        ///< photons below which a cell has the lobes of the cell around it
-constexpr size_t kPhotonsOfLobe = 3; ///< at least
-constexpr size_t kFitted = 1024;     ///< photons that lobes are fitted to, at most
-constexpr float kLeastAngle = .02f;  ///< radians that a lobe covers, seen from the middle of its cell: photons are few
-constexpr float kWiden = 1.5f;       ///< lobes over the spread of their photons, for those that are not among them
+constexpr size_t kSplit = 40;        ///< a cell with more photons is divided
+constexpr size_t kEnough = 8;        ///< a cell with fewer photons uses the lobes of its parent
+constexpr size_t kPhotonsOfLobe = 3; ///< minimum
+constexpr size_t kFitted = 1024;     ///< maximum number of photons for a fit
+/// Smallest radius of a lobe in radians, seen from the centre of its cell, because photons are few
+constexpr float kLeastAngle = .02f;
+constexpr float kWiden = 1.5f; ///< size of lobes relative to the spread of their photons
 constexpr float kMostKappa = 1e5f, kLeastKappa = .05f;
 
 float square(const Vec3& v) { return dot(v, v); }
@@ -36,7 +37,7 @@ Eight load(const float* at) {
 }
 Eight most(Eight a, Eight b) { return a > b ? a : b; }
 
-/// How narrow a lobe is (Lobes) whose aim is so far away, squared.
+/// Concentration of a lobe (Lobes) at this squared distance of its aim.
 template <class F> F kappaOf(F far2, F perRadius2) {
     const F k = far2 * perRadius2;
     return k < kLeastKappa ? F{} + kLeastKappa : k > kMostKappa ? F{} + kMostKappa : k;
@@ -49,12 +50,12 @@ struct CausticGuide::Builder {
     std::span<const GuidePhoton> photons;
     std::vector<Place> places; ///< by photon
     float side;                ///< of the cube
-    float least;               ///< half of a photon's mean power: what a cell without any may have missed
+    float least;               ///< half of a photon's mean power: what an empty cell may have missed
 
     using Ids = std::span<uint32_t>;
     struct Parent {
         Ids ids;
-        int32_t lobes = -1; ///< -1: not fitted yet
+        int32_t lobes = -1; ///< -1: not yet fitted
     };
 
     int32_t fit(Ids);
@@ -62,7 +63,7 @@ struct CausticGuide::Builder {
     int32_t node(Ids, int level, Parent&);
 };
 
-/// Lobes for these photons, by number.
+/// Fits lobes to these photons; returns their index.
 int32_t CausticGuide::Builder::fit(Ids all) {
     std::vector<uint32_t> ids;
     for (size_t i = 0, step = all.size() / kFitted + 1; i < all.size(); i += step) ids.push_back(all[i]);
@@ -72,7 +73,7 @@ int32_t CausticGuide::Builder::fit(Ids all) {
     middle = middle * (1 / float(n));
     std::vector<Vec3> w(n);
     for (size_t k = 0; k < n; ++k) w[k] = towards(middle, photons[ids[k]].mirror);
-    // Farthest first.
+    // Initial centres: farthest point first.
     std::vector<Vec3> axes{w[0]};
     std::vector<float> nearest(n);
     for (size_t k = 0; k < n; ++k) nearest[k] = square(w[k] - axes[0]);
@@ -82,7 +83,7 @@ int32_t CausticGuide::Builder::fit(Ids all) {
         axes.push_back(w[far]);
         for (size_t k = 0; k < n; ++k) nearest[k] = std::min(nearest[k], square(w[k] - axes.back()));
     }
-    // Then each to the middle of those that are nearest to it (Lloyd).
+    // Then each moves to the mean of its nearest photons (Lloyd).
     std::vector<size_t> of(n);
     std::vector<Vec3> aims(axes.size());
     std::vector<float> power(axes.size());
@@ -119,7 +120,7 @@ int32_t CausticGuide::Builder::fit(Ids all) {
     return int32_t(guide.lobes_.size()) - 1;
 }
 
-/// A cell for these photons, or with the lobes of the one around it where they are few.
+/// A cell for these photons; if they are few, with the lobes of the parent.
 int32_t CausticGuide::Builder::cellOf(Ids ids, int level, Parent& around) {
     float power = 0;
     for (const uint32_t i : ids) power += photons[i].power;
@@ -131,7 +132,7 @@ int32_t CausticGuide::Builder::cellOf(Ids ids, int level, Parent& around) {
     return int32_t(guide.cells_.size()) - 1;
 }
 
-/// Halves a cell while it holds many photons. What comes back is as in nodes_.
+/// Divides a cell while it holds many photons. Returns an index as in nodes_.
 int32_t CausticGuide::Builder::node(Ids ids, int level, Parent& around) {
     if (ids.size() <= kSplit || level >= kLevels) return -1 - cellOf(ids, level, around);
     const int shift = kLevels - 1 - level;

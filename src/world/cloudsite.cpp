@@ -24,7 +24,7 @@ clouds::ChannelType channelOf(rsl::Type t) {
     }
 }
 
-/// Where no type is known: by how many numbers there are.
+/// The channel type by number of components, if the type is unknown.
 clouds::ChannelType channelOf(rsl::ir::Kind k) {
     const int n = rsl::ir::components(k);
     return n == 3 ? clouds::ChannelType::Color : n == 16 ? clouds::ChannelType::Matrix : clouds::ChannelType::Float;
@@ -59,7 +59,7 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
     };
     if (!s.strings.empty()) c->name = s.strings[0];
     c->computed = c->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
-    std::vector<size_t> given; // positional arguments that are no strings
+    std::vector<size_t> given; // positional arguments that are not strings
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] != rsl::ir::Kind::String) given.push_back(a);
     const auto at = [&](size_t n) { return n < given.size() ? i.rows[given[n]] : -1; };
@@ -91,7 +91,7 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
         int begin = 0;
         std::map<int, size_t> argument; // by row
         for (size_t a = 0; a < s.argKinds.size(); begin += rsl::ir::components(s.argKinds[a++])) argument[begin] = a;
-        for (const std::string& name : s.names) { // in the order of the call
+        for (const std::string& name : s.names) { // in order of the call
             const int r = row(name.c_str());
             if (isOption(name) || name == rsl::kPairSteady) continue;
             const size_t a = r < 0 ? s.argKinds.size() : argument.at(r);

@@ -8,7 +8,7 @@
 namespace alpenglow::transport {
 
 std::optional<std::string> CloudStore::pathOf(const std::string& name, const SourcePlace& place) {
-    static constexpr MapKind kKind{"point cloud", "what reads it gives 0", "bake3d() in a frame before this one makes it", true,
+    static constexpr MapKind kKind{"point cloud", "lookups return 0", "make it by bake3d() in an earlier frame", true,
                                    "point cloud or brick map"};
     return findMap(name, files_, kKind, diagnostics_, place);
 }
@@ -18,7 +18,7 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
     std::lock_guard lock(mutex_);
     const auto [at, fresh] = maps_.try_emplace(name);
     if (!fresh) return at->second.get();
-    // A stack of pictures or a grid of voxels is looked up as points are.
+    // Image stacks and voxel grids are looked up like point clouds.
     const auto volume = [&]() -> std::shared_ptr<const clouds::CloudMap> {
         std::vector<std::string> folders = {""};
         folders.insert(folders.end(), files_.folders.begin(), files_.folders.end());
@@ -62,7 +62,7 @@ CloudStore::octree(const std::string& name, bool light, const std::optional<clou
     for (const bool lit : {light, true}) // one with light serves both
         if (const auto known = octrees_.find({name, lit, shear}); known != octrees_.end()) return known->second;
     auto made = makeOctree(name, light, shear, place);
-    // Objects may stand in any number of sheared spaces. Which ones are kept changes time only.
+    // Objects can use any number of sheared spaces. Which ones are kept affects time only.
     if (!shear || !made || ++sheared_ <= limits::kShearedOctrees) octrees_[{name, light, shear}] = made;
     return made;
 }
@@ -76,14 +76,14 @@ CloudStore::makeOctree(const std::string& name, bool light, const std::optional<
                                 {s, Rie::BadFile, place, "point cloud \"" + name + "\" " + what, hint, {}});
     };
     if (clouds::isBrickMap(*path)) {
-        report(Severity::Error, "is a brick map, which is no place for rays; it is left out",
-               "give the point cloud that it was made of");
+        report(Severity::Error, "is a brick map, which point-based shadeops cannot read; it is ignored",
+               "use the point cloud that it was made of");
         return nullptr;
     }
     auto cloud = clouds::loadCloud(*path, diagnostics_, place);
     if (!cloud) return nullptr;
     if (cloud->size() > limits::kOctreePoints) {
-        report(Severity::Error, "has more than " + std::to_string(limits::kOctreePoints) + " points; it is left out",
+        report(Severity::Error, "has more than " + std::to_string(limits::kOctreePoints) + " points; it is ignored",
                "alpenglow ptc filter --depth thins it");
         return nullptr;
     }
@@ -96,10 +96,10 @@ CloudStore::makeOctree(const std::string& name, bool light, const std::optional<
     if (cloud->size() == 0) report(Severity::Warning, "has no points", "bake3d() says which surfaces it bakes");
     else if (octree->leftOut() > 0)
         report(octree->points().empty() ? Severity::Error : Severity::Warning,
-               "has " + std::to_string(octree->leftOut()) + " points without area, which are left out",
+               "has " + std::to_string(octree->leftOut()) + " points without area, which are ignored",
                "bake3d() writes a radius and \"_area\"");
     if (light && !octree->lit() && cloud->size() > 0)
-        report(Severity::Warning, "has no channel \"_radiosity\"; what its points send is 0",
+        report(Severity::Warning, "has no channel \"_radiosity\"; its points emit no light",
                "bake3d(..., \"_radiosity\", Ci) writes it");
     return octree;
 }

@@ -1,4 +1,4 @@
-// Point clouds and brick maps that a frame's shaders read, and what they bake.
+// Point clouds and brick maps that the shaders of a frame read, and the data that they bake.
 #pragma once
 #include "clouds/bakelog.h"
 #include "clouds/map.h"
@@ -15,25 +15,24 @@ struct BoundLight;
 class CloudStore {
 public:
     CloudStore(MapFiles files, Diagnostics& d) : files_(std::move(files)), diagnostics_(d) {}
-    /// The map of a name, read when it is first asked for. Null: there is none, which was reported once. Thread safe; the map
+    /// The map of this name, read at first use. Returns null if it does not exist, which is reported once. Thread safe; the map
     /// lives as long as the store.
     const clouds::CloudMap* find(const std::string& name, const SourcePlace&);
 
-    /// The cloud of a name as point-based shadeops see it; `light`: they want what its points send or get. Null: there is none,
-    /// which was reported once. Thread safe. `shear`: where points stand for their space's (clouds/shear.h).
+    /// A point cloud for point-based shadeops; `light`: with emitted or received light. Returns null if it does not exist, which
+    /// is reported once. Thread safe. `shear`: converts positions to a sheared space (clouds/shear.h).
     std::shared_ptr<const clouds::PointOctree> octree(const std::string& name, bool light,
                                                       const std::optional<clouds::Shear>& shear, const SourcePlace&);
 
-    /// Notes that texture3d() has asked a map, and whether it has found anything there. Thread safe.
+    /// Records a texture3d() lookup and whether it found anything. Thread safe.
     void noteLookup(const clouds::CloudMap*, bool found, const SourcePlace&);
-    /// The maps in which texture3d() has found nothing wherever it asked, by name, each with the first of its calls in the order
-    /// of files and lines.
+    /// Maps in which no texture3d() lookup found anything, by name, each with its first call in order of file and line.
     std::vector<std::pair<std::string, SourcePlace>> foundNothing();
 
     clouds::BakeLog baked;
-    /// Some kernel of a surface bakes; some of these calls may want middles of micropolygons. While the world is made.
+    /// Set while the world is built: a surface kernel bakes; one of its calls may request micropolygon centres.
     bool bakes = false, centres = false;
-    /// Where it is asked for, which lights were run: a few points say whether a primitive is baked, but only of what ran there.
+    /// Whether to record which lights run: a few points decide whether a primitive bakes, but only for lights that ran there.
     bool notesLights = false;
     void noteLights(const BoundLight& first, std::span<const BoundLight* const> all);
     std::set<const BoundLight*> lightsRan;
@@ -50,10 +49,10 @@ private:
         bool found = false;
         SourcePlace place;
     };
-    std::map<const clouds::CloudMap*, Asked> asked_; ///< by texture3d()
+    std::map<const clouds::CloudMap*, Asked> asked_; ///< by map of texture3d()
     using OctreeKey = std::tuple<std::string, bool, std::optional<clouds::Shear>>;
     std::map<OctreeKey, std::shared_ptr<const clouds::PointOctree>> octrees_; ///< null: none
-    size_t sheared_ = 0;                                                      ///< of these
+    size_t sheared_ = 0;                                                      ///< number of sheared octrees in octrees_
 };
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// Displacement when shapes are diced: by displacement shaders, by classes that are both, and by surface shaders that move P.
+// Displacement at dicing: by displacement shaders, by classes that are both, and by surface shaders that move P.
 #include "geometry/dice.h"
 #include "geometry/picture_sides.h"
 #include "geometry/placed.h"
@@ -12,8 +12,8 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// What in a kernel that gives P alone cannot be known when shapes are diced; "" when nothing. `moves`: P is not what it was;
-/// `loops`: lights decide, which may be known.
+/// Why a kernel that computes P alone cannot run at dicing; "" if it can. `moves`: P changes; `loops`: P depends on light loops,
+/// which may be possible.
 std::string undiceable(const rsl::ir::Kernel& k, bool& moves, bool& loops) {
     using rsl::ir::Op;
     std::string why;
@@ -39,9 +39,9 @@ bool sendsRays(const BoundKernel& k) {
            });
 }
 
-/// Whether a turn of a light needs its kernel alone: neither geometry, which is not there yet, nor a random number.
+/// Whether one iteration of a light needs only its kernel: no geometry, which does not exist yet, and no random number.
 bool isKnownEarly(const BoundLight& l, bool path) {
-    if (!l.kernel || l.kind == LightKind::Ambient) return true; // it has no turn
+    if (!l.kernel || l.kind == LightKind::Ambient) return true; // it has no iteration
     return l.kind != LightKind::Area && !l.shadows && !sendsRays(l.kernel) &&
            !(path && (l.cone || l.kind == LightKind::Environment));
 }
@@ -53,7 +53,7 @@ BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKe
     const bool path = settings_.hider == Hider::Path;
     const auto& writes = bound.kernel->facts().writes;
     if (std::find(writes.begin(), writes.end(), "P") == writes.end()) return {};
-    Diagnostics quiet; // all of it was said when the surface was compiled
+    Diagnostics quiet; // already reported when the surface was compiled
     auto k = compiler_->analyse(*surface.program, kernelOptions(surface, {"P"}, varying, false, path), quiet);
     if (!k) return {};
     bool moves = false, loops = false;
@@ -63,7 +63,7 @@ BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKe
     if (why.empty()) moving = kernel(surface, {"P"}, varying, false, false, quiet);
     if (why.empty() && loops) {
         const auto sendsStrings = [](const SiteInfo& s) { return s.kind == SiteKind::LightSetup && !s.sentStrings.empty(); };
-        bool late = std::any_of(moving.sites.begin(), moving.sites.end(), sendsStrings); // their kernels come later
+        bool late = std::any_of(moving.sites.begin(), moving.sites.end(), sendsStrings); // their kernels are built later
         eachLight(lights, [&](int l) { return late |= !isKnownEarly(lights_[size_t(l)], path); });
         if (late) why = "light";
     }
@@ -72,8 +72,8 @@ BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKe
                                                Rie::Unimplement,
                                                surface.place,
                                                "surface shader \"" + surface.name + "\" moves P by " + why +
-                                                   ", which is not known when the primitive is diced; it stays where it is",
-                                               "a displacement shader moves primitives",
+                                                   ", which is unknown when the primitive is diced; it is not displaced",
+                                               "use a displacement shader",
                                                {}});
         return {};
     }
@@ -99,7 +99,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
         p.surface = grid.points[i];
         p.P = p.surface.P;
         p.N = p.surface.N;
-        p.I = frame_->options.projection == "perspective" ? p.P : Vec3(0, 0, p.P.z); // as the camera sees it
+        p.I = frame_->options.projection == "perspective" ? p.P : Vec3(0, 0, p.P.z); // as seen from the camera
         p.du = grid.du[i];
         p.dv = grid.dv[i];
         if (b.displacement && turnedOver(shape)) turnOver(p);
@@ -111,7 +111,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
     });
 }
 
-/// Whether shapes of a binding, of which this is one, have points that are not where the primitive has them.
+/// Whether points of this shape differ from the primitive's, for a binding.
 bool WorldImpl::movesPoints(const SurfaceBinding& b, const geometry::Shape& shape) const {
     if (!b.displacement) return bool(b.moveS);
     if (!b.displacementS || b.displacementS.kernel->facts().suspends) return true;
@@ -132,7 +132,7 @@ void WorldImpl::diceShapes(Diagnostics& d) {
     const auto bindingOf = [&](const geometry::Shape& s) -> const SurfaceBinding& {
         return bindings_[size_t(bindingOf_[numberOfShape_.at(&s)])];
     };
-    std::vector<int8_t> moves(bindings_.size(), -1); // -1: not known yet
+    std::vector<int8_t> moves(bindings_.size(), -1); // -1: not yet determined
     for (const geometry::ShapeRef& s : shapes_) {
         const auto b = size_t(bindingOf_[numberOfShape_.at(s->placed() ? s->placed()->geometry().get() : s.get())]);
         if (moves[b] < 0) moves[b] = movesPoints(bindings_[b], *s);

@@ -9,7 +9,7 @@ using geometry::Shape;
 namespace {
 double areaOf(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return .5 * length(cross(b - a, c - a)); }
 
-/// Whether the facets are the surface: then what is cut away of it need not be drawn in vain.
+/// Whether the facets are exactly the surface; then sampling avoids the parts that are cut away.
 bool flat(const Shape& s) {
     for (uint32_t t = 0; t < s.mesh().triangles(); ++t) {
         const geometry::SurfacePoint p = s.evaluateHit(t, 1 / 3., 1 / 3.);
@@ -20,7 +20,7 @@ bool flat(const Shape& s) {
 } // namespace
 
 Cone normalsOf(const Shape& s) {
-    if (s.placed()) return {}; // it may turn
+    if (s.placed()) return {}; // it may rotate
     if (s.exact()) return s.kind() == "Disk" ? Cone{s.evaluate(0, .5, .5).n, 1} : Cone();
     const uint32_t n = s.mesh().triangles();
     Vec3d sum(0.0);
@@ -69,7 +69,7 @@ bool EmitterFacets::place(Vec2 u, float time, geometry::SurfacePoint& point, uin
     const double at = double(u.x) * area();
     const size_t t = size_t(std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, at) - cumulative_.begin());
     const double before = t ? cumulative_[t - 1] : 0, width = cumulative_[t] - before;
-    // What is left of the number says where on the facet: even over a triangle, as its corner is cut off by the root.
+    // The rest of the number gives the position on the facet; the root makes it uniform over a triangle.
     const double side = std::sqrt(width > 0 ? std::clamp((at - before) / width, 0.0, 1.0) : 0.5);
     const geometry::HitRef hit{uint32_t(t), side * (1 - double(u.y)), side * double(u.y), &point, time};
     if (const Shape& b = base(*shape_); b.trimmed() && !b.keepsHit(hit.prim, hit.b1, hit.b2)) return false;

@@ -1,16 +1,16 @@
-// How wide a light sample sees an emitter: as wide as the ray of a lobe that meets it, so that both estimate the same light.
+// Footprint of a light sample on an emitter: equal to that of a lobe's ray that hits it, so that both estimate the same light.
 #pragma once
 #include "lobes/lobe.h"
 #include "world/impl.h"
 
 namespace alpenglow::transport {
 
-/// The half angle in radians that the rays of a lobe widen by: half of the lobe's own, never below that of the ray before.
+/// Half angle in radians by which rays of a lobe widen: half of the lobe's spread, at least that of the incoming ray.
 inline float spreadBehind(const shading::PathRay& ray, float lobeSpread) {
     return std::max(ray.footprint.spread, lobeSpread * 0.5f);
 }
 
-/// Whether a kernel of the light reads du or dv: those of its points matter.
+/// Whether a kernel of the light reads du or dv.
 inline bool usesFootprint(const BoundLight& l) {
     if (l.kernel.plan && l.kernel.plan->usesFootprint()) return true;
     for (const auto& [strings, k] : l.variants)
@@ -18,8 +18,8 @@ inline bool usesFootprint(const BoundLight& l) {
     return false;
 }
 
-/// Fills du and dv of a point of an emitter, whose surface is known, as a ray would have them that starts at `from` and grows by
-/// `spread` per unit of length (spreadBehind()). `ray`: the one that found `from`.
+/// Sets du and dv of a point on an emitter, whose surface is known, for a ray from `from` that widens by `spread` per unit of
+/// length (spreadBehind()). `ray`: the ray that found `from`.
 inline void setEmitterFootprint(shading::ShadePoint& p, const shading::PathRay& ray, const Vec3& from, float spread) {
     const Vec3 way = meetsAt(p.surface) - from;
     const float distance = length(way);

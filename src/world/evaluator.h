@@ -1,4 +1,4 @@
-// Kernels that run while nobody follows rays: while a world is made, and over finished pixels. The integrator has what runs them.
+// Runs kernels outside of ray tracing: while a world is built, and over finished pixels. Implemented by the integrator.
 #pragma once
 #include "world/bound.h"
 #include <functional>
@@ -6,15 +6,15 @@
 
 namespace alpenglow::transport {
 
-/// One thread's. What a kernel's callbacks threw is thrown again.
+/// For one thread. Rethrows exceptions of kernel callbacks.
 class Evaluator {
 public:
     virtual ~Evaluator() = default;
-    /// Runs a kernel that does not wait over points that no ray has met, all with the values of one shader. `of`: the surface
-    /// that they belong to, null: none. `take` sees the outputs; the points are as they were.
+    /// Runs a kernel that does not wait over points without rays, with the parameters of one shader. `of`: the surface that the
+    /// points belong to, or null. `take` receives the outputs; the points are left unchanged.
     virtual void run(const BoundKernel&, const SurfaceBinding* of, std::vector<ShadePoint>& points, const shading::InstanceView&,
                      const std::function<void(const shading::Batch&)>& take) = 0;
-    /// Light arriving at points (ShadePoint::Ps) from one light.
+    /// Evaluates the light from one light at points (ShadePoint::Ps).
     virtual void light(const BoundLight&, std::vector<ShadePoint>&, std::span<LightValue>) = 0;
 };
 

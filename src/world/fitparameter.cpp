@@ -27,7 +27,7 @@ Base baseOf(scene::Type t) {
     }
 }
 
-/// Types that old files take for each other: RISpec had points only, and a matrix is often float[16].
+/// Types that old files interchange: RISpec had points only, and a matrix is often float[16].
 bool alike(Base a, Base b) {
     const auto place = [](Base t) { return t == Base::Point || t == Base::Vector || t == Base::Normal; };
     return a == b || (place(a) && place(b)) || (a == Base::Float && b == Base::Matrix);
@@ -35,7 +35,7 @@ bool alike(Base a, Base b) {
 
 std::string with(const char* article, const std::string& what) { return std::string(article) + " " + what; }
 
-/// "a float", "a color[3]", "an array of strings": the shader's word.
+/// A type in words of a message: "a float", "a color[3]", "an array of strings".
 std::string shown(const rsl::ParameterInfo& p) {
     return p.open ? with("an", "array of " + rsl::toString(p.type.element()) + "s") : with("a", rsl::toString(p.type));
 }
@@ -67,7 +67,7 @@ std::optional<rsl::ParameterValue> fitParameter(const scene::Param& given, const
         value.numbers.assign(3, given.numbers[0]);
         return value;
     }
-    const bool tooLong = p.open && have > want && have % each == 0; // its first elements are taken
+    const bool tooLong = p.open && have > want && have % each == 0; // the first elements are used
     if (have != want && !tooLong) {
         const std::string unit = text ? (want == 1 ? " string" : " strings") : want == 1 ? " number" : " numbers";
         say(Severity::Error,

@@ -1,4 +1,4 @@
-// Whether what a scene gives a shader's parameter is what the shader declares.
+// Checks parameter values from a scene against the declaration in the shader.
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/compiler.h"
@@ -7,10 +7,10 @@
 
 namespace alpenglow::transport {
 
-/// The value as the shader declares it, not yet transformed; of an array of open length as many elements as fit into both it and
-/// limits::kShaderArray. One number is a grey where a color is wanted. Nothing: it is of another type or length, an error was
-/// reported once for the shader, the parameter and what was given, and the default holds. Other types of as many numbers are
-/// taken, with a warning; points, vectors and normals are one type here, and the scene's guesses none.
+/// The value with the declared type, not transformed. Arrays of open length get at most limits::kShaderArray elements. One number
+/// becomes a grey color. Other types with the same number of components are accepted with a warning; point, vector and normal
+/// count as equal, as do types that the scene guessed. Returns nothing if the type or length does not fit: the error is reported
+/// once for each shader, parameter and value, and the default applies.
 std::optional<rsl::ParameterValue> fitParameter(const scene::Param& given, const rsl::ParameterInfo& declared,
                                                 const std::string& shader, const SourcePlace& call, Diagnostics&);
 

@@ -10,11 +10,11 @@ namespace {
 
 using Of = GatherSite::Of;
 
-/// What a name with its prefix means; nothing: it is not known.
+/// Meaning of a prefixed name; nothing: unknown.
 std::optional<std::pair<Of, std::string>> meaning(const std::string& name) {
     static const std::map<std::pair<std::string, std::string>, Of> whole = {{{"surface", "Ci"}, Of::Light},
                                                                             {{"surface", "Oi"}, Of::Opacity},
-                                                                            // Behind the Atmosphere, as surface:Ci here is.
+                                                                            // With the Atmosphere, like surface:Ci here.
                                                                             {{"volume", "Ci"}, Of::Light},
                                                                             {{"volume", "Oi"}, Of::Opacity},
                                                                             {{"ray", "origin"}, Of::Origin},
@@ -37,7 +37,7 @@ std::optional<std::pair<Of, std::string>> meaning(const std::string& name) {
     return std::pair(i->second, rest);
 }
 
-/// Whether a variable holds what is asked for; what shaders, primitives and attributes have is not known here.
+/// Whether a variable has a type that fits the query; types of shader, primitive and attribute values are unknown here.
 bool fits(const GatherSite::Output& o) {
     const bool number = o.of == Of::Length || o.of == Of::SkySolidAngle;
     if (o.of == Of::Surface || o.of == Of::Displacement || o.of == Of::Volume || o.of == Of::Primitive || o.of == Of::Attribute)
@@ -45,7 +45,7 @@ bool fits(const GatherSite::Output& o) {
     return o.elements == 0 && !o.open && o.kind == (number ? rsl::ir::Kind::Float : rsl::ir::Kind::Triple);
 }
 
-/// The outputs of a turn: flags are results that begin with '?', values follow them.
+/// Reads the outputs of an iteration: results that begin with '?' are flags, followed by their values.
 void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<void(const std::string&)>& unknown,
                  const std::function<void(const std::string&)>& unfit) {
     int row = 0;
@@ -105,11 +105,11 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
         if (i.kind == SiteKind::GatherTurn) {
             g->outputs.clear();
             const auto unknown = [&](const std::string& name) {
-                told(i, "\"" + name + "\" is not known; the variable stays as it is",
+                told(i, "\"" + name + "\" is not known; the variable is not changed",
                      "names begin with surface: displacement: volume: primitive: attribute: ray: environment:");
             };
             readOutputs(*i.site, *g, unknown, [&](const std::string& name) {
-                told(i, "the variable of \"" + name + "\" has another type; it stays as it is",
+                told(i, "the variable of \"" + name + "\" has another type; it is not changed",
                      "ray:length and environment:solidangle are floats; the others a colour, a point or a vector");
             });
             for (const GatherSite::Output& o : g->outputs) {
@@ -131,13 +131,13 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
             const auto map = world.textures_->open(category.substr(kSky.size()), world.settings_.texturePaths, place);
             g->sky = &world.skyMaps_.of(map, world.textures_->latLong());
         } else if (!category.empty() && category != "illuminance") {
-            told(i, "the category \"" + category + "\" is not known; \"illuminance\" is taken",
+            told(i, "the category \"" + category + "\" is not known; \"illuminance\" is used",
                  "illuminance, samplepattern, environment:MAP");
         }
         if (const auto d = i.text.find("distribution"); d != i.text.end()) {
             g->cosine = d->second == "cosine";
             if (!g->cosine && d->second != "uniform")
-                told(i, "the distribution \"" + d->second + "\" is not known; uniform is taken", "uniform, cosine");
+                told(i, "the distribution \"" + d->second + "\" is not known; uniform is used", "uniform, cosine");
         }
         g->sent.clear();
         for (const auto& [name, row] : i.named) {

@@ -1,4 +1,4 @@
-// What a gather statement asks for, worked out when its kernel is bound.
+// Arguments of a gather() statement, resolved when its kernel is bound.
 #pragma once
 #include "texture/skydirections.h"
 #include "world/impl.h"
@@ -7,15 +7,15 @@ namespace alpenglow::transport {
 
 struct GatherSite {
     enum class Category : uint8_t { Rays, Directions, Sky };
-    /// Whose value an output is.
+    /// The source of an output's value.
     enum class Of : uint8_t {
         Surface,
         Displacement,
-        Volume, ///< parameters and outputs of the shaders at the hit
+        Volume, ///< parameters and outputs of shaders at the hit
         Light,
         Opacity, ///< surface:Ci and surface:Oi, volume:Ci and volume:Oi
         Primitive,
-        Attribute, ///< of what was hit
+        Attribute, ///< of the primitive that was hit
         Origin,
         Direction,
         Length, ///< of the ray
@@ -23,44 +23,44 @@ struct GatherSite {
         SkyDirection,
         SkySolidAngle ///< of a sample of an environment map
     };
-    /// A row that says whether there is a value, then the value: `rows` of them; of an open array its length stands first.
+    /// A presence row, then `rows` rows of values; an open array begins with its length.
     struct Output {
         Of of;
-        int32_t id = 0;                     ///< its name without the prefix, interned
-        int at = 0, rows = 1, elements = 0; ///< elements: 0 of what is no array
+        int32_t id = 0;                     ///< name without prefix, interned
+        int at = 0, rows = 1, elements = 0; ///< elements: 0 if not an array
         bool open = false;
         rsl::ir::Kind kind = rsl::ir::Kind::Float;
     };
-    int number = 0; ///< of the statement in its kernel
+    int number = 0; ///< index of the statement in its kernel
     Category category = Category::Rays;
-    bool cosine = false; ///< "distribution"; else uniform
+    bool cosine = false; ///< "distribution" "cosine"; else uniform
     int threshold = -1;  ///< row of "othreshold"
     std::vector<Output> outputs;
-    /// Values for parameters of the surface shaders that are met: rows of arguments.
+    /// Values sent to parameters of surface shaders at hits: argument rows.
     struct Sent {
         std::string parameter;
         int row, size;
     };
     std::vector<Sent> sent;
-    int width = 1;                               ///< rows of a ray: whether it hit, then the outputs
-    bool shades = false;                         ///< shaders must run where a ray hits
-    bool light = false;                          ///< and what arrives from there counts
-    bool opacity = false, asks = false;          ///< surface:Oi; parameters and outputs of shaders
-    const texture::SkyDirections* sky = nullptr; ///< the world's
+    int width = 1;                               ///< rows for a ray: whether it hit, then the outputs
+    bool shades = false;                         ///< shaders must run at hits
+    bool light = false;                          ///< and their light counts
+    bool opacity = false, asks = false;          ///< requests surface:Oi; requests parameters and outputs of shaders
+    const texture::SkyDirections* sky = nullptr; ///< owned by the world
 };
 
-/// Fills SiteInfo::gather of the sites of a kernel.
+/// Sets SiteInfo::gather for the call sites of a kernel.
 void linkGathers(BoundKernel&, const rsl::CompiledKernel&, WorldImpl&);
 
-/// What the gathers of shaders name.
+/// Names that gather() statements of shaders use.
 struct GatheredNames {
     std::set<std::string> surface, displacement; ///< "x" of "surface:x", "displacement:x"
-    std::set<std::string> sent;                  ///< "x" of "send:surface:x": parameters, which differ from ray to ray then
-    /// Names of varying parameters of a shader, with those that values are sent to.
+    std::set<std::string> sent;                  ///< "x" of "send:surface:x": parameters that then vary from ray to ray
+    /// Varying parameters of a shader, including those that values are sent to.
     std::vector<std::string> withSent(std::vector<std::string> varying, const ShaderInstance&) const;
 };
 
-/// Adds those of a file of shaders.
+/// Adds the names that a shader file uses.
 void gatheredNames(const rsl::Program&, GatheredNames&);
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// Media that scatter: what volume shaders say of them by their outputs.
+// Homogeneous scattering media: parameters from outputs of volume shaders.
 #include "base/exact.h"
 #include "world/impl.h"
 #include "world/outputs.h"
@@ -11,14 +11,14 @@ namespace {
 
 constexpr float kMostAnisotropy = 0.999f;
 
-/// Whether a shader has an output of that name and type.
+/// Whether a shader has an output of this name and type.
 bool hasOutput(const ShaderInstance& s, const char* name, rsl::Base type) {
     for (const rsl::ParameterInfo& p : s.program->parameters())
         if (p.name == name) return p.output && !p.type.array && p.type.base == type;
     return false;
 }
 
-/// Whether a kernel gives the same at all points.
+/// Whether a kernel is constant in space.
 bool sameEverywhere(const rsl::CompiledKernel& k) {
     bool same = k.sites().empty();
     for (const auto& in : k.inputs()) same &= rsl::InputName::parse(in.name).kind == rsl::InputName::Kind::Parameter;
@@ -102,7 +102,8 @@ void WorldImpl::placeLights(Evaluator& evaluator) {
         if (l.kind != LightKind::Point || !l.kernel || l.kernel.kernel->facts().suspends) continue;
         if (l.sentCl >= 0 || l.asksSurface || l.outL < 0) continue;
         const Vec3 at(transformPoint(l.instance->toCurrent, {0, 0, 0}));
-        std::vector<ShadePoint> q; // about where it may be: a spot light tells its place to what it lights only
+        // Around its possible position: a spot light reveals its position only to points that it lights
+        std::vector<ShadePoint> q;
         for (int k = 0; k < 26; ++k) {
             const int c = k < 13 ? k : k + 1;
             const Vec3 w = normalize(Vec3(float(c % 3 - 1), float(c / 3 % 3 - 1), float(c / 9 - 1)));

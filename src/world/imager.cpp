@@ -1,4 +1,4 @@
-// The imager of a frame, run over finished pixels.
+// Runs the imager of a frame over finished pixels.
 #include "scene/scene.h"
 #include "world/impl.h"
 #include <algorithm>
@@ -22,8 +22,8 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     const BoundKernel& k = imager_.kernel;
     if (!i || !k || k.kernel->facts().suspends) return false;
     const std::unique_ptr<Evaluator> evaluator = evaluators_(*this, d, stop);
-    // alpha is what the shader writes to it; one that only makes its pixels opaque means that, too (methods of classes have no
-    // alpha).
+    // The output alpha is what the shader writes; a shader that only makes pixels opaque sets alpha as well (methods of classes
+    // have no alpha).
     const auto& writes = k.kernel->facts().writes;
     const auto written = [&](const char* name) { return std::find(writes.begin(), writes.end(), name) != writes.end(); };
     const bool opacityOnly = written("Oi") && !written("alpha");
@@ -36,9 +36,9 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
             int at = begin + p;
             const auto width = float(std::max(1, frame_->options.xres)), height = float(std::max(1, frame_->options.yres));
             s.P = {x[at], y[at], 0};
-            s.surface.u = s.surface.s = x[at] / width; // not in RISpec; imagers of Aqsis have them
+            s.surface.u = s.surface.s = x[at] / width; // not in RISpec; imagers of Aqsis use them
             s.surface.v = s.surface.t = y[at] / height;
-            // The picture is the surface and a pixel the footprint.
+            // The picture acts as the surface, a pixel as the footprint.
             s.surface.dPdu = {width, 0, 0};
             s.surface.dPdv = {0, height, 0};
             s.surface.dsdu = s.surface.dtdv = 1;

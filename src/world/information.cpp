@@ -24,7 +24,7 @@ Information matrixOf(const Matrix& m) {
     return i;
 }
 
-/// What attributes are that no request has set (docs/options.md).
+/// Values of attributes that no request has set (docs/options.md).
 std::optional<Information> unset(const std::string& name, bool path) {
     static const std::map<std::string, float> numbers = {{"GeometricApproximation:motionfactor", 1.f},
                                                          {"displacementbound:sphere", 0.f},
@@ -67,7 +67,7 @@ std::optional<Information> unset(const std::string& name, bool path) {
     return std::nullopt;
 }
 
-/// What the shaders say about displacement: sizes add up, the displacement shader names the space (seed).
+/// Displacement bound by shaders: sizes add up; the displacement shader defines the space.
 std::optional<Information> shaderBound(const SurfaceBinding& b, bool space) {
     const std::string name = space ? rsl::kBoundSpace : rsl::kBoundSize;
     float sum = 0;
@@ -122,7 +122,7 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
     if (b && name == "shaderdisplacementbound:sphere") return shaderBound(*b, false);
     if (b && name == "shaderdisplacementbound:coordinatesystem") return shaderBound(*b, true);
     if (const scene::Param* set = a.value(name)) return given(set);
-    if (name == "light:units") { // what an area light gives that has not said it
+    if (name == "light:units") { // result of an area light that does not set it
         const bool emits = a.areaLight >= 0 && size_t(a.areaLight) < w.lights_.size();
         return words((emits ? w.lights_[size_t(a.areaLight)].mean : w.settings().hider != Hider::Path) ? "samples" : "radiance");
     }
@@ -156,7 +156,7 @@ std::optional<Information> optionOf(const WorldImpl& w, const std::string& name)
     else if (name == "Ri:Hider" || name == "Hider")
         return words(w.settings().hider == Hider::Path       ? "path"
                      : w.settings().hider == Hider::Raytrace ? "raytrace"
-                                                             : "hidden"); // the one that runs
+                                                             : "hidden"); // the active hider
     else if (name == "Ri:Display" || name == "Display") return words(o.displays.empty() ? "ri.pic" : o.displays[0].name);
     else if (name == "trace:maxdepth") v = {float(w.maxDepth_)};
     else if (const auto i = o.values.find(name); i != o.values.end()) return given(&i->second);

@@ -9,7 +9,7 @@
 namespace alpenglow::transport {
 
 namespace {
-constexpr int kBins = 12; // places where a node may be split, by axis
+constexpr int kBins = 12; // candidate split positions, by axis
 
 float area(const geometry::Bounds& b) {
     const Vec3 d = b.hi - b.lo;
@@ -27,7 +27,7 @@ LightFront frontOf(const Cone& c) {
     return f;
 }
 
-/// Squared distance of a node, never below the square of its radius.
+/// Squared distance of a node, at least its squared radius.
 double distance2(const LightNode& n, const Vec3& at) {
     const Vec3 to = centreOf(n) - at;
     return std::max(double(dot(to, to)), n.radius2);
@@ -39,7 +39,7 @@ geometry::Bounds boundsOf(const LightBound& l) {
     b.add(l.centre + Vec3(l.radius));
     return b;
 }
-/// How much of all directions light leaves to whose front is a cone, in units that do not matter (Conty Estevez and Kulla).
+/// Solid-angle measure of emission with front directions in a cone, up to a constant (Conty Estevez and Kulla).
 double spreadOf(const Cone& c) {
     const double angle = c.all() ? kPi : exact::acos(double(c.cosine)), end = std::min(angle + kPi / 2, kPi);
     const auto [s, k] = exact::sinCos(angle);
@@ -58,7 +58,7 @@ Cone around(const Cone& a, const Cone& b) {
     const Vec3d side = Vec3d(b.axis) - Vec3d(a.axis) * double(dot(a.axis, b.axis));
     if (!(wide < kPi) || !(dot(side, side) > 0)) return {};
     const auto [s, c] = exact::sinCos(wide - wideA);
-    // Rounded outwards: what lies within one of both lies within.
+    // Rounded outwards: contains everything within either cone.
     return {Vec3(normalize(Vec3d(a.axis) * c + normalize(side) * s)), float(std::max(exact::cos(wide) - 1e-6, -1.0))};
 }
 
@@ -86,7 +86,7 @@ LightChooser::LightChooser(std::span<const LightBound> lights, int wanted) : wan
     }
 }
 
-// Where to part the lights of a node in two: powers times the areas of their boxes become least, else half and half.
+// Where to split the lights of a node: minimises powers times surface areas of the boxes, else halves.
 size_t LightChooser::split(std::span<int> order, std::span<const LightBound> lights) const {
     geometry::Bounds centres;
     for (int i : order) centres.add(lights[size_t(i)].centre);
@@ -173,7 +173,7 @@ void LightChooser::build(int node, std::span<int> order, std::span<const LightBo
     }
     const size_t half = split(order, lights);
     const int left = int(nodes_.size());
-    n.next = left; // the reference ends here: the children may move the nodes
+    n.next = left; // the reference ends here: adding children may move the nodes
     nodes_.resize(nodes_.size() + 2);
     fronts_.resize(nodes_.size());
     nodes_[size_t(left)].parent = nodes_[size_t(left) + 1].parent = node;
@@ -187,7 +187,7 @@ double LightChooser::towards(const Node& n, const Vec3& at) const {
     const Vec3d to = Vec3d(at) - Vec3d(centreOf(n));
     const double d2 = dot(to, to);
     if (!(d2 > n.radius2)) return 1;
-    // The angle to the axis, less that of the cone and that under which the node is seen; none may become negative.
+    // The angle to the axis, minus that of the cone and the angular size of the node; neither may become negative.
     double cosine = dot(to, Vec3d(front.axis[0], front.axis[1], front.axis[2])) / std::sqrt(d2),
            sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     const auto less = [&](double c, double s) {
@@ -210,7 +210,7 @@ double LightChooser::importance(const Node& n, const Vec3& at) const {
 LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
     Cut c;
     for (int r : roots_) c.part[c.size++] = {r, 0};
-    // Nodes that are wide as seen from here are opened, in the order of the tree, while there is room.
+    // Opens nodes that are wide as seen from here, in tree order, while there is room.
     for (int k = 0; k < c.size && c.size < kCut;) {
         const Node& n = nodes_[size_t(c.part[k].node)];
         const Vec3 to = centreOf(n) - at;
@@ -228,7 +228,7 @@ LightChooser::Cut LightChooser::cutAt(const Vec3& at) const {
 double LightChooser::probability(double share, const Node& n) const { return wanted_ * ((1 - kBlind) * share + n.blind); }
 
 inline std::pair<double, double> LightChooser::divide(const Node& n, const Vec3& at) const {
-    // Of the children's importances only the ratio matters: each is taken times both squared distances, for one division.
+    // Only the ratio of the children's importances matters: both are multiplied by both squared distances, for a single division.
     const Node &a = nodes_[size_t(n.next)], &b = nodes_[size_t(n.next) + 1];
     double l = n.everywhere() ? a.power : a.power * distance2(b, at);
     double r = n.everywhere() ? b.power : b.power * distance2(a, at);
@@ -241,11 +241,9 @@ inline std::pair<double, double> LightChooser::divide(const Node& n, const Vec3&
 void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
     chosen.clear();
     const Cut c = cutAt(at);
-    // Nodes in which a tooth of the comb lies, or which are certain: where they begin in the running sum, and the teeth before
-    // it.
-    // One without a tooth can have no leaf with one; a certain one is certain in its leaves. All go down together, a level a
-    // turn:
-    // the work on one does not wait for another's.
+    // Nodes that contain a tooth of the comb, or that are certain: their start in the cumulative sum, and the teeth before it. A
+    // node without a tooth has no leaf with one; a certain node is certain in its leaves. All descend together, one level an
+    // iteration, so the work on one does not wait for another's.
     struct Entered {
         int node;
         double share, begin, teeth;
@@ -277,9 +275,9 @@ void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
             const double shareA = e.share * left, shareB = e.share * right;
             const double pa = probability(shareA, a), pb = probability(shareB, b), middle = e.begin + pa;
             const double below = teethBelow(middle), end = teethBelow(middle + pb);
-            // Which of both is chance: no branch but where it is rare.
+            // Both outcomes are random: branch only on the rare case.
             const bool inA = (pa >= 1) | (below > e.teeth), inB = (pb >= 1) | (end > below);
-            if (!(inA | inB)) { // roundings took its tooth
+            if (!(inA | inB)) { // its tooth was lost to rounding
                 e = entered[--size];
                 continue;
             }
@@ -294,14 +292,14 @@ void LightChooser::choose(const Vec3& at, float u, Chosen& chosen) const {
 
 int LightChooser::pick(const Vec3& at, float u, float& p) const {
     const Cut c = cutAt(at);
-    // The part of the cut whose range holds u, then the side of each node on the way down.
+    // Finds the part of the cut whose range contains u, then the side of each node on the way down.
     double left = u, share = 0;
     int node = -1;
     for (int k = 0; k < c.size; ++k) {
         const Node& n = nodes_[size_t(c.part[k].node)];
         const double s = c.total > 0 ? c.part[k].importance / c.total : n.count / double(leafOf_.size());
         const double range = probability(s, n);
-        node = c.part[k].node; // the last one takes what rounding leaves
+        node = c.part[k].node; // the last one absorbs rounding
         share = s;
         if (left < range) break;
         if (k + 1 < c.size) left -= range;
@@ -321,7 +319,7 @@ int LightChooser::pick(const Vec3& at, float u, float& p) const {
 float LightChooser::pmf(int light, const Vec3& at) const {
     if (light < 0 || size_t(light) >= leafOf_.size()) return 0;
     const Cut c = cutAt(at);
-    // Up to the node of the cut, then down again: the path is as deep as the tree.
+    // Up to the node of the cut, then down again: the path is as long as the tree is deep.
     int node = leafOf_[size_t(light)];
     double share = 1;
     for (;;) {

@@ -1,5 +1,4 @@
-// Choosing among many lights: about limits::kLightsSampled of a list get a sample at a vertex, in time that grows with the
-// logarithm of their number.
+// Sampling of many lights: chooses about limits::kLightsSampled of a list for a vertex, in time logarithmic in their number.
 #pragma once
 #include "base/vec.h"
 #include "lanes/lighttree.h"
@@ -10,63 +9,62 @@
 
 namespace alpenglow::transport {
 
-/// Directions within an angle about an axis.
+/// Directions within an angle of an axis.
 struct Cone {
     Vec3 axis;
-    float cosine = -1; ///< of the angle; -1: all directions
+    float cosine = -1; ///< cosine of the angle; -1: all directions
     bool all() const { return !(cosine > -1); }
-    /// The same turned about.
+    /// The opposite cone.
     Cone opposite() const { return {-axis, cosine}; }
 };
-/// One that holds both.
+/// A cone that contains both.
 Cone around(const Cone&, const Cone&);
 
-/// What the choice knows of a light. Power: luminance that it brings to a point at distance 1; of lights without a place
-/// (Distant), anywhere. Lengths in current space.
+/// A light for the chooser. power: luminance at distance 1, or anywhere for lights without a position (Distant). Lengths in
+/// current space.
 struct LightBound {
     Vec3 centre;
     float radius = 0;
     float power = 0;
-    bool everywhere = false; ///< its light does not fall off
-    Cone front = {};         ///< its light leaves at less than a right angle from one of these directions
+    bool everywhere = false; ///< no falloff with distance
+    Cone front = {};         ///< light leaves at less than a right angle to one of these directions
 };
 
-/// A tree over the lights of one list. The probability of a light is about `wanted` times its share of power over squared
-/// distance, times the greatest cosine at which its light can leave towards the point: one that faces away takes nothing. A part
-/// of it, kBlind, is the same for all lights, so that one whose power was not seen (a spot between the probes) is found too.
+/// A tree over the lights of a list. The probability of a light is about `wanted` times its share of power over squared distance,
+/// times the largest cosine at which its light can leave toward the point, so lights that face away get none. A fraction kBlind
+/// is equal for all lights, so that lights whose power was missed (a spot between the probes) are also found.
 ///
-/// A point far from a node sees it as one light; near ones are opened first (the cut), and their shares are of all nodes of the
-/// cut. Below the cut a node's probability is split between its two children by the same measure. One random number chooses: a
-/// comb with teeth one apart over the running sum of the probabilities of the leaves (systematic sampling), so that a light is in
-/// the choice with exactly its probability, which divides what it gives. After Conty Estevez and Kulla, Importance Sampling of
-/// Many Lights with Adaptive Tree Splitting (2018); the comb makes the number of lights the same at all points.
+/// Far nodes act as one light; near ones are opened first (the cut), with shares relative to the whole cut. Below the cut a
+/// node's probability is divided between its children by the same measure. One random number makes the choice by systematic
+/// sampling: a comb of unit spacing over the cumulative probabilities of the leaves includes each light with exactly its
+/// probability, by which its contribution is divided. After Conty Estevez and Kulla, Importance Sampling of Many Lights with
+/// Adaptive Tree Splitting (2018); the comb makes the number of lights equal at all points.
 class LightChooser {
 public:
-    /// A tenth of the choice does not look at power.
+    /// Fraction of the choice that ignores power.
     static constexpr double kBlind = 0.1;
-    /// The most that may be `wanted`.
+    /// Maximum of `wanted`.
     static constexpr int kMost = LightTree::kMost;
 
     LightChooser() = default;
-    /// Lights are numbered as they come here. `wanted`: how many of them a choice has, about; 1 to kMost.
+    /// Lights are numbered in this order. `wanted`: approximate number of lights in a choice, 1 to kMost.
     LightChooser(std::span<const LightBound> lights, int wanted);
     bool empty() const { return leafOf_.empty(); }
 
     using Chosen = std::vector<std::pair<int, float>>;
-    /// Lights for a point, with their probabilities (0 to 1], each once, in any order. `u`: a random number, 0 <= u < 1.
+    /// Chooses lights for a point, each at most once, with their probabilities in (0, 1], in any order. `u`: random number in [0,
+    /// 1).
     void choose(const Vec3& at, float u, Chosen& chosen) const;
-    /// Of a chooser that wants one: a single light, and its probability, which is pmf(). Not where it is empty. A number that
-    /// lies evenly
-    /// in the range that chose the light is lost.
+    /// For wanted = 1: chooses one light; p: its probability, equal to pmf(). Uses up u. The chooser must not be empty.
     int pick(const Vec3& at, float u, float& p) const;
-    /// The probability that choose(), or pick(), takes this light.
+    /// Probability that choose() or pick() includes this light.
     float pmf(int light, const Vec3& at) const;
-    /// For stages over blocks (lanes/stages.h); good as long as this is.
+    /// For stages over blocks (lanes/stages.h); valid as long as this object.
     LightTree tree() const;
 
 private:
     using Node = LightNode;
-    /// A node of the cut, and its share of importance in the whole.
+    /// A node of the cut, and its importance relative to the whole.
     struct Part {
         int node;
         double importance;
@@ -81,17 +79,17 @@ private:
     void build(int node, std::span<int> order, std::span<const LightBound> lights);
     size_t split(std::span<int> order, std::span<const LightBound> lights) const;
     double importance(const Node&, const Vec3& at) const;
-    /// The greatest cosine at which light of a node can leave towards a point, 0 to 1.
+    /// Largest cosine at which light of a node can leave toward a point, 0 to 1.
     double towards(const Node&, const Vec3& at) const;
     Cut cutAt(const Vec3& at) const;
     double probability(double share, const Node&) const;
-    /// Shares of the children in that of their parent.
+    /// Fractions of the children in their parent's share.
     std::pair<double, double> divide(const Node&, const Vec3& at) const;
 
     std::vector<Node> nodes_;
     std::vector<LightFront> fronts_; ///< by node
     std::vector<int> leafOf_;        ///< by light
-    std::vector<int> roots_;         ///< of lights with a place, and of the others
+    std::vector<int> roots_;         ///< of lights with a position, and of the others
     int wanted_ = 1;
 };
 

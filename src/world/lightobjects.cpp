@@ -7,7 +7,7 @@
 namespace alpenglow::transport {
 
 namespace {
-constexpr char kPlace[] = "shader@"; // no space of a scene: it has sixteen numbers behind it
+constexpr char kPlace[] = "shader@"; // not a space name of a scene: followed by sixteen numbers
 constexpr rsl::Type kColor{rsl::Base::Color, 0};
 } // namespace
 
@@ -61,7 +61,7 @@ bool readsOwnPoint(const rsl::Shader& light) {
 std::string spaceAt(const Matrix& toCurrent) {
     std::ostringstream out;
     out.imbue(std::locale::classic());
-    out.precision(17); // as many digits as give the number back
+    out.precision(17); // enough digits to recover the number
     out << kPlace;
     for (int k = 0; k < 16; ++k) out << (k ? " " : "") << toCurrent.m[k / 4][k % 4];
     return out.str();

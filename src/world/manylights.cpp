@@ -1,12 +1,12 @@
-// Which lights get a sample at a vertex. With few, each does; with more than limits::kLightsSampled about that many at the first
-// vertex of a path and limits::kLightsSampledDeeper behind it, by LightChooser. What a chosen light gives is divided by the
-// probability of the choice: the mean stays the same.
+// Which lights are sampled at a vertex. Up to limits::kLightsSampled lights: all. Otherwise LightChooser chooses about that many
+// at the first vertex of a path, and limits::kLightsSampledDeeper at later ones. Contributions are divided by the probability of
+// the choice, so the mean is unchanged.
 #include "world/impl.h"
 
 namespace alpenglow::transport {
 
 namespace {
-/// Whether the light's kernel needs nothing but its parameters and the point: then lights may share a call.
+/// Whether the light's kernel needs only its parameters and the point, so that lights may share a call.
 bool sharesCalls(const BoundLight& l, bool media) {
     if (!l.kernel || l.kernel.kernel->facts().suspends || l.asksSurface || l.channels || l.sentCl >= 0) return false;
     if (l.kind == LightKind::Area && (l.hazy || media)) return false;
@@ -16,7 +16,7 @@ bool sharesCalls(const BoundLight& l, bool media) {
     });
 }
 
-/// Whether a kernel asks for light over lobes, which sample lights.
+/// Whether a kernel requests lobes that sample lights.
 bool hasLobes(const BoundKernel& k) {
     return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.lobe != nullptr; });
 }
@@ -30,7 +30,7 @@ bool hasLobes(const SurfaceBinding& b) {
 
 void WorldImpl::groupLights(Diagnostics& d) {
     std::map<std::tuple<const rsl::CompiledKernel*, int, LightKind>, size_t> known; // one block of one program
-    std::vector<std::vector<int>> like; // in the order of their first lights: that of pointers differs from run to run
+    std::vector<std::vector<int>> like; // in order of first lights: the order of pointers differs from run to run
     for (size_t i = 0; i < lights_.size(); ++i)
         if (const BoundLight& l = lights_[i]; sharesCalls(l, !media_.empty())) {
             const auto [at, fresh] = known.try_emplace({l.kernel.kernel.get(), l.outCl, l.kind}, like.size());
@@ -60,7 +60,7 @@ bool WorldImpl::getsSamples(const BoundLight& l) const {
 }
 
 void WorldImpl::makeChoosers(Diagnostics& d) {
-    // Every emitter of a scene may have a list of its own, with all lights that came before it: a tree is made where lobes ask.
+    // Every emitter of a scene may have a list of its own, of all lights before it: trees are built only for lists with lobes.
     std::vector<char> asks(lightLists_.size(), hasLobes(primitiveHit_));
     for (const SurfaceBinding& b : bindings_)
         if (hasLobes(b)) asks[size_t(b.lightList)] = 1;
@@ -76,7 +76,8 @@ void WorldImpl::makeChoosers(Diagnostics& d) {
         }
         return LightChooser(bounds, wanted);
     };
-    // Grain shows at the first vertex of a path: behind it fewer do (docs/noise.md). In media rays go by one choice everywhere.
+    // Noise shows at the first vertex of a path; fewer samples suffice at later ones (docs/noise.md). In media all vertices use
+    // the same chooser.
     const int deeper = media_.empty() ? limits::kLightsSampledDeeper : limits::kLightsSampled;
     bool many = false;
     for (size_t i = 0; i < lightLists_.size(); ++i)

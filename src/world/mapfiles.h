@@ -1,4 +1,4 @@
-// Maps by their names: point clouds, photon maps and Ptex files are looked up in one way.
+// Looks up map files by name: point clouds, photon maps and Ptex files.
 #pragma once
 #include "base/file.h"
 
@@ -6,23 +6,23 @@ namespace alpenglow::transport {
 
 /// Where maps are looked up.
 struct MapFiles {
-    std::vector<std::string> folders; ///< behind the current one; what Option "searchpath" "texture" names
+    std::vector<std::string> folders; ///< searched after the current folder; from Option "searchpath" "texture"
     ReadPolicy read;
 };
 
-/// What messages say of the maps of a kind.
+/// Texts for messages about a kind of map.
 struct MapKind {
     const char* name;         ///< "point cloud"
-    const char* missing;      ///< follows `there is no <NAME>; `: what is done without it
-    const char* hint;         ///< what makes such maps
-    bool byBaseName = true;   ///< a file of the same name in another folder of the path serves
-    const char* names = name; ///< all that may bear the name: "point cloud or brick map"
+    const char* missing;      ///< follows `there is no <NAME>; `: what happens without it
+    const char* hint;         ///< how to make such maps
+    bool byBaseName = true;   ///< accepts a file of the same name in another folder of the path
+    const char* names = name; ///< all kinds of files with such names: "point cloud or brick map"
 };
 
-/// Whether there is a file of this name. `outside`: one that may not be read. Reports nothing.
+/// Whether a file of this name exists. `outside`: set to a path that may not be read. Reports nothing.
 std::optional<FoundFile> lookUpMap(const std::string& name, const MapFiles&, const MapKind&, std::string* outside);
-/// The path of a map. Nothing: there is none, or it may not be read, which was reported; so is one that is not where its name
-/// says.
+/// The path of a map. Returns nothing if it does not exist or may not be read, which is reported; so is a map found in another
+/// place than its name says.
 std::optional<std::string> findMap(const std::string& name, const MapFiles&, const MapKind&, Diagnostics&, const SourcePlace&);
 
 } // namespace alpenglow::transport

@@ -1,6 +1,5 @@
-// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that goes on behind a surface, to the side that its N
-// points away from, is in the Interior of the primitive; on the other side in its Exterior. A surface with neither bounds
-// nothing.
+// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that continues on the side that N points away from is in
+// the Interior of the primitive; on the other side it is in the Exterior. A surface with neither bounds no volume.
 #include "world/mediaabout.h"
 #include <algorithm>
 
@@ -13,14 +12,14 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
     if (inside < 0 && outside < 0) return m;
     const bool fromInside = dot(in, n) > 0, toInside = dot(to, n) < 0;
     if (toInside) {
-        const bool below = m.topPriority() > insidePriority && m.has(inside); // what counts there is another
+        const bool below = m.topPriority() > insidePriority && m.has(inside); // another medium overrides it
         if (!fromInside) m.push(inside, insidePriority);
-        else if (inside >= 0 && m.top() != inside && !below) m.push(inside, insidePriority); // began in here unknown
+        else if (inside >= 0 && m.top() != inside && !below) m.push(inside, insidePriority); // the ray started inside
         return m;
     }
     if (fromInside) m.leave(inside);
     if (outside < 0 || m.top() == outside) return m;
-    if (m.count) --m.count; // it takes the place of what was known to be there
+    if (m.count) --m.count; // replaces the known medium there
     m.push(outside, outsidePriority);
     return m;
 }
@@ -30,9 +29,9 @@ void WorldImpl::findEye() { eye_ = mediaAbout(*this, Vec3(0, 0, 0), 0); }
 Media mediaAbout(const WorldImpl& world, const Vec3& at, float time) {
     Media about;
     if (world.media_.empty()) return about;
-    // A point is inside of what rays to both sides leave without having entered it. Two opposite ways tell a closed surface from
-    // one that is seen from behind; no axis, so that it is rarely along an edge.
-    std::vector<int> left[2]; // bindings, the innermost first
+    // A point is inside a medium if rays in both directions leave it without having entered. Two opposite directions tell a
+    // closed surface from one seen from behind; the line is along no axis, so it rarely hits an edge.
+    std::vector<int> left[2]; // bindings, innermost first
     for (int side = 0; side < 2; ++side) {
         accel::Ray ray;
         ray.org = at;

@@ -18,7 +18,7 @@ struct Box {
             b[2 * k + 1] = std::max(b[2 * k + 1], p[k]);
         }
     }
-    /// A solid of revolution about z.
+    /// Adds a solid of revolution about z.
     void turn(float radius, float from, float to) {
         add(-std::fabs(radius), -std::fabs(radius), from);
         add(std::fabs(radius), std::fabs(radius), to);

@@ -1,4 +1,4 @@
-// Whether rays of the camera are the only ones that a frame sends. Then what they do not come to need not be there.
+// Whether a frame traces camera rays only. Then geometry that they cannot reach may be left out.
 #include "scene/scene.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"
@@ -7,7 +7,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Whether a call is answered without a ray, and without points of whole surfaces. What is not listed may not be.
+/// Whether a call needs neither rays nor points of complete surfaces. Unlisted calls may need them.
 bool sendsNothing(const SiteInfo& s) {
     switch (s.kind) {
     case SiteKind::Ambient:
@@ -16,7 +16,7 @@ bool sendsNothing(const SiteInfo& s) {
     case SiteKind::Phong:
     case SiteKind::Illuminance:
     case SiteKind::Texture:
-    case SiteKind::Environment: // of maps: with rays it is a trace()
+    case SiteKind::Environment: // of maps; with rays it is a trace()
     case SiteKind::Shadow:
     case SiteKind::Printf:
     case SiteKind::Message:
@@ -37,7 +37,7 @@ bool sendsNothing(const SiteInfo& s) {
     case SiteKind::Text:
     case SiteKind::Texture3d:
     case SiteKind::Ptexture:
-        return s.sentStrings.empty(); // strings that are sent make kernels that are not there yet
+        return s.sentStrings.empty(); // sent strings make kernels that do not exist yet
     default:
         return false;
     }
@@ -56,7 +56,7 @@ bool WorldImpl::onlyCameraRays() const {
         interpolates_ || settings_.bsdfOnly || settings_.lightOnly)
         return false;
     for (const BoundLight& l : lights_) {
-        // A light on geometry gives its mean; any other that has a place to lie is looked for by rays.
+        // An area light with a mean needs no rays; any other with an extent does.
         if (l.shadows || !sendsNothing(l.kernel) || (l.kind == LightKind::Area && !l.mean) || l.kind == LightKind::Environment)
             return false;
         for (const auto& [key, kernel] : l.variants)

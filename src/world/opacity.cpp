@@ -1,4 +1,4 @@
-// What surfaces take from shadow rays: a number where it is known beforehand, else the kernel that tells it.
+// Attenuation of shadow rays by surfaces: a constant if known in advance, else a kernel.
 #include "world/impl.h"
 #include "world/surfaces.h"
 #include <algorithm>
@@ -14,7 +14,7 @@ void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
         byOpacity_.clear.push_back(!opaque);
         if (!opaque) byOpacity_.clearBounds.add(shapes_[i]->bounds());
     }
-    constexpr size_t kFew = 24; // triangles: as many as are searched without a tree
+    constexpr size_t kFew = 24; // triangles: searched without a tree
     std::vector<geometry::ShapeRef> shapes;
     std::vector<uint32_t> seen;
     size_t triangles = 0;
@@ -26,13 +26,13 @@ void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
         byOpacity_.numbers.push_back(uint32_t(i));
     }
     if (triangles > kFew || fades_ || accel_->hasSolids() || unmade_) return;
-    Diagnostics said; // by the whole
+    Diagnostics said; // messages come from the complete shader
     byOpacity_.few = std::make_unique<accel::Accel>(shapes, seen, said);
     if (!byOpacity_.few->takesRows()) byOpacity_.few.reset();
 }
 
 void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
-    ray.tnear = std::nextafter(h.t, 0.f); // other surfaces may lie just there
+    ray.tnear = std::nextafter(h.t, 0.f); // other surfaces may be at the same distance
     ray.passed = h.distance;
     ray.excludeShape = h.shape;
     ray.excludePrim = h.prim;
@@ -51,7 +51,7 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     BoundKernel k;
     const rsl::Shader& text = surface->program->shader();
     if (text.object && std::any_of(text.nested.begin(), text.nested.end(), [](const auto& f) { return f->name == "opacity"; })) {
-        // What the method opacity() gives stops rays, whatever the methods behind it make of Oi.
+        // The method opacity() determines shadows, whatever later methods do to Oi.
         auto alone = std::make_shared<ShaderInstance>(*surface);
         alone->parameters.strings[rsl::kOpacityAlone] = "1";
         surface = alone;

@@ -1,4 +1,4 @@
-// Outputs of shaders as displays ask for them: which there are, and how many numbers each has.
+// Shader outputs that displays request: which exist, and their number of components.
 #include "world/outputs.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"
@@ -7,7 +7,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Of a channel that outputchannel() makes; 0 when no call does.
+/// Width of a channel made by outputchannel(); 0 if no call makes it.
 int channelWidth(const ShaderInstance& shader, const rsl::OutputName& name) {
     const std::string& base = name.name;
     const bool element = name.element >= 0;
@@ -25,7 +25,7 @@ int channelWidth(const ShaderInstance& shader, const rsl::OutputName& name) {
     return most;
 }
 
-/// Numbers of an output of the shader; 0 when it has none of that name.
+/// Components of a shader's output; 0 if it has none of that name.
 int widthIn(const ShaderInstance& shader, const rsl::OutputName& name) {
     const std::string& base = name.name;
     const bool element = name.element >= 0;
@@ -61,7 +61,7 @@ void addOutput(const ShaderInstance& shader, const rsl::OutputName& name, std::v
     const auto& parameters = shader.program->parameters();
     const rsl::ShaderKind kind = shader.program->kind();
     const bool oneOfMany =
-        kind == rsl::ShaderKind::Light || kind == rsl::ShaderKind::Volume; // what others gave stays where it does not give
+        kind == rsl::ShaderKind::Light || kind == rsl::ShaderKind::Volume; // values by others remain where it writes none
     const bool channel = std::none_of(parameters.begin(), parameters.end(), declares) && channelWidth(shader, name) > 0;
     if (givesPerhaps(shader, name) || (oneOfMany && channel)) outputs.push_back(rsl::OutputName::given(base).text());
     outputs.push_back(name.text());
@@ -124,7 +124,7 @@ void WorldImpl::measureOutputs() {
         const std::string& text = settings_.outputs[k];
         int width = kNumbers.count(text) ? 1 : kTriples.count(text) ? 3 : 0;
         if (width == 0)
-            for (const bool perhaps : {false, true}) { // who may give it at some points counts where nobody gives it for certain
+            for (const bool perhaps : {false, true}) { // possible writers count only if there is no certain one
                 int found = 0;
                 for (const ShaderInstance* i : shaders)
                     if (givesPerhaps(*i, name) == perhaps) found = std::max(found, widthIn(*i, name));
@@ -132,7 +132,7 @@ void WorldImpl::measureOutputs() {
             }
         if (width == 0 && !shapes_.empty()) missingOutputs_.push_back(text);
         if (width == 0 && k < settings_.outputWidths.size())
-            width = settings_.outputWidths[k]; // nobody gives it: zeros, as the display says
+            width = settings_.outputWidths[k]; // no shader writes it: zeros, with the display's width
         outputWidths_.push_back(width > 0 ? width : 3);
     }
     for (LightOutputPlace& p : lightOutputs_) {

@@ -1,20 +1,20 @@
-// Outputs of shaders as displays ask for them.
+// Shader outputs that displays request.
 #pragma once
 #include "world/bound.h"
 
 namespace alpenglow::transport {
 
-/// Whether a shader or its co-shaders give an output of that name ("list[1]" is an element of "list").
+/// Whether a shader or its co-shaders have an output of that name ("list[1]" is an element of "list").
 bool gives(const ShaderInstance&, const rsl::OutputName&);
-/// The same of outputchannel() alone.
+/// The same for outputchannel() only.
 bool givesChannel(const ShaderInstance&, const rsl::OutputName&);
-/// Whether a shader gives an output only where it makes that name when it runs.
+/// Whether a shader computes the name at run time, so that it may write this output.
 bool givesPerhaps(const ShaderInstance&, const rsl::OutputName&);
-/// The outputs of a kernel that make up the AOV of a name: of an array all its elements. Empty: it has none.
+/// Indices of a kernel's outputs that form the AOV of a name; all elements for an array. Empty: none.
 std::vector<int> outputsNamed(const shading::Batch&, const rsl::OutputName&);
-/// Adds to the outputs of a kernel one that displays ask for, and before it the one that tells where it is given.
+/// Appends an output that displays request, and before it the one that tells where it is written.
 void addOutput(const ShaderInstance&, const rsl::OutputName&, std::vector<std::string>& outputs);
-/// False where the shader might have made this output at the point, and did not.
+/// Returns false if the shader could have written this output at the point, and did not.
 bool givenAt(const shading::Batch&, const rsl::OutputName&, int point);
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// Outputs that displays ask for and that light reaches get kernels of their own (integrator/lightoutputs.cpp): which they are.
+// Selects the outputs that displays request and that receive light; they get kernels of their own (integrator/lightoutputs.cpp).
 #include "world/surfaces.h"
 #include <algorithm>
 #include <tuple>
@@ -7,15 +7,15 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// What makes two sites ask for the same, wherever they are in the text. Arguments are compared by value when it runs.
+/// Identity of a call, independent of its place in the text. Arguments are compared by value at run time.
 auto callOf(const rsl::ir::Site& s) {
-    std::vector<std::pair<std::string_view, std::string_view>> pairs; // but what the compiler says of its kernel
+    std::vector<std::pair<std::string_view, std::string_view>> pairs; // without the pairs that the compiler adds
     for (size_t k = 0; k < s.names.size(); ++k)
         if (s.names[k] != rsl::kPairApart) pairs.emplace_back(s.names[k], s.pairStrings[k]);
     return std::tuple(s.op, s.strings, std::move(pairs), s.argKinds);
 }
 
-/// By site of `of`, the first site of `in` that is the same call; -1: none.
+/// For each call site of `of`, the first site of `in` with the same call; -1: none.
 std::vector<int> sameCalls(const BoundKernel& of, const BoundKernel& in) {
     std::vector<int> same;
     for (const SiteInfo& s : of.sites) {
@@ -35,11 +35,11 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
     const auto asked = [&](const std::string& name) {
         return std::find(wanted.begin(), wanted.end(), rsl::OutputName::parse(name)) != wanted.end();
     };
-    if (std::none_of(outputs.begin() + 2, outputs.end(), asked)) return; // Ci and Oi are the first
+    if (std::none_of(outputs.begin() + 2, outputs.end(), asked)) return; // Ci and Oi are the first two
     const auto slots = world_.lightOfOutputs(*b.surface, outputs, varying, path_);
     Names plain = outputs, beside{};
     for (const std::string& name : outputs)
-        if (rsl::OutputName::parse(name).parameter) beside.push_back(name); // what lights ask for
+        if (rsl::OutputName::parse(name).parameter) beside.push_back(name); // lights query it
     std::vector<char> aside(wanted.size(), 0);
     for (size_t k = 0; k < wanted.size(); ++k) {
         bool light = false, good = true;
@@ -75,7 +75,7 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
         }
     }
     if (b.lightOutputs.empty()) return;
-    if (!path_) { // a kernel that waits anyway gives all of them at once, and follows the same rays
+    if (!path_) { // a kernel that waits computes all of them at once, with the same rays
         const BoundKernel alone = world_.kernel(*b.surface, plain, varying, false, path_, diagnostics_);
         if (alone && alone.kernel->facts().suspends) return b.lightOutputs.clear();
     }
@@ -94,7 +94,7 @@ void SurfaceBinder::bindEntering(SurfaceBinding& b, const Names& varying) {
     if (site == b.surfaceS.sites.end()) return;
     Names outputs{rsl::kEntering, rsl::OutputName::given(rsl::kEntering).text()};
     for (const std::string& name : outputsOf(b))
-        if (rsl::OutputName::parse(name).parameter) outputs.push_back(name); // what lights ask for
+        if (rsl::OutputName::parse(name).parameter) outputs.push_back(name); // lights query it
     b.entering = world_.kernel(*b.surface, outputs, varying, true, path_, diagnostics_, rsl::kEntering);
     if (!b.entering || !b.entering.kernel->facts().suspends) return;
     const SourcePlace place = placeOf(*site->site, *b.surfaceS.kernel);
@@ -103,7 +103,7 @@ void SurfaceBinder::bindEntering(SurfaceBinding& b, const Names& varying) {
                              Rie::Unimplement,
                              place,
                              "subsurface(): its \"irradiance\" waits for rays (" + b.entering.kernel->facts().whyNot +
-                                 "), so that it is not used: what enters is found from the lights",
+                                 "), so it is not used: the entering light is computed from the lights",
                              "sums and products with what does not depend on light need not wait",
                              {}});
     b.entering = {};

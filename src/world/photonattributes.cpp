@@ -30,7 +30,7 @@ PhotonModel modelOf(const scene::Attributes& a, Diagnostics& d) {
     return PhotonModel::Shader;
 }
 
-/// What Attribute "visibility" "photon" says; nothing: it is not there.
+/// Attribute "visibility" "photon"; nothing: not set.
 std::optional<bool> seenByPhotons(const scene::Attributes& a) {
     const scene::Param* p = a.value("visibility:photon");
     if (!p) return std::nullopt;

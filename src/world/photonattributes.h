@@ -1,19 +1,19 @@
-// What attributes and calls say of photons.
+// Photon attributes and calls.
 #pragma once
 #include "world/impl.h"
 
 namespace alpenglow::transport {
 
-/// Attribute "photon" of a surface; names that are not known are reported. `meets` and `meetsBoth`: WorldImpl::bindPhotons().
+/// Reads Attribute "photon" of a surface; reports unknown names. WorldImpl::bindPhotons() sets `meets` and `meetsBoth`.
 PhotonBinding photonsOf(const scene::Attributes&, Diagnostics&);
 
-/// Tells surfaces apart whose photonsOf() or visibility differ; "" without attributes of photons.
+/// A key that differs for surfaces with different photonsOf() or visibility; "" without photon attributes.
 std::string photonKey(const scene::Attributes&);
 
-/// A photonmap() or caustic(). The world is told which maps it asks for.
+/// Arguments of a photonmap() or caustic() call. Registers the maps that it needs with the world.
 std::shared_ptr<const PhotonSite> photonSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
 
-/// Whether a light emits photons: Attribute "light" "emitphotons"; nothing: it is not said.
+/// Attribute "light" "emitphotons": whether a light emits photons; nothing: not set.
 std::optional<bool> emitsPhotons(const BoundLight&);
 
 } // namespace alpenglow::transport

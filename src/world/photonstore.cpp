@@ -5,9 +5,9 @@ namespace alpenglow::transport {
 
 namespace {
 
-constexpr MapKind kKind{
-    "photon map", "it gives no light",
-    "Hider \"photon\" makes it, and so does rendering where lights have Attribute \"light\" \"int emitphotons\" 1", false};
+constexpr MapKind kKind{"photon map", "lookups return no light",
+                        "Hider \"photon\" writes it; rendering makes it if lights have Attribute \"light\" \"int emitphotons\" 1",
+                        false};
 
 } // namespace
 

@@ -1,4 +1,4 @@
-// The photon maps that a frame's shaders ask for, and the photons of progressive passes.
+// Photon maps that the shaders of a frame read, and the photons of progressive passes.
 #pragma once
 #include "base/matrix.h"
 #include "photons/photongrid.h"
@@ -15,43 +15,44 @@ class CausticGuide;
 
 class PhotonStore {
 public:
-    /// Photons come from files in the space of the world; `worldToCamera` takes them to that of rays.
+    /// Photons in files are in world space; `worldToCamera` converts them to the space of rays.
     PhotonStore(MapFiles files, const Matrix& worldToCamera, Diagnostics& d)
         : files_(std::move(files)), worldToCamera_(worldToCamera), diagnostics_(d) {}
 
-    // While a world is made: what its shaders ask for.
-    /// A photonmap() of this name; where the call stands.
+    // While a world is built: the maps that its shaders read.
+    /// Registers a photonmap() of this name, with the place of the call.
     void asks(const std::string& name, const SourcePlace&);
-    /// Some caustic(), some indirectdiffuse(): the maps of the surfaces' attributes are asked for.
+    /// A caustic() or indirectdiffuse() call needs the maps named by surface attributes.
     bool asksCaustics = false, asksGlobal = false;
-    /// Names that the shaders ask for by themselves.
+    /// Names that shaders give themselves.
     const std::map<std::string, SourcePlace>& asked() const { return asked_; }
 
-    /// The map of a name, from set(), or else from a file that is read when it is first asked for. Null: there is none, which was
+    /// The map of a name: from set(), or from a file that is read at first use. Returns null if it does not exist, which is
     /// reported once. Thread safe; the map lives as long as the store.
     const photons::PhotonMap* find(const std::string& name, const SourcePlace&);
-    /// Whether there is such a file or map; reads nothing.
+    /// Whether such a file or map exists; reads nothing.
     bool has(const std::string& name) const;
-    /// A map that was made for this frame. Nobody looks maps up meanwhile.
+    /// Adds a map made for this frame. Call while no thread looks maps up.
     void set(const std::string& name, std::shared_ptr<const photons::PhotonMap>);
 
-    /// The photons of one sample of every pixel; null: none. Passes change while nobody follows rays.
+    /// The photons for one sample of every pixel; null: none. Passes change only while no thread traces.
     const photons::PhotonGrid* pass(uint32_t sample) const {
         return sample - firstPass_ < passes_.size() ? passes_[sample - firstPass_].get() : nullptr;
     }
-    /// Passes for samples from `first` on, in the place of those before. lights: by light, whether its photons are in them.
+    /// Sets the passes for samples from `first` on and removes earlier ones. lights: by light, whether the passes contain its
+    /// photons.
     void setPasses(uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>> passes);
     std::vector<uint8_t> lightsOfPasses;
-    /// Null: paths find caustics by chance alone. Changes while nobody follows rays.
+    /// Null: paths find caustics by chance only. Changes only while no thread traces.
     std::shared_ptr<const CausticGuide> guide;
-    float widthOfPasses = 0; ///< photons follow lobes whose spread is below, in radians, as they do mirrors
+    float widthOfPasses = 0; ///< photons treat lobes with a smaller spread, in radians, as mirrors
 
 private:
     MapFiles files_;
     Matrix worldToCamera_;
     Diagnostics& diagnostics_;
     std::mutex mutex_;
-    std::map<std::string, std::shared_ptr<const photons::PhotonMap>> maps_; ///< null: none
+    std::map<std::string, std::shared_ptr<const photons::PhotonMap>> maps_; ///< null: does not exist
     std::map<std::string, SourcePlace> asked_;
     uint32_t firstPass_ = 0;
     std::vector<std::unique_ptr<photons::PhotonGrid>> passes_;

@@ -1,4 +1,4 @@
-// What is to be known of the points of hits and emitters: what kernels read, and what the integrator does.
+// What must be known about points of hits and emitters: what kernels and the integrator read.
 #include "world/emitterfootprint.h"
 
 namespace alpenglow::transport {
@@ -6,7 +6,7 @@ namespace alpenglow::transport {
 namespace {
 
 uint32_t needsOf(const BoundLight& l) {
-    if (!l.kernel || l.hazy) return geometry::kNeedAll; // a volume shader runs there too
+    if (!l.kernel || l.hazy) return geometry::kNeedAll; // a volume shader also runs there
     uint32_t needs = l.kernel.plan->needs();
     for (const auto& [strings, k] : l.variants) needs |= k.plan->needs();
     return needs | (usesFootprint(l) ? uint32_t(geometry::kNeedPartials) : 0);
@@ -15,9 +15,9 @@ uint32_t needsOf(const BoundLight& l) {
 } // namespace
 
 void WorldImpl::setPointNeeds() {
-    // Lights may ask about the surface that they light, and footprints are taken by partial derivatives.
+    // Lights may query the lit surface, and footprints use partial derivatives.
     uint32_t always = footprints_ ? geometry::kNeedPartials : 0;
-    if (ptex_) always |= geometry::kNeedUV | geometry::kNeedPartials; // places on faces
+    if (ptex_) always |= geometry::kNeedUV | geometry::kNeedPartials; // positions on faces
     for (const BoundLight& l : lights_) {
         if (!l.kernel) continue;
         always |= l.kernel.plan->litNeeds();
@@ -25,12 +25,12 @@ void WorldImpl::setPointNeeds() {
     }
     for (BoundLight& l : lights_) {
         l.pointNeeds = needsOf(l) | always;
-        if (l.emitter) l.pointNeeds |= geometry::kNeedPartials; // the density of a point is by them
+        if (l.emitter) l.pointNeeds |= geometry::kNeedPartials; // needed for the density of a point
         for (int part : l.parts) l.pointNeeds |= needsOf(lights_[size_t(part)]);
     }
     if (primitiveHit_) always |= primitiveHit_.plan->needs();
     for (SurfaceBinding& b : bindings_) {
-        b.pointNeeds = geometry::kNeedAll; // for shaders that hand on points, or whole sets of variables
+        b.pointNeeds = geometry::kNeedAll; // shaders that pass points, or whole sets of variables, to others
         if (b.displacement || b.displacementS || b.moveS || b.atmosphere.shader || b.inside >= 0 || b.outside >= 0 ||
             !b.surfaceS || lightsAsk_)
             continue;

@@ -39,14 +39,14 @@ std::shared_ptr<const PointSite> pointSite(const SiteInfo& i, const rsl::Compile
     for (int n = 0; name("filenames[" + std::to_string(n) + "]");) ++n;
     if (const std::string space = text("coordsystem"); !space.empty()) p->space = space;
     p->spaceRow = row("coordsystem");
-    std::vector<int> given; // positional arguments that are no strings
+    std::vector<int> given; // positional arguments that are not strings
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] != rsl::ir::Kind::String) given.push_back(i.rows[a]);
     p->point = given.empty() ? -1 : given[0];
     p->normal = given.size() < 2 ? -1 : given[1];
     p->blocks = s.op == "occlusion";
     p->cone = row("coneangle") >= 0 ? row("coneangle") : row("samplecone");
-    if (result("bent") >= 0 && given.size() > 2) p->cone = given[2]; // AIR's form
+    if (result("bent") >= 0 && given.size() > 2) p->cone = given[2]; // the form of AIR
     p->axis = row("axis");
     p->maxDistance = row("maxdist");
     p->maxHit = row("maxhitdist");

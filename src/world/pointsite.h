@@ -1,14 +1,14 @@
-// What a point-based occlusion(), indirectdiffuse() or subsurface() says, worked out when the kernel is bound.
+// Arguments of a point-based occlusion(), indirectdiffuse() or subsurface(), resolved when the kernel is bound.
 #pragma once
 #include "clouds/hemisphere.h"
 #include "world/sites.h"
 
 namespace alpenglow::transport {
 
-/// Rows of arguments, or -1; `value` and what follows it: rows of results, or -1.
+/// Argument rows, or -1; from `value` on: result rows, or -1.
 struct PointSite {
-    std::vector<int32_t> names; ///< of clouds: interned
-    std::vector<int> nameRows;  ///< of those that are known only when the shader runs
+    std::vector<int32_t> names; ///< names of clouds, interned
+    std::vector<int> nameRows;  ///< of names computed at run time
     std::string space = "world";
     int spaceRow = -1;
     int point = -1, normal = -1;
@@ -19,12 +19,12 @@ struct PointSite {
     bool uniform = false;
     bool blocks = false;           ///< occlusion()
     texture::Handle map = nullptr; ///< "environmentmap"
-    Matrix toMap;                  ///< current to "environmentspace"
+    Matrix toMap;                  ///< current space to "environmentspace"
     int value = -1, environment = -1, openTowards = -1, blocked = -1;
     SubsurfaceSite below; ///< of subsurface()
 };
 
-/// Whether a call is answered from point clouds.
+/// Whether a call reads point clouds.
 bool readsPoints(const SiteInfo&);
 std::shared_ptr<const PointSite> pointSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
 /// "front", "back", "both" or "reversed".

@@ -1,16 +1,16 @@
-// What a ptexture() says, worked out when the kernel is bound.
+// Arguments of a ptexture() call, resolved when the kernel is bound.
 #pragma once
 #include "ptex/filter.h"
 #include "world/sites.h"
 
 namespace alpenglow::transport {
 
-/// Rows of arguments, or -1.
+/// Argument rows, or -1.
 struct PtexSite {
-    bool computed = false; ///< each point names its file, in row 0; else SiteInfo::nameId
+    bool computed = false; ///< file name computed for each point, in row 0; else SiteInfo::nameId
     int channel = -1, face = -1;
-    std::vector<int> rows; ///< s, t, and steps of them (ds/dx, dt/dx, ds/dy, dt/dy); or eight numbers: four corners
-    bool own = false;      ///< no coordinates are given: those of the face, where it has some
+    std::vector<int> rows; ///< s, t and their differences (ds/dx, dt/dx, ds/dy, dt/dy); or eight numbers: four corners
+    bool own = false;      ///< no coordinates given: uses those of the face, if any
     int count = 1;
     int fill = -1, width = -1, swidth = -1, twidth = -1, blur = -1, sblur = -1, tblur = -1;
     ptex::Kernel kernel = ptex::Kernel::Gaussian;

@@ -1,4 +1,4 @@
-// Ptex files that a frame's shaders read.
+// Ptex files that the shaders of a frame read.
 #pragma once
 #include "ptex/ptexfile.h"
 #include "world/mapfiles.h"
@@ -10,7 +10,7 @@ namespace alpenglow::transport {
 class PtexStore {
 public:
     PtexStore(MapFiles files, Diagnostics& d);
-    /// The file of a name, opened when it is first asked for. Null: there is none, which was reported once. Thread safe; it lives
+    /// The file of a name, opened at first use. Returns null if it does not exist, which is reported once. Thread safe; it lives
     /// as long as the store.
     const ptex::Texture* find(const std::string& name, const SourcePlace&);
 
@@ -19,7 +19,7 @@ private:
     Diagnostics& diagnostics_;
     std::shared_ptr<ptex::Cache> cache_;
     std::mutex mutex_;
-    std::map<std::string, std::shared_ptr<const ptex::Texture>> textures_; ///< null: none
+    std::map<std::string, std::shared_ptr<const ptex::Texture>> textures_; ///< null: does not exist
 };
 
 } // namespace alpenglow::transport

@@ -1,5 +1,5 @@
-// Whom rays may meet: "subset", "excludesubset", "hitsides" and "hitmode" of the shadeops that trace, and the groups of objects
-// that Attribute "grouping" "membership" makes (3Delight manual, table 6.10; docs/options.md).
+// Which shapes rays hit: "subset", "excludesubset", "hitsides" and "hitmode" of tracing shadeops, and groups by Attribute
+// "grouping" "membership" (3Delight manual, table 6.10; docs/options.md).
 #include "world/raysets.h"
 #include <bit>
 #include <set>
@@ -11,7 +11,7 @@ using shading::HitMode;
 
 namespace {
 
-/// Names between blanks and commas.
+/// Names separated by blanks and commas.
 std::vector<std::string> namesIn(const std::string& text) {
     std::vector<std::string> names(1);
     for (const char c : text)
@@ -65,7 +65,7 @@ const uint8_t* ShapeSubsets::find(const WorldImpl& world, const std::string& wan
     if (!fresh) return at->second.data();
     std::vector<uint8_t>& take = at->second;
     take.reserve(world.shapes_.size() + 1);
-    const scene::Attributes* last = nullptr; // of a row of shapes with the same attributes
+    const scene::Attributes* last = nullptr; // of consecutive shapes with the same attributes
     uint8_t taken = 0;
     for (const geometry::ShapeRef& s : world.shapes_) {
         if (&s->attributes() != last) {
@@ -80,7 +80,7 @@ const uint8_t* ShapeSubsets::find(const WorldImpl& world, const std::string& wan
         }
         take.push_back(taken);
     }
-    take.push_back(0); // never empty
+    take.push_back(0); // not empty
     return take.data();
 }
 
@@ -100,7 +100,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
                                        {Severity::Warning,
                                         Rie::BadToken,
                                         place,
-                                        op + "(): \"" + name + "\" \"" + word + "\" is not known; it is taken as not given",
+                                        op + "(): \"" + name + "\" \"" + word + "\" is not known; it is ignored",
                                         known,
                                         {}});
     };

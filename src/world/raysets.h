@@ -1,19 +1,19 @@
-// What trace(), transmission() and their kin say about the rays they send.
+// Optional ray parameters of trace(), transmission() and similar calls.
 #pragma once
 #include "world/impl.h"
 #include <optional>
 
 namespace alpenglow::transport {
 
-/// The first text of an attribute; "" where it is not set.
+/// The first string of an attribute; "" if not set.
 std::string attributeText(const scene::Attributes&, const char* key);
-/// "front", "back" ("reversed"), "both"; "primitive", "shader", "default". Nothing for other words.
+/// "front", "back" ("reversed"), "both"; "primitive", "shader", "default". Returns nothing for other words.
 std::optional<accel::Sides> sidesOf(const std::string& word);
 std::optional<shading::HitMode> modeOf(const std::string& word);
-/// "specular" (and what is not known), "diffuse", "transmission".
+/// "specular" (also for unknown words), "diffuse", "transmission".
 RayType rayTypeOf(const std::string& word);
 
-/// Reads the optional parameters of a call; words that are not known are reported.
+/// Reads the optional parameters of a call; reports unknown words.
 std::shared_ptr<const RaySite> raySite(const SiteInfo&, WorldImpl&, const SourcePlace&);
 
 } // namespace alpenglow::transport

@@ -8,10 +8,10 @@ namespace alpenglow::transport {
 
 namespace {
 
-constexpr size_t kMostRecords = size_t(1) << 20; ///< of a picture; what more there is to find is found exactly, point by point
-constexpr float kLeast = 1.5f;                   ///< pixels that a record reaches at least
+constexpr size_t kMostRecords = size_t(1) << 20; ///< for a picture; beyond that hemispheres are sampled exactly, point by point
+constexpr float kLeast = 1.5f;                   ///< minimum radius of a record, in pixels
 
-/// 2 to the power of it, the least that is no less than 2 x; x > 0 and finite.
+/// Exponent of the smallest power of 2 that is at least 2 x; x > 0 and finite.
 int levelOf(float x) { return std::clamp(int(std::bit_cast<uint32_t>(x) >> 23 & 255) - 127 + 2, -100, 100); }
 
 bool earlier(const LightRecord& a, const LightRecord& b) { return a.place < b.place; }
@@ -31,7 +31,7 @@ void LightRecord::take(const std::array<Vec3, 3>& axes, int rings, int turns, co
         if (way[i] < 1e37f) nearness += 1 / double(std::max(way[i], 1e-30f));
     }
     light = light / float(seen.size());
-    const auto around = [&](float part, bool along) { // a direction in the plane, or the one a quarter of a turn further
+    const auto around = [&](float part, bool along) { // a direction in the plane, or a quarter turn further
         const Vec2 c = unitCircle(part);
         return along ? axes[0] * c.x + axes[1] * c.y : axes[1] * c.x - axes[0] * c.y;
     };
@@ -52,12 +52,12 @@ void LightRecord::take(const std::array<Vec3, 3>& axes, int rings, int turns, co
             differs(edge, at(j, k), at(j, k - 1), (std::sqrt(outer) - std::sqrt(inner)) / float(kPi));
         }
     }
-    // As far as it may change by about all of itself, but some pixels at least and at most.
+    // Radius: where it may change by about its own value, within limits in pixels.
     float r = nearness > 0 ? float(std::min(double(seen.size()) / nearness, 1e30)) : 1e30f;
     for (int c = 0; c < 3; ++c)
         if (const float slope = length(moved[size_t(c)]); slope * r > light[c]) r = light[c] / slope;
     const float least = kLeast * pixel / change;
-    if (r < least) // the gradients are those of what is nearer
+    if (r < least) // the gradients come from nearer surfaces
         for (Vec3& m : moved) m = m * (r / least);
     distance = std::max(std::min(std::max(r, least), std::max(most, kLeast) * pixel / change), 1e-30f);
 }
@@ -76,9 +76,9 @@ struct CubeHash {
     }
 };
 
-/// What is near to one of two neighbours is near to the other, too: none sees things farther away than the other does, and the
-/// way between them (Krivanek 2005). A record whose rays began behind a wall, or missed what touches the surface close by, says
-/// nothing of the surface about it. New are those from number `fresh` on, in their order: threads change nothing.
+/// Neighbour clamping: a surface near one of two neighbours is near the other, so no distance may exceed the other's plus the
+/// distance between them (Krivanek 2005). A record whose rays started behind a wall, or missed a touching surface, does not
+/// represent its surroundings. New records start at `fresh`, in their order, so that threads change nothing.
 void agreeOnDistances(std::vector<LightRecord>& all, size_t fresh) {
     std::unordered_map<Cube, std::vector<uint32_t>, CubeHash> cubes;
     std::vector<int> levels;
@@ -143,7 +143,8 @@ bool LightRecords::find(uint64_t call, const Vec3& P, const Vec3& N, Color& ligh
             const Vec3 d = P - r.P;
             const float error = length(d) / r.distance + std::sqrt(std::max(0.f, 1 - dot(N, r.N)));
             if (!(error < r.change)) continue;
-            if (dot(d, N + r.N) < -.02f * r.distance * r.change) continue; // it lies before P, where more may be seen
+            // The record is in front of P, where more may be visible
+            if (dot(d, N + r.N) < -.02f * r.distance * r.change) continue;
             const float w = 1 / std::max(error, 1e-4f) - 1 / r.change;
             const Vec3 axis = cross(r.N, N);
             Color here;
@@ -163,7 +164,7 @@ void LightRecords::add(const LightRecord& r) {
     added_.push_back(r);
     const size_t room = kMostRecords - std::min(records_.size(), kMostRecords);
     if (added_.size() < 2 * kMostRecords) return;
-    // Only the first are kept, whoever came first: the others may as well go now.
+    // Only the first in order are kept, regardless of threads, so the others can be dropped now.
     std::nth_element(added_.begin(), added_.begin() + long(room), added_.end(), earlier);
     added_.resize(room);
 }

@@ -1,8 +1,8 @@
-// Light of hemispheres that is found at few points and interpolated between them, where a shader asks for that ("maxvariation").
+// Irradiance caching: hemispheres are sampled at few points and interpolated where a shader allows it ("maxvariation").
 //
-// Ward, Rubinstein and Clear 1988; gradients of Ward and Heckbert 1992; their limits of Krivanek 2005. Records are found in
-// passes of camera rays, coarse to fine. While a pass runs only those of the passes before it are read, so neither threads nor
-// the order of rays change a bit.
+// Ward, Rubinstein and Clear 1988; gradients by Ward and Heckbert 1992; their limits by Krivanek 2005. Records are made in passes
+// of camera rays, coarse to fine. A pass reads only records of earlier passes, so neither threads nor the order of rays change a
+// bit.
 #pragma once
 #include "base/vec.h"
 #include <array>
@@ -15,29 +15,30 @@
 
 namespace alpenglow::transport {
 
-/// What arrives at a point, and how that changes about it. Camera space.
+/// Irradiance at a point, with gradients. Camera space.
 struct LightRecord {
-    Vec3 P, N;                         ///< N unit
-    Color light;                       ///< mean radiance over the hemisphere, weighted by the cosine
-    std::array<Vec3, 3> turned, moved; ///< by channel: by an axis times an angle, radians; per unit of distance
-    float distance = 0;                ///< about how far away is what it sees; never 0
-    float change = 0;                  ///< it is used as far as this part of `distance`, or so many radians
-    uint64_t call = 0;                 ///< of what it is a record: others do not read it
-    /// Pixel and path that found it: the order of records.
+    Vec3 P, N;   ///< N unit
+    Color light; ///< mean radiance over the hemisphere, weighted by the cosine
+    /// By channel: rotational gradient (axis times angle, radians); translational gradient, per unit of distance
+    std::array<Vec3, 3> turned, moved;
+    float distance = 0; ///< mean distance of visible surfaces, approximate; > 0
+    float change = 0;   ///< valid within this fraction of `distance`, or within this angle in radians
+    uint64_t call = 0;  ///< key of the call; other calls ignore the record
+    /// Pixel and path that made it: defines the order of records.
     std::tuple<int, int, uint32_t, uint32_t, uint32_t> place;
 
-    /// Takes the record's strata: `rings` about N, each cut into `turns`, cells of equal weight by the cosine. The ray of cell
-    /// (j, k) brings seen[j * turns + k] from `way` away, 1e38 for nothing. axes: turn 0, a quarter of a turn, N. `pixel`: the
-    /// width of a pixel there; `most`: pixels that the record may reach at most.
+    /// Computes the record from strata: `rings` around N, each divided into `turns`, cells of equal cosine weight. The ray of
+    /// cell (j, k) saw radiance seen[j * turns + k] at distance `way`, 1e38 without a hit. axes: azimuth 0, a quarter turn, N.
+    /// `pixel`: width of a pixel there; `most`: maximum radius in pixels.
     void take(const std::array<Vec3, 3>& axes, int rings, int turns, const std::vector<Color>& seen,
               const std::vector<float>& way, float pixel, float most);
 };
 
 class LightRecords {
 public:
-    /// What the records say at P with the normal N, unit. False: too few are near. Thread safe, but not against keep().
+    /// Interpolates records at P with unit normal N. Returns false if too few are near. Thread safe, except against keep().
     bool find(uint64_t call, const Vec3& P, const Vec3& N, Color& light) const;
-    /// For the next passes. Thread safe.
+    /// Adds a record for the next passes. Thread safe.
     void add(const LightRecord&);
     /// Takes what was added; returns how many there are.
     size_t keep();
@@ -55,7 +56,7 @@ private:
     std::mutex mutex_;
     std::vector<LightRecord> added_, records_;
     std::unordered_map<Cell, std::vector<uint32_t>, CellHash> cells_; ///< records that reach into a cube of side 2^level
-    std::vector<int> levels_;                                         ///< that have some, ascending
+    std::vector<int> levels_;                                         ///< levels in use, ascending
 };
 
 } // namespace alpenglow::transport

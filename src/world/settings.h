@@ -1,4 +1,4 @@
-// How a frame is to be followed: what the command line and the hider say.
+// Settings of a frame: from the command line and the hider.
 #pragma once
 #include "base/file.h"
 #include "base/readlog.h"
@@ -11,13 +11,13 @@
 
 namespace alpenglow::transport {
 
-/// Attribute of a primitive that fades between levels of detail: two numbers. Only samples see it whose own number, from 0 to 1,
+/// Attribute of a primitive that fades between levels of detail: two numbers. It is visible to samples whose own number in [0, 1)
 /// is at least the first and below the second.
 inline constexpr const char* kLevelAttribute = "detail:__level";
 
 enum class Hider { Hidden, Raytrace, Path };
 
-/// How points are chosen on the way of a ray through a medium where lights with a place light it (tests: all have the same mean).
+/// Sampling of points on a ray segment in a medium that is lit by lights with positions (tests: all have the same mean).
 enum class MediumSampling : uint8_t { Both, Distance, Equiangular };
 
 struct Settings {
@@ -26,33 +26,34 @@ struct Settings {
     int lanes = 16;                      ///< 4, 8, 16
     int maxDepth = -1;                   ///< bounces; -1: Option "trace" "maxdepth", else 32 under path and 4 otherwise
     float sampleClamp = 0;               ///< 0 = off (docs/design/slproject.md)
-    bool direct = true, indirect = true; ///< --no-direct, --no-indirect: the latter stops diffuse continuation only
-    bool unbiased = false;               ///< no scaling of indirect weights above 1
+    bool direct = true, indirect = true; ///< --no-direct, --no-indirect: the latter ends diffuse bounces only
+    bool unbiased = false;               ///< disables the energy rule
     bool localRoulette = false;          ///< SLProject's rule (--preset slproject) instead of throughput
     bool roulette = true;
-    bool suspend = false;   ///< force suspending kernels where affine ones exist (tests)
-    bool mixedOnly = false; ///< build V everywhere (tests: it has the same bits as S)
+    bool suspend = false;   ///< suspends kernels also where affine ones exist (tests)
+    bool mixedOnly = false; ///< uses build V everywhere (tests: same bits as S)
     bool bsdfOnly = false;  ///< no light sampling, emission counts in full (tests, T6)
-    bool lightOnly = false; ///< light sampling only: emission met by lobe sampling does not count (tests, T6)
-    bool blocks = true;     ///< vertices of lobes alone are followed 16 at a time (tests: one by one they have the same bits)
-    /// hidden, raytrace: camera samples take the colours of micropolygons, which are shaded once for all samples that see them;
-    /// false: each sample is shaded where it lies.
+    bool lightOnly = false; ///< light sampling only: emission hit by lobe rays does not count (tests, T6)
+    bool blocks = true;     ///< vertices with lobes only are processed 16 at a time (tests: same bits one by one)
+    /// hidden, raytrace: camera samples take colours from micropolygons that are shaded once for all samples; false: each sample
+    /// is shaded at its own hit.
     bool micropolygons = false;
-    bool evenLights = false; ///< many lights: each is as likely to be sampled as any other (tests, measurements)
+    bool evenLights = false; ///< many lights: all have the same probability (tests, measurements)
     MediumSampling mediumSampling = MediumSampling::Both;
     std::vector<std::string> shaderPaths, texturePaths;
-    ReadPolicy read{};                    ///< where the names of maps may lead
-    std::shared_ptr<ReadLog> reads;       ///< gets every shader and map that is read or missed; may be null
+    ReadPolicy read{};                    ///< restricts where map names may lead
+    std::shared_ptr<ReadLog> reads;       ///< records every shader and map that is read or missing; may be null
     bool allowExec = false;               ///< shaders may load plug-ins
-    std::vector<std::string> pluginPaths; ///< where those are looked for
-    std::string dialect;                  ///< whose macros the shaders see: rsl::FrontOptions::dialect
+    std::vector<std::string> pluginPaths; ///< search path of plug-ins
+    std::string dialect;                  ///< dialect that defines the macros of shaders: rsl::FrontOptions::dialect
     std::string cacheDirectory;           ///< "" = default
     std::vector<std::string>
-        outputs; ///< AOVs: names of output shader parameters ("list[1]": an element) or predefined variables, in order
-    const StopFlag* stop = nullptr; ///< polled while the world is made (dicing, displacement); set: build() gives up. May be null
-    std::shared_ptr<const scene::LightPaths> lightPaths; ///< outputs by light path, under path; null: none
-    bool firstSeen = false;                              ///< SampleResult::albedo and normal are asked for, under path
-    std::vector<int> outputWidths; ///< floats of each where a display declares it; 0 or missing: the shaders decide
+        outputs; ///< AOVs, in order: output parameters of shaders ("list[1]": an element) or predefined variables
+    /// Polled while the world is built (dicing, displacement); if set, build() stops. May be null
+    const StopFlag* stop = nullptr;
+    std::shared_ptr<const scene::LightPaths> lightPaths; ///< light path outputs, under path; null: none
+    bool firstSeen = false;                              ///< SampleResult::albedo and normal are requested, under path
+    std::vector<int> outputWidths; ///< floats of each AOV if a display declares it; 0 or missing: the shaders decide
 };
 
 } // namespace alpenglow::transport

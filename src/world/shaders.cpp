@@ -63,7 +63,7 @@ void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) 
 
 } // namespace
 
-/// Says of spaces that neither the renderer nor the scene knows where the shader names them.
+/// Warns about spaces in a shader that neither the renderer nor the scene defines, at the place of the name.
 static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, std::span<const rsl::InputName> which,
                              Diagnostics& d) {
     std::set<std::string> unknown;
@@ -109,17 +109,17 @@ static scene::Param asDeclared(scene::Param given, const rsl::CompiledShader& sh
     return given;
 }
 
-/// Values of all parameters: those that the scene gave, else the defaults.
+/// Sets all parameters: values of the scene, else defaults.
 void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterValue>& values, Diagnostics& d) {
     ShaderInstance* i = &of;
-    // Defaults: the shader's own expressions in the instance's spaces, of what was given.
+    // Defaults: expressions of the shader in the instance's spaces, given the scene's values.
     auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
         const rsl::InputName asked = rsl::InputName::space(from, to);
         sayUnknownSpaces(*this, *i, {&asked, 1}, d);
         Matrix m;
         bool known = true;
         if (from == to) m = Matrix{};
-        // "object" of the shader call itself; a surface's default that names it is computed again for each primitive.
+        // "object" of the shader call; surface defaults that name it are evaluated again for each primitive.
         else if ((from == "shader" || from == "object") && to == "current") m = i->toCurrent;
         else if (from == "current" && (to == "shader" || to == "object")) m = inverse(i->toCurrent);
         else known = matrix(from, to, m);
@@ -127,7 +127,7 @@ void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterV
         return known;
     };
     for (auto& v : compiler_->parameterValues(i->program, d, spaces, values)) {
-        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have names of their own: "maps[1]"
+        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have their own names: "maps[1]"
             for (size_t e = 0; e < v.strings.size(); ++e)
                 i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
         } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
@@ -137,7 +137,7 @@ void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterV
 
 InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
     double begin = compileClock();
-    Diagnostics said; // the compiler knows no scene: messages without a place get the call's
+    Diagnostics said; // the compiler knows no scene: messages without a place get that of the call
     auto program = compiler_->load(call.name, settings_.shaderPaths, said);
     for (Diagnostic m : said.all()) {
         if (m.place.file.empty()) {
@@ -178,7 +178,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
         ShaderInstance then = *i;
         then.parameters = {};
         then.toCurrent = m * worldToCamera_;
-        Diagnostics quiet; // said above
+        Diagnostics quiet; // already reported
         setParameters(then, call, quiet);
         moving->toCurrent.push_back(then.toCurrent);
         moving->parameters.push_back(std::move(then.parameters));
@@ -187,7 +187,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
     return i;
 }
 
-/// The values of its parameters, in current space by its toCurrent.
+/// Sets parameter values, converted to current space by its toCurrent.
 void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall& call, Diagnostics& d) {
     ShaderInstance* const i = &instance;
     const auto& program = i->program;
@@ -205,7 +205,7 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
             names.push_back(q.name);
             if (q.name == given.name) p = &q;
         }
-        if (!p && given.name == rsl::kCategory && given.strings.size() == 1) { // what most lights of old have no parameter for
+        if (!p && given.name == rsl::kCategory && given.strings.size() == 1) { // many old lights have no such parameter
             i->parameters.strings[rsl::kCategory] = given.strings[0];
             continue;
         }
@@ -277,7 +277,7 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
         if (fresh) i->second = instance(*call, rsl::ShaderKind::Surface, to, true);
         return i->second;
     };
-    // Names of lights' methods and members that are asked for, perhaps by an integrator that is a co-shader.
+    // Names of methods and members of lights that are called, perhaps by a co-shader.
     std::set<std::string> names;
     if (handles && !lights.empty()) {
         names = calledOfLights(shader->program->program());
@@ -297,7 +297,7 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
     auto copy = std::make_shared<ShaderInstance>(*shader);
     dropMissingHandles(*shader, copy->parameters.strings, called, d);
     for (const auto& [handle, call] : called) {
-        Diagnostics said; // what is to be said of a light was said when it was bound
+        Diagnostics said; // messages about a light were reported when it was bound
         const bool light = !coshaders.count(handle);
         const InstanceRef& i = instanceOf(call, light ? said : d);
         if (!i) continue;

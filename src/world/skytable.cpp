@@ -9,17 +9,17 @@ namespace alpenglow::transport {
 namespace {
 constexpr texture::LatLong kCells; // z is the pole
 
-/// The interval of a cumulative row that holds u, and u's place in it, 0 to 1.
+/// The interval of a cumulative row that contains u, and the position of u in it, 0 to 1.
 size_t interval(const float* first, size_t count, float u, float& within) {
     const float* behind = std::upper_bound(first + 1, first + count, u); // the last interval takes the rest
     size_t i = size_t(behind - first) - 1;
-    while (i > 0 && !(first[i + 1] > first[i])) --i; // rounding led to one without width
+    while (i > 0 && !(first[i + 1] > first[i])) --i; // rounding led to an empty one
     const float width = first[i + 1] - first[i];
     within = width > 0 ? std::clamp((u - first[i]) / width, 0.f, 0x1.fffffep-1f) : .5f;
     return i;
 }
 
-/// Running sums of n weights as parts of all, in count + 1 numbers from 0 to 1; the sum.
+/// Normalised cumulative sums of n weights, in count + 1 numbers from 0 to 1; returns the total.
 template <class Weight> double accumulate(size_t n, Weight&& weight, float* out) {
     double all = 0, sum = 0;
     for (size_t i = 0; i < n; ++i) all += weight(i);
@@ -52,7 +52,7 @@ SkyTable::SkyTable(int width, int height, std::vector<float> weights)
     integral_ = accumulate(h, [&](size_t r) { return ofRow[r]; }, rows_.data());
     if (!(integral_ > 0)) return;
     concentration_ = square * 4 * kPi / (integral_ * integral_);
-    // What the rounded sums draw, and not what they were made of.
+    // The density of the rounded sums, which sampling uses, rather than of the weights.
     for (size_t r = 0; r < h; ++r) {
         const double cell = 2 * kPi / double(w) * (cosines_[r] - cosines_[r + 1]), row = double(rows_[r + 1]) - rows_[r];
         for (size_t c = 0; c < w; ++c) {
@@ -81,7 +81,7 @@ bool SkyTable::sample(Vec2 u, Vec3& w, float& density) const {
     const size_t row = interval(rows_.data(), size_t(height_), u.y, t);
     const size_t column = interval(&columns_[row * size_t(width_ + 1)], size_t(width_), u.x, s);
     w = direction(int(column), int(row), width_, height_, s, t);
-    density = pdf(w); // rounding may have led across the edge of the cell
+    density = pdf(w); // rounding may have crossed the edge of the cell
     return density > 0;
 }
 
@@ -95,15 +95,14 @@ float SkyTable::pdf(const Vec3& w) const {
 
 namespace {
 
-/// Cells of tables and points of each by side. Maps with finer detail than the points show are drawn from less well, and no less
-/// rightly.
+/// Cells of tables, and points per cell side. Maps with detail finer than the points are sampled less efficiently, still without
+/// bias.
 constexpr int kColumns = 512, kRows = 256, kMostColumns = 1024, kPointsOfCell = 2, kCoarse = 32;
-/// A sky is sampled as a light where lobes alone would find it badly: the light of a clear sky's half, or of a sky that darkens
-/// toward the
-/// horizon, they find well, with fewer rays.
+/// A sky is sampled as a light if lobe sampling alone would be inefficient. Lobes find the light of half a clear sky, or of one
+/// that darkens toward the horizon, with fewer rays.
 constexpr double kConcentrated = 4;
 
-/// Luminance of a sky at `points` of each cell by side, as a mean. Empty: some value is no number.
+/// Mean luminance of a sky over `points` per side of each cell. Empty: some value is not finite.
 std::vector<float> luminanceOf(const BoundLight& light, int width, int height, int points, Evaluator& evaluator) {
     std::vector<float> cells(size_t(width) * size_t(height), 0);
     const size_t perCell = size_t(points) * size_t(points);
@@ -128,7 +127,7 @@ std::vector<float> luminanceOf(const BoundLight& light, int width, int height, i
     return cells;
 }
 
-/// The widest map that a kernel reads whose name is the same everywhere.
+/// Width of the widest map with a constant name that a kernel reads.
 int widestMap(const BoundKernel& k, const WorldImpl& world) {
     int widest = 0;
     for (const SiteInfo& s : k.sites) {
@@ -153,14 +152,14 @@ void WorldImpl::tabulateSkies(Evaluator& evaluator) {
         if (l.kind != LightKind::Environment || !l.importance || l.asksSurface || l.sentCl >= 0) continue;
         if (l.kernel.kernel->facts().suspends) continue;
         const int widest = widestMap(l.kernel, *this);
-        if (widest == 0) { // nothing but arithmetic: most such skies are even
+        if (widest == 0) { // arithmetic only: most such skies are uniform
             const std::vector<float> few = luminanceOf(l, 2 * kCoarse, kCoarse, 1, evaluator);
             if (std::all_of(few.begin(), few.end(), [&](float v) { return v == few[0]; })) continue;
         }
         const int columns = std::clamp(widest / kPointsOfCell, kColumns, kMostColumns), rows = columns * kRows / kColumns;
         auto table = std::make_shared<SkyTable>(columns, rows, luminanceOf(l, columns, rows, kPointsOfCell, evaluator));
         if (!(table->concentration() > kConcentrated)) continue;
-        l.power = float(table->integral() / (2 * kPi)); // between what an even sky and a small sun above give
+        l.power = float(table->integral() / (2 * kPi)); // between the effect of a uniform sky and of a small sun overhead
         l.sky = std::move(table);
     }
 }

@@ -1,41 +1,36 @@
-// Where a sky is bright: a table over directions, from which light samples are drawn in proportion to what the sky's shader
-// gives,
-// whatever it makes that of: maps of any form, or arithmetic.
+// A table of a sky's radiance over directions, for sampling in proportion to radiance. Works for any shader: maps of any
+// projection, or arithmetic.
 #pragma once
 #include "texture/texture.h"
 #include <vector>
 
 namespace alpenglow::transport {
 
-/// Directions in cells of latitude and longitude (poles along z of current space). A cell is drawn in proportion to its weight
-/// times its
-/// solid angle, a direction in it evenly by solid angle. Draws keep the strata of their numbers.
+/// Cells of latitude and longitude (poles along z of current space). A cell is sampled in proportion to its weight times its
+/// solid angle, a direction within it uniformly by solid angle. Sampling preserves the stratification of its numbers.
 class SkyTable {
 public:
-    /// weights: radiance of the cells as luminance, rows from the pole down, `width` numbers each. Such as are negative or no
-    /// numbers count
-    /// as 0.
+    /// weights: luminance of the cells, in rows from the pole, `width` numbers each. Negative values and NaN count as 0.
     SkyTable(int width, int height, std::vector<float> weights);
-    /// Integral of the weights over the sphere; 0: nothing can be drawn.
+    /// Integral of the weights over the sphere; 0: nothing can be sampled.
     double integral() const { return integral_; }
-    /// Mean square over the square of the mean: 1 for an even sky, about 1 / part for one that is bright in that part of it
-    /// alone.
+    /// Mean square over squared mean: 1 for a uniform sky, about 1 / f for one that is bright in a fraction f only.
     double concentration() const { return concentration_; }
-    /// A direction of length 1 and its density per steradian, which is pdf(w) exactly; false: none.
+    /// Samples a unit direction and its density per steradian, which equals pdf(w) exactly; returns false if integral() is 0.
     bool sample(Vec2 u, Vec3& w, float& density) const;
-    /// Density per steradian with which sample() gives a direction of length 1.
+    /// Density of sample() per steradian for a unit direction.
     float pdf(const Vec3& w) const;
-    /// The direction at (s, t) of a cell, both from 0 to 1.
+    /// The direction at (s, t) in a cell, both in [0, 1].
     static Vec3 direction(int column, int row, int width, int height, float s, float t);
 
 private:
     size_t rowOf(double cosine) const;
     int width_, height_;
     double integral_ = 0, concentration_ = 1;
-    std::vector<double> cosines_; ///< height + 1: of the angles between rows, 1 to -1
+    std::vector<double> cosines_; ///< height + 1 cosines of the angles between rows, 1 to -1
     std::vector<float> density_;  ///< by cell
     std::vector<float> rows_;     ///< cumulative, height + 1
-    std::vector<float> columns_;  ///< cumulative in the row, by row width + 1
+    std::vector<float> columns_;  ///< cumulative within a row: row after row, width + 1 each
 };
 
 } // namespace alpenglow::transport

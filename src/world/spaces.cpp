@@ -1,4 +1,4 @@
-// Coordinate systems: the camera's own, named ones, and the matrices between them.
+// Coordinate systems: of the camera, named ones, and the matrices between them.
 #include "base/exact.h"
 #include "scene/scene.h"
 #include "world/impl.h"

@@ -1,4 +1,4 @@
-// What holds for surfaces where a scene does not say: how derivatives are taken, and what is seen without any light.
+// Surface defaults: how derivatives are computed, and the headlight of scenes without light.
 #include "scene/scene.h"
 #include "scene/unmade.h"
 #include "world/surfaces.h"
@@ -24,7 +24,7 @@ bool SurfaceBinder::differences(const geometry::Shape& shape, bool byDefault) {
 bool SurfaceBinder::needsHeadlight() {
     const auto& primitives = world_.frame_->primitives;
     const auto shaded = [](const geometry::ShapeRef& s) { return s->attributes().surface != nullptr; };
-    // What is in procedurals is not known before rays come to them.
+    // Contents of deferred procedurals are unknown before rays reach them.
     if (world_.shapes_.empty() || !world_.lights_.empty() || std::any_of(world_.shapes_.begin(), world_.shapes_.end(), shaded) ||
         std::any_of(primitives.begin(), primitives.end(), [](const auto& p) { return p && scene::isProcedural(*p); }))
         return false;

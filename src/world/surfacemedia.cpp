@@ -1,4 +1,4 @@
-// Volume shaders of surfaces: atmospheres, interiors and exteriors, with what the primitive's variables override.
+// Volume shaders of surfaces: atmospheres, interiors and exteriors, with overrides by primitive variables.
 #include "world/surfaces.h"
 #include "world/told.h"
 #include <limits>
@@ -36,7 +36,7 @@ Medium SurfaceBinder::bindVolume(const InstanceRef& shader, const Names& varying
             {Severity::Info,
              Rie::NoError,
              shader->place,
-             "volume shader " + name + " is not affine in Ci as written; what light loses in it is measured between Ci = 0 and 1",
+             "volume shader " + name + " is not affine in Ci; its transmittance is measured between Ci = 0 and 1",
              {},
              {}});
     m.shader = shader;
@@ -89,7 +89,7 @@ int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& sh
     if (!shader) return -1;
     for (size_t i = 0; i < world_.media_.size(); ++i)
         if (world_.media_[i].shader == shader) return int(i);
-    constexpr size_t kMost = std::numeric_limits<int16_t>::max(); // shading::Media numbers them
+    constexpr size_t kMost = std::numeric_limits<int16_t>::max(); // limited by the type in shading::Media
     if (world_.media_.size() >= kMost) {
         diagnostics_.reportOnce("media:count", {Severity::Error,
                                                 Rie::Limit,
@@ -103,7 +103,7 @@ int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& sh
     Medium m = bindVolume(shader, {});
     if (!m.shader) return -1;
     m.shape = &shape;
-    m.binding = int(world_.bindings_.size()); // that is bound now
+    m.binding = int(world_.bindings_.size()); // the binding under construction
     world_.bindHomogeneous(m, evaluator_, diagnostics_);
     world_.media_.push_back(std::move(m));
     return int(world_.media_.size()) - 1;

@@ -10,7 +10,7 @@ namespace alpenglow::transport {
 
 using rsl::OutputName;
 
-/// Lights in lists of their own, of all surfaces; what comes then shares one list (WorldImpl::allSampled_).
+/// Total size of separate light lists; later lists share one (WorldImpl::allSampled_).
 static constexpr size_t kListedLights = 4'000'000;
 
 float attributeNumber(const scene::Attributes& a, const std::string& key, float fallback) {
@@ -34,7 +34,7 @@ InstanceRef SurfaceBinder::instanceOf(const scene::ShaderRef& r, rsl::ShaderKind
     return i->second;
 }
 
-/// Under path: a warning, once a shader, where light is asked for and used so that its indirect part cannot be followed.
+/// Under path: warns once per shader if it uses the result of a light call so that indirect light cannot be followed.
 static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKernel& kernel, Diagnostics& d) {
     const auto& direct = kernel.facts().direct;
     if (direct.empty()) return;
@@ -57,7 +57,7 @@ static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKerne
                   {}});
 }
 
-/// Whether a variable of a primitive holds what a parameter is: one text, as many numbers, or elements of the same kind.
+/// Whether a primitive variable can replace a parameter: one string, as many numbers, or elements of the same kind.
 static bool overrides(const geometry::PrimVar& v, const rsl::ParameterInfo& p) {
     if (p.type.base == rsl::Base::String || v.type == scene::Type::String)
         return p.type.base == rsl::Base::String && v.type == scene::Type::String && !p.type.array && !p.open && !v.arrayLength;
@@ -78,15 +78,15 @@ SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, cons
                                          v.param->place,
                                          "the variable \"" + p.name +
                                              "\" of the primitive does not fit the parameter of shader \"" + shader.name +
-                                             "\", which is a " + rsl::toString(p.type) + ": the parameter keeps its value",
+                                             "\", which is a " + rsl::toString(p.type) + ": the parameter is not changed",
                                          {},
                                          {}});
         }
-    // The number of the face, where the primitive does not say it itself.
+    // The face number, if the primitive has no such variable.
     if (shape.findPrimvar(shading::kFaceIndex) < 0)
         for (const auto& p : shader.program->parameters())
             if (p.name == shading::kFaceIndex && p.type.base == rsl::Base::Float && !p.type.array) varying.push_back(p.name);
-    // What a shader and its co-shaders ask about the primitive, with the type that the first of them wants.
+    // Queries of a shader and its co-shaders about the primitive, with the type that the first of them uses.
     std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
     for (const rsl::CoShader& c : shader.coShaders)
         all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
@@ -156,8 +156,8 @@ bool SurfaceBinder::bindHitModes() {
     return true;
 }
 
-/// Whether what a shape's variables are called and hold is the same, so that equal attributes mean equal bindings. Interiors take
-/// values of variables, too.
+/// Whether two shapes have variables of the same names and types, so that equal attributes mean equal bindings. Interiors also
+/// take values of variables.
 static bool sameVariables(const geometry::Shape& a, const geometry::Shape& b) {
     const auto &p = a.primvars(), &q = b.primvars();
     if (!p.empty() && (a.attributes().interior || a.attributes().exterior)) return false;
@@ -174,7 +174,7 @@ int SurfaceBinder::bind(const geometry::ShapeRef& shape) {
     return b;
 }
 
-/// What makes bindings different.
+/// Key of a binding.
 std::string SurfaceBinder::keyOf(const SurfaceBinding& b, const geometry::Shape& shape, bool grid,
                                  std::initializer_list<const Names*> varying) {
     const scene::Attributes& a = shape.attributes();
@@ -238,7 +238,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     b.outside = mediumOf(b.exterior, *shape);
     if (b.inside >= 0) b.insidePriority = world_.media_[size_t(b.inside)].priority;
     if (b.outside >= 0) b.outsidePriority = world_.media_[size_t(b.outside)].priority;
-    // Who asks comes before who is asked: an atmosphere asks for outputs of the surface, both for those of the displacement.
+    // Order by queries: the atmosphere queries the surface, both query the displacement.
     const Names left = both ? leftBy(b) : Names{};
     bindDisplacement(b, displacementVarying, left);
     if (!left.empty()) hearMembers(b);
@@ -247,7 +247,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     hearDisplacement(b, varying, displacementVarying, left);
     if (!b.displacement) b.moveS = world_.movingKernel(*b.surface, b.surfaceS, a.lights, asked_.back().varying, diagnostics_);
     bindLights(b, a);
-    // A light without a kernel (its shader is missing, or is no light) was reported; its geometry is an ordinary surface.
+    // A light without a kernel (missing shader, or not a light) was reported; its geometry is an ordinary surface.
     b.areaLight = a.areaLight >= 0 && world_.lights_[size_t(a.areaLight)].kernel ? a.areaLight : -1;
     b.matte = a.matte;
     b.shadingRate = a.shadingRate;
@@ -261,7 +261,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     world_.hitModes_ |= b.primitiveFor != 0;
     b.attributes = shape->attributesRef();
     b.photons = photonsOf(a, diagnostics_);
-    // Displaced shapes and different kernels never share a batch. Equal builds S mean equal builds V.
+    // Displaced shapes and different kernels never share a batch. Equal S builds imply equal V builds.
     b.program =
         programs_
             .try_emplace({b.surfaceS.kernel.get(), b.displacement.get(), b.displacementS.kernel.get()}, int(programs_.size()))
@@ -288,8 +288,8 @@ SurfaceBinder::Names SurfaceBinder::outputsOf(const SurfaceBinding& b) const {
     std::set<std::string> asked;
     if (path_)
         asked.insert(world_.lightMessages_.begin(),
-                     world_.lightMessages_.end()); // lighting shadeops: lights run when the surface's kernel is done
-    asked.insert(gathered_.surface.begin(), gathered_.surface.end()); // gathers run when the surface's kernel is done, too
+                     world_.lightMessages_.end());                    // lighting shadeops run lights after the surface's kernel
+    asked.insert(gathered_.surface.begin(), gathered_.surface.end()); // so do gather() statements
     const bool all = b.atmosphere.shader && questions(b.atmosphere.kernel, "surface", asked);
     for (const auto& p : b.surface->program->parameters())
         if (p.output && (all || asked.count(p.name))) outputs.push_back(OutputName::parameterOf(p.name).text());
@@ -301,7 +301,7 @@ bool SurfaceBinder::questions(const BoundKernel& k, const char* op, std::set<std
     for (const SiteInfo& s : k.sites) {
         if (s.site->op != op) continue;
         const std::string name = s.site->strings.empty() ? "" : s.site->strings[0];
-        if (name.empty()) any = true; // made when the shader runs
+        if (name.empty()) any = true; // computed at run time
         else names.insert(name);
     }
     return any;
@@ -344,7 +344,7 @@ void SurfaceBinder::hearMembers(SurfaceBinding& b) {
                                  b.displacement->place,
                                  "displacement() of \"" + b.displacement->name + "\" waits for rays (" +
                                      b.displacementS.kernel->facts().whyNot +
-                                     "): the surface does not see what it writes to members",
+                                     "): the surface does not see its changes of members",
                                  {},
                                  {}});
         return;
@@ -382,8 +382,7 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
         add(OutputName::What::Value);
         if (p.type.array == 0 && p.type.base != rsl::Base::String && p.type.base != rsl::Base::Matrix)
             add(OutputName::What::Du), add(OutputName::What::Dv);
-        // Kind of an element, how many, and whether points differ: the surface's kernel takes it as an input, with its
-        // derivatives.
+        // Type of an element, array length, and whether it varies: the surface's kernel takes it as an input with derivatives.
         int length = p.type.array ? std::max(1, p.type.array) : 0;
         const auto& given = b.displacement->parameters.strings;
         if (const auto open = given.find(rsl::lengthParameter(p.name)); p.open && open != given.end())
@@ -402,7 +401,7 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
     bindSurface(b, varying);
 }
 
-/// Whether an input is a matrix that differs from one primitive to the next.
+/// Whether an input is a matrix that differs between primitives.
 static bool isObjectSpace(const rsl::ir::Input& input) {
     const rsl::InputName n = rsl::InputName::parse(input.name);
     const auto has = [](const std::string& space) { return space.find("object") != std::string::npos; };
@@ -414,7 +413,7 @@ bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
     partLightOutputs(b, outputs, varying);
     b.surfaceS = world_.kernel(*b.surface, outputs, varying, false, path_, diagnostics_);
     if (path_ && b.surfaceS) sayDirectOnly(*b.surface, *b.surfaceS.kernel, diagnostics_);
-    if (!b.surfaceS) { // an error was reported: the default surface stands in
+    if (!b.surfaceS) { // an error was reported: the default surface replaces it
         b.surface = fallback_;
         varying.clear();
         outputs.clear();
@@ -454,7 +453,7 @@ bool SurfaceBinder::bindMixed() {
 
 void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, const Names& more) {
     if (!b.displacement) return;
-    // The derivatives are for the surface shader: bumps on top of the displacement.
+    // Derivatives are for bump mapping by the surface shader on top of the displacement.
     Names outputs{"P", "N"};
     for (const char* of : {"P", "N"}) outputs.insert(outputs.end(), {OutputName::du(of).text(), OutputName::dv(of).text()});
     outputs.insert(outputs.end(), more.begin(), more.end());
@@ -468,7 +467,7 @@ void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, co
     if (!b.displacementS) b.displacement = nullptr;
 }
 
-/// Whether a kernel may ask for light, or for lights.
+/// Whether a kernel may request light, or query lights.
 static bool asksForLight(const BoundKernel& k) {
     return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) {
         switch (s.kind) {
@@ -496,10 +495,10 @@ static bool asksForLight(const BoundKernel& k) {
 }
 
 void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
-    // Lamps that only shine need no list: each has attributes of its own, and so its own lights.
+    // Emitters whose shader requests no light need no list: each has attributes, and so lights, of its own.
     const bool asks = !a.coshaders.empty() || b.atmosphere.shader || b.inside >= 0 || b.outside >= 0 || b.moveS ||
                       !b.lightOutputs.empty() || asksForLight(b.surfaceS) || asksForLight(b.displacementS) ||
-                      a.value("subsurface:groupname"); // walks below others of the group come out here
+                      a.value("subsurface:groupname"); // subsurface walks from other shapes of the group exit here
     if (asks) b.lights = world_.withParts(a.lights);
     b.lightList = lightLists_.try_emplace(b.lights, int(lightLists_.size())).first->second;
     if (size_t(b.lightList) != world_.lightLists_.size()) return;

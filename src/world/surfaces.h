@@ -1,4 +1,4 @@
-// Shapes bound to what shades them: shaders, kernels, lights. What may be shaded together shares a binding.
+// Binds shapes to shaders, kernels and lights. Shapes that may be shaded together share a binding.
 #pragma once
 #include "world/gathersite.h"
 #include "world/impl.h"
@@ -7,66 +7,66 @@
 
 namespace alpenglow::transport {
 
-/// The first number of an attribute, or `fallback` where it is not set.
+/// The first number of an attribute, or `fallback` if it is not set.
 float attributeNumber(const scene::Attributes&, const std::string& key, float fallback);
 
-/// Fills bindings_, bindingOf_ and what belongs to them, for the shapes of a world whose lights are bound.
+/// Fills bindings_, bindingOf_ and related members for the shapes of a world whose lights are bound.
 class SurfaceBinder {
 public:
     SurfaceBinder(WorldImpl& world, Evaluator& e, Diagnostics& d) : world_(world), evaluator_(e), diagnostics_(d) {}
-    /// False when nothing can be rendered; that was reported.
+    /// Returns false after an error that prevents rendering; the error is reported.
     bool bindAll();
 
 private:
     using Names = std::vector<std::string>;
     InstanceRef instanceOf(const scene::ShaderRef&, rsl::ShaderKind, bool differences = false);
-    /// Attribute "shade" "derivatives": whether shaders take derivatives as grids have them. surfacedefaults.cpp
+    /// Attribute "shade" "derivatives": whether shaders use differences on grids. Defined in surfacedefaults.cpp.
     bool differences(const geometry::Shape&, bool byDefault);
-    /// Under path: whether nothing in the scene can give light, so that primitives without a surface are lit by the eye.
+    /// Under path: whether the scene has no light at all, so that primitives without a surface shader get a headlight.
     bool needsHeadlight();
-    /// The primitive variables that override parameters of a shader or that getvar(null, ...) finds; sorted.
+    /// Primitive variables that override parameters of a shader, or that getvar(null, ...) reads; sorted.
     Names varyingOf(const geometry::Shape&, const ShaderInstance&);
-    /// The binding of a shape: that of one with the same attributes and variables where there is one.
+    /// The binding of a shape: an existing one for equal attributes and variables, else a new one.
     int bind(const geometry::ShapeRef&);
     int bindAnew(const geometry::ShapeRef&);
     static std::string keyOf(const SurfaceBinding&, const geometry::Shape&, bool grid,
                              std::initializer_list<const Names*> varying);
-    bool vanishes(const SurfaceBinding&) const; ///< SurfaceBinding::vanishes, of a shader that reads nothing
+    bool vanishes(const SurfaceBinding&) const; ///< SurfaceBinding::vanishes, for a shader that reads no inputs
     Names outputsOf(const SurfaceBinding&) const;
-    /// What gathers of the scene's surfaces ask other surfaces for.
+    /// Collects what gather() statements of the scene query from other surfaces.
     void findGathers();
-    /// Adds the names that a kernel asks for by `op` ("surface", "displacement"). True when some are made only when it runs.
+    /// Adds the names that a kernel queries by `op` ("surface", "displacement"). Returns true if some names are computed at run
+    /// time.
     static bool questions(const BoundKernel&, const char* op, std::set<std::string>& names);
-    /// Where the surface or the atmosphere asks for outputs of the displacement shader: kernels that give and take them.
+    /// If the surface or the atmosphere queries outputs of the displacement shader: kernels that write and read them.
     void hearDisplacement(SurfaceBinding&, const Names& varying, const Names& displacementVarying, const Names& left);
-    /// The same displacement, whose begin() prints nothing: the class prints when it shades.
+    /// The same displacement whose begin() does not print, because the class prints when it shades.
     InstanceRef quiet(const InstanceRef& displacement);
-    /// The outputs by which the displacement() of a class tells its other methods what it wrote to members
-    /// (rsl/front/leftmembers.h).
+    /// Outputs by which the displacement() method of a class passes its members to the other methods (rsl/front/leftmembers.h).
     static Names leftBy(const SurfaceBinding&);
-    /// The surface takes them.
+    /// Makes the surface read them.
     void hearMembers(SurfaceBinding&);
-    /// Of the outputs of a surface, takes those away that displays ask for and that light reaches; they get kernels of their own.
+    /// Removes from a surface's outputs those that displays request and that receive light; they get kernels of their own.
     void partLightOutputs(SurfaceBinding&, Names& outputs, const Names& varying);
     LightOutput::Kernel lightKernel(const SurfaceBinding&, const LightOutput&, const Names& varying, bool mixed);
-    /// Kernels for what subsurface() calls say by "irradiance". True.
+    /// Builds kernels for the entering light of subsurface() calls with "irradiance". Returns true.
     bool bindEntering();
     void bindEntering(SurfaceBinding&, const Names& varying);
-    /// False when not even the default surface could be compiled.
+    /// Returns false if not even the default surface compiles.
     bool bindSurface(SurfaceBinding&, Names varying);
     void bindAtmosphere(SurfaceBinding&, const Names& varying);
-    /// The kernel of a volume shader; no shader where it cannot run, which was reported.
+    /// The kernel of a volume shader; null shader if it cannot run, which is reported.
     Medium bindVolume(const InstanceRef&, const Names& varying);
-    /// The shader of an Interior or Exterior with what constant variables of the primitive override; null: none.
+    /// The shader of an Interior or Exterior with overrides by constant variables of the primitive; null: none.
     InstanceRef volumeOf(const scene::ShaderRef&, const geometry::Shape&);
-    /// WorldImpl::media_ of an Interior or Exterior; -1: none.
+    /// Index in WorldImpl::media_ of an Interior or Exterior; -1: none.
     int mediumOf(const InstanceRef&, const geometry::Shape&);
-    /// `more`: outputs besides P, N and their derivatives.
+    /// `more`: outputs in addition to P, N and their derivatives.
     void bindDisplacement(SurfaceBinding&, const Names& varying, const Names& more);
     void bindLights(SurfaceBinding&, const scene::Attributes&);
-    /// Batches of several bindings, or of points that see different spaces, need kernels whose uniform inputs come in lanes.
+    /// Builds V kernels, with uniform inputs in lanes, for batches of several bindings or of points with different spaces.
     bool bindMixed();
-    /// What rays with a "hitmode" take. False when the shaders that ship were not found.
+    /// Prepares opacity for rays with a "hitmode". Returns false if the shipped shaders are missing.
     bool bindHitModes();
 
     WorldImpl& world_;
@@ -75,24 +75,22 @@ private:
     bool path_ = false;
     InstanceRef fallback_;
     std::map<std::tuple<const scene::ShaderCall*, int, bool>, InstanceRef>
-        instances_; ///< by kind, and by how derivatives are taken
-    std::map<std::pair<const void*, const void*>, InstanceRef>
-        told_;                                 ///< surfaces that know the outputs of a displacement; by both
-    std::map<const void*, InstanceRef> quiet_; ///< by the displacement that is not
-    std::vector<InstanceRef> kept_;            ///< their addresses are keys
-    std::map<std::pair<const void*, std::string>, InstanceRef>
-        volumes_; ///< by the shader as the scene gave it and what overrides it
+        instances_;                                                      ///< by kind, and by how derivatives are computed
+    std::map<std::pair<const void*, const void*>, InstanceRef> told_;    ///< surfaces with the outputs of a displacement; by both
+    std::map<const void*, InstanceRef> quiet_;                           ///< by the original displacement
+    std::vector<InstanceRef> kept_;                                      ///< keeps instances whose addresses are keys
+    std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the scene's shader and its overrides
     std::map<std::string, int> bindingByKey_;
     GatheredNames gathered_;
     std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
-        bindingOfAttributes_; ///< of the last shape that had them
+        bindingOfAttributes_; ///< of the last shape with these attributes
     std::map<std::vector<const void*>, int> programs_;
     std::map<scene::LightSet, int> lightLists_;
     std::map<std::pair<int, int>, int> groups_;
-    /// What the kernels of a binding were asked for, by binding.
+    /// Requested outputs and varying parameters of a binding's kernels, by binding.
     struct Asked {
         Names outputs, varying;
-        geometry::ShapeRef shape; ///< the first
+        geometry::ShapeRef shape; ///< first shape of the binding
     };
     std::vector<Asked> asked_;
 };

@@ -55,7 +55,7 @@ std::optional<Told> primitiveVariable(const geometry::Shape& shape, const geomet
         shape.interpolate(v, at, t.numbers.data(), nullptr, nullptr);
         return t;
     }
-    // What every primitive has.
+    // Variables that every primitive has.
     const scene::Attributes& a = shape.attributes();
     const auto triple = [&](const Vec3& v, bool varying) {
         t.kind = Kind::Triple;

@@ -1,27 +1,27 @@
-// Values that shaders tell each other: of parameters, of primitive variables, of attributes.
+// Values that shaders query from each other: parameters, primitive variables, attributes.
 #pragma once
 #include "world/information.h"
 
 namespace alpenglow::transport {
 
-/// What somebody is told: the value of a parameter, of a primitive variable, of an attribute.
+/// A queried value: of a parameter, a primitive variable or an attribute.
 struct Told {
-    /// Of an element; none: as many numbers or texts as there are, for a variable of that size.
+    /// Type of an element; none: numbers or strings for a variable of that size.
     std::optional<rsl::ir::Kind> kind;
-    int elements = 0;     ///< 0: no array. Not used where the kind is not known
+    int elements = 0;     ///< 0: not an array. Unused if the kind is unknown
     bool varying = false; ///< does not fit a uniform variable
     std::vector<float> numbers;
     std::vector<std::string> texts;
     Told() = default;
     explicit Told(const Information&);
-    /// Of a type of the shading language, still without a value.
+    /// For a type of the shading language; no value yet.
     explicit Told(const rsl::Type& type, int length) : kind(kindOf(type.base)), elements(type.array ? length : 0) {}
     static rsl::ir::Kind kindOf(rsl::Base);
 };
 
-/// A parameter of a shader as the scene gave it; nothing when it has none of that name.
+/// A parameter of a shader as set by the scene; nothing if it has none of that name.
 std::optional<Told> toldBy(const ShaderInstance&, const std::string& parameter);
-/// A primitive variable at a point of the shape; nothing when it has none of that name.
+/// A primitive variable at a point of the shape; nothing if it has none of that name.
 std::optional<Told> primitiveVariable(const geometry::Shape&, const geometry::SurfacePoint&, const std::string& name);
 
 } // namespace alpenglow::transport

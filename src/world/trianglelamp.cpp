@@ -1,5 +1,5 @@
-// The map from the square to a spherical triangle is that of Arvo, Stratified Sampling of Spherical Triangles (1995); the solid
-// angle that of Van Oosterom and Strackee, The Solid Angle of a Plane Triangle (1983).
+// The map from the square to a spherical triangle is by Arvo, Stratified Sampling of Spherical Triangles (1995); the solid angle
+// by Van Oosterom and Strackee, The Solid Angle of a Plane Triangle (1983).
 #include "world/trianglelamp.h"
 #include "base/exact.h"
 #include "geometry/polygon_mesh.h"
@@ -9,13 +9,13 @@
 namespace alpenglow::transport {
 
 namespace {
-/// Beyond so many of its radii a lamp is sampled by area: what is nearer and faces the point more differs little.
+/// A lamp farther than so many of its radii is sampled by area, as the solid angle is then almost uniform over it.
 constexpr double kNear = 2.5;
-/// From a corner, of the radius squared: nearer, its direction says too little.
+/// Squared distance from a corner, relative to the squared radius; closer, its direction is inaccurate.
 constexpr double kLeastDistance2 = 1e-12;
-/// Beyond, a triangle fills nearly all that a point on its plane can see (2 pi).
+/// Larger solid angles are almost the whole hemisphere of a point on the triangle's plane (2 pi).
 constexpr double kMostAngle = 6.2;
-/// What of less is near is seen edge-on.
+/// A near triangle of less is seen edge-on.
 constexpr double kLeastAngle = 1e-4;
 
 double solidAngle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -23,17 +23,17 @@ double solidAngle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 }
 double root(double x) { return std::sqrt(std::max(0.0, x)); }
 
-/// A direction to a triangle between unit vectors that fills this solid angle.
+/// Direction to a triangle between unit vectors with this solid angle.
 Vec3d direction(const Vec3d& a, const Vec3d& b, const Vec3d& c, double angle, double u, double v) {
-    // The part of the triangle at the side ab has u of the angle: c moves to `c1` along the side ac.
+    // The part of the triangle next to side ab has fraction u of the solid angle: c moves to `c1` along side ac.
     const Vec3d ab = cross(a, b), ac = cross(a, c);
     const double lengths = length(ab) * length(ac), cosA = dot(ab, ac) / lengths, sinA = std::fabs(dot(a, cross(b, c))) / lengths;
     const auto [sinS, cosS] = exact::sinCos(u * angle);
-    const double s = sinS * cosA - cosS * sinA, t = cosS * cosA + sinS * sinA; // of the angle less that at a
+    const double s = sinS * cosA - cosS * sinA, t = cosS * cosA + sinS * sinA; // of the angle minus that at a
     const double p = t - cosA, q = s + sinA * dot(a, b), divisor = (q * s + p * t) * sinA;
     const double cosB1 = divisor != 0 ? std::clamp(((q * t - p * s) * cosA - q) / divisor, -1.0, 1.0) : 1;
     const Vec3d c1 = a * cosB1 + normalize(c - a * dot(c, a)) * root(1 - cosB1 * cosB1);
-    // Then along the arc from b to there.
+    // Then along the arc from b to that point.
     const double z = 1 - v * (1 - dot(c1, b));
     const Vec3d aside = c1 - b * dot(c1, b);
     return dot(aside, aside) > 0 ? b * z + normalize(aside) * root(1 - z * z) : b;
@@ -97,7 +97,7 @@ bool TriangleLamp::flat(const geometry::Shape& s) {
     return polygons && polygons->plain() && !s.diced() && has(s) && s.mesh().triangles() > 0;
 }
 
-/// The number of a corner: triangles share them.
+/// Index of a corner: triangles share corners.
 static int cornerIn(FlatEmitter& e, const Vec3d& c) {
     int k = 0;
     while (k < e.cornerCount && std::memcmp(e.corner[k], &c, sizeof c) != 0) ++k;

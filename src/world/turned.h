@@ -1,15 +1,15 @@
-// The walls of holes in solids: what is taken away is displaced as it would be alone, with its own normals, and shaded with
-// those of the whole, which look into the hole.
+// Walls of holes in CSG solids: the subtracted shape is displaced with its own normals, and shaded with those of the solid, which
+// point into the hole.
 #pragma once
 #include "scene/solids.h"
 #include "shading/point.h"
 
 namespace alpenglow::transport {
 
-/// Whether the shape's normals are the opposite of those that its displacement shader is to see.
+/// Whether the displacement shader must see the opposite of the shape's normals.
 inline bool turnedOver(const geometry::Shape& s) { return scene::solidTakenAway(s.attributes()); }
 
-/// From the normals of the whole to those of the shape alone, or back. Normals that the primitive gives are both.
+/// Converts normals of the solid to those of the shape, or back. Normals given by the primitive serve for both.
 inline void turnOver(shading::ShadePoint& p) {
     geometry::SurfacePoint& s = p.surface;
     s.n = -s.n;

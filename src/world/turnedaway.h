@@ -1,4 +1,4 @@
-// Calls of occlusion(), indirectdiffuse() and gather() whose normals face away from the viewer.
+// Detects calls of occlusion(), indirectdiffuse() and gather() with normals that face away from the viewer.
 #pragma once
 #include "geometry/shape.h"
 #include "world/world.h"
@@ -8,19 +8,19 @@
 
 namespace alpenglow::transport {
 
-/// A hemisphere about a normal that faces away is what was asked for; but where all of a primitive asks so and all rays are
-/// blocked, or what looks for light has the primitive itself before it, the primitive is black in silence, for the shader (or the
-/// model) has turned the normal. Thread safe.
+/// A hemisphere around a normal that faces away may be intended. But if all calls on a primitive do so and all rays are blocked,
+/// or if the primitive occludes its own gathered light, it renders black without a message, because the shader or model has
+/// flipped the normal. Thread safe.
 class TurnedAway {
 public:
-    /// Of one call on one shape: whether any normal faced the viewer, any faced away, and any ray came through.
+    /// For one call on one shape: whether any normal faced the viewer, any faced away, and any ray was unoccluded.
     struct Tally {
         std::atomic<bool> facing = false, away = false, open = false;
         static void set(std::atomic<bool>& flag) {
             if (!flag.load(std::memory_order_relaxed)) flag.store(true, std::memory_order_relaxed);
         }
     };
-    /// Lives as long as this.
+    /// Valid as long as this object.
     Tally& of(const SourcePlace& call, const std::string& shadeop, const geometry::Shape&);
 
     std::vector<World::TurnedAwayCall> blocked() const;

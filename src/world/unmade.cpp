@@ -8,7 +8,7 @@ namespace {
 
 using geometry::Bounds;
 
-/// Where a ray comes into a box, not before its own beginning; negative: it does not before `end`.
+/// Distance at which a ray enters a box, at least its own start; negative: not before `end`.
 double entry(const accel::Ray& r, const Bounds& b, double end) {
     double from = std::max(0.f, r.tnear), to = end;
     for (int k = 0; k < 3; ++k) {
@@ -27,7 +27,7 @@ double entry(const accel::Ray& r, const Bounds& b, double end) {
 } // namespace
 
 Unmade::Unmade(std::vector<Bound> bounds) : bounds_(std::move(bounds)) {
-    for (Bound& b : bounds_) { // what is in it has rounded coordinates
+    for (Bound& b : bounds_) { // contents have rounded coordinates
         for (int k = 0; k < 3; ++k) {
             const float more = 1e-5f * (std::fabs(b.box.lo[k]) + std::fabs(b.box.hi[k])) + 1e-30f;
             b.box.lo[k] -= more;
@@ -60,7 +60,7 @@ void Unmade::build(uint32_t first, uint32_t end) {
 bool Unmade::meets(const accel::Ray& r, double end) const {
     if (nodes_.empty()) return false;
     end = std::min(end, double(r.tfar));
-    std::vector<std::pair<double, uint32_t>> met; // rare: no memory is asked for where nothing is met
+    std::vector<std::pair<double, uint32_t>> met; // rare: allocates only after a hit
     uint32_t stack[64];
     int depth = 0;
     stack[depth++] = 0;

@@ -1,4 +1,4 @@
-// The bounds of procedurals that are not made yet (scene/unmade.h), as rays meet them.
+// Bounds of deferred procedurals (scene/unmade.h) for rays.
 #pragma once
 #include "accel/accel.h"
 #include <atomic>
@@ -11,26 +11,25 @@ namespace alpenglow::transport {
 class Unmade {
 public:
     struct Bound {
-        geometry::Bounds box; ///< camera space, at all times of the shutter
+        geometry::Bounds box; ///< camera space, over the shutter interval
 
         int number = 0; ///< scene::unmadeNumber()
     };
     explicit Unmade(std::vector<Bound>);
-    /// How many of the bounds on its way a ray asks for, those that it comes to first. Before any ray is sent.
+    /// Sets how many bounds along its way a ray records, nearest first. Call before tracing.
     void askFor(int most) const { most_ = most; }
-    /// Whether a ray comes to some bound before `end`, in lengths of its direction: those that it asks for are noted. Thread
-    /// safe.
+    /// Whether a ray reaches a bound before `end`, in units of its direction; records these bounds. Thread safe.
     bool meets(const accel::Ray&, double end) const;
-    /// Those that were noted, in ascending order.
+    /// The recorded numbers, ascending.
     std::vector<int> met() const;
 
 private:
     struct Node {
         geometry::Bounds box;
-        uint32_t first = 0, count = 0; ///< bounds; count 0: the next node and that of this number are its children
+        uint32_t first = 0, count = 0; ///< range in bounds_; count 0: children are the next node and the node `first`
     };
     void build(uint32_t first, uint32_t end);
-    std::vector<Bound> bounds_; ///< in the order of the leaves
+    std::vector<Bound> bounds_; ///< in order of the leaves
     std::vector<Node> nodes_;
     std::unique_ptr<std::atomic<uint8_t>[]> met_;
     mutable int most_ = 1;

@@ -1,4 +1,4 @@
-// From a frame's description to something that can be traced.
+// Builds a world from the description of a frame.
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/installation.h"
@@ -20,13 +20,14 @@ namespace {
 
 double buildClock() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// REYES shades its grids once, when the shutter opens, and moves what came of it. The hidden hider does so too, unless some
-// surface or the hider asks for the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
+// REYES shades its grids once, at shutter open, and moves the result. So does the hidden hider, unless a surface or the hider
+// requests the time of the sample (Attribute "trace" "samplemotion", Hider "hidden" "samplemotion").
 bool shadesAtOpen(const scene::Frame& f, const Settings& settings, const std::vector<geometry::ShapeRef>& shapes) {
     if (settings.hider != Hider::Hidden) return false;
     const auto on = [](const scene::Param* p) { return p && !p->numbers.empty() && p->numbers[0] != 0; };
     if (on(scene::find(f.options.hiderParams, "samplemotion"))) return false;
-    const auto asks = [&](const geometry::ShapeRef& s) { // not of what is made later: pixels before would mean another thing
+    const auto asks = [&](const geometry::ShapeRef& s) {
+        // Excludes later procedurals, which would change the meaning of earlier pixels
         return on(s->attributes().value("trace:samplemotion")) && scene::partOf(s->attributes()).empty();
     };
     return std::none_of(shapes.begin(), shapes.end(), asks);
@@ -39,13 +40,14 @@ bool isVisible(const scene::Attributes& a, const char* rays, bool otherwise) {
     return !p->numbers.empty() && p->numbers[0] != 0;
 }
 
-/// Whether primitives that do not say it are visible to traced rays, and to shadow rays.
+/// Default visibility of primitives to traced rays, and to shadow rays.
 struct UnsetVisibility {
     bool traced = true, shadows = true;
 };
 
-// Under path all are. Elsewhere none are to the rays for which the scene says of some that they are: BMRT's scenes never do, and
-// their shaders trace. Procedurals that wait are asked themselves, and not what is in them.
+// Under path all are visible. Under the other hiders primitives are invisible by default to kinds of rays for which the scene
+// sets visibility anywhere: BMRT's scenes never do, and their shaders trace. Deferred procedurals count by their own attributes,
+// not by those of their contents.
 UnsetVisibility unsetVisibility(const std::vector<geometry::ShapeRef>& shapes, const scene::Frame& frame, bool path) {
     UnsetVisibility unset;
     if (path) return unset;
@@ -55,7 +57,7 @@ UnsetVisibility unsetVisibility(const std::vector<geometry::ShapeRef>& shapes, c
             unset.traced &= a.value(name) == nullptr;
         unset.shadows &= !isVisible(a, "transmission", false);
     };
-    const scene::Attributes* last = nullptr; // of a row of shapes with the same attributes
+    const scene::Attributes* last = nullptr; // of consecutive shapes with the same attributes
     for (const geometry::ShapeRef& s : shapes) {
         if (&s->attributes() == last) continue;
         last = &s->attributes();
@@ -66,10 +68,10 @@ UnsetVisibility unsetVisibility(const std::vector<geometry::ShapeRef>& shapes, c
     return unset;
 }
 
-// Visibility bits.
+// Visibility bits of a shape.
 uint32_t visibilityOf(const scene::Attributes& a, const UnsetVisibility& unset) {
     const auto on = [&](const char* name, bool otherwise) { return isVisible(a, name, otherwise); };
-    // BMRT's word: 1 for camera rays, 2 for reflections, 4 for shadows. Visibilities of their own have the last word.
+    // BMRT: 1 for camera rays, 2 for reflections, 4 for shadows. Separate visibility attributes take precedence.
     const scene::Param* old = a.value("render:visibility");
     const int of = old && !old->numbers.empty() ? int(std::clamp(double(old->numbers[0]), 0., 7.)) : -1;
     bool traced = on("trace", of < 0 ? unset.traced : (of & 2) != 0);
@@ -77,15 +79,14 @@ uint32_t visibilityOf(const scene::Attributes& a, const UnsetVisibility& unset) 
     if (on("camera", of < 0 || (of & 1) != 0)) bits |= accel::kCamera;
     if (on("diffuse", traced)) bits |= accel::kDiffuse;
     if (on("specular", traced)) bits |= accel::kSpecular;
-    const scene::Param* casts = a.value("render:casts_shadows"); // BMRT's word
+    const scene::Param* casts = a.value("render:casts_shadows"); // BMRT
     if (on("transmission", of < 0 ? unset.shadows : (of & 4) != 0) &&
         !(casts && !casts->strings.empty() && casts->strings[0] == "none"))
         bits |= accel::kTransmission;
     return bits;
 }
 
-/// Whether specular() has RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", which is what it is without), or
-/// the dialect.
+/// Whether specular() uses RISpec's exponent: Option "shade" "specular" "rispec" (or "prman", the default), else by dialect.
 bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnostics& d) {
     const auto i = o.values.find("shade:specular");
     if (i == o.values.end()) return rsl::front::dialectRispecSpecular(dialect);
@@ -105,7 +106,7 @@ void WorldImpl::numberShapes() {
         const geometry::Placed* p = shapes_[i]->placed();
         if (!p) continue;
         moves_ |= p->moves();
-        numberOfShape_.emplace(p->geometry().get(), i); // who dices it asks for a binding
+        numberOfShape_.emplace(p->geometry().get(), i); // dicing looks up a binding by geometry
         if (p->deforming())
             for (const auto& key : p->deforming()->keys()) numberOfShape_.emplace(key.get(), i);
     }
@@ -138,7 +139,7 @@ void WorldImpl::findProcedurals() {
     if (!bounds.empty()) unmade_ = std::make_unique<Unmade>(std::move(bounds));
 }
 
-/// Which samples see a shape that fades between levels of detail.
+/// Finds the samples that see a shape that fades between levels of detail.
 static void findLevels(WorldImpl& w) {
     std::vector<accel::Accel::Levels> levels(w.shapes_.size());
     for (size_t i = 0; i < levels.size(); ++i)
@@ -149,7 +150,7 @@ static void findLevels(WorldImpl& w) {
     if (w.fades_) w.accel_->setLevels(std::move(levels));
 }
 
-/// What the frame says of its maps.
+/// Texture settings of the frame.
 static texture::TextureSettings mapSettings(const scene::Options& o, const Settings& settings, Diagnostics& d) {
     const scene::MapColours colours = scene::mapColours(o, settings.hider == Hider::Path, d);
     texture::TextureSettings t{.linearise = colours == scene::MapColours::Light,
@@ -162,14 +163,14 @@ static texture::TextureSettings mapSettings(const scene::Options& o, const Setti
         if (const float most = i->second.numbers[0]; most >= 1) t.squeeze = 1 / (most * most);
         else
             d.report(Severity::Error, Rie::Range, i->second.place,
-                     "Option \"texture\" \"maxanisotropy\" is a number, at least 1; footprints stay as they are");
+                     "Option \"texture\" \"maxanisotropy\" must be a number >= 1; it is ignored");
     }
     if (const auto i = o.values.find("limits:texturememory"); i != o.values.end() && !i->second.numbers.empty()) {
         const double kilobytes = double(i->second.numbers[0]);
         if (kilobytes >= 1 && kilobytes < 1e15) t.memory = size_t(kilobytes) * 1024;
         else
             d.report(Severity::Error, Rie::Range, i->second.place,
-                     "Option \"limits\" \"texturememory\" is a number of kB, at least 1; what the machine has decides");
+                     "Option \"limits\" \"texturememory\" must be a number of kB >= 1; the default is used");
     }
     return t;
 }
@@ -180,9 +181,9 @@ std::vector<World::MapRead> WorldImpl::mapsRead() const {
     return all;
 }
 
-/// Tells emitters where rays meet their shapes.
+/// Tells emitters where rays hit their shapes.
 static void takeDiced(WorldImpl& w, const std::vector<uint32_t>& visibility) {
-    const auto seenThrough = [&](const geometry::Shape& s) { // what lies behind it shines as well
+    const auto seenThrough = [&](const geometry::Shape& s) { // light behind it is visible as well
         const size_t i = w.numberOfShape_.at(&s);
         const bool blocks = (visibility[i] & accel::kTransmission) && w.bindings_[size_t(w.bindingOf_[i])].opacity.opaque();
         return !blocks && !s.oneSided();
@@ -205,7 +206,7 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     w->setCamera(o);
     w->maxDepth_ = path ? 32 : 4;
     if (auto i = o.values.find("trace:maxdepth"); i != o.values.end() && !i->second.numbers.empty())
-        w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth))); // what no int holds, too
+        w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth)));
     if (settings.maxDepth >= 0) w->maxDepth_ = settings.maxDepth;
     w->maxDepth_ = std::min(w->maxDepth_, limits::kPathDepth);
     w->textures_ = std::make_unique<texture::TextureSystem>(d, mapSettings(o, settings, d));
@@ -244,7 +245,7 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     w->measureOutputs();
     if (stopped()) return nullptr;
     w->setPointNeeds();
-    w->diceShapes(d); // with displacement, by the same kernels that shade
+    w->diceShapes(d); // displacement uses the same kernels as shading
     if (stopped()) return nullptr;
     std::vector<uint32_t> visibility;
     for (const auto& shape : w->shapes_) visibility.push_back(visibilityOf(shape->attributes(), unset));

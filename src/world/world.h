@@ -1,4 +1,4 @@
-// A frame made ready (World): what others see of it. What rays, answers and lights are bound to is in impl.h.
+// A frame prepared for rendering (World): public interface. impl.h has the bindings for rays, services and lights.
 #pragma once
 #include "base/diagnostics.h"
 #include "scene/fwd.h"
@@ -11,13 +11,15 @@ namespace alpenglow::transport {
 class WorldImpl;
 class Evaluator;
 class PhotonStore;
-/// Gives who runs kernels of a world before rays are followed (evaluator.h). Several may work at a time; the world outlives them.
+/// Makes an Evaluator (evaluator.h) that runs kernels of a world before rays are traced. Several may run at once; the world
+/// outlives them.
 using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop)>;
 
-/// A frame ready to be traced: shapes diced, accelerated, shaders compiled, lights bound. Immutable and shared by threads.
+/// A frame ready for tracing: shapes diced, acceleration structure built, shaders compiled, lights bound. Immutable; shared by
+/// threads.
 class World {
 public:
-    /// Null when nothing can be rendered (an error was reported); missing shaders fall back with an error.
+    /// Returns null after an error that prevents rendering (it is reported). Missing shaders are errors, too, but have fallbacks.
     static std::shared_ptr<const World> build(const std::shared_ptr<const scene::Frame>&, const Settings&, MakeEvaluator,
                                               Diagnostics&);
     virtual ~World() = default;
@@ -26,43 +28,45 @@ public:
     struct Facts {
         double buildSec = 0, compileSec = 0;
         int kernels = 0, affine = 0, suspending = 0, cacheHits = 0;
-        size_t shapes = 0, before = 0; ///< before: those that are not wholly behind the camera
+        size_t shapes = 0, before = 0; ///< before: those not entirely behind the camera
     };
     virtual Facts facts() const = 0;
-    /// The maps that were read, by name: bytes of the file, of its map in memory, and of levels in a scratch file.
+    /// Maps that were read, by name: bytes of the file, of the map in memory, and of levels in a scratch file.
     struct MapRead {
         std::string path;
         size_t bytes = 0, memory = 0, scratch = 0;
     };
     virtual std::vector<MapRead> mapsRead() const { return {}; }
-    /// Floats per AOV in Settings::outputs: what the shaders that give it have, arrays with all their elements.
+    /// Floats of each AOV in Settings::outputs: as wide as in the shaders that write it, arrays with all elements.
     virtual std::vector<int> outputWidths() const = 0;
-    /// Those of Settings::outputs that no shader of the frame gives and that are no predefined variable: they are 0 everywhere.
-    /// None where the frame has no primitives.
+    /// Entries of Settings::outputs that no shader writes and that are not predefined variables; they are 0 everywhere. Empty if
+    /// the frame has no primitives.
     virtual std::vector<std::string> missingOutputs() const { return {}; }
-    /// Point clouds and their like in which texture3d() has found nothing at any point until now, with the place of a call.
+    /// Point clouds and similar maps in which no texture3d() has found anything so far, each with the place of a call.
     virtual std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const { return {}; }
-    /// Calls of occlusion(), indirectdiffuse() and gather() that have found everything blocked behind normals that face away, all
-    /// over so many primitives.
+    /// Calls of occlusion(), indirectdiffuse() and gather() with everything occluded behind normals that face away, on entire
+    /// primitives.
     struct TurnedAwayCall {
-        SourcePlace call, primitive; ///< the primitive that is the first in the order of files and lines
+        SourcePlace call, primitive; ///< first affected primitive in order of file and line
         std::string shadeop;
         size_t primitives = 0;
     };
     virtual std::vector<TurnedAwayCall> callsTurnedAway() const { return {}; }
     /// The photon maps of the frame (photonstore.h).
     virtual PhotonStore* photons() const { return nullptr; }
-    /// What could be named instead: predefined variables and the outputs of the frame's shaders.
+    /// Valid output names for suggestions: predefined variables and outputs of the frame's shaders.
     virtual std::vector<std::string> knownOutputs() const { return {}; }
-    /// Some shader wants light interpolated: before pictures are traced passes of rays with CameraRay::records are to be, coarse
-    /// to fine, each followed by keepRecords(). What a pass finds the next ones read, so that its order changes nothing.
+    /// Whether a shader uses irradiance caching. Before the picture, trace passes of rays with CameraRay::records, coarse to
+    /// fine, each followed by keepRecords(). Later passes read the records of earlier ones, so their order within a pass changes
+    /// nothing.
     virtual bool interpolates() const { return false; }
-    /// Ends such a pass: no thread may trace meanwhile. Returns how many records there are now.
+    /// Ends such a pass; no thread may trace. Returns the number of records.
     virtual size_t keepRecords() const { return 0; }
-    /// Writes what shaders have printed since the last call, in the order of the samples; or forgets it. Between passes.
+    /// Writes what shaders have printed since the last call, in sample order, or discards it. Call between passes.
     virtual void flushPrints(bool keep) const = 0;
-    /// Runs the frame's imager over finished pixels, in place. rgb: linear colour, alpha: coverage, P: raster position. True when
-    /// there is one. Once *stop is set its loops end early, and the pixels are void; null: never.
+    /// Runs the frame's imager over finished pixels, in place. rgb: linear colour, alpha: coverage, raster positions in pixels.
+    /// Returns true if there is an imager. After *stop is set its loops end early and the pixels are undefined; null: cannot be
+    /// stopped.
     virtual bool runImager(int count, const float* rasterX, const float* rasterY, float* r, float* g, float* b, float* alpha,
                            Diagnostics&, const StopFlag* stop = nullptr) const = 0;
 };

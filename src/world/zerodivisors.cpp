@@ -1,4 +1,5 @@
-// Parameters that shaders divide by and that the scene has set to 0: such a division gives 0, and the shader is often only black.
+// Detects parameters that shaders divide by and that the scene has set to 0: the result of such a division is 0, and surfaces
+// often render black.
 #include "rsl/zerodivisors.h"
 #include "rsl/compiler.h"
 #include "world/impl.h"

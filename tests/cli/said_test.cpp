@@ -252,7 +252,7 @@ TEST_F(Said, PicturesWithNothingInThem) {
         };
         render(look + "Translate 0 0 -5\nWorldBegin\n" + lamp + "Surface \"matte\"\n" + ball);
         EXPECT_EQ(times("the picture is empty"), 1) << errors();
-        EXPECT_TRUE(says("all of it lies behind the camera")) << errors();
+        EXPECT_TRUE(says("everything is behind the camera")) << errors();
         render(look + "Translate 50 0 5\nWorldBegin\n" + lamp + ball);
         EXPECT_TRUE(says("1 shape of 1 lies before it")) << errors();
         render(look + "WorldBegin\n" + lamp + "WorldEnd\n");

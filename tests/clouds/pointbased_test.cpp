@@ -263,10 +263,12 @@ TEST_F(PointScenes, WhatCannotBeReadIsSaidOnce) {
     clouds::saveCloud((dir / "flat.ptc").string(), flat, here, d);
     clouds::saveBrickMap((dir / "b.bkm").string(), clouds::test::square(4), here, d);
     write("bad.ptc", "this is no cloud");
-    const std::pair<const char*, const char*> cases[] = {
-        {"", "names no point cloud"},  {"missing.ptc", "there is no point cloud"},
-        {"none.ptc", "has no points"}, {"flat.ptc", "16 points without area"},
-        {"b.bkm", "is a brick map"},   {"bad.ptc", "it is no point cloud"}};
+    const std::pair<const char*, const char*> cases[] = {{"", "needs the name of a point cloud"},
+                                                         {"missing.ptc", "there is no point cloud"},
+                                                         {"none.ptc", "has no points"},
+                                                         {"flat.ptc", "16 points without area"},
+                                                         {"b.bkm", "is a brick map"},
+                                                         {"bad.ptc", "it is no point cloud"}};
     for (const auto& [file, word] : cases) {
         write("s.rib", header("a.exr", 8) + camera + "WorldBegin\nSurface \"points\" \"f\" \"" + file +
                            "\"\nSphere 1 -1 1 360\nWorldEnd\n");
@@ -291,7 +293,7 @@ TEST_F(PointScenes, NothingFoundIsSaidOnce) {
                            "\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\nWorldEnd\n");
         return run("render s.rib", "2>&1");
     };
-    const std::string word = "has no point near any place", far = said("1000"), line = "looks.sl:1:";
+    const std::string word = "has no point near any lookup position", far = said("1000"), line = "looks.sl:1:";
     EXPECT_NE(far.find(line), std::string::npos) << far;
     EXPECT_NE(far.find(word), std::string::npos) << far;
     EXPECT_EQ(far.find(word), far.rfind(word)) << far;

@@ -268,7 +268,7 @@ TEST(Ktx, WhatIsNotReadIsSaid) {
     EXPECT_NE(refused(ktx2(37, {.width = 2, .height = 1, .faces = 6}, {counting(48)})).find("square"), std::string::npos);
     EXPECT_NE(refused(ktx1(0, 1, 0, 0x93b0, {4, 4}, {counting(16)})).find("glInternalFormat"), std::string::npos);
     EXPECT_NE(refused(ktx1(0x8363, 2, 0x1907, 0x8d62, {}, {four})).find("glType"), std::string::npos);
-    EXPECT_NE(refused(ktx2(37, {2, 2}, {four})).find("another size"), std::string::npos);
+    EXPECT_NE(refused(ktx2(37, {2, 2}, {four})).find("the size of a level does not match its pixels"), std::string::npos);
     refused(ktx2(37, {0, 1}, {four}));
     refused(ktx2(37, {4000000000u, 4000000000u}, {four}));
     refused(ktx2(131, {65536, 65536}, {four}));

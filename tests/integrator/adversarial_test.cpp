@@ -155,7 +155,7 @@ TEST(Adversarial, LoopsOverLights) {
         {"color c[4]; i = 0; illuminance(P) { c[i] = Cl; i += 1; } Ci = c[0] + 2 * c[1] + 3 * c[2];", 321},
         // A gather of a billion rays sends as many as one call may, and meets what is black.
         {"color h = 0; gather(\"illuminance\", P, up, PI / 2, 1e9, \"surface:Ci\", h) { Ci += h; } else { Ci += 0; }", 0,
-         "4096 rays at most"},
+         "limit of 4096 rays"},
     };
     runSurfaces("evil", cases);
 }

@@ -480,7 +480,7 @@ TEST(LightHandles, NoMoreThanTheLimit) {
     surfaceOf("many", "    shader l[] = getlights(); Ci = arraylength(l);");
     Scene s(scene(lights, "\"many\""), under(Hider::Hidden));
     EXPECT_NEAR(s.one(kView).x, limits::kLightHandles, 1e-4);
-    EXPECT_NE(s.messages().find("getlights() gives no more than"), std::string::npos) << s.messages();
+    EXPECT_NE(s.messages().find("getlights() returns at most"), std::string::npos) << s.messages();
 }
 // More light samples than are kept for the next loop: those that are not kept are taken anew, and the sum is the same.
 TEST(Illuminance, MoreLightsThanAreKept) {

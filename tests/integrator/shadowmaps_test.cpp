@@ -185,7 +185,7 @@ TEST(ShadowMaps, APictureIsNoShadowMap) {
     Scene s(world("Surface \"picturemap\" \"string map\" " + writeMap("picture.exr", 4, 4, Color(1)) + " " + kFloor),
             withShaders(Hider::Hidden));
     EXPECT_EQ(s.one(at(0)).x, 0);
-    EXPECT_NE(s.messages().find("is no shadow map"), std::string::npos) << s.messages();
+    EXPECT_NE(s.messages().find("is not a shadow map"), std::string::npos) << s.messages();
 }
 
 // areashadow() of a class light with the map: the light of its samples is dark where the map says so, and nothing is traced.

@@ -146,10 +146,10 @@ TEST(SoftShadows, OfAnyShaderAndByHandles) {
 TEST(SoftShadows, NonsenseIsSaid) {
     Scene negative(world(lampText(kLamps[0].call, "-1") + kMatte + half(.1)), withShaders(Hider::Path));
     EXPECT_NEAR(negative.estimate(kBeside, 4).mean(), .5, 1e-6);
-    EXPECT_NE(negative.messages().find("those of a point"), std::string::npos) << negative.messages();
+    EXPECT_NE(negative.messages().find("the shadows of a point"), std::string::npos) << negative.messages();
     Scene scene(world(lampText(kLamps[0].call, ".1", 0) + kMatte), withShaders(Hider::Raytrace));
     EXPECT_NEAR(scene.estimate(kBeside, 4).mean(), .5, 1e-6);
-    EXPECT_NE(scene.messages().find("one is taken"), std::string::npos) << scene.messages();
+    EXPECT_NE(scene.messages().find("1 is used"), std::string::npos) << scene.messages();
     Scene many(world(lampText(kLamps[0].call, ".1", 5000) + kMatte), withShaders(Hider::Raytrace));
     Counters c;
     EXPECT_NEAR(many.estimate(kBeside, 1, &c).mean(), .5, 1e-6);

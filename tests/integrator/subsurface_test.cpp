@@ -286,7 +286,7 @@ TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
                        "subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
     Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(s.one(kView).x));
-    for (const char* word : {"no model \"mirror\"", "a point cloud is read where \"filename\" names one"})
+    for (const char* word : {"no model \"mirror\"", "name a point cloud by \"filename\""})
         EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
     for (const char* bad : {"\"color sc\" [0 0 0]", "\"color sc\" [-1 -1 -1]", "\"sc_\" 0", "\"ior\" 0", "\"ior\" 1e9",
                             "\"color sc\" [1e30 1e30 1e30] \"color ab\" [1e30 1e30 1e30]"}) {

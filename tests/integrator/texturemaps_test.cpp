@@ -120,7 +120,7 @@ TEST(TextureMaps, FootprintsAreWidenedAsTheOptionSays) {
     EXPECT_EQ(one.said, "");
     const Looked wrong = looked("Option \"texture\" \"float maxanisotropy\" 0\n", surface, 1);
     EXPECT_GT(wrong.color.x, .95f);
-    EXPECT_NE(wrong.said.find("\"maxanisotropy\" is a number, at least 1"), std::string::npos) << wrong.said;
+    EXPECT_NE(wrong.said.find("\"maxanisotropy\" must be a number >= 1"), std::string::npos) << wrong.said;
 }
 
 // A lookup whose slopes somebody wants takes another way than one without: its value is the same.

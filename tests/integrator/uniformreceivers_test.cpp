@@ -9,7 +9,7 @@ using namespace alpenglow::transport::testing;
 
 namespace {
 
-const char* const kSays = "is varying and the variable that takes it is uniform";
+const char* const kSays = "is varying and the destination is uniform";
 
 void expectOnce(const std::string& shaders, const std::string& place) {
     Scene s("WorldBegin\nSides 2\n" + shaders + "Patch \"bilinear\" \"P\" [-2 -2 5  2 -2 5  -2 2 5  2 2 5]\nWorldEnd\n",

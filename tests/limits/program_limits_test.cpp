@@ -214,7 +214,7 @@ TEST_F(ProgramLimits, CheckpointsOfSomethingElse) {
     const std::string how = "--hider path --checkpoint c.part --resume -o a.png ";
     render(how + "--spp 4 s.rib");
     ASSERT_EQ(status, 0) << err; // there was none
-    EXPECT_TRUE(says("note: there is no checkpoint yet; rendering begins anew")) << err;
+    EXPECT_TRUE(says("note: there is no checkpoint yet; rendering starts from the beginning")) << err;
     EXPECT_FALSE(says("warning")) << err;
     const std::string whole = read("c.part");
     ASSERT_FALSE(whole.empty());

@@ -70,7 +70,7 @@ TEST_F(PhotonHider, TooManyAreToldAndAnInterruptEndsThem) {
     EXPECT_GE(limits::kPhotons, limits::kPhotonsOfPass); // a map holds a pass
     write("pass.rib", "Hider \"path\" \"int caustics\" 1 \"float causticwidth\" -1\nPixelSamples 1 1\n" + use + room +
                           "Surface \"matte\" \"float Kd\" .5\n" + ball);
-    EXPECT_NE(run("render pass.rib", "2>&1").find("\"causticwidth\" is an angle in radians"), std::string::npos);
+    EXPECT_NE(run("render pass.rib", "2>&1").find("\"causticwidth\" must be an angle of 0 to 0.5 radians"), std::string::npos);
 }
 
 // As many photons as may be asked for, where all come to rest: a point light above a mirror in a room.

@@ -274,7 +274,7 @@ TEST_F(PreviewProgram, NobodyWhoListensIsSaidAndThePictureIsMade) {
     write("s.rib", kScene);
     const std::string out = run("render --progress none --display tev:127.0.0.1:1 s.rib", "2>&1");
     EXPECT_EQ(status, 0);
-    EXPECT_NE(out.find("tev:127.0.0.1:1: nobody listens there; rendering goes on without it"), out.npos) << out;
+    EXPECT_NE(out.find("tev:127.0.0.1:1: no viewer listens there; rendering continues without it"), out.npos) << out;
     EXPECT_TRUE(std::filesystem::exists(dir / "x.exr"));
     for (const char* wrong : {"tev:localhost", "tev:localhost:0", "tev:localhost:99999", "tev:localhost:x"}) {
         const std::string said = run(std::string("render --display ") + wrong + " s.rib", "2>&1");

@@ -1,4 +1,4 @@
-// Display type "file": the format by the extension of the name, TIFF when there is none that is known.
+// Display type "file": the format by the extension of the name, TIFF if it is unknown.
 #include "display/drivers/picture.h"
 #include <strings.h>
 

@@ -1,4 +1,4 @@
-// Display type "null": nothing is kept.
+// Display type "null": discards the picture.
 #include "display/drivers/picture.h"
 
 namespace alpenglow::display {

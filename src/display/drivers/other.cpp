@@ -7,7 +7,7 @@ namespace {
 class Other : public PictureDriver {
     Format format(const DriverSetup& s, Diagnostics& diags) override {
         Format f = formatOfExtension(s.name).value_or(Format::Tiff);
-        if (findDriver(s.type)) // of an unknown type it has been said already (makeDriver)
+        if (findDriver(s.type)) // for unknown types makeDriver has reported it
             diags.report(Severity::Warning, Rie::Incapable, s.place,
                          "display \"" + s.name + "\": type \"" + s.type + "\" is not available; " + toString(f) +
                              " is written under that name");

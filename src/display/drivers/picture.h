@@ -11,7 +11,7 @@ public:
     bool close(Diagnostics&) override;
 
 protected:
-    /// Chooses the format; says so where that is not what the type says.
+    /// Chooses the format; reports if it is not that of the type.
     virtual Format format(const DriverSetup&, Diagnostics&) = 0;
     /// Whether the numbers are data that must stay floats (depth).
     virtual bool data() const { return false; }

@@ -1,4 +1,4 @@
-// Display type "png": 8 or 16 bits; alpha is written as it is (associated, as RenderMan has it).
+// Display type "png": 8 or 16 bits; alpha is written unchanged (associated, as in RenderMan).
 #include "display/drivers/picture.h"
 
 namespace alpenglow::display {

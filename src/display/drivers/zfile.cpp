@@ -1,12 +1,12 @@
-// Display types "zfile" and "shadow", and "deepshad" with what is behind the first surface: depth as floats in OpenEXR under the
-// given name, with the matrices that shadow() needs.
+// Display types "zfile" and "shadow", and "deepshad", which includes layers behind the first surface: depth as floats in OpenEXR
+// under the given name, with the matrices for shadow().
 #include "display/drivers/picture.h"
 #include <algorithm>
 
 namespace alpenglow::display {
 namespace {
 
-/// OpenEXR of floats that shadow() takes for a map of depths.
+/// Float OpenEXR that shadow() accepts as a depth map.
 class DepthDriver : public PictureDriver {
     Format format(const DriverSetup&, Diagnostics&) override { return Format::Exr; }
     bool data() const override { return true; }
@@ -31,7 +31,7 @@ public:
     }
 };
 
-/// Its pixels come with the setup.
+/// Its pixels are in the setup.
 class DeepShadow : public DepthDriver {
 public:
     bool open(const DriverSetup& s, Diagnostics& diags) override {

@@ -96,8 +96,8 @@ void readIndices(BlockBits& bits, unsigned width, unsigned subsets, unsigned par
     for (unsigned i = 0; i < 16; ++i) indices[i] = width ? bits.take(width - isAnchor(subsets, partition, i)) : 0;
 }
 
-/// Where the bits of the endpoints of a mode of BC6H lie, in the words of the specification: r0 to b3 are red to blue of the
-/// four ends; [a:b] are bits b to a, the lowest first, or turned over where a < b.
+/// Bit positions of the endpoints of a BC6H mode, in the words of the specification: r0 to b3 are red to blue of the four
+/// endpoints; [a:b] are bits b to a, lowest first, or reversed if a < b.
 struct Bc6Mode {
     unsigned number;
     bool relative;

@@ -1,4 +1,4 @@
-// What imageio.cpp and the codecs share. One codec per file; none throws.
+// Shared by imageio.cpp and the codecs. One codec per file; none throws.
 #pragma once
 #include "display/imageio.h"
 
@@ -6,13 +6,13 @@ namespace alpenglow::display {
 
 using Bytes = std::span<const uint8_t>;
 
-/// What a decoder needs to speak.
+/// Diagnostics context of a decoder.
 struct DecodeContext {
     const std::string& name;
     Diagnostics& diags;
     const ReadOptions& options;
     size_t fileBytes;
-    bool file = false; ///< the name is that of a file: formats that are not known here are read through the module (foreign.h)
+    bool file = false; ///< the name is a file name: unknown formats are read through the module (foreign.h)
     /// Reports `cannot read "name": why` and returns nothing.
     std::nullopt_t refuse(const std::string& why, Rie code = Rie::BadFile) const;
     void warn(const std::string& why) const;
@@ -29,12 +29,12 @@ std::optional<Image> decodeRadiance(Bytes, const DecodeContext&);
 std::optional<Image> decodePixar(Bytes, const DecodeContext&);
 std::optional<Image> decodeTarga(Bytes, const DecodeContext&);
 std::optional<Image> decodeKtx(Bytes, const DecodeContext&);
-/// Whether a file begins as KTX or KTX2 does.
+/// Whether a file starts like KTX or KTX2.
 bool looksLikeKtx(Bytes);
-/// Whether a file may be a Targa picture, by its header, which looksLikeTarga() has read whole then.
+/// Whether a file may be a Targa picture, by its complete header.
 bool looksLikeTarga(Bytes);
 
-/// Encoders write to an open file; false: `why` says what went wrong (or the file holds the error).
+/// Encoders write to an open file; they return false after an error, which is in `why` (or in the file).
 bool encodeExr(OutputFile&, const Image&, const WriteOptions&, std::string& why);
 bool encodeTiff(OutputFile&, const Image&, const WriteOptions&, std::string& why);
 bool encodePng(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why);
@@ -42,11 +42,12 @@ bool encodeJpeg(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, st
 
 /// Indices of the channels that a file of one picture holds: r g b, else the first three or the first one; then a, with `alpha`.
 std::vector<int> pictureChannels(const Image&, bool alpha);
-/// Warns of the channels that are not among `written`; alpha alone is no more than a note.
+/// Warns about channels that are not in `written`; for alpha alone only a note.
 void sayLeftOut(const char* format, const Image&, const std::vector<int>& written, const std::string& path, const WriteOptions&,
                 Diagnostics&);
 
-/// A sample as an integer code of 8 or 16 bits: as it is when quantised, else value * maximum; rounded, clamped; NaN is 0.
+/// Converts a sample to an integer code of 8 or 16 bits: unchanged if quantised, else value * maximum; rounded, clamped; NaN is
+/// 0.
 unsigned toCode(float value, unsigned maximum, bool quantised);
 
 } // namespace alpenglow::display

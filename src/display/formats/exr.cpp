@@ -23,8 +23,7 @@ namespace {
 uint32_t u32(const uint8_t* p) { return uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24; }
 int32_t i32(const uint8_t* p) { return int32_t(u32(p)); }
 
-/// A walk over the headers before the library sees the file: the library allocates by what they state.
-/// Returns what is wrong, or "".
+/// Checks the headers before the library, which allocates by their values. Returns an error message, or "".
 std::string checkHeaders(Bytes b) {
     const char* bad = "its header is damaged";
     if (b.size() < 8) return "it is truncated";
@@ -102,7 +101,7 @@ std::string checkHeaders(Bytes b) {
     return "it has too many parts";
 }
 
-/// EXR keeps channels in byte order of their names; we want r g b a z, then layers, each in its natural order.
+/// EXR sorts channels by name; this restores r g b a z, then layers, each in its natural order.
 struct ChannelOrder {
     std::string layer;
     int rank;
@@ -120,7 +119,7 @@ ChannelOrder orderOf(const std::string& name) {
     for (size_t i = 0; i < std::size(values); ++i)
         if (leaf == ranks[i]) rank = values[i];
     if (layer.empty() && (leaf == "Z" || leaf == "z")) rank = 4;
-    if (layer.empty() && rank == 10) layer = "\x01"; // bare AOVs after the picture itself
+    if (layer.empty() && rank == 10) layer = "\x01"; // AOVs without layer come after the picture itself
     return {layer, rank, name};
 }
 
@@ -247,7 +246,7 @@ bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::stri
         for (const std::string& c : m.channels) h.channels().insert(theirs(c), Imf::Channel(half ? Imf::HALF : Imf::FLOAT));
         writeAttributes(m, h);
 
-        // OpenEXR wants the pixels in the file's type: halves are converted here, with values too large for them made infinite.
+        // OpenEXR needs pixels in the file's type: converts to half, with overflow to infinity.
         std::vector<Imath::half> halves;
         auto buffer = [&](const Image& level, const Imath::Box2i& w) {
             Imf::FrameBuffer fb;

@@ -1,4 +1,4 @@
-// What the codecs of flat and of deep OpenEXR pictures share.
+// Shared by the codecs of flat and deep OpenEXR pictures.
 #pragma once
 #include "display/formats/codecs.h"
 #include <Iex.h>
@@ -57,9 +57,9 @@ inline Imath::M44f fromMatrix(const Matrix& m) {
 /// Text, numbers and the matrices of a header, into the picture's.
 void readAttributes(const Imf::Header&, Image&);
 void writeAttributes(const Image&, Imf::Header&);
-/// A file whose first part is deep scan lines, its headers checked.
+/// Decodes a file whose first part has deep scan lines, after its headers were checked.
 std::optional<Image> decodeDeep(Imf::MultiPartInputFile&, const DecodeContext&);
-/// Writes image.deep. False: `why` says what went wrong (or the file holds the error).
+/// Writes image.deep. Returns false after an error, which is in `why` (or in the file).
 bool encodeDeep(OutputFile&, const Image&, std::string& why);
 
 } // namespace alpenglow::display

@@ -24,13 +24,13 @@ const char* const kColours[3] = {"RA", "GA", "BA"};
 const char* const kAlpha = "A";
 constexpr int kSlab = 8; ///< steps that a sample with an extent becomes
 
-/// One line, or several: samples by channel, and where those of each pixel begin.
+/// One or more lines: samples by channel, and the start of each pixel's samples.
 class Line {
 public:
     Line(int width, int left, size_t channels, int height = 1)
         : count(size_t(width) * size_t(height)), values(channels), left_(left), width_(width),
           pointers_(channels, std::vector<char*>(count.size())) {}
-    /// Slices whose rows are all this one; of several lines the first of which is `top`.
+    /// Slices whose rows are all this one; or for several lines, starting at `top`.
     Imf::DeepFrameBuffer buffer(const std::vector<const char*>& names, std::optional<int> top = {}) {
         Imf::DeepFrameBuffer fb;
         const size_t row = top ? size_t(width_) : 0;
@@ -42,7 +42,7 @@ public:
                                                row * sizeof(char*), sizeof(float)));
         return fb;
     }
-    /// Makes room for what `count` says.
+    /// Allocates space for the samples in `count`.
     void point() {
         size_t all = 0;
         for (unsigned n : count) all += n;
@@ -79,18 +79,18 @@ void addStairs(std::vector<Taken>& samples, std::vector<DeepStep>& out) {
             s.z = slab ? t.z + (t.back - t.z) * (float(k) + 0.5f) / kSlab : t.z;
             for (int c = 0; c < 3; ++c) {
                 const float clear = 1 - std::clamp(t.opacity[c], 0.f, 1.f);
-                if (!(clear < 1)) continue; // also NaN, which takes no light
+                if (!(clear < 1)) continue; // also NaN, which has no opacity
                 s.left[c] *= slab ? float(exact::pow(double(clear), 1.0 / kSlab)) : clear;
             }
             out.push_back(s);
         }
     }
-    // Slabs may lie within one another: a step that comes too late counts from where the one before it is.
+    // Slabs may be nested: a late step is moved to its predecessor.
     for (size_t i = 1; i < out.size(); ++i)
         if (out[i].z < out[i - 1].z) out[i].z = out[i - 1].z;
 }
 
-/// What is read of a file.
+/// Layout of a file.
 struct Layout {
     std::vector<const char*> names;
     bool coloured, slabs;
@@ -98,13 +98,13 @@ struct Layout {
     size_t fileBytes;
 };
 
-/// Whether so many samples can be in the file: zip makes nothing smaller than by a factor of 1032.
+/// Whether so many samples can be in the file: zip compresses at most by a factor of 1032.
 bool fits(uint64_t samples, const Layout& l) {
     return samples <= limits::kDeepSteps && samples * 4 <= uint64_t(l.fileBytes) * 1100;
 }
-const char* const kTooMany = "it has more samples than it has bytes for";
+const char* const kTooMany = "it declares more samples than the file can hold";
 
-/// Appends pixels of a line that begin at a sample. "": fine.
+/// Appends the pixels of a line from a sample on. Returns "" or an error.
 std::string addPixels(const Line& line, const Layout& l, size_t from, int width, int y, size_t& at, Image& m, DeepSamples& deep) {
     std::vector<Taken> taken;
     std::vector<DeepStep> stairs;
@@ -148,7 +148,7 @@ std::string readLines(Imf::MultiPartInputFile& file, const Layout& l, Image& m, 
 std::string readTiles(Imf::MultiPartInputFile& file, const Layout& l, Image& m, DeepSamples& deep) {
     Imf::DeepTiledInputPart part(file, 0);
     const int high = int(std::min<unsigned>(part.tileYSize(), unsigned(m.height)));
-    if (uint64_t(high) * uint64_t(m.width) > (uint64_t(l.fileBytes) + 4096) * 1100) return kTooMany; // counts are there, too
+    if (uint64_t(high) * uint64_t(m.width) > (uint64_t(l.fileBytes) + 4096) * 1100) return kTooMany; // including the counts
     for (int row = 0; row < part.numYTiles(0); ++row) {
         const int y0 = row * int(part.tileYSize()), lines = std::min(high, m.height - y0);
         Line band(m.width, l.left, l.names.size(), lines);
@@ -231,7 +231,7 @@ bool encodeDeep(OutputFile& out, const Image& m, std::string& why) {
                     const DeepStep& s = deep.steps[i];
                     float sum = 0;
                     line.values[0][at] = s.z;
-                    for (size_t c = 0; c < 3; ++c) { // what the sample takes of what comes to it
+                    for (size_t c = 0; c < 3; ++c) { // opacity of the sample relative to the incoming light
                         const float o = left[c] > 0 ? 1 - s.left[c] / left[c] : 0;
                         line.values[c + 1][at] = o;
                         sum += o;

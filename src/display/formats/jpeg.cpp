@@ -36,7 +36,7 @@ void onMessage(j_common_ptr c, int level) {
     ++c->err->num_warnings;
 }
 void onOutput(j_common_ptr) {}
-/// A progressive file can ask for any number of passes over all pixels.
+/// Limits passes: a progressive file can request any number of passes over all pixels.
 void onProgress(j_common_ptr c) {
     if (c->is_decompressor && reinterpret_cast<j_decompress_ptr>(c)->input_scan_number > limits::kImageScans) {
         JpegReader& r = self(c);
@@ -174,7 +174,7 @@ std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
     jpeg_destroy_decompress(&r.info);
     if (r.refused) return {};
     if (!ok) return ctx.refuse(r.error);
-    if (r.warning[0]) ctx.warn(std::string(r.warning) + "; what could be read is used");
+    if (r.warning[0]) ctx.warn(std::string(r.warning) + "; the readable part is used");
     return std::move(r.image);
 }
 

@@ -1,6 +1,5 @@
-// KTX and KTX2 pictures and cube maps, reading only: uncompressed numbers and BC1 to BC7, with their levels; of KTX2 also those
-// that zlib has packed. Source: Khronos, KTX File Format Specification 1.0 and 2.0. Where a file does not say how rows run
-// ("KTXorientation"), the first is the top one.
+// KTX and KTX2 pictures and cube maps, read only: uncompressed and BC1 to BC7, with levels; KTX2 also with zlib. Source: Khronos,
+// KTX File Format Specification 1.0 and 2.0. Without "KTXorientation" the first row is the top one.
 #include "base/half.h"
 #include "display/formats/blocks.h"
 #include "display/formats/codecs.h"
@@ -11,7 +10,7 @@
 namespace alpenglow::display {
 namespace {
 
-/// What the texels of a file are.
+/// Format of the texels.
 struct TexelFormat {
     enum Number { Unorm, Snorm, Half, Float };
     uint32_t code;
@@ -128,12 +127,12 @@ template <size_t n> const TexelFormat* formatIn(const TexelFormat (&list)[n], ui
     return nullptr;
 }
 
-/// What both headers say.
+/// Common contents of both headers.
 struct KtxHeader {
     TexelFormat format{};
     uint32_t width = 0, height = 0, faces = 1, levels = 1;
     bool big = false;    ///< numbers have their high byte first
-    bool upward = false; ///< rows begin at the bottom
+    bool upward = false; ///< the first row is the bottom one
     size_t rowUnit = 1;  ///< rows are padded to a multiple of this
     int channels() const { return format.block ? channelsOf(*format.block) : format.channels; }
     uint64_t widthOf(uint32_t l) const { return std::max<uint32_t>(1, width >> l); }
@@ -147,7 +146,7 @@ struct KtxHeader {
     uint64_t bytesOfRow(uint64_t w) const { return (w * format.texel() + rowUnit - 1) / rowUnit * rowUnit; }
 };
 
-/// Numbers of a file; has() is asked before.
+/// Numbers of a file; call has() first.
 struct KtxBytes {
     Bytes b;
     bool big = false;
@@ -223,7 +222,7 @@ Image pictureFor(const KtxHeader& h, uint32_t level) {
     return m;
 }
 
-/// Limits and what is not read; false after an error.
+/// Checks limits and unsupported features; returns false after an error.
 bool acceptable(const KtxHeader& h, uint32_t depth, uint32_t layers, const DecodeContext& ctx) {
     if (depth > 1 || layers > 0 || (h.faces != 1 && h.faces != 6)) {
         ctx.refuse(depth > 1 ? "it is a volume; only pictures and cube maps are read"
@@ -237,7 +236,7 @@ bool acceptable(const KtxHeader& h, uint32_t depth, uint32_t layers, const Decod
     return ctx.sizeAllowed(h.width, uint64_t(h.height) * h.faces, uint64_t(h.channels()));
 }
 
-/// How many levels are read: those of a picture, where they are asked for.
+/// Number of levels to read: those of a picture, if requested.
 uint32_t levelsOf(const KtxHeader& h, const DecodeContext& ctx) {
     if (h.faces > 1 || !ctx.options.levels) return 1;
     uint32_t most = 1;
@@ -250,7 +249,7 @@ void addLevel(Image& all, Image&& m, uint32_t level) {
     else all.levels.push_back(std::move(m));
 }
 
-/// Finds "KTXorientation" among the keys: whether rows begin at the bottom.
+/// Finds "KTXorientation" among the keys: whether the first row is the bottom one.
 bool rowsUpward(const KtxBytes& f, uint64_t at, uint64_t size) {
     constexpr char kKey[] = "KTXorientation";
     const uint64_t end = at + size;
@@ -306,7 +305,7 @@ static std::optional<Image> decodeKtx1(Bytes b, const DecodeContext& ctx) {
     for (uint32_t level = 0, n = levelsOf(h, ctx); level < n; ++level) {
         const uint64_t size = h.bytesOfFace(level), step = (size + 3) / 4 * 4;
         if (!f.has(at, 4) || !f.has(at + 4, step * (h.faces - 1) + size)) return ctx.refuse("it is truncated");
-        if (f.u32(at) != size) return ctx.refuse("a level has another size than its pixels need");
+        if (f.u32(at) != size) return ctx.refuse("the size of a level does not match its pixels");
         Image m = pictureFor(h, level);
         for (uint32_t face = 0; face < h.faces; ++face)
             decodeFace(b.data() + at + 4 + face * step, h, level, m, int(face * h.heightOf(level)));
@@ -316,7 +315,7 @@ static std::optional<Image> decodeKtx1(Bytes b, const DecodeContext& ctx) {
     return all;
 }
 
-/// The bytes of a level of a KTX2 file, unpacked into `room` where they are packed; null after an error.
+/// Bytes of a level of a KTX2 file, decompressed into `room` if needed; null after an error.
 static const uint8_t* levelBytes(const KtxBytes& f, uint32_t level, bool packed, uint64_t size, std::vector<uint8_t>& room,
                                  const DecodeContext& ctx) {
     const uint64_t entry = 80 + 24 * uint64_t(level);
@@ -326,7 +325,7 @@ static const uint8_t* levelBytes(const KtxBytes& f, uint32_t level, bool packed,
     }
     const uint8_t* from = f.b.data() + f.u64(entry);
     if (f.u64(entry + (packed ? 16 : 8)) != size) {
-        ctx.refuse("a level has another size than its pixels need");
+        ctx.refuse("the size of a level does not match its pixels");
         return nullptr;
     }
     if (!packed) return from;

@@ -1,7 +1,7 @@
 // Pixar's native textures, latitude-longitude environments and shadow maps: magic FA CE (or CE FA, the other byte order),
-// versions 2 and 3. The layout was worked out from files, since it is not published: a header of 72 bytes; for each channel a
-// table of the levels by log2 of height and width; for shadows two matrices; then levels in tiles of one channel and at most 4096
-// bytes, raw in version 2, each with a coding of its own behind a directory in version 3. Row 0 is the top.
+// versions 2 and 3. The layout is not published and was derived from files: a header of 72 bytes; for each channel a table of the
+// levels by log2 of height and width; for shadows two matrices; then levels in tiles of one channel and at most 4096 bytes,
+// uncompressed in version 2, each with its own compression after a directory in version 3. Row 0 is the top.
 #include "display/formats/pixar.h"
 #include "display/formats/codecs.h"
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr int mostChannels = 8, mostLog = 15;
 
 enum class SampleType { Texture = 1, Shadow = 2, LatLong = 3 };
 
-/// The file as numbers of its byte order. Callers check the place first.
+/// Numbers in the byte order of the file. Callers check positions first.
 struct PixarReader {
     Bytes b;
     bool big;
@@ -67,7 +67,7 @@ class Decoder {
 public:
     Decoder(const PixarReader& r, const PixarHeader& h, const DecodeContext& ctx) : r_(r), h_(h), ctx_(ctx) {}
 
-    /// The picture with the levels that were asked for.
+    /// The picture with the requested levels.
     std::optional<Image> picture() {
         if (!ctx_.sizeAllowed(1ull << h_.logWidth, 1ull << h_.logHeight, uint64_t(h_.channels))) return {};
         raw_ = h_.version == 2 || (!h_.compressed && rawToTheEnd());
@@ -102,8 +102,8 @@ private:
             if (entry(c, y, x) == 0) return false;
         return true;
     }
-    /// Whether the levels, taken as raw samples, end exactly where the file ends, as they do in version 2. No file of version 3
-    /// without compression was seen: this tells whether it is laid out like version 2 or with directories.
+    /// Whether uncompressed levels end exactly at the end of the file, as in version 2. No uncompressed file of version 3 is
+    /// known: this tells whether it has the layout of version 2, or directories.
     bool rawToTheEnd() const {
         uint64_t end = 0;
         for (int c = 0; c < h_.channels; ++c)
@@ -128,7 +128,7 @@ private:
         const size_t across = size_t(m.width / tw), count = across * size_t(m.height / th),
                      need = size_t(tw) * size_t(th) * sample;
         const uint64_t values = at + 8, codes = values + 4 * count;
-        if (!r_.holds(at, raw_ ? count * need : 8 + 6 * count)) return refuse("a level lies outside of the file");
+        if (!r_.holds(at, raw_ ? count * need : 8 + 6 * count)) return refuse("a level is outside of the file");
         uint8_t bytes[tileBytes];
         const std::span<uint8_t> tile(bytes, need);
         for (size_t t = 0; t < count; ++t) {
@@ -149,7 +149,7 @@ private:
             }
             return true;
         }
-        if (!r_.holds(value, length)) return refuse("a tile lies outside of the file");
+        if (!r_.holds(value, length)) return refuse("a tile is outside of the file");
         const Bytes from = r_.b.subspan(value, length);
         const auto check = [&](const char* what, const char* why) { return !why || refuse(std::string(what) + " " + why); };
         switch (mode) {

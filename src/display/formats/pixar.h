@@ -8,11 +8,11 @@ namespace alpenglow::display::pixar {
 
 using Bytes = std::span<const uint8_t>;
 
-/// Each fills `tile` with samples of `sampleBytes` bytes in the byte order of the file. Null: done. Else what is wrong with the
-/// bytes, as words that follow "its run lengths", "its LZW codes" and so on; the tile is then not to be used. None reads outside
-/// `from` or writes outside `tile`; bytes that are left over are no error (one writer leaves some).
+/// Each fills `tile` with samples of `sampleBytes` bytes in the byte order of the file. Returns null on success, else an error as
+/// words that follow "its run lengths", "its LZW codes" and so on; the tile is then undefined. They do not read outside of `from`
+/// or write outside of `tile`; surplus bytes are not an error (one writer leaves some).
 
-/// n < 128: the next sample n + 1 times; else n - 127 samples as they are.
+/// n < 128: repeats the next sample n + 1 times; else copies n - 127 samples.
 const char* runLengths(Bytes from, std::span<uint8_t> tile, size_t sampleBytes);
 /// As in GIF, but without codes for clearing and the end: 257 is the first new code, 256 is not used.
 const char* lzw(Bytes from, std::span<uint8_t> tile);

@@ -50,7 +50,7 @@ public:
         }
         return nullptr;
     }
-    /// The next value; -1 at the end of the bits, -2 where no code begins so.
+    /// The next value; -1 at the end of the bits, -2 for an invalid code.
     int read(BitsFromTop& bits) const {
         for (size_t at = 0;;) {
             int bit = bits.next();
@@ -86,7 +86,7 @@ const char* runLengths(Bytes from, std::span<uint8_t> tile, size_t sampleBytes) 
 
 const char* lzw(Bytes from, std::span<uint8_t> tile) {
     constexpr uint32_t reserved = 256, firstNew = 257;
-    // An entry is a run of what was already put out: each code but the first makes one, of the code before and one byte more.
+    // An entry is a run of earlier output: each code except the first makes one, of the previous code and one more byte.
     struct Run {
         uint32_t at, length;
     };
@@ -116,7 +116,7 @@ const char* lzw(Bytes from, std::span<uint8_t> tile) {
         } else {
             const Run& r = runs[code - firstNew];
             now.length = uint32_t(std::min<size_t>(r.length, tile.size() - out));
-            for (uint32_t i = 0; i < now.length; ++i) tile[out++] = tile[r.at + i]; // may run into itself
+            for (uint32_t i = 0; i < now.length; ++i) tile[out++] = tile[r.at + i]; // source and destination may overlap
         }
         before = now;
         if (next == uint32_t(1) << width) ++width;
@@ -151,7 +151,7 @@ const char* huffman(Bytes from, std::span<uint8_t> tile) {
 const char* deflated(Bytes from, std::span<uint8_t> tile, size_t sampleBytes, bool bigEndian) {
     uLongf size = uLongf(tile.size());
     const int result = uncompress(tile.data(), &size, from.data(), uLong(from.size()));
-    if (result == Z_MEM_ERROR) return "need memory that is not there";
+    if (result == Z_MEM_ERROR) return "need more memory than is available";
     if (result != Z_OK) return "cannot be inflated";
     if (size != tile.size()) return "end too early";
     if (sampleBytes == 1) {

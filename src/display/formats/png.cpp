@@ -43,7 +43,7 @@ template <class T> void onError(png_structp png, png_const_charp text) {
 }
 void onWarning(png_structp, png_const_charp) {} // damaged side chunks: no pixel is lost
 
-/// Sizes the picture; out of the jump frame because it makes objects. False: stop.
+/// Allocates the picture, outside of the setjmp frame because it makes objects. Returns false to stop.
 bool prepare(PngReader& r, png_structp png, png_infop info) {
     uint32_t w = png_get_image_width(png, info), h = png_get_image_height(png, info);
     int n = png_get_channels(png, info);

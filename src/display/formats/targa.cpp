@@ -1,5 +1,5 @@
-// Targa pictures (.tga), reading only: colour maps, true colour and grey, run lengths or not, 8 to 32 bits, rows from either end.
-// The format has no first bytes of its own; looksLikeTarga() goes by its header. Source: Truevision TGA file format
+// Targa pictures (.tga), read only: colour maps, true colour and grey, with or without run lengths, 8 to 32 bits, rows in both
+// directions. The format has no magic number; looksLikeTarga() checks the header. Source: Truevision TGA file format
 // specification 2.0.
 #include "display/formats/codecs.h"
 #include <cstring>
@@ -44,7 +44,7 @@ void colourOf(const uint8_t* p, unsigned bits, float* to) {
     to[3] = bits == 32 ? float(p[3]) / 255.0f : 1.0f;
 }
 
-/// The pixels as they are stored, run lengths undone; false: the file ends before.
+/// The stored pixels after run length decoding; returns false if the file is too short.
 bool unpack(Bytes b, size_t at, const TargaHeader& h, std::vector<uint8_t>& pixels) {
     const size_t size = (h.bits + 7) / 8, all = size_t(h.width) * h.height * size;
     if (!h.runs()) {
@@ -75,7 +75,7 @@ bool looksLikeTarga(Bytes b) { return b.size() > kHeader && TargaHeader(b).good(
 
 std::optional<Image> decodeTarga(Bytes b, const DecodeContext& ctx) {
     const TargaHeader h(b);
-    // The fourth byte of a pixel, and the sixteenth bit, are opacity where the header says so.
+    // The fourth byte of a pixel, or the sixteenth bit, is opacity if the header declares it.
     const bool alpha = !h.grey() && (h.colourBits() == 32 ? h.alphaBits() != 0 : h.colourBits() == 16 && h.alphaBits() == 1);
     const int channels = h.grey() ? h.bits == 16 ? 2 : 1 : alpha ? 4 : 3;
     if (!ctx.sizeAllowed(h.width, h.height, uint64_t(channels))) return {};
@@ -99,7 +99,7 @@ std::optional<Image> decodeTarga(Bytes b, const DecodeContext& ctx) {
             float rgba[4];
             if (h.mapped()) {
                 const unsigned k = (unsigned(p[0]) | (h.bits == 16 ? unsigned(p[1]) << 8 : 0u)) - h.mapFirst;
-                if (k >= h.mapLength) return ctx.refuse("a pixel names a colour that its colour map does not have");
+                if (k >= h.mapLength) return ctx.refuse("a pixel has an index beyond its colour map");
                 colourOf(b.data() + map + size_t(k) * entry, h.mapBits, rgba);
             } else {
                 colourOf(p, h.bits, rgba);

@@ -1,6 +1,6 @@
-// TIFF by libtiff, with its per-file handlers and memory callbacks: nothing global is touched. Read: 8, 16, 32 bit integers, 16,
-// 32, 64 bit floats, contiguous or separate planes, strips or tiles, any compression the library has; the rest (palettes, YCbCr,
-// CMYK, 1 to 4 bits) through its RGBA conversion. Written: 8, 16, float, contiguous strips.
+// TIFF by libtiff, with handlers and memory limits for each file rather than global ones. Reads 8, 16, 32 bit integers, 16, 32,
+// 64 bit floats, contiguous or separate planes, strips or tiles, any compression of the library; other kinds (palettes, YCbCr,
+// CMYK, 1 to 4 bits) through its RGBA conversion. Writes 8, 16 bit and float, contiguous strips.
 #include "base/limits.h"
 #include "display/formats/codecs.h"
 #include <algorithm>
@@ -19,7 +19,7 @@ struct MemoryClient {
     uint64_t at = 0;
 };
 
-/// Messages of the library for one file; the first is kept.
+/// Messages of the library for one file; stores the first.
 struct Messages {
     std::string first;
     static int error(TIFF*, void* self, const char*, const char* format, va_list args) {
@@ -142,7 +142,7 @@ void convert(const uint8_t* from, size_t count, const Layout& l, float* to, size
     }
 }
 
-/// The pixels of the current directory into m.data (sized already). False: unreadable.
+/// Reads the pixels of the current directory into m.data, which has the right size. Returns false if unreadable.
 bool readDirect(TIFF* t, const Layout& l, Image& m) {
     size_t n = l.samples, unit = l.bits / 8;
     bool separate = l.planar == PLANARCONFIG_SEPARATE && n > 1;
@@ -213,7 +213,7 @@ std::optional<std::vector<std::string>> namesIn(const std::string& description, 
     return names;
 }
 
-/// Reads the current directory; nothing after reporting.
+/// Reads the current directory; returns nothing after an error, which is reported.
 std::optional<Image> readDirectory(TIFF* t, const DecodeContext& ctx, const Messages& messages) {
     Layout l = layoutOf(t);
     if (!ctx.sizeAllowed(l.width, l.height, l.direct() ? l.samples : 4)) return {};

@@ -1,4 +1,4 @@
-// The list of lobes. trace() and the lighting shadeops know them by name, the statistics tests by this list.
+// The list of lobes. trace() and the lighting shadeops find them by name; the statistical tests run over the list.
 #pragma once
 #include "lobes/kinds/cone.h"
 #include "lobes/kinds/diffuse.h"
@@ -13,7 +13,7 @@
 #include "lobes/kinds/specular.h"
 
 namespace alpenglow::transport::AL_NAMESPACE {
-// static: files of one width and different processors must not share it.
+// static: files for different processors must not share it.
 static constexpr LobeLanes kLobes[] = {lanesOf<Diffuse>(),
                                        lanesOf<Specular>(),
                                        lanesOf<Phong>(),

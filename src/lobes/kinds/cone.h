@@ -4,7 +4,7 @@
 
 namespace alpenglow::transport::AL_NAMESPACE {
 
-/// What both have: the cone, the plane of the horizon.
+/// Shared by both: the cone, and the horizon plane.
 struct Cone {
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsHorizon | kNeedsA;
@@ -13,7 +13,7 @@ struct Cone {
         p.common(vf(1), minLanes(a * vf(0.5f), vf(0.7f)), select(a > 1e-6f, vf(0), vf(1)));
         p.own(0, s * s * vf(2)); // 1 - cos a
         p.own(1, perWeight);
-        // The chord of half the cone; the last term is the rounding of the components of both directions.
+        // Chord of half the cone angle; the last term bounds the rounding of both directions.
         const vf chord = mad(s * vf(2), vf(1 + 1e-6f), vf(3e-7f));
         p.own(2, chord * chord);
     }
@@ -21,7 +21,7 @@ struct Cone {
         return (p.number(kRowHasHorizon) == 0) | (dot(p.triple(kRowHorizon), w) > 0);
     }
     static AL_MEMBER vm delta(const Given& p) { return p.number(kRowDelta) != 0; }
-    /// By the chord: 1 - cos of a narrow cone is lost in rounding.
+    /// By the chord, because 1 - cos of a narrow cone is lost in rounding.
     static AL_MEMBER vm inside(const Given& p, const Direction& w) {
         const Direction chord = w - p.axis();
         return ~delta(p) & overHorizon(p, w) & (dot(chord, chord) <= p.own(2));
@@ -43,7 +43,7 @@ struct UniformCone : Cone {
         return overHorizon(p, w);
     }
 };
-/// Counts light above the plane of the axis only.
+/// Counts only light above the plane of the axis.
 struct CosineCone : Cone {
     static constexpr const char* name = "cosine";
     static constexpr const char* doc =

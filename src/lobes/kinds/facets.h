@@ -1,5 +1,5 @@
-// trace()'s reflections by small facets: "blinn", "ashikhmin-shirley", "cook-torrance", "ward". axis = normal. A facet is drawn,
-// and the light it mirrors to wo is asked for; what lies below the surface is lost.
+// Microfacet reflection of trace(): "blinn", "ashikhmin-shirley", "cook-torrance", "ward". axis = normal. Samples a facet and
+// takes the direction that it mirrors to wo; directions below the surface are lost.
 #pragma once
 #include "lobes/kinds/lobe.h"
 #include "shadeops/bsdf/ashikhmin_shirley.h"
@@ -9,11 +9,11 @@
 
 namespace alpenglow::transport::AL_NAMESPACE {
 
-/// Footprint of rays behind rough facets.
+/// Footprint of rays reflected by rough facets.
 AL_INLINE vf spreadOfRoughness(const Given& p) {
     return minLanes(vf(0.7f), sane(minLanes(p.number(kRowRoughness), p.number(kRowRoughnessV))));
 }
-/// About the axis by an angle whose tangent is second / first times that of 2 pi u.
+/// Azimuth whose tangent is second / first times that of 2 pi u.
 AL_INLINE Pair<vf> elliptic(vf u, vf first, vf second) {
     const Pair<vf> c = unitCircle(u);
     const vf x = c.a * first, y = c.b * second, l = vf(1) / rootLanes(mad(x, x, y * y));
@@ -21,19 +21,19 @@ AL_INLINE Pair<vf> elliptic(vf u, vf first, vf second) {
 }
 AL_INLINE vf logOfRest(vf u) { return logLanes(maxLanes(vf(1) - u, vf(1e-30f))); }
 
-/// Values of facets: colour, and the density of the half vector h per solid angle of h.
+/// Value of facets: colour, and density of the half vector h per solid angle of h.
 struct FacetValue {
     Direction colour;
     vf density;
 };
 
-/// Number k of a draw in which many places on a circle stand for one: its place within one of them, which is as good as a number
-/// of its own where what depends on the circle changes little from one to the next.
+/// Random number within one of many equal sectors of a circle: as good as an independent number if the integrand varies little
+/// between sectors.
 AL_INLINE vf withinTurn(vf u) {
     const vf x = u * vf(4093);
     return x - floorLanes(x);
 }
-/// The facet that is turned by half a turn about the normal, z.
+/// The facet rotated by half a turn about the normal, z.
 AL_INLINE Direction turnedAbout(const Direction& h) { return {-h.x, -h.y, h.z}; }
 
 /// About what facets reflect by Fresnel's law, for choosing between lobes: at the cosine that their mean facet has with the
@@ -75,14 +75,13 @@ template <class Facets> struct FacetLobe {
     }
 };
 
-/// How far facets of one slope are turned away from the viewer, cosine and sine, where one of each two that face each other is
-/// taken by what is seen of it: (1 + k cos) / 2 between 0 and 1, k the product of the tangents of the facet and of the viewer.
-/// The number u goes around once, so that what is stratified stays so: the inverse of the distribution, by Newton's steps on a
-/// function that bends one way only. From the dark end on, at the angle t:
-/// (1 - k) t + k (t - sin t) up to k = 1, then t - sin t + sqrt(k^2 - 1) (1 - cos t).
+/// Azimuth (cosine and sine) of a facet of given slope relative to the viewer, where one of two opposite facets is chosen by
+/// visible area: (1 + k cos) / 2 clamped to [0, 1], with k the product of the tangents of facet and viewer. Inverts the
+/// distribution, which preserves stratification of u, by Newton steps on a convex function. From the dark end on, at angle t:
+/// (1 - k) t + k (t - sin t) for k <= 1, else t - sin t + sqrt(k^2 - 1) (1 - cos t).
 AL_INLINE Pair<vf> seenInGroove(vf k, vf u) {
     const vf y = mad(u, vf(2), vf(-1)), rest = (vf(1) - absLanes(y)) * vf(kPi);
-    const vf alone = acosLanes(vf(1) / maxLanes(k, vf(1))); // so far the other one is not seen at all
+    const vf alone = acosLanes(vf(1) / maxLanes(k, vf(1))); // so far the other facet is not visible at all
     const vf end = vf(kPi) - alone * vf(2);
     const vf a = maxLanes(vf(1) - k, vf(0)), b = minLanes(k, vf(1)), s = rootOf(mad(k, k, vf(-1)));
     const vf tiny = vf(1e-20f), third = powLanes(rest * vf(6) / maxLanes(b, tiny), vf(1 / 3.f));
@@ -97,9 +96,9 @@ AL_INLINE Pair<vf> seenInGroove(vf k, vf u) {
     const Pair<vf> c = unitCircle(turned * vf(.5f / kPi));
     return {c.a, copySign(c.b, y)};
 }
-/// The side of a V-shaped groove that the viewer sees (Heitz and d'Eon, "Importance Sampling Microfacet-Based BSDFs using the
-/// Distribution of Visible Normals", 2014), of facets that are as steep as h, which lies over x. Values are then no more than
-/// their densities. dn: the density of facets times n . h, with which they are drawn.
+/// The visible side of a V-groove (Heitz and d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible
+/// Normals", 2014) with facets as steep as h, which lies over x. Values then do not exceed densities. dn: density of facets times
+/// n . h, by which they are sampled.
 AL_INLINE Direction visibleInGroove(const Direction& h, const Direction& o, vf u) {
     const vf flat = rootLanes(mad(o.x, o.x, o.y * o.y)), per = vf(1) / maxLanes(flat, vf(1e-30f));
     const vf x = select(flat > 0, o.x * per, vf(1)), y = o.y * per;
@@ -139,7 +138,7 @@ struct AshikhminFacets {
         return {ashikhminShirley(f, p.own(8), lobe, p.triple(kRowEta), p.triple(kRowK)),
                 select(useful(f.nh * f.no * vf(2) - f.oh, f.nh, f.no), density, density * vf(2))};
     }
-    /// Whether a facet mirrors light from above to the viewer. Where the one that is drawn does not, its turned one is taken.
+    /// Whether a facet reflects light from above to the viewer. If the sampled one does not, the opposite one is used.
     static AL_MEMBER vm useful(vf oh, vf nh, vf no) { return (oh > 1e-6f) & (oh * nh * vf(2) > no); }
     static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
         const vf eu = p.own(6), ev = p.own(7);

@@ -1,6 +1,6 @@
-// trace()'s "glass-ggx": reflection and refraction at rough facets. axis = normal; wo may lie on either side. part 0: reflection
-// alone, 1: refraction alone. A facet is drawn as the viewer sees it, then reflection or refraction by what it does to light: the
-// value is no more than the larger weight times the density.
+// trace()'s "glass-ggx": reflection and refraction at rough facets. axis = normal; wo may be on either side. part 0: reflection
+// only, 1: refraction only. Samples a visible facet, then reflection or refraction by Fresnel: the value is at most the larger
+// weight times the density.
 #pragma once
 #include "lobes/kinds/smith.h"
 #include "shadeops/bsdf/glass_ggx.h"
@@ -12,8 +12,8 @@ struct Glass {
     static constexpr const char* doc = "Reflection and refraction at facets with the distribution of Trowbridge and Reitz.";
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface | kNeedsNumbers;
-    // Own rows: the normal on the viewer's side, both tangents, indices here and there, roughness along and across, the weights
-    // of both parts.
+    // Rows of its own: normal on the viewer's side, both tangents, indices of refraction here and beyond, roughness along and
+    // across, weights of both parts.
     enum : int { kSide = 0, kAlong = 3, kAcross = 6, kHere = 9, kThere, kRoughA, kRoughB, kFirst, kSecond };
     static AL_MEMBER void prepare(const Rows& p) {
         const GlassSide<vf> s =
@@ -33,7 +33,7 @@ struct Glass {
         return {p.wo(),         p.ownTriple(kSide), {p.ownTriple(kAlong), p.ownTriple(kAcross)}, p.own(kHere), p.own(kThere),
                 p.own(kRoughA), p.own(kRoughB)};
     }
-    /// The chance that a facet that reflects f of light is taken to reflect.
+    /// Probability of choosing reflection at a facet with Fresnel reflectance f.
     static AL_MEMBER vf shareReflected(const Given& p, vf f) {
         const vf first = absLanes(p.own(kFirst)) * f, both = mad(absLanes(p.own(kSecond)), vf(1) - f, first);
         return where(both > 0, first / both);

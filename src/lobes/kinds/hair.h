@@ -1,5 +1,5 @@
-// trace()'s "hair": a fibre whose tip is axis. part: one lobe (R, TT, TRT, TRRT) alone. Directions are drawn evenly over the
-// sphere: exact for every set of lobes, and noisy for narrow ones.
+// trace()'s "hair": a fibre with direction axis. part: a single lobe (R, TT, TRT, TRRT). Directions are sampled uniformly over
+// the sphere: unbiased for any lobes, but noisy for narrow ones.
 #pragma once
 #include "lobes/kinds/lobe.h"
 #include "shadeops/bsdf/hair.h"
@@ -12,7 +12,7 @@ struct Hair {
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsSurface | kNeedsNumbers;
     static constexpr int kLobes = 4, kNumbers = 4; ///< 3Delight manual, 6.4.5.2: up to 4 lobes of 4 numbers
-    // Rows of a lobe: weight (0: not here), sine and cosine of its turn, variance along, and the three numbers of its bell.
+    // Rows of a lobe: weight (0: absent), sine and cosine of its tilt, longitudinal variance, and the three numbers of its bell.
     static AL_MEMBER void prepare(const Rows& p) {
         p.common(vf(1), vf(0.5f), vf(0));
         const vf count = p.number(kRowCount), part = p.number(kRowPart),
@@ -26,7 +26,7 @@ struct Hair {
         for (int i = 0; i < kLobes; ++i) {
             const vm here = (lobes > float(i)) & ((part < 0) | (part == float(i)));
             const vf turn = given(i, 1, 0) * vf(2 - 3 * float(i));
-            // In the place of what it is made of.
+            // Overwrites the input numbers.
             const vf weight = where(here, given(i, 0, 1) / largest), along = hairVariance(given(i, 2, 0.3f)),
                      width = hairBellWidth(given(i, 3, 0.3f));
             p.own(4 * i, weight), p.own(4 * i + 1, turn), p.own(4 * i + 2, along), p.own(4 * i + 3, width);
@@ -38,7 +38,7 @@ struct Hair {
             hairLight(w, tip, p.wo(), tangents(tip, p.triple(kRowUdir)), p.triple(kRowUdir), p.number(kRowEta));
         HairLobe<vf> lobe[kLobes];
         vf weight[kLobes];
-        int count = 0; // those that some lane has: others add zeros
+        int count = 0; // lobes present in some lane; the other lanes add zeros
         for (int i = 0; i < kLobes; ++i) {
             const vf share = p.own(4 * i), turn = p.own(4 * i + 1);
             if (!__builtin_reduce_or(share != 0)) continue;

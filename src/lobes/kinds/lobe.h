@@ -1,4 +1,4 @@
-// What the files of this folder share: rows of a block as numbers over lanes, and the functions of LobeLanes made from a kind.
+// Shared by the files of this folder: rows of a block as vectors, and the functions of LobeLanes generated from a kind.
 //
 // A kind is a struct with `name`, `doc`, `distribution`, and
 //     needs                                                     LobeNeed of the rows that it reads
@@ -50,10 +50,10 @@ struct Value {
     vf pdf;
 };
 AL_INLINE Value grey(vf f, vf pdf) { return {{f, f, f}, pdf}; }
-/// Of a lobe that is drawn by its own value.
+/// For a lobe that is sampled by its own value.
 AL_INLINE vf where(vm m, vf x) { return select(m, x, vf(0)); }
 
-/// On the side of the surface's plane that the plane of "horizon" lets through; all where there is none.
+/// Whether w is above the plane of "horizon"; true without one.
 AL_INLINE vm aboveHorizon(const Given& p, const Direction& w) {
     return (p.number(kRowHasHorizon) == 0) | (dot(p.triple(kRowHorizon), w) * dot(p.axis(), w) > 0);
 }

@@ -1,4 +1,4 @@
-// trace()'s "oren-nayar": axis = normal. Drawn by the cosine.
+// trace()'s "oren-nayar": axis = normal. Cosine-weighted sampling.
 #pragma once
 #include "lobes/kinds/lobe.h"
 #include "shadeops/bsdf/oren_nayar.h"

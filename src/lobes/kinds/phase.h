@@ -1,11 +1,11 @@
-// What a medium scatters: the phase function of Henyey and Greenstein. axis = direction of travel, a = mean cosine, -1 to 1.
+// Scattering in media: the Henyey-Greenstein phase function. axis = direction of travel, a = mean cosine, -1 to 1.
 #pragma once
 #include "lobes/kinds/lobe.h"
 
 namespace alpenglow::transport::AL_NAMESPACE {
 
-/// About the axis where a is positive, about its opposite where it is negative: what is narrow is then near the pole, and lengths
-/// of chords keep what 1 - cos would lose in rounding.
+/// Around the axis for positive a, around its opposite for negative a: narrow lobes are then near the pole, and chord lengths
+/// keep the precision that 1 - cos would lose.
 struct HenyeyGreenstein {
     static constexpr const char* name = "henyey-greenstein";
     static constexpr const char* doc = "Phase function: (1 - a^2) / (4 pi (1 + a^2 - 2 a cos)^1.5), cos that to the axis.";
@@ -34,8 +34,8 @@ struct HenyeyGreenstein {
     }
 };
 
-/// The same value, where rays may pass a light: what a ray finds beside one falls off as the sine of the angle that it is off, so
-/// that draws by the phase function alone bring it with a variance that has no bound. wo = unit, toward the light.
+/// The same value with light-directed sampling: single scattering along a ray is about one over the sine of its angle to a
+/// light's direction, so sampling the phase function alone has unbounded variance. wo = unit, toward the light.
 struct PhaseBesideLight {
     static constexpr const char* name = "henyey-greenstein-beside";
     static constexpr const char* doc = "As henyey-greenstein; three of ten draws are even in the angle to a light.";

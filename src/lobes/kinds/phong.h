@@ -24,7 +24,7 @@ struct Phong {
     static AL_MEMBER vm sample(const Given& p, const Pair<vf>& u, Direction& w) {
         w = toWorld(basisAbout(normalize(p.ownTriple(1))), samplePhong(p.own(0), u));
         return (dot(p.axis(), w) > 0) &
-               (dot(p.ownTriple(1), w) > 0); // as evaluate() has it: rounding can lose the second at 90 degrees
+               (dot(p.ownTriple(1), w) > 0); // as in evaluate(): rounding can violate the second condition at 90 degrees
     }
 };
 

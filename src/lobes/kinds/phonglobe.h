@@ -1,7 +1,7 @@
 // trace()'s "slphong": SLProject's glossy lobe (docs/design/slproject.md, "Glossy lobe"). axis = perfect reflected or refracted
-// direction, a = exponent (1000 and above: perfect), horizon = surface normal. f cos = (n+2)/(2 pi) cos^n |w . horizon|,
-// only on the perfect direction's side of the surface; without a horizon the plain normalised lobe (n+1)/(2 pi) cos^n.
-// What this does not do: conserve energy at grazing angles (the part below the surface is lost, as there).
+// direction, a = exponent (1000 and above: perfect), horizon = surface normal. f cos = (n+2)/(2 pi) cos^n |w . horizon|, only on
+// the perfect direction's side of the surface; without a horizon the plain normalised lobe (n+1)/(2 pi) cos^n. Loses energy at
+// grazing angles, where part of the lobe is below the surface, as in SLProject.
 #pragma once
 #include "lobes/kinds/specular.h"
 
@@ -34,7 +34,7 @@ struct PhongTrace {
     static AL_MEMBER vm sample(const Given& p, const Pair<vf>& u, Direction& w) {
         const vm delta = p.number(kRowDelta) != 0;
         w = select3(delta, p.axis(), toWorld(basisAbout(p.axis()), samplePhong(p.own(0), u)));
-        return delta | ((dot(p.axis(), w) > 0) & sameSide(p, w)); // rounding can lose the first at 90 degrees
+        return delta | ((dot(p.axis(), w) > 0) & sameSide(p, w)); // rounding can violate the first condition at 90 degrees
     }
 };
 

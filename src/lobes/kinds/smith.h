@@ -1,5 +1,5 @@
-// trace()'s "ggx" and "beckmann": reflection by facets of Smith's model. axis = normal. Facets are drawn as the viewer sees them,
-// so that values are no more than their densities.
+// trace()'s "ggx" and "beckmann": reflection by Smith microfacets. axis = normal. Visible normals are sampled, so values do not
+// exceed densities.
 #pragma once
 #include "lobes/kinds/facets.h"
 #include "shadeops/bsdf/beckmann.h"
@@ -7,18 +7,18 @@
 
 namespace alpenglow::transport::AL_NAMESPACE {
 
-/// A direction where facets of roughness a and b are round ones of roughness 1, unit.
+/// Converts a direction to the space where facets of roughness a and b are isotropic with roughness 1; unit.
 AL_INLINE Direction stretched(const Direction& o, vf a, vf b) { return normalize(Direction{o.x * a, o.y * b, o.z}); }
-/// A facet of Trowbridge and Reitz: halfway between the viewer o and a direction of the cap above -low (both stretched) about z
-/// (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023). low = o.z: all that the viewer sees.
+/// A GGX facet: halfway between the viewer o and a direction on the cap above -low (both stretched) around z (Dupuy and Benyoub,
+/// "Sampling Visible GGX Normals with Spherical Caps", 2023). low = o.z: all visible facets.
 AL_INLINE Direction visibleGgx(const Direction& o, vf low, vf a, vf b, const Pair<vf>& u) {
     const vf z = mad(vf(1) - u.a, low + vf(1), -low), s = rootOf(mad(-z, z, vf(1)));
     const Pair<vf> d = unitCircle(u.b);
     return normalize(Direction{a * mad(s, d.a, o.x), b * mad(s, d.b, o.y), z + o.z});
 }
 
-/// Of the facets that the viewer sees those are drawn that mirror light from above, about (Eto and Tokuyoshi, "Bounded VNDF
-/// Sampling for the Smith-GGX BRDF", 2023).
+/// Samples visible facets that reflect light from above, approximately (Eto and Tokuyoshi, "Bounded VNDF Sampling for the
+/// Smith-GGX BRDF", 2023).
 struct GgxFacets {
     static constexpr const char* name = "ggx";
     static constexpr bool kFresnel = true;
@@ -45,9 +45,9 @@ struct GgxFacets {
     }
 };
 
-/// erf of x >= 0, to 1.5e-7.
+/// erf of x >= 0, accurate to 1.5e-7.
 AL_INLINE vf errorFunction(vf x) { return vf(1) - scaledErfc(x) * expLanes(-x * x); }
-/// The inverse of erf within +-0.99999, to 1e-6 (Giles, "Approximating the erfinv function", 2011).
+/// Inverse of erf within +-0.99999, accurate to 1e-6 (Giles, "Approximating the erfinv function", 2011).
 AL_INLINE vf inverseErf(vf y) {
     constexpr float kNear[] = {1.50140941f,     0.246640727f,   -0.00417768164f, -0.00125372503f, 0.00021858087f,
                                -4.39150654e-6f, -3.5233877e-6f, 3.43273939e-7f,  2.81022636e-8f};
@@ -56,9 +56,9 @@ AL_INLINE vf inverseErf(vf y) {
     const vf x = maxLanes(minLanes(y, vf(0.99999f)), vf(-0.99999f)), w = -logLanes((vf(1) - x) * (vf(1) + x));
     return x * select(w < 5, polynomial(kNear, w - vf(2.5f)), polynomial(kFar, rootLanes(maxLanes(w, vf(5))) - vf(3)));
 }
-/// The slope, in the plane of the viewer, of a facet of roughness 1 that is seen at a cosine with the normal above 0: the inverse
-/// of its distribution, by Newton's steps between bounds (Heitz and d'Eon 2014; Jakob, "An Improved Visible Normal Sampling
-/// Routine for the Beckmann Distribution", 2014).
+/// Slope, in the plane of the viewer, of a visible facet of roughness 1 for a viewer at this cosine > 0: inverts the distribution
+/// by bracketed Newton steps (Heitz and d'Eon 2014; Jakob, "An Improved Visible Normal Sampling Routine for the Beckmann
+/// Distribution", 2014).
 AL_INLINE vf visibleBeckmannSlope(vf cosine, vf u) {
     const vf c = minLanes(cosine, vf(0.99999f)), tangent = rootLanes(mad(-c, c, vf(1))) / c, perRoot = tangent * vf(0.564189584f);
     const vf cot = vf(1) / tangent, x = maxLanes(u, vf(1e-6f));

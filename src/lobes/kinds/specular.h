@@ -5,7 +5,7 @@
 
 namespace alpenglow::transport::AL_NAMESPACE {
 
-/// Half angle of a highlight of exponent a.
+/// Half angle of a highlight with exponent a.
 AL_INLINE vf spreadOfExponent(vf a) { return minLanes(vf(0.7f), rootLanes(vf(2) / (a + vf(1)))); }
 
 struct Specular {
@@ -27,7 +27,7 @@ struct Specular {
     }
     static AL_MEMBER vm sample(const Given& p, const Pair<vf>& u, Direction& w) {
         const Direction h = toWorld(basisAbout(p.axis()), samplePhong(p.own(0), u));
-        const vf d = dot(p.wo(), h); // below 0 the mirror image would lie below the facet
+        const vf d = dot(p.wo(), h); // below 0 the reflected direction would be below the facet
         w = normalize(mad3(h, d * vf(2), -p.wo()));
         return (d > 0) & (dot(p.axis(), w) > 0);
     }

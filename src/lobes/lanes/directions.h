@@ -1,5 +1,5 @@
-// Directions in lanes: frames, turns, and sampling formulas (docs/design/light-transport.md; lobes/sampling.h has them for
-// one).
+// Directions in lanes: frames, rotations and sampling formulas (docs/design/light-transport.md; scalar versions:
+// lobes/sampling.h).
 #pragma once
 #include "shadeops/call.h"
 
@@ -18,7 +18,7 @@ AL_INLINE Basis basisAbout(const Direction& n) {
 }
 AL_INLINE Direction toWorld(const Basis& f, const Direction& v) { return mad3(f.t, v.x, mad3(f.u, v.y, times(f.n, v.z))); }
 
-/// Cosine and sine of so many turns, 0 to 1: the series of both within an eighth of a turn.
+/// Cosine and sine of `turns`, 0 to 1, by series within an eighth of a turn.
 AL_INLINE Pair<vf> unitCircle(vf turns) {
     const vi k = toInt(mad(turns, vf(4), vf(0.5f)));
     const vf x = mad(toReal(k), vf(-0.25f), turns) * vf(2 * kPi), q = x * x;
@@ -28,7 +28,7 @@ AL_INLINE Pair<vf> unitCircle(vf turns) {
     s = mad(x * q, s, x), c = mad(q, c, vf(1));
     const vu bits = __builtin_bit_cast(vu, k);
     const vm odd = __builtin_bit_cast(vi, bits << 31) < 0;
-    // Turned by k quarters: (c, s), (-s, c), (-c, -s), (s, -c).
+    // Rotated by k quarters: (c, s), (-s, c), (-c, -s), (s, -c).
     return {flipSign(select(odd, s, c), (bits + 1u) << 30), flipSign(select(odd, c, s), bits << 30)};
 }
 
@@ -40,7 +40,7 @@ AL_INLINE Direction sampleCosine(const Pair<vf>& u) {
     const Pair<vf> d = unitCircle(u.b);
     return {r * d.a, r * d.b, rootLanes(u.a)};
 }
-/// About +z, so far from it.
+/// Direction at this cosine to +z, with azimuth d.
 AL_INLINE Direction withCosine(vf cosine, const Pair<vf>& d) {
     const vf s = rootOf(mad(-cosine, cosine, vf(1)));
     return {s * d.a, s * d.b, cosine};
@@ -49,14 +49,14 @@ AL_INLINE Direction withCosine(vf cosine, const Pair<vf>& d) {
 AL_INLINE Direction samplePhong(vf perExponent1, const Pair<vf>& u) {
     return withCosine(powLanes(u.a, perExponent1), unitCircle(u.b));
 }
-/// Uniform direction in a cone about +z; density 1 / (2 pi (1 - cos)), which is given because small cones lose it in the
-/// subtraction.
+/// Uniform direction in a cone around +z; density 1 / (2 pi (1 - cos)). The caller passes 1 - cos, because small cones lose it in
+/// the subtraction.
 AL_INLINE Direction sampleCone(vf oneMinusCos, const Pair<vf>& u) {
     const vf h = u.a * oneMinusCos, s = rootOf(h * (vf(2) - h));
     const Pair<vf> d = unitCircle(u.b);
     return {s * d.a, s * d.b, vf(1) - h};
 }
-/// At slopes whose square is tangent2, in the direction d.
+/// Direction with squared slope tangent2 and azimuth d.
 AL_INLINE Direction fromSlope(vf tangent2, const Pair<vf>& d) {
     const vf c = vf(1) / rootLanes(tangent2 + vf(1)), s = rootLanes(tangent2) * c;
     return {s * d.a, s * d.b, c};

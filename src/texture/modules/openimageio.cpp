@@ -1,5 +1,5 @@
-// libalpenglow_pictures.so: pictures in the formats of OpenImageIO that the program does not read itself. Loaded when the first
-// such file is met, by a child process (display/foreign.h); nothing else of the program links OpenImageIO.
+// libalpenglow_pictures.so: reads picture formats through OpenImageIO that the program does not read itself. A child process
+// loads it for the first such file (display/foreign.h); nothing else links OpenImageIO.
 #include "display/foreign.h"
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/typedesc.h>

@@ -1,5 +1,5 @@
-// libalpenglow_grids.so: grids of OpenVDB as blocks of voxels. Loaded when the first .vdb file is met, by a child process
-// (display/foreign.h); nothing else of the program links OpenVDB.
+// libalpenglow_grids.so: reads OpenVDB grids as blocks of voxels. A child process loads it for the first .vdb file
+// (display/foreign.h); nothing else links OpenVDB.
 #include "display/foreign.h"
 #include <algorithm>
 #include <cstring>
@@ -15,7 +15,7 @@ using alpenglow::display::ForeignPicture;
 using alpenglow::display::kForeignName;
 using alpenglow::display::sendForeign;
 
-/// Those of the grids that hold numbers or vectors, and the box about what is active in any of them.
+/// The grids of numbers or vectors, and the bounding box of their active voxels.
 struct Grids {
     std::vector<openvdb::FloatGrid::Ptr> floats;
     std::vector<openvdb::Vec3SGrid::Ptr> vectors;
@@ -47,7 +47,7 @@ std::string readTo(const char* path, int to, const ForeignLimits& limits) {
     file.open();
     const Grids g(*file.getGrids());
     if (g.names.empty()) return "it has no grid of floats or of vectors of floats";
-    if (g.box.empty()) return "nothing in its grids is active";
+    if (g.box.empty()) return "its grids have no active voxels";
     const openvdb::Coord size = g.box.dim();
     const uint64_t w = uint64_t(size.x()), h = uint64_t(size.y()), d = uint64_t(size.z()), n = g.names.size();
     if (w > limits.side || h > limits.side || d > limits.side)

@@ -1,7 +1,10 @@
 // ASCII floats through the RIB reader against fast_float over the same bytes: rib_bench [MEGABYTES]. CPU time, one thread, the
 // two take turns, the best of all turns counts. The reader tokenises, checks, binds and builds the scene; fast_float only
-// converts. Exit 1 when the reader is slower than the limit.
+// converts. Then the same scenes in binary, through the reader. Exit 1 when the reader is slower than the limit, or binary is not
+// so many times as fast.
 #include "ri/reader.h"
+#include "ri/receiver.h"
+#include "ri/writer.h"
 #include "scene/scene.h"
 #include <algorithm>
 #include <cstdio>
@@ -14,7 +17,7 @@ using namespace alpenglow;
 
 namespace {
 
-constexpr double kLimit = 0.5;
+constexpr double kLimit = 0.5, kBinary = 4;
 
 double cpuSeconds() {
     timespec t;
@@ -82,30 +85,54 @@ double convertAll(const std::string& text, size_t& count) {
     return sum;
 }
 
+/// Seconds of reading; 0: it was not read.
+double readingTime(const std::string& bytes, size_t& primitives) {
+    Null sink;
+    Diagnostics diagnostics([](const Diagnostic& d) { std::fputs(toString(d).c_str(), stderr); });
+    const double t = cpuSeconds();
+    ri::RibReader r({}, sink, diagnostics);
+    const bool read = r.readMemory(bytes, "memory");
+    primitives = sink.primitives;
+    return read && primitives > 0 ? cpuSeconds() - t : 0;
+}
+
+std::string binary(const std::string& text) {
+    struct To : ri::RequestReceiver {
+        explicit To(ri::RibWriter& w) : writer(w) {}
+        void request(const ri::Call& c) override { writer.write(c); }
+        void unknown(const std::string&, const std::vector<ri::Value>&) override {}
+        void comment(const std::string&, const std::string&) override {}
+        ri::RibWriter& writer;
+    };
+    std::string out;
+    ri::RibWriter writer(ri::stringSink(out), {.binary = true});
+    To to(writer);
+    Diagnostics diagnostics;
+    ri::passOnText(text, "memory", to, diagnostics);
+    writer.finish();
+    return out;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     const size_t megabytes = argc > 1 ? size_t(std::max(1, std::atoi(argv[1]))) : 20;
     bool good = true;
     for (const char* format : {"%.6g", "%.9g", "%.3f"}) {
-        const std::string text = rib(megabytes << 20, format);
-        double reader = 1e9, plain = 1e9, sum = 0;
+        const std::string text = rib(megabytes << 20, format), packed = binary(text);
+        double reader = 1e9, plain = 1e9, compact = 1e9, sum = 0;
         size_t count = 0, primitives = 0;
         for (int turn = 0; turn < 7; turn++) {
             double t = cpuSeconds();
             sum += convertAll(text, count);
             plain = std::min(plain, cpuSeconds() - t);
-            Null sink;
-            Diagnostics diagnostics([](const Diagnostic& d) { std::fputs(toString(d).c_str(), stderr); });
-            t = cpuSeconds();
-            ri::RibReader r({}, sink, diagnostics);
-            const bool read = r.readMemory(text, "memory");
-            reader = std::min(reader, cpuSeconds() - t);
-            primitives = sink.primitives;
-            if (!read || primitives == 0) {
+            const double ascii = readingTime(text, primitives), bytes = readingTime(packed, primitives);
+            if (ascii == 0 || bytes == 0) {
                 std::fprintf(stderr, "rib_bench: the text was not read\n");
                 return 1;
             }
+            reader = std::min(reader, ascii);
+            compact = std::min(compact, bytes);
         }
         const double mb = double(text.size()) / 1e6, ratio = plain / reader;
         good = good && ratio >= kLimit;
@@ -113,6 +140,10 @@ int main(int argc, char** argv) {
                     "%.2f >= %g %s%s\n",
                     format, mb, count, primitives, mb / plain, mb / reader, ratio, kLimit, ratio >= kLimit ? "PASS" : "MISS",
                     sum == 0.5 ? " " : "");
+        const double times = reader / compact;
+        good = good && times >= kBinary;
+        std::printf("      the same in binary: %.1f MB, %.0f MB/s, %.1f times as fast >= %g %s\n", double(packed.size()) / 1e6,
+                    double(packed.size()) / 1e6 / compact, times, kBinary, times >= kBinary ? "PASS" : "MISS");
     }
     return good ? 0 : 1;
 }

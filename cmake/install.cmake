@@ -2,7 +2,7 @@
 # (cmake/layout.cmake), so P may be moved as a whole. Target `installable` builds what is installed.
 include(CMakePackageConfigHelpers)
 set(installed_targets alpenglow_jit)
-foreach(module alpenglow_pictures alpenglow_grids) # where their libraries were found
+foreach(module alpenglow_pictures alpenglow_grids alpenglow_gltf alpenglow_models) # where their libraries were found
   if(TARGET ${module})
     list(APPEND installed_targets ${module})
   endif()
@@ -13,9 +13,12 @@ set(help_folder ${CMAKE_BINARY_DIR}/share)
 add_custom_command(OUTPUT ${help_folder}/help-files DEPENDS alpenglow ${CMAKE_SOURCE_DIR}/cmake/helpfiles.cmake
   COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alpenglow> -DOUT=${help_folder} -P ${CMAKE_SOURCE_DIR}/cmake/helpfiles.cmake
   COMMENT "Manual pages and completions" VERBATIM)
-add_custom_target(installable ALL DEPENDS ${help_folder}/help-files alpenglow blender_addon ${installed_targets})
+add_custom_target(installable ALL
+  DEPENDS ${help_folder}/help-files alpenglow alpenglow_c blender_addon ${installed_targets})
 
 install(TARGETS alpenglow RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS alpenglow_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES ${CMAKE_BINARY_DIR}/lib/libri.so ${CMAKE_BINARY_DIR}/lib/librib.so DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS ${installed_targets} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/alpenglow)
 if(TARGET _alpenglow)
   add_dependencies(installable _alpenglow)
@@ -31,19 +34,21 @@ foreach(folder bash-completion zsh fish)
   install(DIRECTORY ${help_folder}/${folder} DESTINATION ${CMAKE_INSTALL_DATADIR})
 endforeach()
 
-# For plug-ins and libraries of procedurals: <alpenglow/rslplugin.h> and <ri.h>.
+# For programs that call the library, plug-ins and libraries of procedurals: <ri.h> and <alpenglow/rslplugin.h>.
 install(FILES ${CMAKE_SOURCE_DIR}/include/ri.h ${CMAKE_SOURCE_DIR}/include/alpenglow/rslplugin.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alpenglow)
-set(config_folder ${CMAKE_INSTALL_DATADIR}/cmake/alpenglow) # nothing in it depends on the machine
+set(config_folder ${CMAKE_INSTALL_DATADIR}/cmake/alpenglow)
 set(include_folder ${CMAKE_INSTALL_INCLUDEDIR})
+set(library_folder ${CMAKE_INSTALL_LIBDIR})
 configure_package_config_file(${CMAKE_SOURCE_DIR}/packaging/alpenglowConfig.cmake.in
-  ${CMAKE_BINARY_DIR}/packaging/alpenglowConfig.cmake INSTALL_DESTINATION ${config_folder} PATH_VARS include_folder)
+  ${CMAKE_BINARY_DIR}/packaging/alpenglowConfig.cmake INSTALL_DESTINATION ${config_folder} PATH_VARS include_folder library_folder)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/packaging/alpenglowConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/packaging/alpenglowConfig.cmake ${CMAKE_BINARY_DIR}/packaging/alpenglowConfigVersion.cmake
   DESTINATION ${config_folder})
 set(pkgconfig_folder ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 file(RELATIVE_PATH pkgconfig_include /${pkgconfig_folder} /${CMAKE_INSTALL_INCLUDEDIR})
+file(RELATIVE_PATH pkgconfig_libraries /${pkgconfig_folder} /${CMAKE_INSTALL_LIBDIR})
 file(RELATIVE_PATH pkgconfig_shaders /${pkgconfig_folder} /${CMAKE_INSTALL_DATADIR}/alpenglow/shaders)
 configure_file(${CMAKE_SOURCE_DIR}/packaging/alpenglow.pc.in ${CMAKE_BINARY_DIR}/packaging/alpenglow.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/packaging/alpenglow.pc DESTINATION ${pkgconfig_folder})

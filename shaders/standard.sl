@@ -37,12 +37,13 @@ surface standard(varying float base = 1; varying color base_color = .8; varying 
                  float specular_roughness_channel = 1, metalness_channel = 2, specular_channel = 3, transmission_channel = 0,
                      sheen_roughness_channel = 3, coat_channel = 0, coat_roughness_channel = 1, opacity_channel = 3;
                  float map_scale[2] = {1, 1}, map_offset[2] = {0, 0}, map_rotation = 0, map_repeat = 1, normal_scale = 1, alpha_cutoff = 0,
-                     samples = 16;)
+                     samples = 1;)
 {
     color zero = 0, none = 1;
     float ss, tt;
     layerPlace(map_scale[0], map_scale[1], map_offset[0], map_offset[1], map_rotation, map_repeat, ss, tt);
-    vector V = -normalize(I), along = layerDpds();
+    vector V = -normalize(I), along = 0, udir = 0, cdir = 0;
+    if (normal_map != "" || specular_anisotropy != 0 || coat_anisotropy != 0) along = layerDpds();
     normal Nb = (bump_normal == normal 0) ? normalize(N) : bump_normal, n, nc;
     if (normal_map != "") Nb = layerNormalMap(normal_map, ss, tt, normal_scale, normalize(N), along);
     float front = layerSide(Nb, n), c = n . V, rays = layerSamples(samples);
@@ -63,7 +64,7 @@ surface standard(varying float base = 1; varying color base_color = .8; varying 
     color light = 0;
     float ax, ay;
     layerWidths(rough * rough, specular_anisotropy, ax, ay);
-    vector udir = layerTangent(n, along, specular_rotation);
+    if (specular_anisotropy != 0) udir = layerTangent(n, along, specular_rotation);
     if (metal > 0) {
         color index, extinction;
         layerMetal(albedo, shine, index, extinction);
@@ -107,10 +108,11 @@ surface standard(varying float base = 1; varying color base_color = .8; varying 
         layerSide((coat_normal == normal 0) ? normalize(N) : coat_normal, nc);
         float cr = clamp(coat_roughness * layerChannel(coat_roughness_map, coat_roughness_channel, ss, tt), 0, 1), cx, cy;
         layerWidths(cr * cr, coat_anisotropy, cx, cy);
+        if (coat_anisotropy != 0) cdir = layerTangent(nc, along, coat_rotation);
         float cc = nc . V, ca = sqrt(cx * cy);
         light *= mix(none, coat_color, lacquer) *
             (1 - lacquer * layerAlbedo(cc, ca) * layerDielectric(layerCosine(cc, ca), coat_IOR));
-        light += lacquer * layerReflect(nc, V, layerTangent(nc, along, coat_rotation), cx, cy, coat_IOR, rays);
+        light += lacquer * layerReflect(nc, V, cdir, cx, cy, coat_IOR, rays);
     }
     if (glass > 0 && transmission_depth > 0 && front == 0 && thin_walled != 1) /* what the way inside has taken */
         light *= layerPower(clamp(transmission_color, color 1e-4, none), glass * length(I) / transmission_depth);

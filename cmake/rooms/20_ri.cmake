@@ -3,6 +3,10 @@ room(ri DEPS scene base TBB::tbb ZLIB::ZLIB ${CMAKE_DL_LIBS})
 target_include_directories(ri PRIVATE ${CMAKE_SOURCE_DIR}/include)
 # Libraries of procedurals (DynamicLoad) find the C binding in whatever program has this room.
 target_link_options(ri INTERFACE "LINKER:--export-dynamic-symbol=Ri*")
+# What every byte and number of a file passes through is worth what its compilation takes (bench/RESULTS.md, rib_bench).
+foreach(file binary lexer match parser)
+  set_source_files_properties(${CMAKE_SOURCE_DIR}/src/ri/${file}.cpp PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>")
+endforeach()
 room_tests(ri DEPS ri geometry)
 # Such libraries, built as anyone would build one: one header, nothing linked.
 if(TARGET test_ri)

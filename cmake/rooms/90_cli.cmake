@@ -4,7 +4,7 @@ file(GLOB cli_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/cli/*.cpp)
 list(FILTER cli_sources EXCLUDE REGEX "/main[.]cpp$")
 find_package(CLI11 REQUIRED)
 add_library(cli STATIC ${cli_sources})
-target_link_libraries(cli PUBLIC view render ri integrator shading texture display clouds photons ptex rsl_jit shadeops base
+target_link_libraries(cli PUBLIC view render ri models integrator shading texture display clouds photons ptex rsl_jit shadeops base
                       CLI11::CLI11 nlohmann_json::nlohmann_json)
 add_executable(alpenglow ${CMAKE_SOURCE_DIR}/src/cli/main.cpp)
 target_link_libraries(alpenglow PRIVATE cli)

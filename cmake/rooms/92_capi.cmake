@@ -27,6 +27,7 @@ if(TARGET test_capi)
     add_dependencies(test_capi capi_${program})
   endforeach()
   target_compile_definitions(test_capi PRIVATE ALPENGLOW_CAPI_PROGRAMS="${CMAKE_BINARY_DIR}/capi"
-    ALPENGLOW_PROGRAM="$<TARGET_FILE:alpenglow>" ALPENGLOW_LIBRARY="$<TARGET_FILE:alpenglow_c>")
-  add_dependencies(test_capi alpenglow)
+    ALPENGLOW_PROGRAM="$<TARGET_FILE:alpenglow>" ALPENGLOW_LIBRARY="$<TARGET_FILE:alpenglow_c>"
+    ALPENGLOW_PROCEDURALS="${CMAKE_BINARY_DIR}/procedurals")
+  add_dependencies(test_capi alpenglow procedural_facets)
 endif()

@@ -69,7 +69,7 @@ def _scenes(scene: Union[Scene, Sequence[Scene]]) -> List[Tuple[str, Optional[by
 
 def render(scene: Union[Scene, Sequence[Scene]], *, aovs: Sequence[str] = (), write: bool = False, strict: bool = False,
            progress: Optional[Callable[[Dict[str, Any]], Optional[bool]]] = None,
-           message: Optional[Callable[[Message], None]] = None, quiet: bool = False, verbose: bool = False,
+           preview: Optional[Callable[[Any], None]] = None, message: Optional[Callable[[Message], None]] = None, quiet: bool = False, verbose: bool = False,
            **options: Any) -> Any:
     """Renders a scene and gives back a Result.
 
@@ -82,10 +82,11 @@ def render(scene: Union[Scene, Sequence[Scene]], *, aovs: Sequence[str] = (), wr
     strict: any error of the scene raises Error; otherwise Error comes only where nothing could be rendered.
     progress: called about 20 times a second with {"fraction": 0..1 or negative where nobody knows, "samples", "total", "noise",
     "rays_per_ms", "what"}. False as its answer ends the render as Ctrl-C would. What it raises ends it and is raised.
+    preview: called with the first Picture as it grows, a few times a second.
     message: called with each Message. Warnings and errors are printed to sys.stderr; quiet: errors only; verbose: notes, too.
 
     Ctrl-C raises Interrupted (a KeyboardInterrupt), whose `result` has what was done. Other threads of Python run meanwhile."""
-    from ._result import Result
+    from ._result import Picture, Result
     from ._options import flags
 
     given = dict(options)
@@ -94,7 +95,7 @@ def render(scene: Union[Scene, Sequence[Scene]], *, aovs: Sequence[str] = (), wr
     displays += [f"null:{name}:{name}" for name in aovs]
     receiver = Receiver("error" if quiet else "info" if verbose else "warning", message)
     made = _alpenglow.render(flags({**given, "display": displays}), _scenes(scene), write or bool(given.get("output") or given.get("o")),
-                             receiver, progress)
+                             receiver, progress, (lambda found: preview(Picture(found))) if preview else None)
     result = Result(made, receiver.all)
     raised = made["raised"]
     if raised is not None:

@@ -18,7 +18,6 @@ float disneySheen(float sheen, c)
 color disneySpecular(color shine; float roughness, anisotropic; normal n; vector V; output color kept)
 {
     extern point P;
-    extern vector dPdu;
     float ax, ay;
     layerWidths(roughness * roughness, anisotropic, ax, ay);
     float a = sqrt(ax * ay), c = n . V;
@@ -28,8 +27,8 @@ color disneySpecular(color shine; float roughness, anisotropic; normal n; vector
     if (max(ax, ay) < LAYER_SMOOTH)
         light = whole * trace(P, 2 * c * n - V, "samplelights", 1);
     else
-        light = whole * trace(P, n, "distribution", "ggx", "wo", V, "udir", layerTangent(n, dPdu, 0), "roughness", ax,
-                              "roughnessv", ay, "samples", layerSamples(16), "samplelights", 1);
+        light = whole * trace(P, n, "distribution", "ggx", "wo", V, "udir", layerAlong(anisotropic, n), "roughness", ax,
+                              "roughnessv", ay, "samplelights", 1);
     return light;
 }
 /* A coat of index 1.5, a quarter as strong as a whole one. */
@@ -42,7 +41,7 @@ color disneyCoat(float clearcoat, gloss; normal n; vector V; output color kept)
     if (a < LAYER_SMOOTH)
         light = w * trace(P, 2 * c * n - V, "samplelights", 1);
     else
-        light = w * trace(P, n, "distribution", "ggx", "wo", V, "roughness", a, "samples", layerSamples(16), "samplelights", 1);
+        light = w * trace(P, n, "distribution", "ggx", "wo", V, "roughness", a, "samplelights", 1);
     return light;
 }
 #endif

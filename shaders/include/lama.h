@@ -63,24 +63,24 @@ color lamaLight(color diffusing; float diffuseRough; color metal, metalIor, meta
                 float glassIor, glassRough, glassAniso; color sheen; float sheenRough; color sss, sssRadius, translucent, glow;
                 normal bump)
 {
-    extern vector I, dPdu;
+    extern vector I;
     normal n;
-    float front = risSide(normal 0, bump, n), rays = layerSamples(16), ax, ay;
-    vector V = -normalize(I), along = layerTangent(n, dPdu, 0);
+    float front = risSide(normal 0, bump, n), ax, ay;
+    vector V = -normalize(I), along = layerAlong(max(metalAniso, glassAniso), n);
     color light = glow, none = 0;
     color around = diffusing + sheen * layerSheen(n . V, clamp(sheenRough, .1, 1));
-    if (around != none) light += around * layerDiffuse(n, V, diffuseRough, rays);
+    if (around != none) light += around * layerDiffuse(n, V, diffuseRough, 1);
     if (translucent != none) light += translucent * diffuse(-n);
     if (metal != none) {
         layerWidths(metalRough * metalRough, metalAniso, ax, ay);
-        light += metal * layerReflectMetal(n, V, along, ax, ay, metalIor, metalK, rays);
+        light += metal * layerReflectMetal(n, V, along, ax, ay, metalIor, metalK, 1);
     }
     if (through != none) {
         layerWidths(glassRough * glassRough, glassAniso, ax, ay);
-        light += layerGlass(n, front, V, along, ax, ay, glassIor, rays, mirror, through);
+        light += layerGlass(n, front, V, along, ax, ay, glassIor, 1, mirror, through);
     } else if (mirror != none) {
         layerWidths(glassRough * glassRough, glassAniso, ax, ay);
-        light += mirror * layerReflect(n, V, along, ax, ay, glassIor, rays);
+        light += mirror * layerReflect(n, V, along, ax, ay, glassIor, 1);
     }
     if (sss != none) { /* the weight is the largest channel, the rest is what the walk is to give back */
         float most = max(comp(sss, 0), comp(sss, 1), comp(sss, 2));

@@ -98,6 +98,14 @@ vector layerTangent(normal n; vector along; float turn)
     vector u = normalize(along - (along . n) * n), v = n ^ u;
     return (turn == 0) ? u : cos(2 * PI * turn) * u + sin(2 * PI * turn) * v;
 }
+/* Along u where the surface is not the same in all directions; else none, which is as good. */
+vector layerAlong(float anisotropy; normal n)
+{
+    extern vector dPdu;
+    vector u = 0;
+    if (anisotropy != 0) u = layerTangent(n, dPdu, 0);
+    return u;
+}
 /* The direction in which s grows. */
 vector layerDpds()
 {
@@ -110,7 +118,7 @@ vector layerDpds()
 float layerSamples(float samples)
 {
     float depth = 0, n = samples;
-    if (rayinfo("depth", depth) == 1 && depth > 0) n = 1;
+    if (samples > 1 && rayinfo("depth", depth) == 1 && depth > 0) n = 1;
     return max(1, n);
 }
 
@@ -168,12 +176,16 @@ color layerGlass(normal n; float front; vector V, udir; float along, across, eta
             (1 - kr) * through * trace(P, (eta == 1) ? -V : refract(-V, n, 1 / relative), "samplelights", 1);
     } else {
         normal outside = (front == 1) ? n : -n;
-        light = through * trace(P, outside, "distribution", "glass-ggx", "wo", V, "udir", udir, "roughness", along, "roughnessv",
-                                across, "eta", eta, "samples", samples, "samplelights", 1);
-        if (mirror != through)
-            light += (mirror - through) * trace(P, outside, "distribution", "glass-ggx", "lobeparameters", {1, 0}, "wo", V, "udir",
-                                                udir, "roughness", along, "roughnessv", across, "eta", eta, "samples", samples,
-                                                "samplelights", 1);
+        color both = min(mirror, through), more = mirror - both, rest = through - both;
+        if (both != none)
+            light = both * trace(P, outside, "distribution", "glass-ggx", "wo", V, "udir", udir, "roughness", along, "roughnessv",
+                                 across, "eta", eta, "samples", samples, "samplelights", 1);
+        if (more != none)
+            light += more * trace(P, outside, "distribution", "glass-ggx", "lobeparameters", {1, 0}, "wo", V, "udir", udir,
+                                  "roughness", along, "roughnessv", across, "eta", eta, "samples", samples, "samplelights", 1);
+        if (rest != none)
+            light += rest * trace(P, outside, "distribution", "glass-ggx", "lobeparameters", {0, 1}, "wo", V, "udir", udir,
+                                  "roughness", along, "roughnessv", across, "eta", eta, "samples", samples, "samplelights", 1);
     }
     return light;
 }

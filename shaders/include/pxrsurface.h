@@ -48,7 +48,7 @@
 {
     color light = 0, black = 0, white = 1, shines, below;
     normal nd, ns, nr, nc, nf, ng, ni;
-    float front = risSide(diffuseBumpNormal, bumpNormal, nd), rays = layerSamples(16);
+    float front = risSide(diffuseBumpNormal, bumpNormal, nd);
     vector V = -normalize(I);
 
     /* From the bottom: diffuse, and what walks below the surface. */
@@ -56,7 +56,7 @@
         color front_ = diffuseGain * diffuseColor;
         if (front == 0 && diffuseBackUseDiffuseColor == 0) front_ = diffuseGain * diffuseBackColor;
         if (subsurfaceGain > 0) front_ *= mix(1, 1 - subsurfaceGain, subsurfaceDiffuseBlend);
-        light += front_ * layerDiffuse(nd, V, diffuseRoughness, rays);
+        light += front_ * layerDiffuse(nd, V, diffuseRoughness, 1);
     }
     if (diffuseTransmitGain > 0) light += diffuseTransmitGain * diffuseTransmitColor * diffuse(-nd);
     if (subsurfaceGain > 0)
@@ -80,18 +80,18 @@
         float own = (glassRefractionRoughness < 0) ? glassRoughness : glassRefractionRoughness;
         layerWidths(glassRoughness * glassRoughness, glassAnisotropy, gx, gy);
         layerWidths(own * own, glassAnisotropy, rx, ry);
-        vector gu = risAlong(glassAnisotropyDirection, ng);
+        vector gu = risAlong(glassAnisotropy, glassAnisotropyDirection, ng);
         if (own != glassRoughness) { /* each by itself */
             if (thinGlass == 1)
-                glass = layerSheet(ng, V, gu, gx, gy, glassIor, rays, mirror, black) +
-                    layerSheet(ng, V, gu, rx, ry, glassIor, rays, black, through);
+                glass = layerSheet(ng, V, gu, gx, gy, glassIor, 1, mirror, black) +
+                    layerSheet(ng, V, gu, rx, ry, glassIor, 1, black, through);
             else
-                glass = layerGlass(ng, gf, V, gu, gx, gy, glassIor, rays, mirror, black) +
-                    layerGlass(ng, gf, V, gu, rx, ry, glassIor, rays, black, through);
+                glass = layerGlass(ng, gf, V, gu, gx, gy, glassIor, 1, mirror, black) +
+                    layerGlass(ng, gf, V, gu, rx, ry, glassIor, 1, black, through);
         } else if (thinGlass == 1)
-            glass = layerSheet(ng, V, gu, gx, gy, glassIor, rays, mirror, through);
+            glass = layerSheet(ng, V, gu, gx, gy, glassIor, 1, mirror, through);
         else
-            glass = layerGlass(ng, gf, V, gu, gx, gy, glassIor, rays, mirror, through);
+            glass = layerGlass(ng, gf, V, gu, gx, gy, glassIor, 1, mirror, through);
         light = (1 - clamp(refractionGain, 0, 1)) * light + glass;
     }
     /* Reflections: rough, iridescent, primary, coat. Each takes from what is below by its part of specularEnergyCompensation. */
@@ -101,7 +101,7 @@
         risSide(roughSpecularBumpNormal, bumpNormal, nr);
         color rough = risSpecular(roughSpecularFresnelMode, roughSpecularModelType, roughSpecularFaceColor, roughSpecularEdgeColor,
                                   roughSpecularFresnelShape, roughSpecularIor, roughSpecularExtinctionCoeff, roughSpecularRoughness,
-                                  roughSpecularAnisotropy, nr, V, risAlong(roughSpecularAnisotropyDirection, nr), shines);
+                                  roughSpecularAnisotropy, nr, V, risAlong(roughSpecularAnisotropy, roughSpecularAnisotropyDirection, nr), shines);
         light = rough + light * (1 - specularEnergyCompensation * shines);
     }
     if (iridescenceFaceGain > 0 || iridescenceEdgeGain > 0) {
@@ -110,7 +110,7 @@
         color hue = mix(iridescencePrimaryColor, iridescenceSecondaryColor, mod(turn, 1.0001));
         if (iridescenceFlip == 1) hue = mix(iridescenceSecondaryColor, iridescencePrimaryColor, mod(turn, 1.0001));
         color film = risSpecular(0, 1, iridescenceFaceGain * hue, iridescenceEdgeGain * hue, iridescenceFresnelShape, black, black,
-                                 iridescenceRoughness, iridescenceAnisotropy, ni, V, risAlong(iridescenceAnisotropyDirection, ni),
+                                 iridescenceRoughness, iridescenceAnisotropy, ni, V, risAlong(iridescenceAnisotropy, iridescenceAnisotropyDirection, ni),
                                  shines);
         light = film + light * (1 - specularEnergyCompensation * shines);
     }
@@ -119,7 +119,7 @@
         risSide(specularBumpNormal, bumpNormal, ns);
         color primary = risSpecular(specularFresnelMode, specularModelType, specularFaceColor, specularEdgeColor,
                                     specularFresnelShape, specularIor, specularExtinctionCoeff, specularRoughness,
-                                    specularAnisotropy, ns, V, risAlong(specularAnisotropyDirection, ns), shines);
+                                    specularAnisotropy, ns, V, risAlong(specularAnisotropy, specularAnisotropyDirection, ns), shines);
         light = primary + light * (1 - specularEnergyCompensation * shines);
     }
     if (max(comp(clearcoatFaceColor, 0), comp(clearcoatFaceColor, 1), comp(clearcoatFaceColor, 2), comp(clearcoatEdgeColor, 0),
@@ -127,7 +127,7 @@
         risSide(clearcoatBumpNormal, bumpNormal, nc);
         color coat = risSpecular(clearcoatFresnelMode, clearcoatModelType, clearcoatFaceColor, clearcoatEdgeColor,
                                  clearcoatFresnelShape, clearcoatIor, clearcoatExtinctionCoeff, clearcoatRoughness,
-                                 clearcoatAnisotropy, nc, V, risAlong(clearcoatAnisotropyDirection, nc), shines);
+                                 clearcoatAnisotropy, nc, V, risAlong(clearcoatAnisotropy, clearcoatAnisotropyDirection, nc), shines);
         if (clearcoatThickness > 0 && clearcoatAbsorptionTint != black)
             below = layerPower(max(clearcoatAbsorptionTint, color 1e-4), clearcoatThickness / max(nc . V, .1));
         light = coat + below * light * (1 - clearcoatEnergyCompensation * shines);

@@ -12,12 +12,12 @@ float risSide(normal given, ofAll; output normal n)
     if (given != none) use = given;
     return layerSide(use, n);
 }
-/* The direction `given` (0: along u), in the plane of the surface. */
-vector risAlong(vector given; normal n)
+/* The direction `given` (0: along u), in the plane of the surface; none where it is the same in all directions. */
+vector risAlong(float anisotropy; vector given; normal n)
 {
-    extern vector dPdu;
-    vector none = 0;
-    return layerTangent(n, (given == none) ? dPdu : given, 0);
+    vector none = 0, along = layerAlong(anisotropy, n);
+    if (anisotropy != 0 && given != none) along = layerTangent(n, given, 0);
+    return along;
 }
 /* A reflection. mode 0: from face to edge by Schlick's curve of the given exponent; else the edge colour times Fresnel's law for
    index and extinction. model 0: facets of Beckmann, else of Trowbridge and Reitz; a mirror below LAYER_SMOOTH. Nothing is given
@@ -40,15 +40,14 @@ color risSpecular(float mode, model; color face, edge; float shape; color ior, e
     }
     albedo = whole * layerAlbedo(c, a);
     if (whole != none) {
-        float rays = layerSamples(16);
         if (max(ax, ay) < LAYER_SMOOTH)
             light = whole * trace(P, 2 * c * n - V, "samplelights", 1);
         else if (model == 0)
             light = weight * trace(P, n, "distribution", "beckmann", "wo", V, "udir", along, "roughness", ax, "roughnessv", ay,
-                                   "eta", pair, "samples", rays, "samplelights", 1);
+                                   "eta", pair, "samplelights", 1);
         else
             light = weight * trace(P, n, "distribution", "ggx", "wo", V, "udir", along, "roughness", ax, "roughnessv", ay,
-                                   "eta", pair, "samples", rays, "samplelights", 1);
+                                   "eta", pair, "samplelights", 1);
     }
     return light;
 }

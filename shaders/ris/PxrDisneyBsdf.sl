@@ -17,14 +17,14 @@ surface PxrDisneyBsdf(varying color baseColor = .5, emitColor = 0; varying float
     vector V = -normalize(I);
     color black = 0, light = 0, kept = 1, coated = 1, tint = disneyTint(baseColor);
     color shine = mix(r0 * r0 * mix(color 1, tint, specularTint), baseColor, metallic);
-    float through = specTrans * (1 - metallic), ax, ay, rays = layerSamples(16);
+    float through = specTrans * (1 - metallic), ax, ay;
     if (through < 1) light = (1 - through) * disneySpecular(shine, roughness, anisotropic, n, V, kept);
     if (clearcoat > 0) light += disneyCoat(clearcoat, clearcoatGloss, n, V, coated);
     if (through > 0) {
         color white = 1, tint = layerRoot(max(baseColor, black)), glass;
         layerWidths(roughness * roughness, anisotropic, ax, ay);
-        if (thin == 1) glass = layerSheet(n, V, layerTangent(n, dPdu, 0), ax, ay, ior, rays, white, tint);
-        else glass = layerGlass(n, front, V, layerTangent(n, dPdu, 0), ax, ay, ior, rays, white, tint);
+        if (thin == 1) glass = layerSheet(n, V, layerAlong(anisotropic, n), ax, ay, ior, 1, white, tint);
+        else glass = layerGlass(n, front, V, layerAlong(anisotropic, n), ax, ay, ior, 1, white, tint);
         light += through * coated * glass;
     }
     if (metallic < 1 && through < 1) {

@@ -8,11 +8,11 @@ surface PxrGlass(varying float ior = 1.5, roughness = .1, anisotropic = 0, refle
 {
     normal n;
     float front = risSide(normal 0, bumpNormal, n), ax, ay;
-    vector V = -normalize(I), along = layerTangent(n, dPdu, 0);
+    vector V = -normalize(I), along = layerAlong(anisotropic, n);
     color light, inside = 1, mirror = reflectionGain * reflectionColor, through = transmissionGain * transmissionColor;
     layerWidths(roughness * roughness, anisotropic, ax, ay);
-    if (thin == 1) light = layerSheet(n, V, along, ax, ay, ior, layerSamples(16), mirror, through);
-    else light = layerGlass(n, front, V, along, ax, ay, ior, layerSamples(16), mirror, through);
+    if (thin == 1) light = layerSheet(n, V, along, ax, ay, ior, 1, mirror, through);
+    else light = layerGlass(n, front, V, along, ax, ay, ior, 1, mirror, through);
     if (absorptionGain > 0 && front == 0) inside = layerPower(clamp(absorptionColor, color 1e-4, color 1), absorptionGain * length(I));
     Oi = presence;
     Ci = presence * inside * light;

@@ -7,7 +7,7 @@ surface PxrLMDiffuse(varying color frontColor = .5, backColor = -1, transmission
     normal n;
     float front = risSide(normal 0, bumpNormal, n);
     color mine = (front == 0 && comp(backColor, 0) >= 0) ? backColor : frontColor, none = 0;
-    color light = mine * layerDiffuse(n, -normalize(I), roughness, layerSamples(16));
+    color light = mine * layerDiffuse(n, -normalize(I), roughness, 1);
     if (transmissionColor != none) light += transmissionColor * diffuse(-n);
     Oi = presence;
     Ci = presence * light;

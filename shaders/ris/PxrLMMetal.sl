@@ -10,5 +10,5 @@ surface PxrLMMetal(varying color eta = color(.2, .92, 1.1), kappa = color(3.9, 2
     layerWidths(roughness * roughness, anisotropy, ax, ay);
     Oi = presence;
     Ci = presence * specularColor *
-        layerReflectMetal(n, -normalize(I), layerTangent(n, dPdu, 0), ax, ay, eta, kappa, layerSamples(16));
+        layerReflectMetal(n, -normalize(I), layerAlong(anisotropy, n), ax, ay, eta, kappa, 1);
 }

@@ -9,10 +9,10 @@ surface PxrLMPlastic(varying color diffuseColor = .5; varying float roughness = 
 {
     normal n;
     risSide(normal 0, bumpNormal, n);
-    vector V = -normalize(I), along = layerTangent(n, dPdu, 0);
+    vector V = -normalize(I), along = layerAlong(anisotropy, n);
     color shines, none = 0;
     color shine = risSpecular(1, 1, none, specularColor, 5, color specularIor, none, specularRoughness, anisotropy, n, V, along, shines);
-    color light = shine + (1 - shines) * diffuseColor * layerDiffuse(n, V, roughness, layerSamples(16));
+    color light = shine + (1 - shines) * diffuseColor * layerDiffuse(n, V, roughness, 1);
     if (clearcoatColor != none) {
         color coat = risSpecular(1, 1, none, clearcoatColor, 5, color clearcoatIor, none, clearcoatRoughness, 0, n, V, along, shines);
         light = coat + (1 - shines) * light;

@@ -51,6 +51,7 @@ void addDiff(CLI::App&, int* status);
 void addMerge(CLI::App&, int* status);
 void addRib(CLI::App&, int* status);
 void addLsp(CLI::App&, int* status);
+void addFrom(CLI::App&, int* status);
 
 /// Prints diagnostics of at least this severity to standard error, taking a progress bar off the line first.
 Diagnostics::Handler printer(Severity least = Severity::Warning);

@@ -24,6 +24,10 @@ struct OldFlag {
 
 std::span<const OldFlag> oldFlags();
 
+/// What to use in the place of filters that are C++ libraries.
+inline constexpr std::string_view kNoRif =
+    "C++ filters (Rif) are not loaded; `alpenglow rib --replace`, or a program in a pipe, does what they do";
+
 /// A command line with the flags of other renderers replaced.
 struct TranslatedFlags {
     std::vector<std::string> arguments;

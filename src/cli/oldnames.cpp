@@ -140,6 +140,7 @@ constexpr OldFlag kRibFlags[] = {
     {"-indent", 1, "prman", Use::Accepted, "--indent $1"},
     {"-p", 1, "prman", Use::Dropped, "RIB is read by one thread"},
     {"-progress", 0, "prman, renderdl", Use::Dropped, kSaid},
+    {"-rif", 1, "prman", Use::Answered, kNoRif},
     {"-t", 1, "prman, renderdl", Use::Dropped, "RIB is read by one thread"},
     {"-precision", 1, "prman", Use::Dropped, "numbers are written so that they read back as they were"},
 };

@@ -181,6 +181,7 @@ int runProgram(int argc, char** argv) {
     addMerge(app, &status);
     addRib(app, &status);
     addLsp(app, &status);
+    addFrom(app, &status);
     CommandLine line = normalise(argc, argv, app);
     if (!line.error.empty()) return wrongUse(line.error, "alpenglow --help");
     if (!line.text.empty()) return std::fputs(line.text.c_str(), stdout) < 0 ? kOutputFailed : kDone;

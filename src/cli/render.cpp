@@ -2,10 +2,12 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/foreignmodel.h"
 #include "cli/framesatonce.h"
 #include "cli/modelscene.h"
 #include "cli/renderarguments.h"
 #include "cli/version.h"
+#include "models/modelfile.h"
 #include "render/renderer.h"
 #include "ri/lookahead.h"
 #include "ri/models/model.h"
@@ -14,6 +16,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <set>
 #include <sys/stat.h>
@@ -88,11 +91,18 @@ ri::ReaderOptions readerOptions(const RenderArguments& a, const render::RenderSe
     return options;
 }
 
+using ForeignScene = std::function<std::string(const std::string& file)>; ///< the text of its scene, or ""
+
 void readScenes(const std::vector<std::string>& scenes, const render::RenderSettings& settings, const ri::ReaderOptions& options,
-                ri::RibReader& reader, render::Renderer& renderer) {
+                ri::RibReader& reader, render::Renderer& renderer, const ForeignScene& foreign) {
     for (const std::string& s : scenes) {
         if (*settings.stop) break;
         reader.nextScene();
+        if (models::namedAsForeignModel(s) && ::access(s.c_str(), R_OK) == 0) {
+            renderer.setScene(s, {});
+            if (const std::string text = foreign(s); !text.empty()) reader.readMemory(text, s);
+            continue;
+        }
         if (ri::namedAsModel(s) && ::access(s.c_str(), R_OK) == 0) {
             renderer.setScene(s, {});
             reader.readMemory(modelScene(s), s);
@@ -109,6 +119,8 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
     const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     Diagnostics diags(print);
     render::RenderSettings settings = a.settings;
+    ModelFolder modelFolder; // of the maps of models
+    if (const std::string& f = modelFolder.pathFor(a.scenes); !f.empty()) settings.texturePaths.push_back(f);
     settings.stop = stop;
     view::TerminalPreview* terminal = nullptr;
     view::Watchers watchers = watchersOf(a, diags, &terminal);
@@ -134,7 +146,8 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
         atOnce.setReader(reader);
         renderer.setProcedurals([&reader](const scene::Frame& f, std::span<const int> which) { return reader.make(f, which); });
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
-        readScenes(a.scenes, settings, options, reader, renderer);
+        readScenes(a.scenes, settings, options, reader, renderer,
+                   [&](const std::string& file) { return modelFolder.scene(file, a.modelTime, atOnce.said()); });
     } catch (const std::bad_alloc&) {
         memory = true;
         atOnce.said().report(Severity::Severe, Rie::NoMem, {}, "out of memory while the scene was read",
@@ -186,7 +199,8 @@ void addRender(CLI::App& app, int* status, const std::string& command) {
     auto a = std::make_shared<RenderArguments>();
     a->settings.software = softwareName();
     a->settings.command = command;
-    CLI::App* c = app.add_subcommand("render", "Render scenes (RIB files; - reads standard input) or models (.ply, .obj)");
+    CLI::App* c =
+        app.add_subcommand("render", "Render scenes (RIB files; - reads standard input) or models (.ply, .obj, .glb, ...)");
     addRenderOptions(*c, *a);
     c->callback([a, c, status] {
         checkRenderArguments(*a, *c);

@@ -20,6 +20,7 @@ struct RenderArguments {
     std::vector<std::pair<std::string, int>> tev; ///< hosts and ports
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
     std::vector<int> frameList;
+    double modelTime = 0; ///< seconds of the animation of a model
     int framesAtOnce = 1; ///< 1 to limits::kFramesAtOnce
 };
 

@@ -134,10 +134,12 @@ void takeScenes(RenderArguments& a) {
 
 void addScenes(CLI::App& c, RenderArguments& a) {
     c.add_option("scenes", a.scenes,
-                 "RIB files (ASCII, binary, gzipped) or models (.ply, .obj: shown under a sky by a camera that sees all of it). "
-                 "- or no file: standard input. Each file starts from the default state; options of a file without a world apply "
-                 "to all later files")
+                 "RIB files (ASCII, binary, gzipped) or models (.ply, .obj, .glb, .fbx and others: shown under a sky by a camera "
+                 "that sees all of it). - or no file: standard input. Each file starts from the default state; options of a file "
+                 "without a world apply to all later files")
         ->type_name("FILE");
+    c.add_option("--time", a.modelTime, "Seconds of its animation at which a model (.glb, .fbx, ...) is shown")
+        ->type_name("SECONDS");
 }
 
 void addPictures(CLI::App& c, RenderArguments& a) {

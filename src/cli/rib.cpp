@@ -173,8 +173,9 @@ int runRib(const RibArguments& a, ri::FilterRules rules, Diagnostics& diags, nlo
     } else {
         OutputPolicy anywhere;
         anywhere.allowWrite = true; // the user gave the name
-        file = OutputFile::open(a.output, anywhere, diags);
-        if (!file) return kOutputFailed;
+        auto opened = OutputFile::open(a.output, anywhere, diags);
+        if (!opened) return kOutputFailed;
+        file.emplace(std::move(*opened));
         sink = ri::outputSink(*file);
     }
     ri::RequestStats counts;

@@ -3,6 +3,7 @@
 #include "base/processors.h"
 #include "cli/version.h"
 #include "display/foreign.h"
+#include "models/modelfile.h"
 #include "rsl/jit/module.h"
 #include "rsl/kernel.h"
 #include <fmt/format.h>
@@ -28,7 +29,8 @@ std::string versionReport() {
     report += reportLine("shaders", shaders.empty() ? "none" : shaders);
     const char* name = "modules";
     for (const std::string& file :
-         {rsl::jit::moduleFile(), display::fileOf(display::pictureModule()), display::fileOf(display::gridModule())}) {
+         {rsl::jit::moduleFile(), display::fileOf(display::pictureModule()), display::fileOf(display::gridModule()),
+          models::moduleOf("m.gltf"), models::moduleOf("m.fbx")}) {
         if (file.empty()) continue;
         report += reportLine(name, file);
         name = "";

@@ -5,10 +5,12 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "cli/command.h"
+#include "cli/foreignmodel.h"
 #include "cli/modelscene.h"
 #include "cli/ranges.h"
 #include "cli/shaderdescription.h"
 #include "cli/version.h"
+#include "models/modelfile.h"
 #include "ri/models/model.h"
 #include "rsl/compiler.h"
 #include <CLI/CLI.hpp>
@@ -84,6 +86,7 @@ std::string openInBrowser(std::string address) {
 int runView(const ViewArguments& a) {
     const MemoryLimit limit(a.settings.memoryLimit, a.settings.threads > 0 ? a.settings.threads : defaultThreads());
     const StopFlag* stop = watchInterrupts();
+    const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     view::ViewOptions o;
     o.settings = a.settings;
     o.scene = a.scene;
@@ -93,16 +96,21 @@ int runView(const ViewArguments& a) {
     o.reader.regularFiles = true;
     o.reader.allowExec = a.settings.allowExec;
     o.reader.allowRead = a.settings.allowRead;
-    o.read = [&a](ri::RibReader& reader) {
+    ModelFolder folder; // of the maps of a model
+    if (const std::string& f = folder.pathFor({a.scene}); !f.empty()) o.settings.texturePaths.push_back(f);
+    Diagnostics said(print);
+    o.read = [&a, &folder, &said](ri::RibReader& reader) {
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         reader.nextScene();
-        if (ri::namedAsModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0) reader.readMemory(modelScene(a.scene), a.scene);
+        if (models::namedAsForeignModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0) {
+            if (const std::string text = folder.scene(a.scene, 0, said); !text.empty()) reader.readMemory(text, a.scene);
+        } else if (ri::namedAsModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0)
+            reader.readMemory(modelScene(a.scene), a.scene);
         else reader.readFile(a.scene);
     };
     o.describe = [dialect = a.settings.dialect](const std::string& name, const std::vector<std::string>& paths) {
         return aboutShader(name, paths, dialect);
     };
-    const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     o.print = print;
     std::string fault;
     const view::ViewEnd end = view::view(
@@ -132,7 +140,7 @@ void addView(CLI::App& app, int* status) {
     render::RenderSettings& s = a->settings;
     s.software = softwareName();
     CLI::App* c = app.add_subcommand("view", "Show a scene in the browser while it renders (docs/view.md)");
-    c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj)")
+    c->add_option("scene", a->scene, "RIB file, ASCII, binary or gzipped, or a model (.ply, .obj, .glb, ...)")
         ->type_name("FILE")
         ->required();
     c->add_option("--port", a->port, "Port on 127.0.0.1; default: a free port")->check(wholeBetween(1, 65535))->type_name("N");

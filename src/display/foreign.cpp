@@ -1,117 +1,24 @@
 #include "display/foreign.h"
+#include "base/childmodule.h"
 #include "base/installation.h"
 #include "base/limits.h"
 #include "display/grids.h"
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <dlfcn.h>
-#include <fcntl.h>
 #include <filesystem>
 #include <limits>
-#include <poll.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace alpenglow::display {
 
 namespace {
 
-constexpr int kWhy = 512;                ///< bytes of what a child has to say
-constexpr int kKnown = 1, kNoModule = 2; ///< exit codes of the child: it said why; the module cannot be loaded
-
-/// A file descriptor that is closed.
-struct Descriptor {
-    int fd = -1;
-    ~Descriptor() {
-        if (fd >= 0) close(fd);
-    }
-};
-
-/// Lets this process take so much memory beside what it has; what asks for more is told that there is none. Not under
-/// AddressSanitizer, whose own tables are larger than any limit.
-void limitMemory([[maybe_unused]] uint64_t bytes) {
-#if !__has_feature(address_sanitizer)
-    unsigned long has = 0; // pages of data
-    if (FILE* f = std::fopen("/proc/self/statm", "re")) {
-        if (std::fscanf(f, "%*u %*u %*u %*u %*u %lu", &has) != 1) has = 0;
-        std::fclose(f);
-    }
-    const rlim_t all = rlim_t(has) * rlim_t(sysconf(_SC_PAGESIZE)) + bytes;
-    rlimit now{};
-    if (getrlimit(RLIMIT_DATA, &now) == 0 && (now.rlim_cur == RLIM_INFINITY || now.rlim_cur > all)) {
-        now.rlim_cur = all;
-        setrlimit(RLIMIT_DATA, &now);
-    }
-#endif
-}
-
-/// The child: reads the picture into `to` and says to `tell` what went wrong. No destructor of the program runs in it.
-[[noreturn]] void readInChild(const std::string& module, const std::string& path, uint64_t memory, int to, int tell) {
-    char why[kWhy] = "";
-    int code = kNoModule;
-    const rlimit noCore{0, 0};
-    setrlimit(RLIMIT_CORE, &noCore);
-    limitMemory(memory);
-    for (const int s : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(s, SIG_DFL);
-    void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    const auto read = handle ? reinterpret_cast<ReadForeignPicture>(dlsym(handle, kReadForeignPicture)) : nullptr;
-    if (read) {
-        const ForeignLimits limits{uint64_t(limits::kImageSide), uint64_t(limits::kImageChannels), limits::kImageBytes,
-                                   limits::kImageSmallBytes, limits::kImageExpansion};
-        code = read(path.c_str(), to, &limits, why, kWhy) == 0 ? 0 : kKnown;
-    } else {
-        const char* text = dlerror();
-        std::strncpy(why, text ? text : "it has no function of ours", kWhy - 1);
-    }
-    for (size_t done = 0, n = std::strlen(why); done < n;) {
-        const ssize_t k = write(tell, why + done, n - done);
-        if (k <= 0) break;
-        done += size_t(k);
-    }
-    _exit(code);
-}
-
-/// What the child says until it is gone or its time is over; false: over.
-bool listen(int from, std::string& why) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(limits::kProgramSeconds);
-    for (;;) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
-        if (left <= 0) return false;
-        pollfd p{from, POLLIN, 0};
-        const int n = poll(&p, 1, int(left));
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
-        char text[kWhy];
-        const ssize_t k = read(from, text, sizeof text);
-        if (k < 0 && errno == EINTR) continue;
-        if (k <= 0) return true;
-        if (why.size() < kWhy) why.append(text, size_t(k));
-    }
-}
-
-bool readAll(int from, void* to, size_t n) {
-    for (size_t done = 0; done < n;) {
-        const ssize_t k = pread(from, static_cast<char*>(to) + done, std::min<size_t>(n - done, size_t(1) << 30), off_t(done));
-        if (k <= 0) return false;
-        done += size_t(k);
-    }
-    return true;
-}
-
 /// What a child has written, looked at as a stranger's file is.
-std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
+std::optional<Image> pictureFrom(const ChildResult& child, const DecodeContext& ctx) {
     ForeignPicture p{};
-    struct stat about{};
-    if (fstat(file, &about) != 0 || !readAll(file, &p, sizeof p) || p.stamp != kForeignStamp || p.width <= 0 || p.height <= 0 ||
-        p.channels <= 0)
+    const size_t written = writtenBytes(child);
+    if (!readWritten(child, &p, sizeof p) || p.stamp != kForeignStamp || p.width <= 0 || p.height <= 0 || p.channels <= 0)
         return ctx.refuse("the module that reads it was built from other sources than this program");
     const uint64_t slices = std::max<uint64_t>(1, p.depth), side = uint64_t(limits::kImageSide);
     if (slices > side || uint64_t(p.height) * slices > uint64_t(std::numeric_limits<int>::max()) || // rows of an Image
@@ -120,8 +27,8 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
     if (!ctx.sizeAllowed(uint64_t(p.width), uint64_t(p.height), uint64_t(p.channels))) return {};
     const size_t names = size_t(p.channels) * kForeignName,
                  numbers = size_t(p.width) * size_t(p.height) * slices * size_t(p.channels) * sizeof(float);
-    if (size_t(about.st_size) != sizeof p + names + numbers) return ctx.refuse("its reader gave too little");
-    void* all = mmap(nullptr, size_t(about.st_size), PROT_READ, MAP_SHARED, file, 0);
+    if (written != sizeof p + names + numbers) return ctx.refuse("its reader gave too little");
+    void* all = mmap(nullptr, written, PROT_READ, MAP_SHARED, child.written.fd, 0);
     if (all == MAP_FAILED) return ctx.refuse("out of memory", Rie::NoMem);
     const char* at = static_cast<const char*>(all) + sizeof p;
     std::vector<std::string> channels;
@@ -130,7 +37,7 @@ std::optional<Image> pictureFrom(int file, const DecodeContext& ctx) {
     Image m = makeImage(p.width, int(uint64_t(p.height) * slices), channels);
     if (p.depth) m.metadata["depth"] = std::to_string(p.depth);
     std::memcpy(m.data.data(), at + names, numbers);
-    munmap(all, size_t(about.st_size));
+    munmap(all, written);
     m.bits = p.bits;
     m.floating = p.floating != 0;
     const std::string space(p.colourSpace, strnlen(p.colourSpace, kForeignName));
@@ -160,34 +67,32 @@ std::string fileOf(const ForeignModule& m) { return moduleFile(m.file, m.variabl
 std::optional<Image> readForeign(const ForeignModule& of, const std::string& path, const DecodeContext& ctx) {
     const std::string module = fileOf(of);
     if (module.empty()) return ctx.refuse(std::string(of.known) + ", and the module for others, " + of.file + ", is not there");
-    Descriptor picture{memfd_create("alpenglow-picture", MFD_CLOEXEC)};
-    int ends[2] = {-1, -1};
-    if (picture.fd < 0 || pipe2(ends, O_CLOEXEC) != 0)
-        return ctx.refuse(std::string("no child process: ") + std::strerror(errno));
-    Descriptor from{ends[0]}, to{ends[1]};
     // Twice what the picture may be: as it is in the file, and as floats.
     const uint64_t allowed = std::max<uint64_t>(limits::kImageSmallBytes, uint64_t(ctx.fileBytes) * limits::kImageExpansion);
     const uint64_t memory = kForeignBytes + 2 * std::min<uint64_t>(limits::kImageBytes, allowed);
-    const pid_t child = fork();
-    if (child == 0) readInChild(module, path, memory, picture.fd, to.fd);
-    close(to.fd);
-    to.fd = -1;
-    if (child < 0) return ctx.refuse(std::string("no child process: ") + std::strerror(errno));
-    std::string why;
-    const bool ended = listen(from.fd, why);
-    if (!ended) kill(child, SIGKILL);
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
-    for (char& c : why)
-        if (static_cast<unsigned char>(c) < ' ') c = ' ';
-    if (!ended)
+    const ChildResult child =
+        runChildModule(module, kReadForeignPicture, memory, [&](void* function, int to, char* why, int size) {
+            const ForeignLimits limits{uint64_t(limits::kImageSide), uint64_t(limits::kImageChannels), limits::kImageBytes,
+                                       limits::kImageSmallBytes, limits::kImageExpansion};
+            return reinterpret_cast<ReadForeignPicture>(function)(path.c_str(), to, &limits, why, size);
+        });
+    using End = ChildResult::End;
+    switch (child.end) {
+    case End::Done:
+        return pictureFrom(child, ctx);
+    case End::NoChild:
+        return ctx.refuse(child.why);
+    case End::Late:
         return ctx.refuse("its reader took more than " + std::to_string(limits::kProgramSeconds) + " seconds", Rie::Limit);
-    if (WIFSIGNALED(status)) return ctx.refuse("its reader ended by signal " + std::to_string(WTERMSIG(status)));
-    if (WEXITSTATUS(status) == kNoModule)
-        return ctx.refuse(std::string(of.known) + ", and the module for others cannot be loaded: " + why + " (it needs " +
+    case End::Signal:
+        return ctx.refuse("its reader ended by signal " + std::to_string(child.signal));
+    case End::NoModule:
+        return ctx.refuse(std::string(of.known) + ", and the module for others cannot be loaded: " + child.why + " (it needs " +
                           of.needs + ")");
-    if (WEXITSTATUS(status) != 0) return ctx.refuse(why.empty() ? "its reader failed" : why);
-    return pictureFrom(picture.fd, ctx);
+    case End::Failed:
+        break;
+    }
+    return ctx.refuse(child.why.empty() ? "its reader failed" : child.why);
 }
 
 std::optional<Image> readGrids(const std::string& path, Diagnostics& diags, const SourcePlace& place) {

@@ -27,8 +27,8 @@ struct KeptPicture {
 
 class MemoryWatcher final : public render::Watcher {
 public:
-    /// writes: displays write their files, too. keeps: pictures are kept; else only the progress is.
-    MemoryWatcher(bool writes, bool keeps) : writes_(writes), keeps_(keeps) {}
+    /// writes: displays write their files, too. keeps: pictures are kept; else only the progress is. grows: grown() is asked.
+    MemoryWatcher(bool writes, bool keeps, bool grows = false) : writes_(writes), keeps_(keeps), grows_(grows) {}
     bool writes() const override { return writes_; }
     bool wantsNoise() const override { return true; }
     void begin(const render::WatchedFrame&) override;
@@ -36,8 +36,11 @@ public:
     void progress(const render::ProgressState&, const std::string& what) override;
     void finished(std::unique_ptr<render::Film>) override;
 
-    /// What came since the last call. Not while a frame is rendered.
+    /// What came since the last call. Of a frame that was interrupted under hidden or raytrace: what was there at the last look,
+    /// black elsewhere. Not while a frame is rendered.
     std::vector<KeptPicture> take();
+    /// The first picture of the frame as it is by now, if it has grown since the last call. Any thread.
+    std::optional<KeptPicture> grown();
     struct Told {
         render::ProgressState state;
         std::string what;
@@ -46,16 +49,22 @@ public:
     std::optional<Told> told();
 
 private:
-    void keep(const std::function<render::Image(const render::OutputSpec&)>& pixels, const render::OutputPlan& own);
-    const bool writes_, keeps_;
+    using Pixels = std::function<render::Image(const render::OutputSpec&)>;
+    /// The pictures of the frame; first: only the first that can be looked at. None: the user stopped the imager.
+    std::vector<KeptPicture> pictures(const Pixels&, const render::OutputPlan& own, const render::Imager&, bool first) const;
+    const bool writes_, keeps_, grows_;
     const render::OutputPlan* own_ = nullptr;
     std::optional<render::OutputPlan> plan_; ///< as `own_`, with the curves that are kept
     render::PictureFacts facts_;
     render::Imager imager_;
+    std::shared_ptr<const transport::World> world_;
     int frame_ = 0;
-    std::vector<KeptPicture> kept_;
+    bool whole_ = false;         ///< the frame's pictures are kept
+    double last_ = 0, cost_ = 0; ///< when the growing picture was last looked at, and how long that took, seconds
+    std::vector<KeptPicture> kept_, partial_;
     std::mutex mutex_;
     std::optional<Told> told_;
+    std::optional<KeptPicture> grown_;
 };
 
 } // namespace alpenglow::python

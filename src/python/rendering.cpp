@@ -46,12 +46,12 @@ void readScene(const Scene& s, ri::RibReader& reader, render::Renderer& renderer
 }
 
 py::dict renderScenes(std::vector<std::string> flags, const py::list& given, bool write, const py::object& message,
-                      const py::object& progress) {
+                      const py::object& progress, const py::object& preview) {
     cli::RenderArguments a = renderArguments(std::move(flags));
     const std::vector<Scene> scenes = scenesOf(given);
     StopFlag stop;
     Messages messages;
-    MemoryWatcher watcher(write, true);
+    MemoryWatcher watcher(write, true, !preview.is_none());
     a.settings.stop = &stop;
     a.settings.watcher = &watcher;
     std::optional<MemoryLimit> limit;
@@ -78,6 +78,7 @@ py::dict renderScenes(std::vector<std::string> flags, const py::list& given, boo
     bool ended = false;
     const auto poll = [&] {
         messages.deliver(message);
+        if (auto picture = watcher.grown()) preview(pictureDict(std::move(*picture)));
         const auto told = watcher.told();
         if (!told || progress.is_none() || ended) return;
         if (const py::object answer = progress(progressDict(*told)); py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) {
@@ -103,8 +104,8 @@ py::dict renderScenes(std::vector<std::string> flags, const py::list& given, boo
 } // namespace
 
 void addRendering(py::module_& m) {
-    m.def("render", &renderScenes, py::arg("flags"), py::arg("scenes"), py::arg("write"), py::arg("message"),
-          py::arg("progress"));
+    m.def("render", &renderScenes, py::arg("flags"), py::arg("scenes"), py::arg("write"), py::arg("message"), py::arg("progress"),
+          py::arg("preview"));
 }
 
 } // namespace alpenglow::python

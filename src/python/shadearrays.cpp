@@ -123,9 +123,12 @@ private:
         }
     }
 
+    /// What was given for a variable, or for the one that it follows.
     const PointRows* given(const std::string& name) const {
-        const auto i = request_.variables.find(name);
-        return i == request_.variables.end() ? nullptr : &i->second;
+        if (const auto i = request_.variables.find(name); i != request_.variables.end()) return &i->second;
+        if (name == "s") return given("u");
+        if (name == "t") return given("v");
+        return name == "Ng" || name == rsl::kSideNormal ? given("N") : nullptr;
     }
 
     static float at(const PointRows& r, size_t point, int c) {
@@ -138,9 +141,6 @@ private:
         if (c > 2) return 0;
         if (part == 0) {
             if (const PointRows* r = given(name)) return at(*r, point, c);
-            if (name == "s") return variable("u", point, c, 0);
-            if (name == "t") return variable("v", point, c, 0);
-            if (name == "Ng" || name == rsl::kSideNormal) return variable("N", point, c, 0);
             if (name == "P" && c < 2) return variable(c == 0 ? "u" : "v", point, 0, 0);
             if (name == "I") return variable("P", point, c, 0) - variable("E", point, c, 0);
         } else if (name == "P" || name == "I") {
@@ -155,9 +155,6 @@ private:
     bool varies(const std::string& name, int part) const {
         if (part > 0) return (name == "P" || name == "I") && part < 3 && varies(part == 1 ? "dPdu" : "dPdv", 0);
         if (const PointRows* r = given(name)) return r->each;
-        if (name == "s") return varies("u", 0);
-        if (name == "t") return varies("v", 0);
-        if (name == "Ng" || name == rsl::kSideNormal) return varies("N", 0);
         if (name == "P") return varies("u", 0) || varies("v", 0);
         return name == "I" && (varies("P", 0) || varies("E", 0));
     }

@@ -1,6 +1,7 @@
 // The binary tokens of RIB, RISpec 3.2, appendix C.2. Integers and fixed point numbers are signed, as the specification says.
 #include "base/limits.h"
 #include "ri/lexer.h"
+#include "ri/requests/request.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr size_t kBuffered = 64u << 10; // bytes of an array that memory is taken for before they come
 
-uint32_t fromBig(uint32_t v) { return std::endian::native == std::endian::little ? __builtin_bswap32(v) : v; }
+inline uint32_t fromBig(uint32_t v) { return std::endian::native == std::endian::little ? __builtin_bswap32(v) : v; }
 
 uint64_t bigEndian(const std::string& s) {
     uint64_t v = 0;
@@ -87,7 +88,83 @@ bool Lexer::binaryFloats(Token& t, uint64_t n) {
     return true;
 }
 
+namespace {
+
+/// The number whose code is at p, which has kNumberBytes behind it. Null: another code; else where it ends.
+inline const char* numberAt(const char* p, double& out) {
+    const auto c = static_cast<unsigned char>(*p++);
+    if (c >= 0200 && c <= 0217) {
+        const unsigned w = c & 3, d = (c >> 2) & 3;
+        uint32_t bits;
+        std::memcpy(&bits, p, 4);
+        const int32_t v = int32_t(fromBig(bits)) >> (8 * (3 - w));
+        out = d == 0 ? double(v) : std::ldexp(double(v), -8 * int(d));
+        return p + w + 1;
+    }
+    if (c == 0244) {
+        uint32_t bits;
+        std::memcpy(&bits, p, 4);
+        out = double(std::bit_cast<float>(fromBig(bits)));
+        return p + 4;
+    }
+    if (c == 0245) {
+        uint64_t bits;
+        std::memcpy(&bits, p, 8);
+        out = std::bit_cast<double>(std::endian::native == std::endian::little ? __builtin_bswap64(bits) : bits);
+        return p + 8;
+    }
+    return nullptr;
+}
+
+constexpr size_t kNumberBytes = 9;
+
+} // namespace
+
+void Lexer::binaryNumbers(std::vector<double>& out) {
+    double v;
+    while (end_ - pos_ >= kNumberBytes) {
+        const char* end = numberAt(buffer_.data() + pos_, v);
+        if (!end) return;
+        out.push_back(v);
+        pos_ = size_t(end - buffer_.data());
+    }
+}
+
+/// Numbers and known codes, which are nearly all of a file, where they are in the buffer. False: look closer.
+bool Lexer::binaryPlain(Token& t) {
+    if (end_ - pos_ < kNumberBytes) return false;
+    const char* const p = buffer_.data() + pos_;
+    if (const char* end = numberAt(p, t.number)) {
+        t.kind = Token::Kind::Number;
+        pos_ = size_t(end - buffer_.data());
+        return true;
+    }
+    const unsigned code = static_cast<unsigned char>(p[1]), first = peek();
+    const size_t length = first - 0220; // of a short string
+    if (length < 16 && length < end_ - pos_) {
+        t.kind = Token::Kind::String;
+        t.text.assign(p + 1, length);
+        pos_ += 1 + length;
+        return true;
+    }
+    if (first == 0310 && 2 + 4 * size_t(code) <= end_ - pos_) {
+        t.kind = Token::Kind::Floats;
+        pos_ += 2;
+        return binaryFloats(t, code);
+    }
+    if (first == 0246 && requests_[code]) {
+        t.kind = Token::Kind::Identifier;
+        t.request = requests_[code];
+    } else if (first == 0317 && code < stringCodes_.size() && stringCodes_[code]) {
+        t.kind = Token::Kind::String;
+        t.text = *stringCodes_[code];
+    } else return false;
+    pos_ += 2;
+    return true;
+}
+
 bool Lexer::binary(Token& t) {
+    if (binaryPlain(t)) return true;
     const int line = line_, at = int(column());
     unsigned c = 0, b = 0;
     byte(c);
@@ -123,6 +200,7 @@ bool Lexer::binary(Token& t) {
         if (!byte(b)) return truncated("a request code");
         t.kind = Token::Kind::Identifier;
         t.text = requestCodes_[b];
+        t.request = requests_[b];
         if (!t.text.empty()) return true;
         reporter_.error(Rie::BadFile, place(line, at), "request code " + std::to_string(b) + " was not defined");
         return false;
@@ -134,7 +212,10 @@ bool Lexer::binary(Token& t) {
     }
     if (c == 0314) {
         if (!byte(b)) return truncated("a request definition");
-        if (binaryString(data, "a request definition")) requestCodes_[b] = data;
+        if (binaryString(data, "a request definition")) {
+            requestCodes_[b] = data;
+            requests_[b] = findRequest(data);
+        }
         return false;
     }
     if (c >= 0315 && c <= 0320) {
@@ -142,16 +223,18 @@ bool Lexer::binary(Token& t) {
         if (!bytes(two ? 2 : 1, data)) return truncated("a string code");
         unsigned code = unsigned(bigEndian(data));
         if (define) {
-            if (binaryString(data, "a string definition")) stringCodes_[code] = data;
+            if (binaryString(data, "a string definition")) {
+                if (stringCodes_.size() <= code) stringCodes_.resize(code + 1);
+                stringCodes_[code] = data;
+            }
             return false;
         }
-        auto i = stringCodes_.find(code);
-        if (i == stringCodes_.end()) {
+        if (code >= stringCodes_.size() || !stringCodes_[code]) {
             reporter_.error(Rie::BadFile, place(line, at), "string code " + std::to_string(code) + " was not defined");
             return false;
         }
         t.kind = Token::Kind::String;
-        t.text = i->second;
+        t.text = *stringCodes_[code];
         return true;
     }
     reporter_.error(Rie::BadFile, place(line, at), "byte " + std::to_string(c) + " is reserved in binary RIB");

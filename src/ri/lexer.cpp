@@ -247,6 +247,8 @@ void Lexer::plainNumbers(std::vector<double>& out) {
 
 void Lexer::numbers(std::vector<double>& out) {
     plainNumbers(out);
+    binaryNumbers(out);
+    if (pos_ < end_ && peek() >= 0x80) return; // another token
     const auto begins = [&] {
         if (startsNumber(peek())) return true;
         if (!std::strchr("nNiI", peek())) return false;
@@ -384,6 +386,7 @@ void Lexer::badBytes() {
 void Lexer::next(Token& t) {
     t.text.clear();
     t.floats.clear();
+    t.request = nullptr;
     for (;;) {
         bool any = skipSpace();
         t.line = line_;

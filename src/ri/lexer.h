@@ -4,11 +4,13 @@
 #include "ri/source.h"
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 namespace alpenglow::ri {
+
+struct Request;
 
 struct Token {
     enum class Kind { End, Identifier, Number, String, Open, Close, Floats /* a whole binary array */ };
@@ -16,8 +18,10 @@ struct Token {
     double number = 0;
     std::string text;           ///< identifier or string
     std::vector<double> floats; ///< Kind::Floats
-    int line = 0, column = 0;   ///< of its first byte, from 1
-    size_t lineStart = 0;       ///< stream offset of that line
+    /// Of an identifier that has a code, where findRequest() leads, and then there may be no text; null: not known.
+    const Request* request = nullptr;
+    int line = 0, column = 0; ///< of its first byte, from 1
+    size_t lineStart = 0;     ///< stream offset of that line
 };
 
 class Lexer {
@@ -60,7 +64,9 @@ private:
     void badBytes();
     // binary.cpp
     bool binary(Token& out); ///< decodes at pos_; false when it made no token
+    bool binaryPlain(Token& out);
     bool binaryFloats(Token& out, uint64_t n);
+    void binaryNumbers(std::vector<double>& out); ///< those that follow directly and are all in the buffer
     bool byte(unsigned& out);
     bool bytes(size_t n, std::string& out);
     bool binaryString(std::string& out, const char* what);
@@ -79,7 +85,8 @@ private:
     size_t markStart_ = 0;
     bool ended_ = false;
     std::array<std::string, 256> requestCodes_;
-    std::unordered_map<unsigned, std::string> stringCodes_;
+    std::array<const Request*, 256> requests_{}; ///< of these codes
+    std::vector<std::optional<std::string>> stringCodes_;
 };
 
 } // namespace alpenglow::ri

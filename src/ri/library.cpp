@@ -1,4 +1,5 @@
 #include "ri/library.h"
+#include "base/installation.h"
 #include "ri/c/client.h"
 #include "scene/scene.h"
 #include <dlfcn.h>
@@ -18,9 +19,16 @@ namespace {
     reinterpret_cast<const void*>(&RiReadArchiveV), reinterpret_cast<const void*>(&RiErrorPrint),
     reinterpret_cast<const void*>(&RiBoxFilter),    reinterpret_cast<const void*>(&RiBxdfV)};
 
+/// Where the binding is in a library that was itself loaded for its loader alone (Python's ctypes, cgkit), others do not see it.
+void offerBinding() {
+    static const bool offered = dlopen(codeFile().c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) != nullptr;
+    (void)offered; // false: it is in the program
+}
+
 } // namespace
 
 std::unique_ptr<Library> Library::load(const std::string& path, std::string& why) {
+    offerBinding();
     void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         const char* reason = dlerror();

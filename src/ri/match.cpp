@@ -125,7 +125,7 @@ private:
     bool count(const ArgSpec& a, Argument& out) {
         Value* v = current();
         if (a.otherCount && v && v->kind == Value::Kind::Numbers && used_ == 0 && v->numbers.size() == size_t(a.otherCount)) {
-            out.numbers = std::move(v->numbers);
+            out.numbers.swap(v->numbers);
             advance();
             return true;
         }
@@ -140,7 +140,7 @@ private:
         Value* v = current();
         if (!v || v->kind == Value::Kind::Strings) return false;
         if (v->array && used_ == 0) {
-            out.numbers = std::move(v->numbers);
+            out.numbers.swap(v->numbers);
             advance();
             return true;
         }
@@ -160,7 +160,7 @@ private:
         endArray();
         Value* v = current();
         if (!v || v->kind == Value::Kind::Numbers) return false;
-        out.strings = std::move(v->strings);
+        out.strings.swap(v->strings);
         advance();
         return true;
     }

@@ -4,6 +4,18 @@
 
 namespace alpenglow::ri {
 
+namespace {
+
+constexpr size_t kSpare = 64;          // values whose room is used again
+constexpr size_t kSpareNumbers = 4096; // of one of them
+
+template <class T> void empty(std::vector<T>& v) {
+    if (v.capacity() > kSpareNumbers) v = {};
+    else v.clear();
+}
+
+} // namespace
+
 Parser::Parser(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Lexer::Comments comments)
     : comments_(std::move(comments)),
       lexer_(std::move(source), std::move(file), reporter,
@@ -16,10 +28,37 @@ void Parser::passComments() {
     held_.clear();
 }
 
+Value Parser::fresh() {
+    if (spare_.empty()) return {};
+    Value v = std::move(spare_.back());
+    spare_.pop_back();
+    return v;
+}
+
+void Parser::keep(Value&& v) {
+    if (spare_.size() >= kSpare) return;
+    v.kind = Value::Kind::Empty;
+    v.array = false;
+    empty(v.numbers);
+    empty(v.strings);
+    spare_.push_back(std::move(v));
+}
+
+void Parser::takeBack(Call& call) {
+    for (Value& v : values_) keep(std::move(v));
+    values_.clear();
+    for (RawParam& p : call.params) keep(std::move(p.value));
+    call.params.clear();
+    for (Argument& a : call.arguments) {
+        a.given = false;
+        empty(a.numbers);
+        empty(a.strings);
+    }
+}
+
 /// After '['. A missing ']' ends the array where something comes that cannot be in it (docs/design/ri.md).
 void Parser::array(Value& v) {
     v.array = true;
-    SourcePlace open = lexer_.place(v.line, v.column);
     for (;;) {
         if (v.kind != Value::Kind::Strings) {
             lexer_.numbers(v.numbers);
@@ -43,7 +82,7 @@ void Parser::array(Value& v) {
             break;
         }
         pending_ = true;
-        reporter_.warning(Rie::Syntax, open, "this array has no closing ']'",
+        reporter_.warning(Rie::Syntax, lexer_.place(v.line, v.column), "this array has no closing ']'",
                           "it ends before line " + std::to_string(token_.line) + " column " + std::to_string(token_.column));
         return;
     }
@@ -54,27 +93,30 @@ void Parser::collect(std::vector<Value>& out) {
     for (;;) {
         if (!pending_) lexer_.next(token_);
         pending_ = false;
-        Value v;
+        if (token_.kind == Token::Kind::End || token_.kind == Token::Kind::Identifier) {
+            pending_ = true;
+            return;
+        }
+        Value v = fresh();
         v.line = token_.line;
         v.column = token_.column;
         switch (token_.kind) {
         case Token::Kind::End:
         case Token::Kind::Identifier:
-            pending_ = true;
-            return;
+            break; // seen above
         case Token::Kind::Close:
             reporter_.warning(Rie::Syntax, lexer_.place(token_.line, token_.column), "']' without '['");
             continue;
-        case Token::Kind::Number:
-            v.kind = Value::Kind::Numbers;
-            v.numbers.push_back(token_.number);
-            lexer_.numbers(v.numbers);
-            // Binary numbers come as tokens; they belong to the same run.
-            if (!out.empty() && out.back().kind == Value::Kind::Numbers && !out.back().array) {
-                out.back().numbers.insert(out.back().numbers.end(), v.numbers.begin(), v.numbers.end());
-                continue;
+        case Token::Kind::Number: { // what follows one that was no number belongs to the same run
+            const bool run = !out.empty() && out.back().kind == Value::Kind::Numbers && !out.back().array;
+            if (!run) {
+                v.kind = Value::Kind::Numbers;
+                out.push_back(std::move(v));
             }
-            break;
+            out.back().numbers.push_back(token_.number);
+            lexer_.numbers(out.back().numbers);
+            continue;
+        }
         case Token::Kind::String:
             v.kind = Value::Kind::Strings;
             v.strings.push_back(std::move(token_.text));
@@ -82,7 +124,7 @@ void Parser::collect(std::vector<Value>& out) {
         case Token::Kind::Floats:
             v.array = true;
             v.kind = token_.floats.empty() ? Value::Kind::Empty : Value::Kind::Numbers;
-            v.numbers = std::move(token_.floats);
+            v.numbers.swap(token_.floats);
             break;
         case Token::Kind::Open:
             array(v);
@@ -94,7 +136,7 @@ void Parser::collect(std::vector<Value>& out) {
 
 bool Parser::next(Call& call) {
     for (;;) {
-        values_.clear();
+        takeBack(call);
         if (!pending_) lexer_.next(token_);
         passComments();
         pending_ = false;
@@ -112,9 +154,7 @@ bool Parser::next(Call& call) {
             collect(values_);
             continue;
         }
-        call.arguments.clear();
-        call.params.clear();
-        call.request = findRequest(token_.text);
+        call.request = token_.request ? token_.request : findRequest(token_.text);
         if (!call.request) {
             std::string shown = token_.text.substr(0, 60);
             std::string near = nearestName(shown, requestNames());
@@ -127,7 +167,10 @@ bool Parser::next(Call& call) {
             continue;
         }
         // Without arguments it is done at once: a pipe's WorldEnd renders before the next request is written.
-        if (call.request->args.empty() && !call.request->parameters) return true;
+        if (call.request->args.empty() && !call.request->parameters) {
+            call.arguments.clear();
+            return true;
+        }
         collect(values_);
         if (matchArguments(values_, call, reporter_)) return true;
     }

@@ -31,7 +31,14 @@ private:
     Lexer lexer_;
     Reporter& reporter_;
     Token token_;
+    /// An empty one, with room that another one had.
+    Value fresh();
+    /// Takes what the last request held.
+    void keep(Value&& v);
+    void takeBack(Call& call);
+
     std::vector<Value> values_;     ///< of the request that is read
+    std::vector<Value> spare_;      ///< of those before
     bool pending_ = false;          ///< token_ was read ahead
     std::set<std::string> unknown_; ///< names that are no requests, reported
 };

@@ -59,13 +59,15 @@ bool RequestFilter::wanted(const std::string& line) const {
 }
 
 bool RequestFilter::elsewhere(const Call& call) {
-    if (call.request->name == "FrameBegin") {
+    static const Request* const begins = findRequest("FrameBegin");
+    static const Request* const ends = findRequest("FrameEnd");
+    if (call.request == begins) {
         const int number = call.integer(0);
         if (skipped_ == 0) frames_.insert(number);
         const bool left =
             !rules_.frames.empty() && std::find(rules_.frames.begin(), rules_.frames.end(), number) == rules_.frames.end();
         if (skipped_ > 0 || left) ++skipped_;
-    } else if (call.request->name == "FrameEnd" && skipped_ > 0) {
+    } else if (call.request == ends && skipped_ > 0) {
         --skipped_;
         return true;
     }
@@ -73,7 +75,7 @@ bool RequestFilter::elsewhere(const Call& call) {
 }
 
 void RequestFilter::request(const Call& call) {
-    if (call.request->name != "version") begin();
+    if (!begun_ && call.request->name != "version") begin();
     if (elsewhere(call)) return;
     if (rules_.drop.empty() && rules_.only.empty() && rules_.replacements.empty()) return to_.request(call);
     const std::string line = headOf(call);

@@ -8,7 +8,7 @@ namespace alpenglow::ri {
 
 namespace {
 
-constexpr size_t kNames = 100'000; // that are kept of hostile files
+constexpr size_t kMostNames = 100'000; // that are kept of hostile files
 
 constexpr uint64_t kCode = 2, kNumber = 4; // bytes in binary
 
@@ -19,7 +19,7 @@ void hold(RequestStats::Count& c, const std::vector<double>& numbers, const std:
 }
 
 void keep(std::set<std::string>& names, const std::string& name) {
-    if (!name.empty() && names.size() < kNames) names.insert(name);
+    if (!name.empty() && names.size() < kMostNames) names.insert(name);
 }
 
 std::string listed(const char* what, const std::set<std::string>& names) {
@@ -44,16 +44,19 @@ void RequestStats::add(const Call& call) {
         c.numbers += one.numbers;
         c.bytes += one.bytes;
     };
-    count(requests[std::string(r.name)]);
+    Count*& of = known_[&r];
+    if (!of) of = &requests[std::string(r.name)];
+    count(*of);
     count(all);
     if (r.kind == Kind::Primitive) count(primitives);
     if (r.kind == Kind::Light && !r.args.empty() && r.args[0].form == ArgSpec::Form::String && r.name != "EnableLightFilter")
         count(lights);
     if ((r.kind == Kind::Shader || r.kind == Kind::Light) && call.given(0) && !call.arguments[0].strings.empty())
         keep(shaders, call.text(0));
-    if (r.name == "ReadArchive") keep(archives, call.text(0));
-    if (r.name == "Procedural" && call.text(0) == "DelayedReadArchive" && !call.strings(1).empty())
+    if (r.kind == Kind::Archive && r.name == "ReadArchive") keep(archives, call.text(0));
+    if (r.kind == Kind::Primitive && r.name == "Procedural" && call.text(0) == "DelayedReadArchive" && !call.strings(1).empty())
         keep(archives, call.strings(1)[0]);
+    if (r.kind != Kind::Structure) return;
     frames += r.name == "FrameBegin";
     worlds += r.name == "WorldBegin";
     if (r.name.ends_with("Begin")) depth = std::max(depth, ++open_);
@@ -61,7 +64,7 @@ void RequestStats::add(const Call& call) {
 }
 
 void RequestStats::addUnknown(const std::string& name, const std::vector<Value>& values) {
-    if (requests.size() >= kNames && !requests.count(name)) return;
+    if (requests.size() >= kMostNames && !requests.count(name)) return;
     for (Count* c : {&requests[name], &all}) {
         ++c->times;
         c->bytes += kCode;

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace alpenglow::ri {
@@ -26,7 +27,12 @@ public:
     std::set<std::string> shaders;  ///< named by Surface and its like, LightSource and Shader
     std::set<std::string> archives; ///< named by ReadArchive and procedurals that read one
 
+    RequestStats() = default;
+    RequestStats(const RequestStats&) = delete;
+    RequestStats& operator=(const RequestStats&) = delete;
+
 private:
+    std::unordered_map<const Request*, Count*> known_; ///< into `requests`
     int open_ = 0;
 };
 

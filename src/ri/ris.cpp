@@ -111,11 +111,11 @@ constexpr std::string_view kFar[] = {"PxrDomeLight", "PxrDistantLight", "PxrEnvD
 } // namespace
 
 std::optional<std::string_view> lightGeometry(std::string_view name) {
-    static constexpr std::pair<std::string_view, std::string_view> kNames[] = {{"rectlight", "PxrRectLight"},
-                                                                               {"disklight", "PxrDiskLight"},
-                                                                               {"spherelight", "PxrSphereLight"},
-                                                                               {"cylinderlight", "PxrCylinderLight"}};
-    for (const auto& [geometry, light] : kNames)
+    static constexpr std::pair<std::string_view, std::string_view> kShapeNames[] = {{"rectlight", "PxrRectLight"},
+                                                                                    {"disklight", "PxrDiskLight"},
+                                                                                    {"spherelight", "PxrSphereLight"},
+                                                                                    {"cylinderlight", "PxrCylinderLight"}};
+    for (const auto& [geometry, light] : kShapeNames)
         if (geometry == name)
             return std::find_if(std::begin(kGeometryShapes), std::end(kGeometryShapes), [&](auto& s) { return s.name == light; })
                 ->requests;

@@ -1,5 +1,6 @@
 // Contexts, callbacks, handles, what is written, and that calls stream.
 #include "folder.h"
+#include <cstdlib>
 #include <ri.h>
 #include <sys/resource.h>
 #include <vector>
@@ -176,6 +177,41 @@ TEST_F(CContexts, HandlesInFiles) {
     RiEnd();
     EXPECT_EQ(body("a.rib"), "LightSource \"pointlight\" 1\nLightSource \"pointlight\" \"key\"\nObjectBegin 3\nObjectEnd\n"
                              "Illuminate 1 0\nIlluminate \"key\" 1\nObjectInstance 3\n");
+}
+
+// Connections of RIS have texts as values, whatever type their token says.
+TEST_F(CContexts, ConnectionsAreTexts) {
+    RiBegin("a.rib");
+    RtString from = "wood:resultRGB";
+    RiBxdf("PxrDiffuse", "top", "reference color diffuseColor", &from, RI_NULL);
+    RiEnd();
+    EXPECT_EQ(body("a.rib"), "Bxdf \"PxrDiffuse\" \"top\" \"reference color diffuseColor\" [\"wood:resultRGB\"]\n");
+}
+
+// A library that was loaded for its loader alone, as Python does, still serves libraries of procedurals.
+TEST_F(CContexts, LoadedAtRunTimeByTheOldNames) {
+    if (std::system("python3 -c 'import ctypes'") != 0) GTEST_SKIP() << "without Python";
+    std::ofstream("drive.py") << R"(
+import ctypes, sys
+ri = ctypes.CDLL(sys.argv[1])
+f = ctypes.c_float
+ri.RiBegin(None)
+ri.RiFormat(16, 16, f(1))
+ri.RiDisplay(b"x.exr", b"openexr", b"rgba", None)
+ri.RiTranslate(f(0), f(0), f(5))
+ri.RiWorldBegin()
+strings = (ctypes.c_char_p * 2)(sys.argv[2].encode(), b"halves 2")
+bound = (f * 6)(-2, 2, -2, 2, -2, 2)
+ri.RiProcedural(strings, bound, ri.RiProcDynamicLoad, None)
+ri.RiWorldEnd()
+ri.RiEnd()
+print(ctypes.c_int.in_dll(ri, "RiLastError").value, ctypes.c_char_p.in_dll(ri, "RI_RGBA").value)
+)";
+    const std::string folder = std::filesystem::path(ALPENGLOW_LIBRARY).parent_path().string();
+    for (const char* name : {"libri.so", "librib.so"})
+        EXPECT_EQ(run("ALPENGLOW_OPTIONS=--allow-exec python3 drive.py " + folder + "/" + name +
+                      " " ALPENGLOW_PROCEDURALS "/facets.so"),
+                  "0 b'rgba'\n");
 }
 
 // Calls become bytes as they come: 16 MB of RIB take no memory.

@@ -197,6 +197,25 @@ TEST_F(CErrors, ATextInThePlaceOfAnAddress) {
     EXPECT_NE(text("x.rib").find(R"("string d" ["off"])"), std::string::npos) << text("x.rib");
 }
 
+// A count that is far too large is told where the array ends in what cannot be read.
+TEST_F(CErrors, CountsBeyondTheArray) {
+    const size_t page = size_t(sysconf(_SC_PAGESIZE));
+    void* one = mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(one, MAP_FAILED);
+    ASSERT_EQ(mprotect(static_cast<char*>(one) + page, page, PROT_NONE), 0);
+    RiBegin("x.rib");
+    RiPoints(RtInt(page / 12), "P", one, RI_NULL);
+    EXPECT_TRUE(gSaid.empty()) << all();
+    RiPoints(2 * RtInt(page / 12), "P", one, RI_NULL);
+    ASSERT_EQ(gSaid.size(), 1u) << all();
+    EXPECT_EQ(gSaid[0].code, RIE_CONSISTENCY);
+    RtInt face[1] = {3}, corners[3] = {0, 1, INT32_MAX - 1};
+    RiPointsPolygons(1, face, corners, "P", one, RI_NULL);
+    EXPECT_EQ(gSaid.size(), 2u) << all();
+    RiEnd();
+    munmap(one, 2 * page);
+}
+
 TEST_F(CErrors, WhatIsPrinted) {
     testing::internal::CaptureStderr();
     RiErrorHandler(RiErrorPrint);

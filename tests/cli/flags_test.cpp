@@ -59,7 +59,7 @@ TEST_F(Flags, ThoseOfOtherRenderersAreTaken) {
 }
 
 TEST_F(Flags, ThoseThatCannotBeTakenAreAnswered) {
-    for (const auto& [flag, answer] : {std::pair{"-capture x.rib", "RIB is not written"}, {"-res 100", "-res takes 2 values"}}) {
+    for (const auto& [flag, answer] : {std::pair{"-capture x.rib", "`alpenglow rib`"}, {"-res 100", "-res takes 2 values"}}) {
         run(std::string("render s.rib ") + flag);
         EXPECT_EQ(status, 2) << flag;
         EXPECT_TRUE(says(answer)) << flag << ": " << errors();

@@ -1,5 +1,7 @@
-"""blender -b --factory-startup --python blender_render.py -- SCENE OUT [SAMPLES]: a scene of blender_scenes.py by Alpenglow's add-on and by Cycles,
-as OUT/SCENE.ours.exr and OUT/SCENE.cycles.exr, and how they compare, as a line of JSON after "COMPARED". ALPENGLOW_PROGRAM names the program,
+"""blender -b --factory-startup --python blender_render.py -- SCENE OUT [SAMPLES]: a scene of blender_scenes.py by Alpenglow's
+add-on and by Cycles,
+as OUT/SCENE.ours.exr and OUT/SCENE.cycles.exr, and how they compare, as a line of JSON after "COMPARED". ALPENGLOW_PROGRAM
+names the program,
 ALPENGLOW_ADDON the folder that holds the add-on."""
 import json
 import os
@@ -23,7 +25,9 @@ def settings(s, samples, out, name):
     r.image_settings.file_format, r.image_settings.color_depth = "OPEN_EXR", "32"
     c = s.cycles
     c.samples, c.use_adaptive_sampling, c.use_denoising, c.device = samples, False, False, "CPU"
-    c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = c.transparent_max_bounces = c.volume_bounces = 32
+    c.max_bounces = (
+        c.diffuse_bounces
+    ) = c.glossy_bounces = c.transmission_bounces = c.transparent_max_bounces = c.volume_bounces = 32
     c.blur_glossy = c.sample_clamp_indirect = c.sample_clamp_direct = c.light_sampling_threshold = 0.0
     c.pixel_filter_type = "BOX"
     own = s.alpenglow
@@ -31,7 +35,7 @@ def settings(s, samples, out, name):
 
 
 def main():
-    arguments = sys.argv[sys.argv.index("--") + 1:]
+    arguments = sys.argv[sys.argv.index("--") + 1 :]
     name, out, samples = arguments[0], arguments[1], int(arguments[2]) if len(arguments) > 2 else 64
     alpenglow.register()
     s = bpy.context.scene

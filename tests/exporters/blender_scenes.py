@@ -1,5 +1,7 @@
-"""Scenes for Blender, by script: default, materials, lights, crowd (instances and hair), camera (lens and motion). Each function fills an
-empty scene; the picture is small. They use what exporters lose easily, and nothing that is noise of its own (Blender's noise textures have
+"""Scenes for Blender, by script: default, materials, lights, crowd (instances and hair), camera (lens and motion). Each
+function fills an
+empty scene; the picture is small. They use what exporters lose easily, and nothing that is noise of its own (Blender's noise
+textures have
 other values here, so they appear with little contrast)."""
 import math
 import os
@@ -114,11 +116,14 @@ def name_of(*names):
 def picture():
     """A PNG of four colours with a soft bump of slopes, as files: (colour, normals)."""
     import numpy as np
+
     folder = tempfile.mkdtemp(prefix="alpenglow-maps-")
     n = 64
     y, x = np.mgrid[0:n, 0:n] / n
-    colour = np.stack([x > .5, y > .5, (x > .5) ^ (y > .5), np.ones_like(x)], -1).astype(np.float32) * .7 + .15
-    slope = np.stack([.5 + .3 * np.sin(8 * np.pi * x), .5 + .3 * np.sin(8 * np.pi * y), np.ones_like(x), np.ones_like(x)], -1)
+    colour = np.stack([x > 0.5, y > 0.5, (x > 0.5) ^ (y > 0.5), np.ones_like(x)], -1).astype(np.float32) * 0.7 + 0.15
+    slope = np.stack(
+        [0.5 + 0.3 * np.sin(8 * np.pi * x), 0.5 + 0.3 * np.sin(8 * np.pi * y), np.ones_like(x), np.ones_like(x)], -1
+    )
     out = []
     for name, pixels in (("colour", colour), ("normals", slope)):
         image = bpy.data.images.new(name, n, n)
@@ -139,81 +144,119 @@ def default():
 
 def materials():
     clear()
-    sky((.3, .4, .55), .6)
-    camera((0, -9, 5), (0, 0, .4), 42)
+    sky((0.3, 0.4, 0.55), 0.6)
+    camera((0, -9, 5), (0, 0, 0.4), 42)
     lamp("key", "AREA", 350, (-3, -3, 5), (0, 0, 0), shape="RECTANGLE", size=2, size_y=1)
     m = Nodes("floor")
-    checks = m.add("TexChecker", {"Vector": m.add("TexCoord").outputs["UV"]}, Scale=12.0, Color1=(.7, .65, .6), Color2=(.25, .3, .35))
+    checks = m.add(
+        "TexChecker", {"Vector": m.add("TexCoord").outputs["UV"]}, Scale=12.0, Color1=(0.7, 0.65, 0.6), Color2=(0.25, 0.3, 0.35)
+    )
     plane("floor", 14, m.close(m.add("BsdfDiffuse", {"Color": checks.outputs["Color"]})))
     colour, normals = picture()
-    rows = [principled("plain", Base_Color=(.7, .15, .1), Roughness=.4),
-            principled("metal", Base_Color=(.9, .65, .3), Metallic=1.0, Roughness=.25),
-            principled("lacquer", Base_Color=(.1, .3, .6), Roughness=.6, **{name_of("Clearcoat", "Coat_Weight"): 1.0})]
+    rows = [
+        principled("plain", Base_Color=(0.7, 0.15, 0.1), Roughness=0.4),
+        principled("metal", Base_Color=(0.9, 0.65, 0.3), Metallic=1.0, Roughness=0.25),
+        principled("lacquer", Base_Color=(0.1, 0.3, 0.6), Roughness=0.6, **{name_of("Clearcoat", "Coat_Weight"): 1.0}),
+    ]
     m = Nodes("glass")
-    rows.append(m.close(m.add("BsdfGlass", Color=(.95, 1, .97), Roughness=0.0, IOR=1.45)))
+    rows.append(m.close(m.add("BsdfGlass", Color=(0.95, 1, 0.97), Roughness=0.0, IOR=1.45)))
     m = Nodes("mapped")
-    uv = m.add("Mapping", {"Vector": m.add("TexCoord").outputs["UV"]}, Scale=(4, 2, 1), Location=(.1, .2, 0))
+    uv = m.add("Mapping", {"Vector": m.add("TexCoord").outputs["UV"]}, Scale=(4, 2, 1), Location=(0.1, 0.2, 0))
     image = m.add("TexImage", {"Vector": uv.outputs[0]}, set_image=colour)
-    rows.append(m.close(m.add("BsdfPrincipled", {"Base Color": image.outputs["Color"]}, Roughness=.5)))
+    rows.append(m.close(m.add("BsdfPrincipled", {"Base Color": image.outputs["Color"]}, Roughness=0.5)))
     m = Nodes("dented")
     image = m.add("TexImage", {"Vector": m.add("TexCoord").outputs["UV"]}, set_image=normals)
-    slopes = m.add("NormalMap", {"Color": image.outputs["Color"]}, Strength=.7)
-    rows.append(m.close(m.add("BsdfPrincipled", {"Normal": slopes.outputs[0]}, Base_Color=(.6, .6, .6), Roughness=.35)))
+    slopes = m.add("NormalMap", {"Color": image.outputs["Color"]}, Strength=0.7)
+    rows.append(m.close(m.add("BsdfPrincipled", {"Normal": slopes.outputs[0]}, Base_Color=(0.6, 0.6, 0.6), Roughness=0.35)))
     m = Nodes("ramp")
     place = m.add("SeparateXYZ", {0: m.add("TexCoord").outputs["Generated"]})
     ramp = m.add("ValToRGB", {"Fac": place.outputs["Z"]})
-    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (.9, .8, .1, 1), (.1, .05, .5, 1)
-    ramp.color_ramp.elements.new(.5).color = (.1, .6, .2, 1)
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.9, 0.8, 0.1, 1), (0.1, 0.05, 0.5, 1)
+    ramp.color_ramp.elements.new(0.5).color = (0.1, 0.6, 0.2, 1)
     rows.append(m.close(m.add("BsdfDiffuse", {"Color": ramp.outputs["Color"]})))
     m = Nodes("mixed")
-    weight = m.add("LayerWeight", Blend=.4)
-    rows.append(m.close(m.add("MixShader", {0: weight.outputs["Facing"], 1: m.add("BsdfDiffuse", Color=(.1, .5, .3)).outputs[0],
-                                            2: m.add("BsdfGlossy", Color=(.9, .9, .9), Roughness=.3).outputs[0]})))
+    weight = m.add("LayerWeight", Blend=0.4)
+    rows.append(
+        m.close(
+            m.add(
+                "MixShader",
+                {
+                    0: weight.outputs["Facing"],
+                    1: m.add("BsdfDiffuse", Color=(0.1, 0.5, 0.3)).outputs[0],
+                    2: m.add("BsdfGlossy", Color=(0.9, 0.9, 0.9), Roughness=0.3).outputs[0],
+                },
+            )
+        )
+    )
     m = Nodes("waves")
     wave = m.add("TexWave", {"Vector": m.add("TexCoord").outputs["Object"]}, Scale=1.5)
-    bump = m.add("Bump", {"Height": wave.outputs["Fac"]}, Strength=.5, Distance=.2)
-    rows.append(m.close(m.add("BsdfPrincipled", {"Normal": bump.outputs[0]}, Base_Color=(.7, .7, .3), Roughness=.5)))
+    bump = m.add("Bump", {"Height": wave.outputs["Fac"]}, Strength=0.5, Distance=0.2)
+    rows.append(m.close(m.add("BsdfPrincipled", {"Normal": bump.outputs[0]}, Base_Color=(0.7, 0.7, 0.3), Roughness=0.5)))
     m = Nodes("veil")
-    rows.append(m.close(m.add("MixShader", {1: m.add("BsdfTransparent").outputs[0], 2: m.add("BsdfDiffuse", Color=(.8, .3, .5)).outputs[0]}, Fac=.5)))
+    rows.append(
+        m.close(
+            m.add(
+                "MixShader",
+                {1: m.add("BsdfTransparent").outputs[0], 2: m.add("BsdfDiffuse", Color=(0.8, 0.3, 0.5)).outputs[0]},
+                Fac=0.5,
+            )
+        )
+    )
     m = Nodes("glow")
-    rows.append(m.close(m.add("Emission", Color=(1, .6, .3), Strength=2.0)))
+    rows.append(m.close(m.add("Emission", Color=(1, 0.6, 0.3), Strength=2.0)))
     m = Nodes("rough glass")
-    rows.append(m.close(m.add("BsdfGlass", Color=(1, .8, .7), Roughness=.4, IOR=1.5)))
+    rows.append(m.close(m.add("BsdfGlass", Color=(1, 0.8, 0.7), Roughness=0.4, IOR=1.5)))
     for i, material in enumerate(rows):
-        sphere(material.name, (-3.3 + 2.2 * (i % 4), 2.2 - 2.2 * (i // 4), .8), .8, material)
+        sphere(material.name, (-3.3 + 2.2 * (i % 4), 2.2 - 2.2 * (i // 4), 0.8), 0.8, material)
 
 
 def lights():
     clear()
-    sky((.05, .06, .1))
-    camera((0, -8.5, 4.5), (0, 0, .7), 38)
-    plane("floor", 16, principled("grey", Base_Color=(.6, .6, .6), Roughness=.9))
-    plane("wall", 16, principled("wall", Base_Color=(.6, .55, .5), Roughness=.9), (0, 4, 0), (math.pi / 2, 0, 0))
-    white = principled("white", Base_Color=(.75, .75, .75), Roughness=.45)
+    sky((0.05, 0.06, 0.1))
+    camera((0, -8.5, 4.5), (0, 0, 0.7), 38)
+    plane("floor", 16, principled("grey", Base_Color=(0.6, 0.6, 0.6), Roughness=0.9))
+    plane("wall", 16, principled("wall", Base_Color=(0.6, 0.55, 0.5), Roughness=0.9), (0, 4, 0), (math.pi / 2, 0, 0))
+    white = principled("white", Base_Color=(0.75, 0.75, 0.75), Roughness=0.45)
     for i in range(5):
-        sphere("ball%d" % i, (-4 + 2 * i, 0, .6), .6, white)
-    lamp("point", "POINT", 60, (-4, -1.5, 2.5), shadow_soft_size=.2, color=(1, .5, .4))
-    lamp("spot", "SPOT", 300, (-1.5, -2, 4), (-1.5, .5, 0), shadow_soft_size=.1, spot_size=math.radians(40), spot_blend=.4, color=(.5, 1, .5))
-    lamp("sun", "SUN", .6, (5, -6, 8), (0, 0, 0), angle=math.radians(4))
-    lamp("square", "AREA", 60, (1.5, -1.5, 3), (1.5, 0, 0), shape="RECTANGLE", size=1.2, size_y=.5, color=(.4, .5, 1))
-    lamp("round", "AREA", 50, (4, -1.5, 2.6), (4, 0, .5), shape="ELLIPSE", size=1.0, size_y=.6, color=(1, .9, .4))
+        sphere("ball%d" % i, (-4 + 2 * i, 0, 0.6), 0.6, white)
+    lamp("point", "POINT", 60, (-4, -1.5, 2.5), shadow_soft_size=0.2, color=(1, 0.5, 0.4))
+    lamp(
+        "spot",
+        "SPOT",
+        300,
+        (-1.5, -2, 4),
+        (-1.5, 0.5, 0),
+        shadow_soft_size=0.1,
+        spot_size=math.radians(40),
+        spot_blend=0.4,
+        color=(0.5, 1, 0.5),
+    )
+    lamp("sun", "SUN", 0.6, (5, -6, 8), (0, 0, 0), angle=math.radians(4))
+    lamp("square", "AREA", 60, (1.5, -1.5, 3), (1.5, 0, 0), shape="RECTANGLE", size=1.2, size_y=0.5, color=(0.4, 0.5, 1))
+    lamp("round", "AREA", 50, (4, -1.5, 2.6), (4, 0, 0.5), shape="ELLIPSE", size=1.0, size_y=0.6, color=(1, 0.9, 0.4))
     m = Nodes("tube")
-    shining = m.close(m.add("Emission", Color=(1, .3, .8), Strength=6.0))
-    bpy.ops.mesh.primitive_cylinder_add(radius=.08, depth=6, location=(0, 3.6, 3.2), rotation=(0, math.pi / 2, 0))
+    shining = m.close(m.add("Emission", Color=(1, 0.3, 0.8), Strength=6.0))
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.08, depth=6, location=(0, 3.6, 3.2), rotation=(0, math.pi / 2, 0))
     bpy.context.object.data.materials.append(shining)
 
 
 def crowd():
     clear()
-    sky((.5, .55, .6), .8)
-    camera((0, -10, 5), (0, 0, .6), 45)
+    sky((0.5, 0.55, 0.6), 0.8)
+    camera((0, -10, 5), (0, 0, 0.6), 45)
     lamp("sun", "SUN", 2.5, (4, -5, 7), angle=math.radians(3))
-    plane("floor", 20, principled("earth", Base_Color=(.35, .3, .22), Roughness=1.0))
-    cone_material = principled("green", Base_Color=(.12, .4, .12), Roughness=.7)
-    trunk = principled("brown", Base_Color=(.3, .18, .1), Roughness=.8)
+    plane("floor", 20, principled("earth", Base_Color=(0.35, 0.3, 0.22), Roughness=1.0))
+    cone_material = principled("green", Base_Color=(0.12, 0.4, 0.12), Roughness=0.7)
+    trunk = principled("brown", Base_Color=(0.3, 0.18, 0.1), Roughness=0.8)
     tree = bpy.data.collections.new("tree")  # in no scene: its instances alone are seen
-    for name, maker, material in (("crown", lambda: bpy.ops.mesh.primitive_cone_add(vertices=12, radius1=.5, depth=1.2, location=(0, 0, 1)), cone_material),
-                                  ("trunk", lambda: bpy.ops.mesh.primitive_cylinder_add(vertices=12, radius=.1, depth=.5, location=(0, 0, .2)), trunk)):
+    for name, maker, material in (
+        (
+            "crown",
+            lambda: bpy.ops.mesh.primitive_cone_add(vertices=12, radius1=0.5, depth=1.2, location=(0, 0, 1)),
+            cone_material,
+        ),
+        ("trunk", lambda: bpy.ops.mesh.primitive_cylinder_add(vertices=12, radius=0.1, depth=0.5, location=(0, 0, 0.2)), trunk),
+    ):
         maker()
         o = bpy.context.object
         o.name = name
@@ -222,30 +265,63 @@ def crowd():
             c.objects.unlink(o)
         tree.objects.link(o)
     for i in range(12):
-        o = shown("tree%d" % i, None, (-4.4 + .8 * i, 2.5 + .8 * math.sin(3.7 * i), 0), (0, 0, i))
+        o = shown("tree%d" % i, None, (-4.4 + 0.8 * i, 2.5 + 0.8 * math.sin(3.7 * i), 0), (0, 0, i))
         o.instance_type, o.instance_collection = "COLLECTION", tree
-        o.scale = (.8 + .04 * i,) * 3
-    ball = sphere("seed", (0, 0, -5), .14, principled("red", Base_Color=(.7, .1, .1), Roughness=.3), 16)
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=6, y_subdivisions=4, size=1, location=(2.6, -1, .15))
+        o.scale = (0.8 + 0.04 * i,) * 3
+    ball = sphere("seed", (0, 0, -5), 0.14, principled("red", Base_Color=(0.7, 0.1, 0.1), Roughness=0.3), 16)
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=6, y_subdivisions=4, size=1, location=(2.6, -1, 0.15))
     grid = bpy.context.object
     grid.scale = (1.6, 1.2, 1)
     grid.instance_type, grid.show_instancer_for_render = "VERTS", False
     ball.location = (0, 0, 0)
     ball.parent = grid
-    head = sphere("head", (-2.4, -.6, .9), .7, principled("skin", Base_Color=(.5, .3, .2), Roughness=.8), 32)
-    head.data.materials.append(principled("hair", Base_Color=(.45, .22, .08), Roughness=.6, **{name_of("Specular", "Specular_IOR_Level"): 0.0}))
+    text = bpy.data.curves.new("text", "FONT")
+    text.body, text.size, text.extrude = "RIB", 0.5, 0.05
+    text.materials.append(principled("letters", Base_Color=(0.1, 0.2, 0.6), Roughness=0.5))
+    shown("text", text, (-0.6, -3, 0.02), (1.2, 0, 0))
+    if bpy.app.version < (4, 0, 0):  # whose groups of nodes are made in another way
+        boxes()
+    head = sphere("head", (-2.4, -0.6, 0.9), 0.7, principled("skin", Base_Color=(0.5, 0.3, 0.2), Roughness=0.8), 32)
+    head.data.materials.append(
+        principled("hair", Base_Color=(0.45, 0.22, 0.08), Roughness=0.6, **{name_of("Specular", "Specular_IOR_Level"): 0.0})
+    )
     head.modifiers.new("hair", "PARTICLE_SYSTEM")
     s = head.particle_systems[0].settings
-    s.type, s.count, s.hair_length, s.material, s.use_advanced_hair = "HAIR", 1500, .5, 2, True
-    s.root_radius, s.tip_radius, s.radius_scale, s.effector_weights.gravity = 1.0, .3, .03, 0.0
+    s.type, s.count, s.hair_length, s.material, s.use_advanced_hair = "HAIR", 1500, 0.5, 2, True
+    s.root_radius, s.tip_radius, s.radius_scale, s.effector_weights.gravity = 1.0, 0.3, 0.03, 0.0
     s.render_step = 3
     bpy.context.scene.cycles_curves.shape = "THICK"
-    bpy.ops.mesh.primitive_monkey_add(size=1.2, location=(.2, -1.2, .7))
+    bpy.ops.mesh.primitive_monkey_add(size=1.2, location=(0.2, -1.2, 0.7))
     o = bpy.context.object
-    o.data.materials.append(principled("stone", Base_Color=(.55, .55, .5), Roughness=.5))
+    o.data.materials.append(principled("stone", Base_Color=(0.55, 0.55, 0.5), Roughness=0.5))
     o.modifiers.new("smooth", "SUBSURF").render_levels = 3
     for p in o.data.polygons:
         p.use_smooth = True
+
+
+def boxes():
+    """Cubes that geometry nodes put on the points of a grid."""
+    group = bpy.data.node_groups.new("boxes", "GeometryNodeTree")
+    group.inputs.new("NodeSocketGeometry", "Geometry")
+    group.outputs.new("NodeSocketGeometry", "Geometry")
+    first, last, on, cube, paint = (
+        group.nodes.new(k)
+        for k in (
+            "NodeGroupInput",
+            "NodeGroupOutput",
+            "GeometryNodeInstanceOnPoints",
+            "GeometryNodeMeshCube",
+            "GeometryNodeSetMaterial",
+        )
+    )
+    cube.inputs[0].default_value = (0.2, 0.2, 0.2)
+    paint.inputs["Material"].default_value = principled("boxes", Base_Color=(0.8, 0.7, 0.2), Roughness=0.6)
+    group.links.new(cube.outputs[0], paint.inputs[0])
+    group.links.new(paint.outputs[0], on.inputs["Instance"])
+    group.links.new(first.outputs[0], on.inputs[0])
+    group.links.new(on.outputs[0], last.inputs[0])
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=5, y_subdivisions=3, size=1.6, location=(-3.6, -3, 0.1))
+    bpy.context.object.modifiers.new("boxes", "NODES").node_group = group
 
 
 def motion_of(o, path, first, last):
@@ -262,29 +338,36 @@ def motion_of(o, path, first, last):
 def lens():
     clear()
     scene = bpy.context.scene
-    sky((.4, .45, .5))
-    eye = camera((0, -9, 2.4), (0, 0, .8), 70)
-    eye.data.shift_x, eye.data.shift_y, eye.data.sensor_fit = .06, -.04, "VERTICAL"
-    eye.data.dof.use_dof, eye.data.dof.focus_distance, eye.data.dof.aperture_fstop = True, 8.5, .25
+    sky((0.4, 0.45, 0.5))
+    eye = camera((0, -9, 2.4), (0, 0, 0.8), 70)
+    eye.data.shift_x, eye.data.shift_y, eye.data.sensor_fit = 0.06, -0.04, "VERTICAL"
+    eye.data.dof.use_dof, eye.data.dof.focus_distance, eye.data.dof.aperture_fstop = True, 8.5, 0.25
     lamp("sun", "SUN", 2.0, (-4, -5, 7), angle=math.radians(6))
-    plane("floor", 30, principled("floor", Base_Color=(.5, .5, .5), Roughness=.9))
+    plane("floor", 30, principled("floor", Base_Color=(0.5, 0.5, 0.5), Roughness=0.9))
     for i in range(5):
-        sphere("post%d" % i, (-1.6 + .8 * i, -4.5 + 3 * i, .5), .5, principled("post%d" % i, Base_Color=(.2 + .15 * i, .4, .8 - .15 * i), Roughness=.6))
-    bpy.ops.mesh.primitive_cube_add(size=.8, location=(1.5, 0, .9))
+        sphere(
+            "post%d" % i,
+            (-1.6 + 0.8 * i, -4.5 + 3 * i, 0.5),
+            0.5,
+            principled("post%d" % i, Base_Color=(0.2 + 0.15 * i, 0.4, 0.8 - 0.15 * i), Roughness=0.6),
+        )
+    bpy.ops.mesh.primitive_cube_add(size=0.8, location=(1.5, 0, 0.9))
     cube = bpy.context.object
-    cube.data.materials.append(principled("moving", Base_Color=(.8, .5, .1), Roughness=.5))
-    motion_of(cube, "location", (.6, -.6, .9), (2.4, -.6, 1.1))
+    cube.data.materials.append(principled("moving", Base_Color=(0.8, 0.5, 0.1), Roughness=0.5))
+    motion_of(cube, "location", (0.6, -0.6, 0.9), (2.4, -0.6, 1.1))
     cube.animation_data_clear()
     cube.keyframe_insert("location", frame=0)
-    motion_of(cube, "location", (.6, -.6, .9), (2.4, -.6, 1.1))
+    motion_of(cube, "location", (0.6, -0.6, 0.9), (2.4, -0.6, 1.1))
     motion_of(cube, "rotation_euler", (0, 0, 0), (0, 0, 1.5))
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=24, y_subdivisions=24, size=1.6, location=(-1.6, -.5, 1.1), rotation=(math.pi / 2, 0, 0))
+    bpy.ops.mesh.primitive_grid_add(
+        x_subdivisions=24, y_subdivisions=24, size=1.6, location=(-1.6, -0.5, 1.1), rotation=(math.pi / 2, 0, 0)
+    )
     flag = bpy.context.object
-    flag.data.materials.append(principled("flag", Base_Color=(.7, .1, .2), Roughness=.8))
+    flag.data.materials.append(principled("flag", Base_Color=(0.7, 0.1, 0.2), Roughness=0.8))
     flag.shape_key_add(name="still")
     swung = flag.shape_key_add(name="swung")
     for v, p in zip(flag.data.vertices, swung.data):
-        p.co = v.co + Vector((.25 * v.co.y, .3 * math.sin(3 * v.co.x), .3))
+        p.co = v.co + Vector((0.25 * v.co.y, 0.3 * math.sin(3 * v.co.x), 0.3))
     motion_of(swung, "value", 0.0, 1.0) if False else None
     swung.value = 0
     swung.keyframe_insert("value", frame=0)

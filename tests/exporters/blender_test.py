@@ -1,39 +1,94 @@
 #!/usr/bin/env python3
-"""blender_test.py PROGRAM OUT [--now] [SCENE ...]: scenes of blender_scenes.py by the add-on and by Cycles, headless; `features` is what has no
+"""blender_test.py PROGRAM OUT [--now] [SCENE ...]: scenes of blender_scenes.py by the add-on and by Cycles, headless;
+`features` is what has no
 counterpart in a picture. Status 77 where Blender is not installed, 1 where pictures do not agree.
 
-Tolerances: the means of red, green and blue within 2.5 %, blocks of 8 by 8 pixels within 4 % of the mean on average, and correlated by .985.
-Both path tracers are without bias, and 64 samples a pixel leave half a per cent of noise in a mean and 1 to 2 % in a block. The rest is what the
-add-on states: Fresnel's factor of facets and Burley's diffuse lobe are means over directions of light (up to 2 % where light comes from a sun
+Tolerances: the means of red, green and blue within 2.5 %, blocks of 8 by 8 pixels within 4 % of the mean on average, and
+correlated by .985.
+Both path tracers are without bias, and 64 samples a pixel leave half a per cent of noise in a mean and 1 to 2 % in a block.
+The rest is what the
+add-on states: Fresnel's factor of facets and Burley's diffuse lobe are means over directions of light (up to 2 % where light
+comes from a sun
 alone, docs/blender.md), Cycles' tubes of hair have 8 sides, subdivided meshes are the smooth surface here and facets there."""
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-LIMITS = {"ratio": .025, "difference": .04, "correlation": .985}
+LIMITS = {"ratio": 0.025, "difference": 0.04, "correlation": 0.985}
 SCENES = ("default", "materials", "lights", "crowd", "lens")
 
 
 def blender(script, program, *arguments):
     """Runs a script in Blender; what it prints, and the status."""
-    environment = dict(os.environ, ALPENGLOW_PROGRAM=os.path.abspath(program), PYTHONDONTWRITEBYTECODE="1",
-                       ALPENGLOW_ADDON=os.path.join(HERE, "..", "..", "editors", "blender"))
-    done = subprocess.run(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", os.path.join(HERE, script), "--", *arguments],
-                          capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL, check=False)
+    environment = dict(
+        os.environ,
+        ALPENGLOW_PROGRAM=os.path.abspath(program),
+        PYTHONDONTWRITEBYTECODE="1",
+        ALPENGLOW_ADDON=os.path.join(HERE, "..", "..", "editors", "blender"),
+    )
+    done = subprocess.run(
+        [
+            "blender",
+            "-b",
+            "--factory-startup",
+            "--python-exit-code",
+            "1",
+            "--python",
+            os.path.join(HERE, script),
+            "--",
+            *arguments,
+        ],
+        capture_output=True,
+        text=True,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        check=False,
+    )
     return done.stdout + done.stderr, done.returncode
 
 
 def wrong(found):
     """What is beyond the limits, as text."""
-    out = ["%s of the means %.4f" % (name, r) for name, r in zip(("red", "green", "blue"), found["ratio"]) if abs(r - 1) > LIMITS["ratio"]]
+    out = [
+        "%s of the means %.4f" % (name, r)
+        for name, r in zip(("red", "green", "blue"), found["ratio"])
+        if abs(r - 1) > LIMITS["ratio"]
+    ]
     if found["difference"] > LIMITS["difference"]:
         out.append("blocks differ by %.4f" % found["difference"])
     if found["correlation"] < LIMITS["correlation"]:
         out.append("blocks are correlated by %.4f" % found["correlation"])
     return out
+
+
+def stopped(program, out):
+    """Ctrl-C in a render of a million samples, which Blender takes as Escape: what is wrong, or ""."""
+    environment = dict(os.environ, ALPENGLOW_PROGRAM=os.path.abspath(program), PYTHONDONTWRITEBYTECODE="1")
+    picture = os.path.join(out, "stopped.png")
+    if os.path.exists(picture):
+        os.remove(picture)
+    script = os.path.join(HERE, "blender_stop.py")
+    with subprocess.Popen(
+        ["blender", "-b", "--factory-startup", "--python", script, "--", picture],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env=environment,
+    ) as run:
+        seen = next((line for line in run.stdout if "/1000000 samples" in line), None)  # of the program's own progress
+        run.send_signal(signal.SIGINT)
+        started = time.time()
+        text = run.communicate(timeout=120)[0]
+    if seen is None or "END" not in text:
+        return "the render did not end\n" + text[-2000:]
+    if time.time() - started > 60:
+        return "it took %.0f s" % (time.time() - started)
+    return "" if os.path.exists(picture) else "no picture was kept"
 
 
 def main():
@@ -48,12 +103,20 @@ def main():
         return 77
     program, out, failed = sys.argv[1], os.path.abspath(sys.argv[2]), 0
     os.makedirs(out, exist_ok=True)
-    for name in [a for a in sys.argv[3:] if a != "--now"] or SCENES + ("features",):
+    for name in [a for a in sys.argv[3:] if a != "--now"] or SCENES + ("features", "stop"):
+        if name == "stop":
+            said = stopped(program, out)
+            print("stop: %s" % (said or "as expected"))
+            failed |= bool(said)
+            continue
         script, more = ("blender_features.py", [out]) if name == "features" else ("blender_render.py", [name, out, "64"])
         text, status = blender(script, program, *more)
         line = next((t for t in text.splitlines() if t.startswith("COMPARED ")), None)
         if status != 0 or (line is None and name != "features"):
-            print("%s: Blender ended with status %d\n%s" % (name, status, "\n".join(t for t in text.splitlines() if not t.startswith("Fra:"))))
+            print(
+                "%s: Blender ended with status %d\n%s"
+                % (name, status, "\n".join(t for t in text.splitlines() if not t.startswith("Fra:")))
+            )
             failed = 1
             continue
         if line is not None:

@@ -15,16 +15,18 @@ def surface():
 
 def knot():
     t = np.linspace(0, 4 * np.pi, 200)
-    mlab.plot3d(np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t), tube_radius=.3, color=(.9, .5, .2))
+    mlab.plot3d(
+        np.sin(t) + 2 * np.sin(2 * t), np.cos(t) - 2 * np.cos(2 * t), -np.sin(3 * t), tube_radius=0.3, color=(0.9, 0.5, 0.2)
+    )
 
 
 def shell():
     x, y, z = np.mgrid[-2:2:30j, -2:2:30j, -2:2:30j]
-    mlab.contour3d(x * x + y * y + .5 * z * z, contours=[1.5], color=(.3, .6, .9))
+    mlab.contour3d(x * x + y * y + 0.5 * z * z, contours=[1.5], color=(0.3, 0.6, 0.9))
 
 
 for make in (surface, knot, shell):
-    figure = mlab.figure(size=(200, 200), bgcolor=(.1, .1, .2))
+    figure = mlab.figure(size=(200, 200), bgcolor=(0.1, 0.1, 0.2))
     make()
     figure.scene.anti_aliasing_frames = 0
     mlab.savefig(os.path.join(sys.argv[1], make.__name__ + ".png"), size=(200, 200))

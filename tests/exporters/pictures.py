@@ -18,8 +18,10 @@ def channels(path):
 
 def three(found, prefix=""):
     """Red, green and blue of a file's channels, of the layer that ends in prefix."""
+
     def one(letter):
         return next(v for k, v in found.items() if k == letter or k.endswith(prefix + "." + letter))
+
     return np.stack([one("R"), one("G"), one("B")], -1).astype(np.float64)
 
 
@@ -34,23 +36,35 @@ def blocks(a, n=8):
 
 
 def compared(a, b, n=8):
-    """ratio: of the means of red, green and blue; difference: mean absolute difference of blocks over the mean of b; worst: the largest, over
+    """ratio: of the means of red, green and blue; difference: mean absolute difference of blocks over the mean of b; worst:
+    the largest, over
     the same; correlation: of blocks."""
     x, y = blocks(a, n), blocks(b, n)
     d = np.abs(x - y)
-    return {"ratio": (a.mean((0, 1)) / b.mean((0, 1))).round(4).tolist(), "difference": round(float(d.mean() / y.mean()), 4),
-            "worst": round(float(d.max() / y.mean()), 4), "correlation": round(float(np.corrcoef(x.ravel(), y.ravel())[0, 1]), 5)}
+    return {
+        "ratio": (a.mean((0, 1)) / b.mean((0, 1))).round(4).tolist(),
+        "difference": round(float(d.mean() / y.mean()), 4),
+        "worst": round(float(d.max() / y.mean()), 4),
+        "correlation": round(float(np.corrcoef(x.ravel(), y.ravel())[0, 1]), 5),
+    }
 
 
 def png(path, beside):
     """Pictures of light beside each other, in sRGB."""
     v = np.clip(np.concatenate(beside, 1), 0, 1)
-    u = (np.where(v <= .0031308, 12.92 * v, 1.055 * np.power(np.maximum(v, 1e-9), 1 / 2.4) - .055) * 255 + .5).astype(np.uint8)
+    u = (np.where(v <= 0.0031308, 12.92 * v, 1.055 * np.power(np.maximum(v, 1e-9), 1 / 2.4) - 0.055) * 255 + 0.5).astype(
+        np.uint8
+    )
     h, w, _ = u.shape
 
     def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data) & 0xffffffff)
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data) & 0xFFFFFFFF)
+
     rows = np.concatenate([np.zeros((h, 1), np.uint8), u.reshape(h, -1)], 1).tobytes()
     with open(path, "wb") as f:
-        f.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", w, h, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows, 6)) +
-                chunk(b"IEND", b""))
+        f.write(
+            b"\x89PNG\r\n\x1a\n"
+            + chunk(b"IHDR", struct.pack(">IIBBBBB", w, h, 8, 2, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows, 6))
+            + chunk(b"IEND", b"")
+        )

@@ -1,4 +1,5 @@
-"""vtk_scenes.py OUT: six scenes of VTK as NAME.png, drawn by VTK itself, and NAME.rib, by its vtkRIBExporter. Run with a display."""
+"""vtk_scenes.py OUT: six scenes of VTK as NAME.png, drawn by VTK itself, and NAME.rib, by its vtkRIBExporter. Run with a
+display."""
 import os
 import sys
 
@@ -26,7 +27,7 @@ def actor(source, colour=(1, 1, 1), specular=0.0, opacity=1.0, normals=False):
     return a
 
 
-def sphere(resolution=48, radius=.5):
+def sphere(resolution=48, radius=0.5):
     s = vtk.vtkSphereSource()
     s.SetRadius(radius)
     s.SetThetaResolution(resolution)
@@ -35,18 +36,18 @@ def sphere(resolution=48, radius=.5):
 
 
 def ball(add):
-    add(actor(sphere(), (.9, .4, .2)))
+    add(actor(sphere(), (0.9, 0.4, 0.2)))
 
 
 def shine(add):
-    add(actor(sphere(), (.2, .4, .9), specular=.6))
+    add(actor(sphere(), (0.2, 0.4, 0.9), specular=0.6))
 
 
 def shapes(add):
     cone, cube, cylinder = vtk.vtkConeSource(), vtk.vtkCubeSource(), vtk.vtkCylinderSource()
     cone.SetResolution(24)
     cylinder.SetResolution(24)
-    for i, (source, colour) in enumerate(((cone, (1, .8, .2)), (cube, (.3, .8, .4)), (cylinder, (.5, .4, .9)))):
+    for i, (source, colour) in enumerate(((cone, (1, 0.8, 0.2)), (cube, (0.3, 0.8, 0.4)), (cylinder, (0.5, 0.4, 0.9)))):
         a = actor(source, colour)
         a.SetPosition(1.3 * (i - 1), 0, 0)
         a.RotateX(20)
@@ -61,7 +62,7 @@ def heights(add):
     data, colours = source.GetOutput(), vtk.vtkUnsignedCharArray()
     colours.SetNumberOfComponents(3)
     for i in range(data.GetNumberOfPoints()):
-        t = data.GetPoint(i)[1] + .5
+        t = data.GetPoint(i)[1] + 0.5
         colours.InsertNextTuple3(255 * t, 200 * (1 - t), 128)
     data.GetPointData().SetScalars(colours)
     mapper = vtk.vtkPolyDataMapper()
@@ -72,9 +73,9 @@ def heights(add):
 
 
 def glassy(add):
-    add(actor(sphere(24, .3), (1, .3, .3)))
+    add(actor(sphere(24, 0.3), (1, 0.3, 0.3)))
     outer = vtk.vtkCubeSource()
-    a = actor(outer, (.4, .6, 1), opacity=.4)
+    a = actor(outer, (0.4, 0.6, 1), opacity=0.4)
     a.RotateY(30)
     add(a)
 
@@ -82,12 +83,12 @@ def glassy(add):
 def contour(add):
     """An isosurface of a quadric, with normals."""
     quadric, sample, iso = vtk.vtkQuadric(), vtk.vtkSampleFunction(), vtk.vtkContourFilter()
-    quadric.SetCoefficients(.5, 1, .2, 0, .1, 0, 0, .2, 0, 0)
+    quadric.SetCoefficients(0.5, 1, 0.2, 0, 0.1, 0, 0, 0.2, 0, 0)
     sample.SetSampleDimensions(40, 40, 40)
     sample.SetImplicitFunction(quadric)
     iso.SetInputConnection(sample.GetOutputPort())
-    iso.GenerateValues(3, .1, .7)
-    add(actor(iso, (.8, .8, .7)))
+    iso.GenerateValues(3, 0.1, 0.7)
+    add(actor(iso, (0.8, 0.8, 0.7)))
 
 
 def main(out):
@@ -97,7 +98,7 @@ def main(out):
         window.SetSize(SIZE, SIZE)
         window.SetMultiSamples(8)
         window.AddRenderer(renderer)
-        renderer.SetBackground(.1, .1, .2)
+        renderer.SetBackground(0.1, 0.1, 0.2)
         make(renderer.AddActor)
         light = vtk.vtkLight()
         light.SetPosition(3, 4, 6)

@@ -110,7 +110,8 @@ void becomeWorker(const fs::path& logs, const fs::path& folder, const std::strin
     const rlimit none{0, 0};
     setrlimit(RLIMIT_CORE, &none);
     setenv("ALPENGLOW_CACHE", cache.c_str(), 1);
-    for (const char* module : {"ALPENGLOW_PICTURES", "ALPENGLOW_GRIDS"}) setenv(module, "", 1); // each file would be a process
+    for (const char* module : {"ALPENGLOW_PICTURES", "ALPENGLOW_GRIDS", "ALPENGLOW_GLTF", "ALPENGLOW_MODELS"})
+        setenv(module, "", 1); // each file would be a process
     std::signal(SIGINT, SIG_DFL);
     if (!kSanitized) {
         static char stack[1 << 16]; // a stack that overflowed cannot tell where

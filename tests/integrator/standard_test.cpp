@@ -109,6 +109,9 @@ TEST(Standard, WhiteFurnaceOfRis) {
          .9, 1},
         {"\"ris/PxrSurface\" \"diffuseGain\" 0 \"refractionGain\" 1 \"reflectionGain\" 1 \"glassRoughness\" 0", .999, 1.001,
          true},
+        {"\"ris/PxrSurface\" \"diffuseGain\" 0 \"refractionGain\" 1 \"reflectionGain\" 1 \"glassRoughness\" .2 "
+         "\"glassRefractionRoughness\" .1",
+         .9, 1.01, true},
         {"\"ris/PxrGlass\" \"roughness\" 0", .999, 1.001, true},
         {"\"ris/PxrConstant\" \"emitColor\" [1 1 1]", .9999, 1.0001},
         {"\"ris/PxrBlack\"", 0, 1e-6},
@@ -119,6 +122,34 @@ TEST(Standard, WhiteFurnaceOfRis) {
         {"\"ris/LamaEmission\" \"emissionColor\" [1 1 1]", .9999, 1.0001},
     };
     for (const Furnace& f : all) expectFurnace(f);
+}
+// Nodes of Lama that are made of others: weights of mixtures and sums, and a layer that leaves the rest to the one below.
+TEST(Standard, LamaOfNodes) {
+    const std::string two = "Bxdf \"LamaDiffuse\" \"a\" \"color diffuseColor\" [.8 .4 0]\nBxdf \"LamaDiffuse\" \"b\" \"color "
+                            "diffuseColor\" [.2 .2 .2]\n",
+                      ends = "\"reference bxdf material1\" [\"a:bxdf_out\"] \"reference bxdf material2\" [\"b:bxdf_out\"]";
+    const struct {
+        std::string nodes;
+        double want[3], within;
+    } all[] = {{two + "Bxdf \"LamaMix\" \"m\" " + ends + " \"float mix\" [.25]\n", {.65, .35, .05}, 1e-4},
+               {two + "Bxdf \"LamaAdd\" \"m\" " + ends + " \"float weight1\" [.5] \"float weight2\" [1]\n", {.6, .4, .2}, 1e-4},
+               {two + "Bxdf \"LamaMix\" \"m\" " + ends +
+                    " \"float mix\" [.5]\nBxdf \"LamaSurface\" \"s\" \"reference bxdf "
+                    "materialFront\" [\"m:bxdf_out\"]\n",
+                {.5, .3, .1},
+                1e-4},
+               {"Bxdf \"LamaDiffuse\" \"a\" \"color diffuseColor\" [1 1 1]\nBxdf \"LamaDielectric\" \"b\" \"float roughness\" "
+                "[.3]\nBxdf \"LamaLayer\" \"l\" \"reference bxdf materialTop\" [\"b:bxdf_out\"] \"reference bxdf materialBase\" "
+                "[\"a:bxdf_out\"]\n",
+                {1, 1, 1},
+                .02}};
+    for (const auto& c : all) {
+        Settings s = withShaders(Hider::Path);
+        s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders/ris");
+        Scene scene(world(std::string(kSky) + c.nodes + kFloor), s);
+        const Moments m = scene.estimate(viewAt(30), samples(2000));
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), c.want[k], c.within + kZ * m.se(k)) << c.nodes;
+    }
 }
 // Lambert and facets under a point light: each sees it once. The fit of what the facets leave for Lambert is within .006.
 TEST(Standard, PointLightOverLambertAndFacets) {
@@ -136,6 +167,13 @@ TEST(Standard, PointLightOverLambertAndFacets) {
     // The highlight alone is exact.
     Scene shine(world(light + "Surface \"standard\" \"base\" 0 \"specular_roughness\" .5\n" + kFloor), withShaders(Hider::Path));
     EXPECT_NEAR(shine.one(rayTo({.6f, .8f, 0}, {0, 0, 0})).x, cl * kPi * facets(a, 1.5, l, eye), 2e-4 * want);
+    // PxrSurface adds its lobes up.
+    Scene sum(world(light +
+                    "Surface \"ris/PxrSurface\" \"diffuseColor\" [.6 .6 .6] \"specularFresnelMode\" 1 \"specularEdgeColor\" "
+                    "[1 1 1] \"specularModelType\" 1 \"specularRoughness\" .5\n" +
+                    kFloor),
+              withShaders(Hider::Path));
+    EXPECT_NEAR(sum.one(rayTo({.6f, .8f, 0}, {0, 0, 0})).x, cl * (albedo * l.y + kPi * facets(a, 1.5, l, eye)), 2e-4 * want);
 }
 // A pane of clear glass before an emitter: (1 - R)^2 of its radiance by Fresnel's law, and R (1 - R)^2 T^2 ... of further
 // bounces.

@@ -54,6 +54,11 @@ class Pictures(InFolder):
             self.assertGreater(result.image[:, :, :3].max(), 0.1)
             numpy.testing.assert_array_equal(result.image, numpy.stack([file[c] for c in "RGBA"], 2))
 
+    def test_output_writes_one_file(self):
+        result = alpenglow.render('Display "a.exr" "openexr" "rgb"\n' + WALL, output="x.png")
+        self.assertEqual(os.listdir("."), ["x.png"])
+        numpy.testing.assert_array_equal(result.image[2, 2, :3], numpy.float32([0.25, 0.5, 1]))  # light, whatever PNG has
+
     def test_crop_window(self):
         result = alpenglow.render(WALL, crop=(0.25, 0.75, 0, 0.5))
         self.assertEqual(result.picture.window, (2, 0, 6, 3))
@@ -170,6 +175,21 @@ class Progress(InFolder):
 
         with self.assertRaisesRegex(ZeroDivisionError, "of the test"):
             alpenglow.render(BALLS, progress=bad, **ENDLESS)
+
+    def test_what_grows_can_be_seen(self):
+        for hider in ("path", "hidden"):
+            seen = []
+            result = alpenglow.render(BALLS, hider=hider, spp=2000 if hider == "path" else 400, preview=seen.append, threads=1)
+            self.assertGreater(len(seen), 0, hider)
+            self.assertTrue(all(p.data.shape == (32, 48, 4) for p in seen))
+            self.assertLess(numpy.abs(seen[-1].data - result.image).mean(), 0.5)
+
+    def test_an_interrupted_picture_keeps_what_is_there(self):
+        result = alpenglow.render(BALLS, hider="hidden", spp=900, format=(128, 96), threads=1,
+                                  progress=lambda t: t["fraction"] < 0.6)
+        self.assertTrue(result.interrupted)
+        self.assertEqual(result.image.shape, (96, 128, 4))
+        self.assertGreater(result.image.max(), 0)
 
     def test_other_threads_run_meanwhile(self):
         turns, over = [0], threading.Event()

@@ -2,21 +2,31 @@
 import re
 
 NODES = {}  # type of node -> function(compiler, node, output socket) -> Value
-KINDS = {"VALUE": "float", "INT": "float", "BOOLEAN": "float", "RGBA": "color", "VECTOR": "vector", "SHADER": "closure",
-         "ROTATION": "vector"}
+KINDS = {
+    "VALUE": "float",
+    "INT": "float",
+    "BOOLEAN": "float",
+    "RGBA": "color",
+    "VECTOR": "vector",
+    "SHADER": "closure",
+    "ROTATION": "vector",
+}
 
 
 def node(*types):
     """Registers a function as the translation of these types of nodes."""
+
     def register(function):
         for one in types:
             NODES[one] = function
         return function
+
     return register
 
 
 class Value:
-    """What a socket gives: kind float, color, vector or closure, and an RSL expression. A closure's code is two names: its light and
+    """What a socket gives: kind float, color, vector or closure, and an RSL expression. A closure's code is two names: its
+    light and
     how much goes straight through. constant: the numbers, where they are known."""
 
     def __init__(self, kind, code, constant=None):
@@ -48,8 +58,8 @@ class Compiler:
     def __init__(self, name, where, kind, report, images):
         self.name, self.where, self.kind, self.report, self.images = name, where, kind, report, images
         self.parameters, self.lines, self.values, self.groups, self.active = {}, [], {}, [], set()
-        self.emission = True   # False: an area light carries what the material emits
-        self.needs = set()     # what geometry must bring: "generated", ("uv", name), ("attribute", name)
+        self.emission = True  # False: an area light carries what the material emits
+        self.needs = set()  # what geometry must bring: "generated", ("uv", name), ("attribute", name)
         self.count = 0
 
     # Text.
@@ -111,7 +121,8 @@ class Compiler:
         return constant(kind, v if kind == "float" else list(v)[:3])
 
     def source(self, s):
-        """What an input gets: (groups around, output socket), None for nothing. Reroutes, groups and muted nodes are looked through."""
+        """What an input gets: (groups around, output socket), None for nothing. Reroutes, groups and muted nodes are looked
+        through."""
         groups = list(self.groups)
         for _ in range(1000):
             if not s.is_linked or s.links[0].is_muted or not s.links[0].is_valid:
@@ -153,7 +164,9 @@ class Compiler:
     def value(self, of, names, kind, default=0.0):
         s = self.socket(of, names)
         if s is None:
-            return self.convert(constant("float", default) if isinstance(default, (int, float)) else constant("color", default), kind)
+            return self.convert(
+                constant("float", default) if isinstance(default, (int, float)) else constant("color", default), kind
+            )
         groups, from_socket = self.source(s)
         if from_socket is None:
             return self.convert(self.default(s), kind)
@@ -190,8 +203,10 @@ class Compiler:
                 groups, source = self.source(s)
                 return self.default(s) if source is None else self.convert(self.output(groups, source), kind)
         if kind == "closure":
-            return Value("closure", ("color(.5, .5, .5) * diffuse(blN)" if self.kind == "surface" else "color(.5, .5, .5)", "color(0)"))
-        return constant(kind, .5 if kind == "float" else (.5, .5, .5))
+            return Value(
+                "closure", ("color(.5, .5, .5) * diffuse(blN)" if self.kind == "surface" else "color(.5, .5, .5)", "color(0)")
+            )
+        return constant(kind, 0.5 if kind == "float" else (0.5, 0.5, 0.5))
 
     def convert(self, value, kind):
         """As Blender converts between sockets."""
@@ -206,29 +221,42 @@ class Compiler:
         c = value.constant
         if c is not None:
             if kind == "float":
-                c = .2126 * c[0] + .7152 * c[1] + .0722 * c[2] if a == "color" else sum(c) / 3
+                c = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2] if a == "color" else sum(c) / 3
             return constant(kind, (c, c, c) if a == "float" else c)
-        forms = {("float", "color"): "color(%s)", ("float", "vector"): "vector(%s)", ("color", "float"): "blToFloat(%s)",
-                 ("vector", "float"): "blMean(%s)", ("color", "vector"): "blToVector(%s)", ("vector", "color"): "blToColor(%s)"}
+        forms = {
+            ("float", "color"): "color(%s)",
+            ("float", "vector"): "vector(%s)",
+            ("color", "float"): "blToFloat(%s)",
+            ("vector", "float"): "blMean(%s)",
+            ("color", "vector"): "blToVector(%s)",
+            ("vector", "color"): "blToColor(%s)",
+        }
         return Value(kind, forms[a, kind] % value.code)
 
     # Whole shaders.
     def surface(self, tree, target="CYCLES"):
         """The text of a surface shader; a tree without an output is black."""
         end = output_node(tree, target)
-        light, through = self.value(end, "Surface", "closure").code if end and self.linked(end, "Surface") else ("color(0)", "color(0)")
-        return self._text("surface", ["Oi = color(1) - clamp(%s, color(0), color(1));" % through, "Ci = %s;" % light],
-                          ["float blSide = blFront();", "normal blN = blSeen((blSide == 1) ? normalize(N) : -normalize(N));"])
+        light, through = (
+            self.value(end, "Surface", "closure").code if end and self.linked(end, "Surface") else ("color(0)", "color(0)")
+        )
+        return self._text(
+            "surface",
+            ["Oi = color(1) - clamp(%s, color(0), color(1));" % through, "Ci = %s;" % light],
+            ["float blSide = blFront();", "normal blN = blSeen((blSide == 1) ? normalize(N) : -normalize(N));"],
+        )
 
     def world(self, tree, camera):
         """The text of a light shader that is the sky. camera False: the camera does not see it."""
         end = output_node(tree)
-        light, _ = self.value(end, "Surface", "closure").code if end and self.linked(end, "Surface") else ("color(0)", "color(0)")
-        first = ["vector blD = normalize(vtransform(\"world\", -L));"]
+        light, _ = (
+            self.value(end, "Surface", "closure").code if end and self.linked(end, "Surface") else ("color(0)", "color(0)")
+        )
+        first = ['vector blD = normalize(vtransform("world", -L));']
         last = ["Cl = %s;" % light]
         if not camera:
-            first += ["string kind = \"\";", "float way = 1;", "rayinfo(\"type\", kind);", "rayinfo(\"length\", way);"]
-            last += ["if (kind == \"camera\" && way == 0) Cl = 0;"]
+            first += ['string kind = "";', "float way = 1;", 'rayinfo("type", kind);', 'rayinfo("length", way);']
+            last += ['if (kind == "camera" && way == 0) Cl = 0;']
         body = self.lines
         self.lines = []
         return self._text("light", ["solar() {"] + first + body + last + ["}"], [])
@@ -237,13 +265,20 @@ class Compiler:
         """The text of a displacement shader."""
         end = output_node(tree)
         moved = self.value(end, "Displacement", "vector").code
-        return self._text("displacement", ["P += vtransform(\"object\", \"current\", %s);" % moved, "N = calculatenormal(P);"],
-                          ["float blSide = 1;", "normal blN = normalize(N);"])
+        return self._text(
+            "displacement",
+            ['P += vtransform("object", "current", %s);' % moved, "N = calculatenormal(P);"],
+            ["float blSide = 1;", "normal blN = normalize(N);"],
+        )
 
     def _text(self, kind, last, first):
         parameters = "".join("\n    %s;" % p for p in self.parameters.values())
-        return "%s %s(%s)\n{\n%s}\n" % (kind, self.name, parameters,
-                                        "".join("    %s\n" % line for line in first + self.lines + last))
+        return "%s %s(%s)\n{\n%s}\n" % (
+            kind,
+            self.name,
+            parameters,
+            "".join("    %s\n" % line for line in first + self.lines + last),
+        )
 
 
 class _Constant:
@@ -255,6 +290,8 @@ class _Constant:
 
 def output_node(tree, target="CYCLES"):
     """The active output of a tree of a material or a world."""
-    found = [n for n in tree.nodes if n.bl_idname in ("ShaderNodeOutputMaterial", "ShaderNodeOutputWorld", "ShaderNodeOutputLight")]
+    found = [
+        n for n in tree.nodes if n.bl_idname in ("ShaderNodeOutputMaterial", "ShaderNodeOutputWorld", "ShaderNodeOutputLight")
+    ]
     ranked = sorted(found, key=lambda n: (not n.is_active_output, getattr(n, "target", "ALL") not in ("ALL", target)))
     return ranked[0] if ranked else None

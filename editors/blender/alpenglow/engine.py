@@ -9,7 +9,8 @@ import time
 import bpy
 import numpy as np
 
-from . import exr, passes, program, properties, scene
+from . import exr, growing, passes, program, properties, scene
+from .report import Report
 
 
 MESSAGE = re.compile(r"\b(error|warning): ")
@@ -40,9 +41,11 @@ def border_of(render):
     return render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y
 
 
-def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None,
-           view=None):
-    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture. view: as view_camera()
+def export(
+    depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None, view=None
+):
+    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture.
+    view: as view_camera()
     gives it, in place of the scene's camera."""
     lights = "samplelights" if program.knows(binary_of_program, "trace", "samplelights") else "samplearealights"
     writer = scene.Scene(depsgraph, folder, settings, lights, frame_set, progress, view)
@@ -63,9 +66,9 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
         aspect = render.pixel_aspect_x / render.pixel_aspect_y
         rib.request("Format", width, height, aspect)
         # RISpec's gaussian spreads by a quarter of its width, Blender's Blackman-Harris by a seventh
-        wide = render.filter_size if settings.filter == "box" else render.filter_size * .64
+        wide = render.filter_size if settings.filter == "box" else render.filter_size * 0.64
         rib.request("PixelFilter", settings.filter, wide, wide)
-        side = max(1, round((samples or settings.samples) ** .5))
+        side = max(1, round((samples or settings.samples) ** 0.5))
         rib.request("PixelSamples", side, side)
         if settings.hider == "path":
             hider = dict(hider, **{"int guide": int(settings.guide), "int caustics": int(settings.caustics)})
@@ -73,11 +76,12 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
         rib.request("Option", "trace", {"int maxdepth": settings.max_depth})
         for line in filter(None, [settings.requests.strip()]):
             rib.file.write((line + "\n").encode())
+
     return writer.write(os.path.join(folder, "scene.rib"), head)
 
 
-def arguments(binary, settings, frame, samples=None, crop=None):
-    """The command line of a render."""
+def arguments(binary, settings, frame, samples=None, crop=None, port=None):
+    """The command line of a render. port: where the growing picture goes."""
     out = [binary, "render", "--progress", "plain", "--allow-read"]
     if settings.use_noise and settings.hider == "path" and samples is None:
         out += ["--noise", "%g" % settings.noise]
@@ -93,7 +97,29 @@ def arguments(binary, settings, frame, samples=None, crop=None):
     if crop:
         left, right, bottom, top = crop
         out += ["--crop", "%.9g,%.9g,%.9g,%.9g" % (left, right, 1 - top, 1 - bottom)]
+    if port:
+        out += ["--display", "tev:127.0.0.1:%d" % port]
     return out + shlex.split(settings.options) + ["scene.rib"]
+
+
+def arguments_of(binary, settings, frame, samples, border):
+    """arguments() but for the port."""
+    return lambda port: arguments(binary, settings, frame, samples, border, port)
+
+
+def box_of(render):
+    """What is rendered of the picture: x, y from above, width, height; rounded as Blender rounds a border."""
+    width, height = size_of(render)
+    left, right, bottom, top = border_of(render)
+    x0, x1, y0, y1 = (int(a * b) for a, b in ((left, width), (right, width), (bottom, height), (top, height)))
+    return x0, height - y1, x1 - x0, y1 - y0
+
+
+def covered(rgba, transparent):
+    """The sky covers what nothing else does, unless the film is transparent."""
+    if not transparent:
+        rgba[:, 3] = 1
+    return rgba
 
 
 def flat(picture, names, window, box):
@@ -106,7 +132,7 @@ def flat(picture, names, window, box):
         a = picture[name]
         x0, y0 = window[0] - x, window[1] - y
         rows, columns = min(height - y0, a.shape[0]), min(width - x0, a.shape[1])
-        out[max(y0, 0):y0 + rows, max(x0, 0):x0 + columns, i] = a[max(-y0, 0):rows, max(-x0, 0):columns]
+        out[max(y0, 0) : y0 + rows, max(x0, 0) : x0 + columns, i] = a[max(-y0, 0) : rows, max(-x0, 0) : columns]
     return out[::-1].reshape(-1, len(names))
 
 
@@ -158,10 +184,10 @@ class AlpenglowEngine(bpy.types.RenderEngine):
 
         def progress(part, text):
             self.update_stats("Alpenglow", "writing " + text)
-            self.update_progress(.1 * part)
+            self.update_progress(0.1 * part)
             if self.test_break():
                 raise Stopped
-        from .report import Report
+
         complaints = Report()
         listed = passes.listed(depsgraph.scene, depsgraph.scene.view_layers[layer.name], complaints)
         if depsgraph.scene_eval.camera is None:
@@ -170,24 +196,48 @@ class AlpenglowEngine(bpy.types.RenderEngine):
         report = export(depsgraph, folder, settings, binary, listed, self.frame_set, size_of(render), samples, progress)
         for line in complaints.texts():
             report.lost(line)
+        for name in ("picture.exr", "passes.exr"):  # of an earlier render into a folder that is kept
+            if os.path.exists(os.path.join(folder, name)):
+                os.remove(os.path.join(folder, name))
         self._tell(report, folder)
-        border = border_of(render) if render.use_border else None
-        run = program.Run(arguments(binary, settings, frame, samples, border), folder)
-        stopped = False
-        while not run.done():
-            if self.test_break():
-                stopped = True
-                self.update_stats("Alpenglow", "stopping")
-                run.stop()
-                break
-            self.update_progress(.1 + .9 * run.part)
-            self.update_stats("Alpenglow", run.status_line)
-            time.sleep(.1)
-        status = run.finish()
-        self._messages(run, status, stopped)
+        box, border = box_of(render), border_of(render) if render.use_border else None
+        result = self.begin_result(0, 0, box[2], box[3], layer=layer.name)  # Blender's picture is the border alone
+        if result is None:
+            self.report({"ERROR"}, "Blender takes no picture of %d x %d pixels" % box[2:])
+            return
+        self._follow(folder, arguments_of(binary, settings, frame, samples, border), result, box, render.film_transparent)
         path = os.path.join(folder, "picture.exr")
         if os.path.isfile(path):
-            self._show(depsgraph, layer, render, folder, path, listed)
+            self._show(depsgraph, result, box, folder, path, listed)
+        self.end_result(result)
+
+    def _follow(self, folder, command, result, box, transparent):
+        """Runs the program until it ends or the user stops it, and shows the picture as it grows."""
+        grows = None if bpy.app.background else growing.Growing("picture.exr")
+        run = program.Run(command(grows.port if grows else None), folder)
+        stopped, shown = False, time.time()
+        try:
+            while not run.done():
+                if self.test_break():
+                    stopped = True
+                    self.update_stats("Alpenglow", "stopping")
+                    run.stop()
+                    break
+                self.update_progress(0.1 + 0.9 * run.part)
+                self.update_stats("Alpenglow", run.status_line)
+                if grows is not None and time.time() - shown > 0.5:
+                    pixels = grows.take()
+                    if pixels is not None:
+                        whole = dict(zip("RGBA", np.moveaxis(pixels, 2, 0)))
+                        result.layers[0].passes["Combined"].rect = covered(flat(whole, list("RGBA"), (0, 0), box), transparent)
+                        self.update_result(result)
+                        shown = time.time()
+                time.sleep(0.1)
+            self._messages(run, run.finish(), stopped)
+        finally:
+            run.stop()
+            if grows is not None:
+                grows.close()
 
     def _tell(self, report, folder):
         """What is not exported, each feature once, in Blender's reports, on the terminal and beside the RIB."""
@@ -206,24 +256,17 @@ class AlpenglowEngine(bpy.types.RenderEngine):
             said = next((m for m in run.messages if "error:" in m), run.messages[-1] if run.messages else "")
             self.report({"ERROR"}, "alpenglow ended with status %d: %s" % (status, said))
         elif important:
-            self.report({"WARNING"}, "alpenglow: %s%s" % (important[0], " (and %d more, on the terminal)" % (len(important) - 1)
-                                                         if len(important) > 1 else ""))
+            self.report(
+                {"WARNING"},
+                "alpenglow: %s%s"
+                % (important[0], " (and %d more, on the terminal)" % (len(important) - 1) if len(important) > 1 else ""),
+            )
 
-    def _show(self, depsgraph, layer, render, folder, path, listed):
-        picture, window, size = exr.read(path)
-        width, height = size
-        left, right, bottom, top = border_of(render)
-        x0, x1, y0, y1 = (int(a * b) for a, b in ((left, width), (right, width), (bottom, height), (top, height)))
-        box = (x0, height - y1, x1 - x0, y1 - y0)
-        result = self.begin_result(0, 0, box[2], box[3], layer=layer.name)  # Blender's picture is the border alone
-        if result is None:
-            self.report({"ERROR"}, "Blender takes no picture of %d x %d pixels" % box[2:])
-            return
+    def _show(self, depsgraph, result, box, folder, path, listed):
+        picture, window, _ = exr.read(path)
         shown = result.layers[0].passes
         rgba = flat(picture, ["R", "G", "B", "A"], window, box)
-        if not depsgraph.scene_eval.render.film_transparent:
-            rgba[:, 3] = 1
-        shown["Combined"].rect = rgba
+        shown["Combined"].rect = covered(rgba, depsgraph.scene_eval.render.film_transparent)
         extra = os.path.join(folder, "passes.exr")
         if listed and os.path.isfile(extra):
             others, window, _ = exr.read(extra)
@@ -236,11 +279,11 @@ class AlpenglowEngine(bpy.types.RenderEngine):
                     pixels = one.turn(pixels)
                 if one.name in shown:
                     shown[one.name].rect = pixels.astype(np.float32)
-        self.end_result(result)
 
     # The viewport: a still of few samples, made anew when something has changed.
     def view_update(self, context, depsgraph):
         from .viewport import View
+
         if self.view is None:
             self.view = View(self)
         self.view.update(context, depsgraph)

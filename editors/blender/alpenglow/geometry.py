@@ -48,7 +48,7 @@ def undeformed(me, co):
         flat = co
     space = np.array(me.texspace_location, np.float32), np.array(me.texspace_size, np.float32)
     size = np.where(np.abs(space[1]) < 1e-9, 1, space[1])
-    return (flat - space[0]) / size * .5 + .5
+    return (flat - space[0]) / size * 0.5 + 0.5
 
 
 def attribute_values(me, name, corner_points, corner_faces):
@@ -97,7 +97,9 @@ def read(obj, me, needs, where, report, polygons=False):
         me.calc_loop_triangles()
         corners = taken(me.loop_triangles, "loops", 3, np.int32).ravel()
         faces = np.repeat(taken(me.loop_triangles, "polygon_index", 1, np.int32), 3)
-        out.materials = taken(me.polygons, "material_index", 1, np.int32)[faces[::3]] if len(me.polygons) else np.zeros(0, np.int32)
+        out.materials = (
+            taken(me.polygons, "material_index", 1, np.int32)[faces[::3]] if len(me.polygons) else np.zeros(0, np.int32)
+        )
         normals = corner_normals(me)
         if normals is not None:
             out.variables["facevarying normal N"] = normals[corners]
@@ -163,8 +165,22 @@ def write_mesh(rib, mesh, material, times, tags=None):
         names, counts, ints, floats = tags
         names, counts = ["interpolateboundary"] + names, [1, 0] + counts
         values = {"P": mesh.P[0], **mesh.variables}
-        moved(rib, mesh.P, times, lambda P: rib.request("SubdivisionMesh", "catmull-clark", mesh.subdivision, mesh.points, names, counts,
-                                                        [2] + ints, floats, dict(values, P=P)))
+        moved(
+            rib,
+            mesh.P,
+            times,
+            lambda P: rib.request(
+                "SubdivisionMesh",
+                "catmull-clark",
+                mesh.subdivision,
+                mesh.points,
+                names,
+                counts,
+                [2] + ints,
+                floats,
+                dict(values, P=P),
+            ),
+        )
         return
     chosen = mesh.materials == material
     if not chosen.any():

@@ -7,7 +7,8 @@ RANDOM = np.random.RandomState
 
 
 class Strands:
-    """P: [points at each time]; counts: points of each strand; widths: diameters by point; values: other variables of strands."""
+    """P: [points at each time]; counts: points of each strand; widths: diameters by point; values: other variables of
+    strands."""
 
     def __init__(self, P, counts, widths, values=None):
         self.P, self.counts, self.widths, self.values = [P], counts, widths, values or {}
@@ -19,7 +20,7 @@ def particle_width(settings, time):
     if shape != 0:
         t = np.power(t, 1 + shape if shape < 0 else 1 / max(1 - shape, 1e-6))
     root, tip = settings.root_radius, settings.tip_radius
-    radius = (t * (root - tip) + tip) * settings.radius_scale * .5
+    radius = (t * (root - tip) + tip) * settings.radius_scale * 0.5
     if settings.use_close_tip and len(radius):
         radius[-1] = 0
     return radius
@@ -30,7 +31,7 @@ def particles(obj, system, modifier, world, report):
     settings = system.settings
     if settings.type != "HAIR" or settings.render_type != "PATH":
         return None
-    steps = 2 ** settings.render_step + 1
+    steps = 2**settings.render_step + 1
     if settings.kink == "SPIRAL":
         steps += settings.kink_extra_steps
     parents, children = len(system.particles), len(system.child_particles)
@@ -68,12 +69,13 @@ def hair_curves(data):
     first = taken(data.curves, "first_point_index", 1, np.int32)
     counts = np.diff(np.concatenate([first, [len(P)]])).astype(np.int32)
     radius = data.attributes.get("radius")
-    widths = 2 * taken(radius.data, "value", 1) if radius is not None else np.full(len(P), .01, np.float32)
+    widths = 2 * taken(radius.data, "value", 1) if radius is not None else np.full(len(P), 0.01, np.float32)
     return Strands(P, counts, widths, {})
 
 
 def write(rib, strands, times, random):
-    """Curves through the points (Catmull and Rom), whose first and last count twice, as in Cycles. random: whether shaders ask for it."""
+    """Curves through the points (Catmull and Rom), whose first and last count twice, as in Cycles. random: whether shaders ask
+    for it."""
     chosen = strands.counts >= 2
     if not chosen.any():
         return
@@ -93,5 +95,9 @@ def write(rib, strands, times, random):
     rib.request("Attribute", "dice", {"int roundcurve": 1})
     rib.request("Attribute", "user", {"float blstrand": 1})
     rib.request("Basis", "catmull-rom", 1, "catmull-rom", 1)
-    moved(rib, [P[order] for P in strands.P], times,
-          lambda P: rib.request("Curves", "cubic", np.array(counts, np.int32), "nonperiodic", {"P": P, **values}))
+    moved(
+        rib,
+        [P[order] for P in strands.P],
+        times,
+        lambda P: rib.request("Curves", "cubic", np.array(counts, np.int32), "nonperiodic", {"P": P, **values}),
+    )

@@ -13,9 +13,10 @@ def colour(light, report, where):
     """Colour times power (watts; of a sun watts per square metre), with the constant Emission of its nodes."""
     strength = [light.energy * x for x in light.color]
     exposure = getattr(light, "exposure", 0.0)
-    strength = [x * 2 ** exposure for x in strength]
+    strength = [x * 2**exposure for x in strength]
     if getattr(light, "use_temperature", False):
         from .nodes.converters import blackbody_colour
+
         strength = [x * max(k, 0) for x, k in zip(strength, blackbody_colour(light.temperature))]
     if not light.use_nodes or light.node_tree is None:
         return strength
@@ -46,7 +47,8 @@ class Lights:
         return "%s.%d" % (name, self.count)
 
     def write(self, name, light, matrices, visible):
-        """light: the evaluated data; matrices: of its object at each time; visible: names of attributes -> 0, as object_visibility()."""
+        """light: the evaluated data; matrices: of its object at each time; visible: names of attributes -> 0, as
+        object_visibility()."""
         where, rib = name, self.rib
         power = colour(light, self.report, where)
         if not getattr(light, "use_shadow", True) or not getattr(getattr(light, "cycles", None), "cast_shadow", True):
@@ -67,8 +69,11 @@ class Lights:
             else:
                 spot = {}
                 if kind == "SPOT":
-                    spot = {"float edge": math.cos(light.spot_size / 2), "float blend": light.spot_blend,
-                            "float falling": 1 if bpy.app.version < SPOT_CHANGED else 0}
+                    spot = {
+                        "float edge": math.cos(light.spot_size / 2),
+                        "float blend": light.spot_blend,
+                        "float falling": 1 if bpy.app.version < SPOT_CHANGED else 0,
+                    }
                 self._ball(handle, kind, matrices, power, radius, spot, visible)
         rib.request("Illuminate", handle, 1)
 
@@ -78,9 +83,11 @@ class Lights:
         shader = "blspot" if kind == "SPOT" else "blpoint" if radius <= 0 else "blarea"
         ribs.transform(rib, [ribs.matrix(unscaled(m)) for m in matrices], self.times)
         if radius <= 0:
-            rib.request("LightSource", shader, handle, dict({"color intensity": [p / (4 * math.pi ** 2) for p in power]}, **spot))
+            rib.request(
+                "LightSource", shader, handle, dict({"color intensity": [p / (4 * math.pi**2) for p in power]}, **spot)
+            )
             return
-        radiance = [p / (4 * math.pi ** 2 * radius ** 2) for p in power]
+        radiance = [p / (4 * math.pi**2 * radius**2) for p in power]
         if kind == "SPOT":
             rib.request("AreaLightSource", shader, handle, dict({"color intensity": radiance, "float area": 1}, **spot))
         else:
@@ -94,8 +101,14 @@ class Lights:
         rib.request("Sides", 1)
         rib.request("Surface", "constant")
         rib.request("Color", [0, 0, 0])
-        rib.request("Attribute", "visibility", dict({"int camera": 0, "int transmission": 0}, **{k: v for k, v in visible.items()
-                                                                                               if k not in ("int camera", "int transmission")}))
+        rib.request(
+            "Attribute",
+            "visibility",
+            dict(
+                {"int camera": 0, "int transmission": 0},
+                **{k: v for k, v in visible.items() if k not in ("int camera", "int transmission")}
+            ),
+        )
 
     def _area(self, handle, light, matrices, power, visible):
         rib, m = self.rib, matrices[0]

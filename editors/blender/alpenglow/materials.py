@@ -7,7 +7,9 @@ from . import exr
 from .compiler import Compiler, identifier, output_node
 
 HEAD = '#define BL_LIGHTS "%s", 1\n#include "closures.h"\n#include "textures.h"\n'
-DEFAULT = "surface bldefault()\n{\n    Oi = 1;\n    Ci = .8 * diffuse(blSeen((blFront() == 1) ? normalize(N) : -normalize(N)));\n}\n"
+DEFAULT = (
+    "surface bldefault()\n{\n    Oi = 1;\n    Ci = .8 * diffuse(blSeen((blFront() == 1) ? normalize(N) : -normalize(N)));\n}\n"
+)
 
 
 class Images:
@@ -25,6 +27,7 @@ class Images:
 
     def _file(self, image, where):
         import bpy
+
         path = os.path.normpath(bpy.path.abspath(image.filepath, library=image.library)) if image.filepath else ""
         coded = "linear" if image.is_float else "srgb"
         if image.packed_file is not None and not image.is_dirty and image.source == "FILE":
@@ -44,14 +47,18 @@ class Images:
             pixels = np.repeat(pixels[:, :, :1], 3, 2)
         if not image.is_float and image.colorspace_settings.name == "sRGB":  # bytes come as they are stored
             light = pixels[:, :, :3]
-            pixels = np.concatenate([np.where(light <= .04045, light / 12.92, ((np.maximum(light, 0) + .055) / 1.055) ** 2.4), pixels[:, :, 3:]], 2)
+            pixels = np.concatenate(
+                [np.where(light <= 0.04045, light / 12.92, ((np.maximum(light, 0) + 0.055) / 1.055) ** 2.4), pixels[:, :, 3:]],
+                2,
+            )
         path = os.path.join(self.folder, identifier(image.name) + ".exr")
         exr.write(path, pixels)
         return path, "done"
 
 
 class Written:
-    """A material in RIB. name: of the surface; parameters: of its request; needs: what geometry must bring; lamp: radiance of an area light
+    """A material in RIB. name: of the surface; parameters: of its request; needs: what geometry must bring; lamp: radiance of
+    an area light
     or None; medium: parameters of its Interior; displacement: name of a shader."""
 
     def __init__(self, name, parameters=None, needs=()):
@@ -127,6 +134,7 @@ class Materials:
 
     def _shader(self, own):
         import bpy
+
         path = bpy.path.abspath(own.shader)
         name = own.shader_name or os.path.splitext(os.path.basename(path))[0]
         out = Written(name, own.request())
@@ -138,7 +146,9 @@ class Materials:
 
 
 def method(material):
-    return getattr(material, "displacement_method", None) or getattr(getattr(material, "cycles", None), "displacement_method", "BUMP")
+    return getattr(material, "displacement_method", None) or getattr(
+        getattr(material, "cycles", None), "displacement_method", "BUMP"
+    )
 
 
 def bumped(compiler, material, tree):
@@ -163,13 +173,21 @@ def lamp(compiler, tree):
             return (0.0, 0.0, 0.0)
         n = out.node
         compiler.groups = groups
-        names = {"ShaderNodeEmission": ("Color", "Strength"), "ShaderNodeBackground": ("Color", "Strength"),
-                 "ShaderNodeBsdfPrincipled": (("Emission", "Emission Color"), "Emission Strength")}.get(n.bl_idname)
+        names = {
+            "ShaderNodeEmission": ("Color", "Strength"),
+            "ShaderNodeBackground": ("Color", "Strength"),
+            "ShaderNodeBsdfPrincipled": (("Emission", "Emission Color"), "Emission Strength"),
+        }.get(n.bl_idname)
         if names:
             colour, strength = compiler.fixed(n, names[0], (0, 0, 0)), compiler.fixed(n, names[1], 1.0)
             if n.bl_idname == "ShaderNodeBsdfPrincipled" and (colour == (0.0, 0.0, 0.0) or strength == 0):
                 return (0.0, 0.0, 0.0)
-            if colour is None or strength is None or n.bl_idname == "ShaderNodeBsdfPrincipled" and compiler.fixed(n, "Alpha", 1.0) != 1:
+            if (
+                colour is None
+                or strength is None
+                or n.bl_idname == "ShaderNodeBsdfPrincipled"
+                and compiler.fixed(n, "Alpha", 1.0) != 1
+            ):
                 return None
             return tuple(x * strength for x in colour)
         if n.bl_idname == "ShaderNodeAddShader":
@@ -181,11 +199,14 @@ def lamp(compiler, tree):
         if n.bl_idname == "ShaderNodeMixShader" or n.bl_idname not in NO_LIGHT:
             return None
         return (0.0, 0.0, 0.0)
+
     found = of(groups, out)
     return found if found is not None and any(x > 0 for x in found) else None
 
 
-NO_LIGHT = {"ShaderNodeBsdf" + k for k in ("Diffuse", "Glossy", "Glass", "Refraction", "Translucent", "Velvet", "Sheen", "Anisotropic")}
+NO_LIGHT = {
+    "ShaderNodeBsdf" + k for k in ("Diffuse", "Glossy", "Glass", "Refraction", "Translucent", "Velvet", "Sheen", "Anisotropic")
+}
 
 
 def medium(compiler, end):
@@ -203,23 +224,26 @@ def medium(compiler, end):
                     add(inner, source)
             return
         density = compiler.fixed(n, "Density", 1.0)
-        colour = compiler.fixed(n, "Color", (.5, .5, .5))
+        colour = compiler.fixed(n, "Color", (0.5, 0.5, 0.5))
         if density is None or colour is None:
             compiler.lost("Volumes that vary from place to place (their nodes' own values are taken)")
-            density, colour = density or 1.0, colour or (.5, .5, .5)
+            density, colour = density or 1.0, colour or (0.5, 0.5, 0.5)
         if n.bl_idname in ("ShaderNodeVolumeScatter", "ShaderNodeVolumePrincipled"):
             total["color scattering"] = [a + density * x for a, x in zip(total["color scattering"], colour)]
             total["float anisotropy"] = compiler.fixed(n, "Anisotropy", 0.0) or 0.0
         if n.bl_idname == "ShaderNodeVolumePrincipled":
             dark = compiler.fixed(n, "Absorption Color", (0, 0, 0)) or (0, 0, 0)
-            total["color absorption"] = [a + density * max(1 - x, 0) * max(1 - d, 0)
-                                         for a, x, d in zip(total["color absorption"], colour, [d ** .5 for d in dark])]
+            total["color absorption"] = [
+                a + density * max(1 - x, 0) * max(1 - d, 0)
+                for a, x, d in zip(total["color absorption"], colour, [d**0.5 for d in dark])
+            ]
             if compiler.fixed(n, "Emission Strength", 0.0) or compiler.fixed(n, "Blackbody Intensity", 0.0):
                 compiler.lost("Emission of volumes")
         elif n.bl_idname == "ShaderNodeVolumeAbsorption":
             total["color absorption"] = [a + density * max(1 - x, 0) for a, x in zip(total["color absorption"], colour)]
         elif n.bl_idname != "ShaderNodeVolumeScatter":
             compiler.lost("Node %s of a volume" % n.bl_label)
+
     groups, out = compiler.source(end.inputs["Volume"])
     if out is None:
         return None

@@ -5,7 +5,8 @@ from .properties import OUTPUTS, expressions
 
 
 class Pass:
-    """name, channels, letters and kind as RenderEngine.register_pass() has them; output: a channel of a Display; turn: function(numbers, pixels
+    """name, channels, letters and kind as RenderEngine.register_pass() has them; output: a channel of a Display; turn:
+    function(numbers, pixels
     seen) or None."""
 
     def __init__(self, name, output, letters="RGB", kind="COLOR", turn=None):
@@ -43,15 +44,29 @@ def listed(scene, layer, report=None):
         except ValueError as error:
             if report is not None:
                 report.lost("Light paths of the view layer (%s)" % error)
-    for field, name in (("use_pass_mist", "Mist"), ("use_pass_position", "Position"), ("use_pass_vector", "Vector"), ("use_pass_uv", "UV"),
-                        ("use_pass_object_index", "Object Index"), ("use_pass_material_index", "Material Index"),
-                        ("use_pass_emit", "Emission"), ("use_pass_environment", "Environment"), ("use_pass_shadow", "Shadow"),
-                        ("use_pass_ambient_occlusion", "Ambient Occlusion"), ("use_pass_diffuse_direct", "Diffuse Direct"),
-                        ("use_pass_diffuse_indirect", "Diffuse Indirect"), ("use_pass_diffuse_color", "Diffuse Color"),
-                        ("use_pass_glossy_direct", "Glossy Direct"), ("use_pass_glossy_indirect", "Glossy Indirect"),
-                        ("use_pass_glossy_color", "Glossy Color"), ("use_pass_transmission_direct", "Transmission Direct"),
-                        ("use_pass_transmission_indirect", "Transmission Indirect"), ("use_pass_transmission_color", "Transmission Color"),
-                        ("use_pass_cryptomatte_object", "Cryptomatte"), ("use_pass_cryptomatte_material", "Cryptomatte")):
+    for field, name in (
+        ("use_pass_mist", "Mist"),
+        ("use_pass_position", "Position"),
+        ("use_pass_vector", "Vector"),
+        ("use_pass_uv", "UV"),
+        ("use_pass_object_index", "Object Index"),
+        ("use_pass_material_index", "Material Index"),
+        ("use_pass_emit", "Emission"),
+        ("use_pass_environment", "Environment"),
+        ("use_pass_shadow", "Shadow"),
+        ("use_pass_ambient_occlusion", "Ambient Occlusion"),
+        ("use_pass_diffuse_direct", "Diffuse Direct"),
+        ("use_pass_diffuse_indirect", "Diffuse Indirect"),
+        ("use_pass_diffuse_color", "Diffuse Color"),
+        ("use_pass_glossy_direct", "Glossy Direct"),
+        ("use_pass_glossy_indirect", "Glossy Indirect"),
+        ("use_pass_glossy_color", "Glossy Color"),
+        ("use_pass_transmission_direct", "Transmission Direct"),
+        ("use_pass_transmission_indirect", "Transmission Indirect"),
+        ("use_pass_transmission_color", "Transmission Color"),
+        ("use_pass_cryptomatte_object", "Cryptomatte"),
+        ("use_pass_cryptomatte_material", "Cryptomatte"),
+    ):
         expression = LIGHT.get(name)
         if getattr(layer, field, False):
             if expression:
@@ -61,11 +76,26 @@ def listed(scene, layer, report=None):
     return out
 
 
-LIGHT = {"Emission": "lpe:CO", "Environment": "lpe:CB", "Diffuse Direct": "lpe:C<RD>[LO]", "Diffuse Indirect": "lpe:C<RD>[RTV]+[LO]",
-         "Glossy Direct": "lpe:C<R[GS]>[LO]", "Glossy Indirect": "lpe:C<R[GS]>[RTV]+[LO]", "Transmission Direct": "lpe:C<T.>[LO]",
-         "Transmission Indirect": "lpe:C<T.>[RTV]+[LO]"}
-NAMES = {"Emission": "Emit", "Environment": "Env", "Diffuse Direct": "DiffDir", "Diffuse Indirect": "DiffInd", "Glossy Direct": "GlossDir",
-         "Glossy Indirect": "GlossInd", "Transmission Direct": "TransDir", "Transmission Indirect": "TransInd"}
+LIGHT = {
+    "Emission": "lpe:CO",
+    "Environment": "lpe:CB",
+    "Diffuse Direct": "lpe:C<RD>[LO]",
+    "Diffuse Indirect": "lpe:C<RD>[RTV]+[LO]",
+    "Glossy Direct": "lpe:C<R[GS]>[LO]",
+    "Glossy Indirect": "lpe:C<R[GS]>[RTV]+[LO]",
+    "Transmission Direct": "lpe:C<T.>[LO]",
+    "Transmission Indirect": "lpe:C<T.>[RTV]+[LO]",
+}
+NAMES = {
+    "Emission": "Emit",
+    "Environment": "Env",
+    "Diffuse Direct": "DiffDir",
+    "Diffuse Indirect": "DiffInd",
+    "Glossy Direct": "GlossDir",
+    "Glossy Indirect": "GlossInd",
+    "Transmission Direct": "TransDir",
+    "Transmission Indirect": "TransInd",
+}
 
 
 def far(z):

@@ -16,7 +16,8 @@ class Missing(Exception):
 
 
 def find(preferred=""):
-    """The program's path. preferred: what the preferences of the add-on say; else ALPENGLOW_PROGRAM, else PATH. Raises Missing."""
+    """The program's path. preferred: what the preferences of the add-on say; else ALPENGLOW_PROGRAM, else PATH. Raises
+    Missing."""
     for name in (preferred, os.environ.get("ALPENGLOW_PROGRAM", ""), "alpenglow"):
         found = shutil.which(os.path.expanduser(name)) if name else None
         if found:
@@ -51,8 +52,15 @@ class Run:
 
     def __init__(self, arguments, folder):
         self.part, self.status_line, self.messages = 0.0, "", []
-        self.process = subprocess.Popen(arguments, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                        stderr=subprocess.PIPE, text=True, errors="replace")
+        self.process = subprocess.Popen(
+            arguments,
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+        )
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
 

@@ -2,48 +2,85 @@
 import json
 
 import bpy
-from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty,
-                       StringProperty)
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
-OUTPUTS = (("use_direct", "direct", "Direct", "Light that was scattered once at most"),
-           ("use_indirect", "indirect", "Indirect", "Light that was scattered twice or more"),
-           ("use_albedo", "albedo", "Albedo", "What the surfaces give back of even light"),
-           ("use_variance", "variance", "Variance", "Variance of the luminance of a pixel"),
-           ("use_samples", "samples", "Samples", "Samples of a pixel"))
+OUTPUTS = (
+    ("use_direct", "direct", "Direct", "Light that was scattered once at most"),
+    ("use_indirect", "indirect", "Indirect", "Light that was scattered twice or more"),
+    ("use_albedo", "albedo", "Albedo", "What the surfaces give back of even light"),
+    ("use_variance", "variance", "Variance", "Variance of the luminance of a pixel"),
+    ("use_samples", "samples", "Samples", "Samples of a pixel"),
+)
 
 
 class AlpenglowPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
-    program: StringProperty(name="Program", subtype="FILE_PATH", description="Path of the program `alpenglow`; empty: it is found on PATH")
+    program: StringProperty(
+        name="Program", subtype="FILE_PATH", description="Path of the program `alpenglow`; empty: it is found on PATH"
+    )
 
     def draw(self, _):
         self.layout.prop(self, "program")
 
 
 class AlpenglowScene(bpy.types.PropertyGroup):
-    hider: EnumProperty(name="Hider", default="path", items=(
-        ("path", "Path", "Path tracing: light between all surfaces"),
-        ("hidden", "Hidden", "Micropolygons and lights alone, as RISpec has it"),
-        ("raytrace", "Raytrace", "As hidden; each sample is shaded where it lies")))
+    hider: EnumProperty(
+        name="Hider",
+        default="path",
+        items=(
+            ("path", "Path", "Path tracing: light between all surfaces"),
+            ("hidden", "Hidden", "Micropolygons and lights alone, as RISpec has it"),
+            ("raytrace", "Raytrace", "As hidden; each sample is shaded where it lies"),
+        ),
+    )
     samples: IntProperty(name="Samples", default=64, min=1, soft_max=4096, description="Samples of a pixel")
-    preview_samples: IntProperty(name="Viewport", default=8, min=1, soft_max=256, description="Samples of a pixel in the viewport")
+    preview_samples: IntProperty(
+        name="Viewport", default=8, min=1, soft_max=256, description="Samples of a pixel in the viewport"
+    )
     use_noise: BoolProperty(name="Stop at Noise", description="Go on until the noise is as low as this; Samples has no say")
-    noise: FloatProperty(name="Noise", default=.02, min=.0005, max=1, precision=4, description="Mean relative error of the light on surfaces")
-    time: FloatProperty(name="Time Limit", default=0, min=0, unit="TIME_ABSOLUTE", description="Go on for about so many seconds; 0: no limit")
+    noise: FloatProperty(
+        name="Noise", default=0.02, min=0.0005, max=1, precision=4, description="Mean relative error of the light on surfaces"
+    )
+    time: FloatProperty(
+        name="Time Limit", default=0, min=0, unit="TIME_ABSOLUTE", description="Go on for about so many seconds; 0: no limit"
+    )
     threads: IntProperty(name="Threads", default=0, min=0, max=1024, description="0: as many as there are processors")
     seed: IntProperty(name="Seed", default=0, min=0)
     seed_by_frame: BoolProperty(name="Seed by Frame", description="The noise of an animation changes")
-    filter: EnumProperty(name="Filter", default="gaussian", items=(
-        ("gaussian", "Gaussian", "As wide as Blender's own of the same size"), ("box", "Box", "The mean over a square")))
+    filter: EnumProperty(
+        name="Filter",
+        default="gaussian",
+        items=(("gaussian", "Gaussian", "As wide as Blender's own of the same size"), ("box", "Box", "The mean over a square")),
+    )
     max_depth: IntProperty(name="Bounces", default=32, min=0, max=1000)
-    clamp: FloatProperty(name="Clamp", default=0, min=0, description="Scale brighter samples down to this: less noise, but a bias; 0: not at all")
+    clamp: FloatProperty(
+        name="Clamp", default=0, min=0, description="Scale brighter samples down to this: less noise, but a bias; 0: not at all"
+    )
     guide: BoolProperty(name="Guide Caustics", default=True, description="Aim rays at mirrors and glass that light comes from")
     caustics: BoolProperty(name="Caustics by Photons")
-    motion_keys: IntProperty(name="Motion Keys", default=3, min=2, max=32, description="Times of the shutter at which the scene is read")
-    subdivision: BoolProperty(name="Subdivision Surfaces", default=True,
-                              description="Write a mesh whose one modifier is a subdivision surface as the smooth surface itself")
+    motion_keys: IntProperty(
+        name="Motion Keys", default=3, min=2, max=32, description="Times of the shutter at which the scene is read"
+    )
+    subdivision: BoolProperty(
+        name="Subdivision Surfaces",
+        default=True,
+        description="Write a mesh whose one modifier is a subdivision surface as the smooth surface itself",
+    )
     binary: BoolProperty(name="Binary RIB", default=True)
-    folder: StringProperty(name="Keep Files", subtype="DIR_PATH", description="Folder in which RIB, shaders and pictures stay; empty: they are removed")
+    folder: StringProperty(
+        name="Keep Files",
+        subtype="DIR_PATH",
+        description="Folder in which RIB, shaders and pictures stay; empty: they are removed",
+    )
     options: StringProperty(name="More Options", description="Added to the command line of `alpenglow render`")
     requests: StringProperty(name="More Requests", description="RIB requests before the world")
 
@@ -56,7 +93,9 @@ class AlpenglowParameter(bpy.types.PropertyGroup):
     text: StringProperty(name="Value")
     count: IntProperty(default=0)
     use: BoolProperty(name="Set", description="Write this parameter; else the shader's own default holds")
-    attribute: StringProperty(name="Attribute", description="Attribute, UV layer or vertex group of the mesh that gives the parameter")
+    attribute: StringProperty(
+        name="Attribute", description="Attribute, UV layer or vertex group of the mesh that gives the parameter"
+    )
 
     def value(self):
         if self.kind == "float":
@@ -69,7 +108,9 @@ class AlpenglowParameter(bpy.types.PropertyGroup):
 
 class AlpenglowMaterial(bpy.types.PropertyGroup):
     use_shader: BoolProperty(name="RSL Shader", description="Use an RSL surface shader in place of the nodes")
-    shader: StringProperty(name="Shader", subtype="FILE_PATH", description="An RSL file (.sl), or the name of a shader that ships")
+    shader: StringProperty(
+        name="Shader", subtype="FILE_PATH", description="An RSL file (.sl), or the name of a shader that ships"
+    )
     shader_name: StringProperty()
     parameters: CollectionProperty(type=AlpenglowParameter)
 
@@ -78,13 +119,19 @@ class AlpenglowMaterial(bpy.types.PropertyGroup):
         return {"%s %s" % (p.kind, p.name): p.value() for p in self.parameters if p.use and not p.attribute}
 
     def fill(self, name, parameters):
-        """Takes what `alpenglow info --json` said; values that are set stay. Returns the names of parameters that have no place here."""
+        """Takes what `alpenglow info --json` said; values that are set stay. Returns the names of parameters that have no
+        place here."""
         old = {p.name: (p.kind, p.use, p.value(), p.attribute) for p in self.parameters}
         self.shader_name, left = name, []
         self.parameters.clear()
         for one in parameters:
             default = one.get("default")
-            if one.get("output") or one["type"] not in ("float", "string", "color", "point", "vector", "normal") or "array" in one or "length" in one:
+            if (
+                one.get("output")
+                or one["type"] not in ("float", "string", "color", "point", "vector", "normal")
+                or "array" in one
+                or "length" in one
+            ):
                 left.append(one["name"])
                 continue
             p = self.parameters.add()
@@ -108,12 +155,18 @@ class AlpenglowViewLayer(bpy.types.PropertyGroup):
     pass
 
 
-AlpenglowViewLayer.__annotations__ = {use: BoolProperty(name=name, description=text, update=lambda layer, context: layer.changed())
-                                      for use, _, name, text in OUTPUTS}
-AlpenglowViewLayer.__annotations__["lights"] = BoolProperty(name="Lights", description="A pass for each light: its light alone",
-                                                            update=lambda layer, context: layer.changed())
+AlpenglowViewLayer.__annotations__ = {
+    use: BoolProperty(name=name, description=text, update=lambda layer, context: layer.changed())
+    for use, _, name, text in OUTPUTS
+}
+AlpenglowViewLayer.__annotations__["lights"] = BoolProperty(
+    name="Lights", description="A pass for each light: its light alone", update=lambda layer, context: layer.changed()
+)
 AlpenglowViewLayer.__annotations__["expressions"] = StringProperty(
-    name="Light Paths", description='Passes by expressions, as JSON: {"name": "lpe:C<RD>L"}', update=lambda layer, context: layer.changed())
+    name="Light Paths",
+    description='Passes by expressions, as JSON: {"name": "lpe:C<RD>L"}',
+    update=lambda layer, context: layer.changed(),
+)
 
 
 def changed(self):
@@ -131,7 +184,7 @@ def expressions(layer):
         return {}
     found = json.loads(text)
     if not isinstance(found, dict) or not all(isinstance(v, str) for v in found.values()):
-        raise ValueError("expected {\"name\": \"lpe:...\"}")
+        raise ValueError('expected {"name": "lpe:..."}')
     return found
 
 

@@ -1,4 +1,5 @@
-"""Writing RIB: requests as text, arrays of numbers as binary RIB blocks (RISpec 3.2, appendix C.2), which reading mixes freely."""
+"""Writing RIB: requests as text, arrays of numbers as binary RIB blocks (RISpec 3.2, appendix C.2), which reading mixes
+freely."""
 import struct
 
 import numpy as np
@@ -35,7 +36,8 @@ class Rib:
         self.file.write(("# " + text.replace("\n", " ") + "\n").encode())
 
     def request(self, name, *values):
-        """One request. A str is quoted, numbers stand as they are, sequences and arrays in brackets; a dict is a parameter list."""
+        """One request. A str is quoted, numbers stand as they are, sequences and arrays in brackets; a dict is a parameter
+        list."""
         self.file.write(name.encode())
         for value in values:
             if isinstance(value, dict):

@@ -2,6 +2,7 @@
 import os
 import shutil
 
+import bpy
 import numpy as np
 
 from . import camera, geometry, hair, world
@@ -11,7 +12,8 @@ from .materials import Images, Materials
 from .report import Report
 from .rib import Block, Rib
 
-MESHES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+MESHES = {"MESH"}
+MESH_BESIDE = {"CURVE", "SURFACE", "FONT", "META"}  # Blender lists what they evaluate to as an object of type MESH besides
 IGNORED = {"CAMERA", "EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 SHADERS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "shaders")
 
@@ -30,7 +32,8 @@ class Instance:
 
 
 class Scene:
-    """Everything that is written of a depsgraph. frame_set(frame, subframe): evaluates another time (for motion); None: no motion.
+    """Everything that is written of a depsgraph. frame_set(frame, subframe): evaluates another time (for motion); None: no
+    motion.
     view: an eye in place of the scene's camera."""
 
     def __init__(self, depsgraph, folder, settings, lights_word, frame_set=None, progress=None, view=None):
@@ -49,8 +52,10 @@ class Scene:
         motion = scene.render.use_motion_blur and self.frame_set is not None
         if motion:
             shutter = scene.render.motion_blur_shutter
-            where = getattr(scene.render, "motion_blur_position", None) or getattr(getattr(scene, "cycles", None), "motion_blur_position", "CENTER")
-            start = {"START": 0.0, "CENTER": -.5, "END": -1.0}.get(where, -.5) * shutter
+            where = getattr(scene.render, "motion_blur_position", None) or getattr(
+                getattr(scene, "cycles", None), "motion_blur_position", "CENTER"
+            )
+            start = {"START": 0.0, "CENTER": -0.5, "END": -1.0}.get(where, -0.5) * shutter
             keys = max(2, self.settings.motion_keys)
             self.times = [i / (keys - 1) for i in range(keys)]
             offsets = [start + shutter * t for t in self.times]
@@ -104,7 +109,7 @@ class Scene:
                 if inst.show_self:
                     lamps[key] = (obj, inst.matrix_world.copy())
                 continue
-            if inst.show_self or inst.show_particles:
+            if (inst.show_self or inst.show_particles) and obj.type not in MESH_BESIDE:
                 self._object(inst, obj, key, first)
         for key, (obj, place) in lamps.items():
             if first:
@@ -112,26 +117,42 @@ class Scene:
             elif key in self.lamps:
                 self.lamps[key].matrices.append(place)
 
+    @staticmethod
+    def _own(obj):
+        """Whether an object shows its own data: instances of geometry nodes show another mesh under the name of what makes them."""
+        original = obj.original.data
+        return (
+            original is None
+            or obj.data is None
+            or type(original) is not type(obj.data)
+            or obj.data.name_full == original.name_full
+        )
+
     def _shape_key(self, inst, obj):
-        """What instances share: an object, and data that geometry nodes put in its place."""
-        data = obj.data.name_full if obj.data is not None else ""
-        own = obj.original.data is not None and data == obj.original.data.name_full
-        return (obj.name_full, data if own or not inst.is_instance else (data, obj.data.as_pointer()), inst.show_self)
+        """What instances share."""
+        own = self._own(obj) or not inst.is_instance
+        return (obj.name_full, obj.type, "" if own else obj.data.as_pointer(), inst.show_self)
 
     def _object(self, inst, obj, key, first):
         kind = obj.type
         if kind in IGNORED:
             return
         if kind not in MESHES | {"CURVES", "POINTCLOUD"}:
-            self.report.lost({"VOLUME": "Volume objects", "GPENCIL": "Grease pencil", "GREASEPENCIL": "Grease pencil"}.get(kind, "Objects of type " + kind), obj.name)
+            self.report.lost(
+                {"VOLUME": "Volume objects", "GPENCIL": "Grease pencil", "GREASEPENCIL": "Grease pencil"}.get(
+                    kind, "Objects of type " + kind
+                ),
+                obj.name,
+            )
             return
         shape_key = self._shape_key(inst, obj)
         if first:
             shape = self.shapes.get(shape_key)
             if shape is None:
                 shape = self.shapes[shape_key] = self._shape(inst, obj)
-            self.instances[key] = Instance(shape, inst.matrix_world.copy(), visibility(obj, self.report),
-                                           user(inst, obj) if shape.asks else {})
+            self.instances[key] = Instance(
+                shape, inst.matrix_world.copy(), visibility(obj, self.report), user(inst, obj) if shape.asks else {}
+            )
         elif key in self.instances:
             one = self.instances[key]
             one.matrices.append(inst.matrix_world.copy())
@@ -144,6 +165,9 @@ class Scene:
                 self._clear(obj)
 
     def _mesh_of(self, obj):
+        """The evaluated mesh. Of instances of geometry nodes to_mesh() would give the object that makes them."""
+        if isinstance(obj.data, bpy.types.Mesh):
+            return obj.data
         try:
             return obj.to_mesh(preserve_all_data_layers=True, depsgraph=self.depsgraph)
         except RuntimeError:
@@ -151,14 +175,16 @@ class Scene:
 
     @staticmethod
     def _clear(obj):
-        obj.to_mesh_clear()
+        if not isinstance(obj.data, bpy.types.Mesh):
+            obj.to_mesh_clear()
 
     @staticmethod
     def _base(obj, me):
         return obj.original.data
 
     def _shape(self, inst, obj):
-        slots = [s.material for s in obj.material_slots] or list(getattr(obj.data, "materials", None) or []) or [None]
+        own = self._own(obj) or not inst.is_instance
+        slots = [s.material for s in obj.material_slots if own] or list(getattr(obj.data, "materials", None) or []) or [None]
         shape = Shape(obj.name, slots)
         written = [self.materials.get(m) for m in slots]
         needs = set().union(*(w.needs for w in written))
@@ -171,7 +197,7 @@ class Scene:
             return shape
         if inst.show_self:
             self._read_mesh(shape, obj, needs)
-        if getattr(inst, "show_particles", True) and obj.type == "MESH":
+        if own and getattr(inst, "show_particles", True) and obj.original.type == "MESH":
             self._read_hair(shape, obj)
         return shape
 
@@ -180,7 +206,9 @@ class Scene:
         if me is None or len(me.polygons) == 0:
             self._clear(obj)
             return
-        smooth = subdivided(obj, len(set(geometry.taken(me.polygons, "material_index", 1, np.int32).tolist())), self.settings, self.report)
+        smooth = subdivided(
+            obj, len(set(geometry.taken(me.polygons, "material_index", 1, np.int32).tolist())), self.settings, self.report
+        )
         if smooth:
             base = obj.original.data
             shape.mesh = geometry.read(obj, base, needs, obj.name, self.report, polygons=True)
@@ -190,7 +218,9 @@ class Scene:
         else:
             shape.mesh = geometry.read(obj, me, needs, obj.name, self.report)
         shape.count = len(me.vertices)
-        shape.deforms = not smooth and (len(obj.modifiers) > 0 or getattr(obj.data, "shape_keys", None) is not None or obj.type != "MESH")
+        shape.deforms = not smooth and (
+            len(obj.modifiers) > 0 or getattr(obj.data, "shape_keys", None) is not None or obj.original.type != "MESH"
+        )
         self._clear(obj)
 
     def _read_hair(self, shape, obj):
@@ -330,8 +360,12 @@ class Lamp:
 def visibility(obj, report):
     """Attributes of an object's ray visibility that differ from the default."""
     out = {}
-    for field, name in (("visible_camera", "int camera"), ("visible_diffuse", "int diffuse"), ("visible_glossy", "int specular"),
-                        ("visible_shadow", "int transmission")):
+    for field, name in (
+        ("visible_camera", "int camera"),
+        ("visible_diffuse", "int diffuse"),
+        ("visible_glossy", "int specular"),
+        ("visible_shadow", "int transmission"),
+    ):
         if not getattr(obj, field, True):
             out[name] = 0
     if not getattr(obj, "visible_transmission", True) and "int specular" not in out:
@@ -346,14 +380,19 @@ def visibility(obj, report):
 def user(inst, obj):
     """What Object Info asks for."""
     place = inst.matrix_world.translation
-    return {"float blrandom": (inst.random_id & 0xffffffff) / 0xffffffff, "float blobject": obj.pass_index,
-            "color bllocation": list(place), "color blcolor": list(obj.color)[:3], "float blalpha": obj.color[3]}
+    return {
+        "float blrandom": (inst.random_id & 0xFFFFFFFF) / 0xFFFFFFFF,
+        "float blobject": obj.pass_index,
+        "color bllocation": list(place),
+        "color blcolor": list(obj.color)[:3],
+        "float blalpha": obj.color[3],
+    }
 
 
 def subdivided(obj, materials, settings, report):
     """Whether an object is written as a SubdivisionMesh: its one modifier that renders is Catmull and Clark's."""
     active = [m for m in obj.modifiers if m.show_render and m.type != "PARTICLE_SYSTEM"]
-    if not settings.subdivision or obj.type != "MESH" or not active or active[-1].type != "SUBSURF":
+    if not settings.subdivision or obj.original.type != "MESH" or not active or active[-1].type != "SUBSURF":
         return False
     last = active[-1]
     if last.subdivision_type != "CATMULL_CLARK" or last.render_levels == 0:

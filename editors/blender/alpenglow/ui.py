@@ -64,14 +64,26 @@ class ALPENGLOW_PT_passes(Panel, bpy.types.Panel):
 
     def draw(self, context):
         layer = context.view_layer
-        rows(self, layer, "use_pass_z", "use_pass_normal", "use_pass_diffuse_direct", "use_pass_diffuse_indirect", "use_pass_glossy_direct",
-             "use_pass_glossy_indirect", "use_pass_transmission_direct", "use_pass_transmission_indirect", "use_pass_emit",
-             "use_pass_environment")
+        rows(
+            self,
+            layer,
+            "use_pass_z",
+            "use_pass_normal",
+            "use_pass_diffuse_direct",
+            "use_pass_diffuse_indirect",
+            "use_pass_glossy_direct",
+            "use_pass_glossy_indirect",
+            "use_pass_transmission_direct",
+            "use_pass_transmission_indirect",
+            "use_pass_emit",
+            "use_pass_environment",
+        )
         rows(self, layer.alpenglow, *[use for use, _, _, _ in properties.OUTPUTS], "lights", "expressions")
 
 
 class ALPENGLOW_OT_read_parameters(bpy.types.Operator):
     """Asks the program for the parameters of the shader"""
+
     bl_idname, bl_label = "alpenglow.read_parameters", "Read Parameters"
 
     def execute(self, context):
@@ -115,18 +127,35 @@ class ALPENGLOW_PT_material(Panel, bpy.types.Panel):
                 row.prop(p, "attribute", text="", icon="SPREADSHEET")
 
 
-CLASSES = (ALPENGLOW_PT_sampling, ALPENGLOW_PT_motion, ALPENGLOW_PT_film, ALPENGLOW_PT_machine, ALPENGLOW_PT_passes,
-           ALPENGLOW_OT_read_parameters, ALPENGLOW_PT_material)
+CLASSES = (
+    ALPENGLOW_PT_sampling,
+    ALPENGLOW_PT_motion,
+    ALPENGLOW_PT_film,
+    ALPENGLOW_PT_machine,
+    ALPENGLOW_PT_passes,
+    ALPENGLOW_OT_read_parameters,
+    ALPENGLOW_PT_material,
+)
 SKIPPED = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "RENDER_PT_simplify"}
 
 
+SHARED = {
+    "EEVEE_MATERIAL_PT_context_material",
+    "EEVEE_MATERIAL_PT_surface",
+    "EEVEE_WORLD_PT_surface",
+    "DATA_PT_EEVEE_light",
+    "DATA_PT_spot",
+}
+
+
 def panels():
-    """Blender's own panels that serve any renderer, as those that the built-in engines share."""
+    """Blender's own panels that serve any renderer. Each must have a set of engines of its own: panels of Cycles share one."""
     for panel in bpy.types.Panel.__subclasses__():
-        engines = getattr(panel, "COMPAT_ENGINES", ())
-        if "BLENDER_RENDER" in engines and panel.__name__ not in SKIPPED:
-            yield panel
-        elif panel.__name__ in ("EEVEE_MATERIAL_PT_context_material", "CYCLES_PT_context_material", "NODE_DATA_PT_light"):
+        if (
+            "COMPAT_ENGINES" in panel.__dict__
+            and panel.__name__ not in SKIPPED
+            and ("BLENDER_RENDER" in panel.COMPAT_ENGINES or panel.__name__ in SHARED)
+        ):
             yield panel
 
 
@@ -134,13 +163,11 @@ def register():
     for c in CLASSES:
         bpy.utils.register_class(c)
     for panel in panels():
-        if hasattr(panel, "COMPAT_ENGINES"):
-            panel.COMPAT_ENGINES.add("ALPENGLOW")
+        panel.COMPAT_ENGINES.add("ALPENGLOW")
 
 
 def unregister():
     for panel in panels():
-        if hasattr(panel, "COMPAT_ENGINES"):
-            panel.COMPAT_ENGINES.discard("ALPENGLOW")
+        panel.COMPAT_ENGINES.discard("ALPENGLOW")
     for c in reversed(CLASSES):
         bpy.utils.unregister_class(c)

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import exr, program, properties
 
-REST = .3  # seconds without a change before a new still begins
+REST = 0.3  # seconds without a change before a new still begins
 
 
 def view_camera(context):
@@ -28,7 +28,8 @@ def view_camera(context):
 
 
 class View:
-    """One viewport. The export is done in view_update() and view_draw(), where Blender lets scripts read; the program runs beside."""
+    """One viewport. The export is done in view_update() and view_draw(), where Blender lets scripts read; the program runs
+    beside."""
 
     def __init__(self, engine):
         self.engine, self.run, self.folder, self.pixels, self.size = engine, None, None, None, None
@@ -50,6 +51,7 @@ class View:
 
     def _start(self, context, depsgraph, size):
         from .engine import arguments, export
+
         self._stop()
         settings = depsgraph.scene.alpenglow
         try:
@@ -60,7 +62,9 @@ class View:
         self.folder = tempfile.mkdtemp(prefix="alpenglow-view-")
         view = view_camera(context)
         export(depsgraph, self.folder, settings, binary, [], None, size, settings.preview_samples, None, view)
-        self.run = program.Run(arguments(binary, settings, depsgraph.scene.frame_current, settings.preview_samples), self.folder)
+        self.run = program.Run(
+            arguments(binary, settings, depsgraph.scene.frame_current, settings.preview_samples), self.folder
+        )
 
     def draw(self, context, depsgraph):
         region = context.region
@@ -99,6 +103,7 @@ class View:
             return
         import gpu
         from gpu_extras.presets import draw_texture_2d
+
         if self.texture is None:
             data = gpu.types.Buffer("FLOAT", self.pixels.size, self.pixels.ravel())
             self.texture = gpu.types.GPUTexture(self.size, format="RGBA16F", data=data)

@@ -19,9 +19,17 @@ def write(rib, scene, folder, report, images):
             report.lost("Volume of the world", world.name)
         text = Compiler(name, "world " + world.name, "light", report, images).world(world.node_tree, camera)
     else:
-        seen = "" if camera else ('string kind = ""; float way = 1; rayinfo("type", kind); rayinfo("length", way);\n'
-                                  '        if (kind == "camera" && way == 0) Cl = 0;')
-        text = "light %s()\n{\n    solar() {\n        Cl = color(%.7g, %.7g, %.7g);\n        %s\n    }\n}\n" % ((name,) + tuple(world.color) + (seen,))
+        seen = (
+            ""
+            if camera
+            else (
+                'string kind = ""; float way = 1; rayinfo("type", kind); rayinfo("length", way);\n'
+                '        if (kind == "camera" && way == 0) Cl = 0;'
+            )
+        )
+        text = "light %s()\n{\n    solar() {\n        Cl = color(%.7g, %.7g, %.7g);\n        %s\n    }\n}\n" % (
+            (name,) + tuple(world.color) + (seen,)
+        )
     with open(os.path.join(folder, name + ".sl"), "w", encoding="utf-8") as f:
         f.write(HEAD + text)
     rib.request("LightSource", name, "World")

@@ -119,16 +119,26 @@ Building& Building::number(double d) {
 
 Building& Building::number(RtFloat f) { return number(numberOf(f)); }
 
+template <class T> void Building::addNumbers(const T* from, int64_t n, double (*number)(T)) {
+    if (!may(n, {from})) return;
+    if (!endsWhereItCanBeRead(from, size_t(n) * sizeof(T)))
+        return drop(Rie::Consistency, fmt::format("an array is shorter than the {} numbers that it should have", n));
+    try {
+        Value& v = add(n ? Value::Kind::Numbers : Value::Kind::Empty, true);
+        v.numbers.resize(size_t(n));
+        std::transform(from, from + n, v.numbers.begin(), number);
+    } catch (const std::bad_alloc&) { // not through the frames of the caller
+        drop(Rie::NoMem, "there is no memory for it");
+    }
+}
+
 Building& Building::numbers(const RtFloat* f, int64_t n) {
-    if (!may(n, {f})) return *this;
-    Value& v = add(n ? Value::Kind::Numbers : Value::Kind::Empty, true);
-    v.numbers.resize(size_t(n));
-    std::transform(f, f + n, v.numbers.begin(), numberOf);
+    addNumbers<RtFloat>(f, n, numberOf);
     return *this;
 }
 
 Building& Building::ints(const RtInt* i, int64_t n) {
-    if (may(n, {i})) add(n ? Value::Kind::Numbers : Value::Kind::Empty, true).numbers.assign(i, i + n);
+    addNumbers<RtInt>(i, n, [](RtInt k) { return double(k); });
     return *this;
 }
 
@@ -139,6 +149,10 @@ Building& Building::text(const char* s) {
 
 Building& Building::texts(const RtToken* s, int64_t n) {
     if (!may(n, {s})) return *this;
+    if (!endsWhereItCanBeRead(s, size_t(n) * sizeof *s)) {
+        drop(Rie::Consistency, fmt::format("an array is shorter than the {} strings that it should have", n));
+        return *this;
+    }
     for (int64_t i = 0; i < n; ++i)
         if (!may(1, {s[i]})) return *this;
     add(n ? Value::Kind::Strings : Value::Kind::Empty, true).strings.assign(s, s + n);
@@ -161,7 +175,10 @@ void Building::stringValues(const char* token, const void* values, int64_t n) {
 
 void Building::parameter(const char* token, const void* values, const scene::VariableCounts& counts,
                          const std::string& category) {
-    const Resolved r = client_->to.declarations().resolve(token, category);
+    // A connection of RIS: its values are texts whatever the type behind the word.
+    const std::string_view whole = token;
+    const bool connects = whole.starts_with("reference ");
+    const Resolved r = client_->to.declarations().resolve(connects ? whole.substr(10) : whole, category);
     if (!r.declaration) {
         client_->to.reporter().error(Rie::BadToken, client_->place,
                                      fmt::format("Ri{}{}: \"{}\" is not declared and left out", request_->name, client_->by,
@@ -172,15 +189,12 @@ void Building::parameter(const char* token, const void* values, const scene::Var
     const Declaration& d = *r.declaration;
     int64_t n = counts.of(d.cls) * std::max(1, d.arrayLength);
     const int samples = client_->to.colorSamples();
-    n *= d.type == scene::Type::Color ? samples : scene::componentCount(d.type);
+    if (!connects) n *= d.type == scene::Type::Color ? samples : scene::componentCount(d.type);
     text(token);
     if (!may(n, {values})) return;
-    if (d.type == scene::Type::String) stringValues(token, values, n);
+    if (connects || d.type == scene::Type::String) stringValues(token, values, n);
     else if (d.type == scene::Type::Integer) ints(static_cast<const RtInt*>(values), n);
-    else { // read as floats: no decimals needed
-        const auto* f = static_cast<const RtFloat*>(values);
-        add(n ? Value::Kind::Numbers : Value::Kind::Empty, true).numbers.assign(f, f + n);
-    }
+    else addNumbers<RtFloat>(static_cast<const RtFloat*>(values), n, [](RtFloat f) { return double(f); }); // kept as floats
 }
 
 Building& Building::parameters(RtInt n, const RtToken* tokens, const RtPointer* values, const scene::VariableCounts* counts,

@@ -90,6 +90,8 @@ public:
 private:
     scene::VariableCounts counted(const scene::Primitive&);
     Value& add(Value::Kind, bool array);
+    /// Adds n elements as numbers, or as strings.
+    template <class T> void addNumbers(const T*, int64_t n, double (*number)(T));
     void parameter(const char* token, const void* values, const scene::VariableCounts&, const std::string& category);
     /// n strings whose addresses stand at `values`; a text that stands there itself is taken as the one string.
     void stringValues(const char* token, const void* values, int64_t n);

@@ -31,6 +31,12 @@ constexpr uintptr_t kHighest = uintptr_t(1) << 47; ///< of a program on this pro
 
 } // namespace
 
+bool endsWhereItCanBeRead(const void* array, size_t bytes) {
+    constexpr size_t kShort = 4096;
+    char last;
+    return bytes < kShort || !canPeek() || peek(reinterpret_cast<uintptr_t>(array) + bytes - 1, &last, 1) == 1;
+}
+
 std::optional<std::string> textInsteadOfAddress(const void* value) {
     if (!canPeek()) return {};
     const auto at = reinterpret_cast<uintptr_t>(value);

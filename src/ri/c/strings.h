@@ -10,4 +10,8 @@ namespace alpenglow::ri {
 /// read itself. Asks the system and touches neither.
 std::optional<std::string> textInsteadOfAddress(const void* value);
 
+/// Whether the last byte of an array can be read: lengths follow from what a program says, and it may say too much. Short ones
+/// are not looked at.
+bool endsWhereItCanBeRead(const void* array, size_t bytes);
+
 } // namespace alpenglow::ri

@@ -17,7 +17,9 @@ def tangent_of(c, n):
 
 @node("ShaderNodeBsdfDiffuse")
 def diffuse(c, n, out):
-    return closure(c, "%s * blDiffuse(%s, %s)" % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, "Roughness", "float")))
+    return closure(
+        c, "%s * blDiffuse(%s, %s)" % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, "Roughness", "float"))
+    )
 
 
 @node("ShaderNodeBsdfTranslucent")
@@ -43,23 +45,38 @@ def ggx_alone(c, n):
 
 @node("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic")
 def glossy(c, n, out):
-    return closure(c, "%s * blGlossy(%s, %s, %s, %s, %s, %s)" % (
-        c.input(n, "Color", "color"), normal_of(c, n), tangent_of(c, n), rough(c, n), c.input(n, "Anisotropy", "float", 0.0),
-        c.input(n, "Rotation", "float", 0.0), facets(n)))
+    return closure(
+        c,
+        "%s * blGlossy(%s, %s, %s, %s, %s, %s)"
+        % (
+            c.input(n, "Color", "color"),
+            normal_of(c, n),
+            tangent_of(c, n),
+            rough(c, n),
+            c.input(n, "Anisotropy", "float", 0.0),
+            c.input(n, "Rotation", "float", 0.0),
+            facets(n),
+        ),
+    )
 
 
 @node("ShaderNodeBsdfGlass")
 def glass(c, n, out):
     ggx_alone(c, n)
-    mirrored, through = c.call("blGlass", ("color", "color"), normal_of(c, n), "blSide", rough(c, n), c.input(n, "IOR", "float", 1.45))
+    mirrored, through = c.call(
+        "blGlass", ("color", "color"), normal_of(c, n), "blSide", rough(c, n), c.input(n, "IOR", "float", 1.45)
+    )
     return closure(c, "%s * (%s + %s)" % (c.input(n, "Color", "color"), mirrored, through))
 
 
 @node("ShaderNodeBsdfRefraction")
 def refraction(c, n, out):
     ggx_alone(c, n)
-    return closure(c, "%s * blRefraction(%s, blSide, %s, %s)" % (c.input(n, "Color", "color"), normal_of(c, n), rough(c, n),
-                                                                c.input(n, "IOR", "float", 1.45)))
+    return closure(
+        c,
+        "%s * blRefraction(%s, blSide, %s, %s)"
+        % (c.input(n, "Color", "color"), normal_of(c, n), rough(c, n), c.input(n, "IOR", "float", 1.45)),
+    )
 
 
 @node("ShaderNodeBsdfTransparent")
@@ -75,7 +92,11 @@ def holdout(c, n, out):
 
 @node("ShaderNodeBsdfVelvet", "ShaderNodeBsdfSheen")
 def velvet(c, n, out):
-    return closure(c, "%s * blVelvet(%s, %s)" % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, ("Sigma", "Roughness"), "float", .5)))
+    return closure(
+        c,
+        "%s * blVelvet(%s, %s)"
+        % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, ("Sigma", "Roughness"), "float", 0.5)),
+    )
 
 
 @node("ShaderNodeBsdfToon")
@@ -83,14 +104,26 @@ def toon(c, n, out):
     c.lost("Toon BSDF (Diffuse or Glossy BSDF is taken)")
     if n.component == "DIFFUSE":
         return closure(c, "%s * diffuse(%s)" % (c.input(n, "Color", "color"), normal_of(c, n)))
-    return closure(c, "%s * blGlossy(%s, dPdu, %s, 0, 0, 0, \"ggx\")" % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, "Size", "float")))
+    return closure(
+        c,
+        '%s * blGlossy(%s, dPdu, %s, 0, 0, 0, "ggx")'
+        % (c.input(n, "Color", "color"), normal_of(c, n), c.input(n, "Size", "float")),
+    )
 
 
 @node("ShaderNodeSubsurfaceScattering")
 def subsurface(c, n, out):
     radius = "blToColor(%s)" % c.input(n, "Radius", "vector")
-    return closure(c, "blSubsurface(%s, %s * %s, %s)" % (c.input(n, "Color", "color"), c.input(n, "Scale", "float"), radius,
-                                                         c.input(n, ("Anisotropy", "Subsurface Anisotropy"), "float", 0.0)))
+    return closure(
+        c,
+        "blSubsurface(%s, %s * %s, %s)"
+        % (
+            c.input(n, "Color", "color"),
+            c.input(n, "Scale", "float"),
+            radius,
+            c.input(n, ("Anisotropy", "Subsurface Anisotropy"), "float", 0.0),
+        ),
+    )
 
 
 def emitted(c, n, colour, strength):
@@ -108,7 +141,11 @@ def emission(c, n, out):
 @node("ShaderNodeEeveeSpecular")
 def specular_bsdf(c, n, out):
     light = "%s * diffuse(%s)" % (c.input(n, "Base Color", "color"), normal_of(c, n))
-    light += " + %s * blGlossy(%s, dPdu, %s, 0, 0, 0, \"ggx\")" % (c.input(n, "Specular", "color"), normal_of(c, n), c.input(n, "Roughness", "float"))
+    light += ' + %s * blGlossy(%s, dPdu, %s, 0, 0, 0, "ggx")' % (
+        c.input(n, "Specular", "color"),
+        normal_of(c, n),
+        c.input(n, "Roughness", "float"),
+    )
     return closure(c, light + " + %s" % emitted(c, n, "Emissive Color", "-"))
 
 
@@ -134,22 +171,26 @@ def blend(c, f, a, b):
 @node("ShaderNodeAddShader")
 def add_shader(c, n, out):
     (la, ta), (lb, tb) = (c.value(n, s.identifier, "closure").code for s in n.inputs)
-    return closure(c, "%s + %s" % (la, lb), ta if tb == "color(0)" else tb if ta == "color(0)" else c.name_of("color", "%s + %s" % (ta, tb)))
+    return closure(
+        c,
+        "%s + %s" % (la, lb),
+        ta if tb == "color(0)" else tb if ta == "color(0)" else c.name_of("color", "%s + %s" % (ta, tb)),
+    )
 
 
 @node("ShaderNodeBsdfHairPrincipled")
 def hair_principled(c, n, out):
     kind = n.parametrization
-    rough_of = "clamp(%s, .05, 1)" % c.input(n, "Roughness", "float", .3)
+    rough_of = "clamp(%s, .05, 1)" % c.input(n, "Roughness", "float", 0.3)
     c.lost("Principled Hair BSDF's roughness, coat and random colours (trace()'s hair lobes have widths of their own)")
     if kind == "ABSORPTION":
-        sigma = "blToColor(%s)" % c.input(n, "Absorption Coefficient", "vector", (.2, .5, 1))
+        sigma = "blToColor(%s)" % c.input(n, "Absorption Coefficient", "vector", (0.2, 0.5, 1))
     elif kind == "MELANIN":
-        m = c.name_of("float", "-log(max(1 - clamp(%s, 0, 1), .0001))" % c.input(n, "Melanin", "float", .8))
+        m = c.name_of("float", "-log(max(1 - clamp(%s, 0, 1), .0001))" % c.input(n, "Melanin", "float", 0.8))
         red = c.name_of("float", "clamp(%s, 0, 1)" % c.input(n, "Melanin Redness", "float", 1.0))
         sigma = "(%s * (1 - %s) * color(.506, .841, 1.653) + %s * %s * color(.343, .733, 1.924))" % (m, red, m, red)
     else:  # Chiang et al. 2016, equation 9; the denominator at Blender's default roughness
-        x = c.name_of("color", "clamp(%s, color(.0001), color(.9999))" % c.input(n, "Color", "color", (.02, .01, .005)))
+        x = c.name_of("color", "clamp(%s, color(.0001), color(.9999))" % c.input(n, "Color", "color", (0.02, 0.01, 0.005)))
         parts = ["pow(log(comp(%s, %d)) / 4.86, 2)" % (x, i) for i in range(3)]
         sigma = "color(%s)" % ", ".join(parts)
     return closure(c, "blHair(normalize(dPdv), %s, %s, .3, 0, %s)" % (sigma, rough_of, c.input(n, "IOR", "float", 1.55)))
@@ -158,8 +199,11 @@ def hair_principled(c, n, out):
 @node("ShaderNodeBsdfHair")
 def hair(c, n, out):
     c.lost("Hair BSDF (Diffuse and Glossy BSDF are taken)")
-    return closure(c, "%s * (.7 * diffuse(blN) + .3 * blGlossy(blN, dPdv, clamp(%s, 0, 1), 0, 0, 0, \"ggx\"))" % (
-        c.input(n, "Color", "color"), c.input(n, "RoughnessU", "float", .1)))
+    return closure(
+        c,
+        '%s * (.7 * diffuse(blN) + .3 * blGlossy(blN, dPdv, clamp(%s, 0, 1), 0, 0, 0, "ggx"))'
+        % (c.input(n, "Color", "color"), c.input(n, "RoughnessU", "float", 0.1)),
+    )
 
 
 @node("ShaderNodeVolumeScatter", "ShaderNodeVolumeAbsorption", "ShaderNodeVolumePrincipled")
@@ -171,26 +215,58 @@ def volume(c, n, out):
 @node("ShaderNodeBsdfPrincipled")
 def principled(c, n, out):
     """Where another surface is to take its place, this is the function to change: shaders/closures.h has both models."""
+
     def x(*names, default=0.0):
         return c.input(n, names, "float", default)
+
     normal = normal_of(c, n)
     coat = normal_of(c, n, ("Clearcoat Normal", "Coat Normal"))
-    radius = "blToColor(%s)" % c.input(n, "Subsurface Radius", "vector", (1, .2, .1))
+    radius = "blToColor(%s)" % c.input(n, "Subsurface Radius", "vector", (1, 0.2, 0.1))
     base = c.name_of("color", "clamp(%s, color(0), color(1))" % c.input(n, "Base Color", "color"))
     common = [normal, coat, tangent_of(c, n), "blSide", base]
     if bpy.app.version < (4, 0, 0):
         if n.subsurface_method != "RANDOM_WALK" and c.fixed(n, "Subsurface", 0.0) != 0:
             c.lost("Subsurface method %s (Random Walk is taken)" % n.subsurface_method.replace("_", " ").title())
-        rest = [x("Subsurface"), radius, c.input(n, "Subsurface Color", "color", (.8, .8, .8)), x("Metallic"), x("Specular", default=.5),
-                x("Specular Tint"), x("Roughness", default=.5), x("Anisotropic"), x("Anisotropic Rotation"), x("Sheen"), x("Sheen Tint"),
-                x("Clearcoat"), x("Clearcoat Roughness", default=.03), x("IOR", default=1.45), x("Transmission"), x("Transmission Roughness")]
+        rest = [
+            x("Subsurface"),
+            radius,
+            c.input(n, "Subsurface Color", "color", (0.8, 0.8, 0.8)),
+            x("Metallic"),
+            x("Specular", default=0.5),
+            x("Specular Tint"),
+            x("Roughness", default=0.5),
+            x("Anisotropic"),
+            x("Anisotropic Rotation"),
+            x("Sheen"),
+            x("Sheen Tint"),
+            x("Clearcoat"),
+            x("Clearcoat Roughness", default=0.03),
+            x("IOR", default=1.45),
+            x("Transmission"),
+            x("Transmission Roughness"),
+        ]
         light = "blPrincipled3(%s)" % ", ".join(common + rest)
     else:
-        rest = [x("Subsurface Weight"), "%s * %s" % (x("Subsurface Scale", default=.05), radius), x("Metallic"),
-                x("Specular IOR Level", default=.5), c.input(n, "Specular Tint", "color", (1, 1, 1)), x("Roughness", default=.5), x("Anisotropic"),
-                x("Anisotropic Rotation"), x("Sheen Weight"), x("Sheen Roughness", default=.5), c.input(n, "Sheen Tint", "color", (1, 1, 1)),
-                x("Coat Weight"), x("Coat Roughness", default=.03), x("Coat IOR", default=1.5), c.input(n, "Coat Tint", "color", (1, 1, 1)),
-                x("IOR", default=1.5), x("Transmission Weight"), x("Diffuse Roughness")]
+        rest = [
+            x("Subsurface Weight"),
+            "%s * %s" % (x("Subsurface Scale", default=0.05), radius),
+            x("Metallic"),
+            x("Specular IOR Level", default=0.5),
+            c.input(n, "Specular Tint", "color", (1, 1, 1)),
+            x("Roughness", default=0.5),
+            x("Anisotropic"),
+            x("Anisotropic Rotation"),
+            x("Sheen Weight"),
+            x("Sheen Roughness", default=0.5),
+            c.input(n, "Sheen Tint", "color", (1, 1, 1)),
+            x("Coat Weight"),
+            x("Coat Roughness", default=0.03),
+            x("Coat IOR", default=1.5),
+            c.input(n, "Coat Tint", "color", (1, 1, 1)),
+            x("IOR", default=1.5),
+            x("Transmission Weight"),
+            x("Diffuse Roughness"),
+        ]
         if c.fixed(n, "Thin Film Thickness", 0.0) not in (0, 0.0):
             c.lost("Thin film of Principled BSDF")
         light = "blPrincipled4(%s)" % ", ".join(common + rest)

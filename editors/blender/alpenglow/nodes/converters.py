@@ -3,16 +3,27 @@ import math
 
 from ..compiler import Value, constant, literal, node
 
-BLEND = {"ADD": "({a} + {f} * {b})", "MULTIPLY": "({a} * (1 - {f} + {f} * {b}))", "SUBTRACT": "({a} - {f} * {b})",
-         "SCREEN": "(color(1) - (1 - {f} + {f} * (color(1) - {b})) * (color(1) - {a}))",
-         "DIFFERENCE": "mix({a}, color(abs(comp({a}, 0) - comp({b}, 0)), abs(comp({a}, 1) - comp({b}, 1)), abs(comp({a}, 2) - comp({b}, 2))), {f})",
-         "EXCLUSION": "max(mix({a}, {a} + {b} - 2 * {a} * {b}, {f}), color(0))",
-         "DARKEN": "mix({a}, min({a}, {b}), {f})", "LIGHTEN": "mix({a}, max({a}, {b}), {f})", "OVERLAY": "blOverlay({f}, {a}, {b})",
-         "DIVIDE": "blDivide({f}, {a}, {b})", "DODGE": "blDodge({f}, {a}, {b})", "BURN": "blBurn({f}, {a}, {b})",
-         "HUE": "blOfHsv(comp({f}, 0), 0, {a}, {b})", "SATURATION": "blOfHsv(comp({f}, 0), 1, {a}, {b})",
-         "VALUE": "blOfHsv(comp({f}, 0), 2, {a}, {b})", "COLOR": "blOfHsv(comp({f}, 0), 3, {a}, {b})",
-         "SOFT_LIGHT": "((1 - {f}) * {a} + {f} * ((color(1) - {a}) * {b} * {a} + {a} * (color(1) - (color(1) - {b}) * (color(1) - {a}))))",
-         "LINEAR_LIGHT": "({a} + {f} * (2 * {b} - color(1)))"}
+BLEND = {
+    "ADD": "({a} + {f} * {b})",
+    "MULTIPLY": "({a} * (1 - {f} + {f} * {b}))",
+    "SUBTRACT": "({a} - {f} * {b})",
+    "SCREEN": "(color(1) - (1 - {f} + {f} * (color(1) - {b})) * (color(1) - {a}))",
+    "DIFFERENCE": "mix({a}, max({a}, {b}) - min({a}, {b}), {f})",
+    "EXCLUSION": "max(mix({a}, {a} + {b} - 2 * {a} * {b}, {f}), color(0))",
+    "DARKEN": "mix({a}, min({a}, {b}), {f})",
+    "LIGHTEN": "mix({a}, max({a}, {b}), {f})",
+    "OVERLAY": "blOverlay({f}, {a}, {b})",
+    "DIVIDE": "blDivide({f}, {a}, {b})",
+    "DODGE": "blDodge({f}, {a}, {b})",
+    "BURN": "blBurn({f}, {a}, {b})",
+    "HUE": "blOfHsv(comp({f}, 0), 0, {a}, {b})",
+    "SATURATION": "blOfHsv(comp({f}, 0), 1, {a}, {b})",
+    "VALUE": "blOfHsv(comp({f}, 0), 2, {a}, {b})",
+    "COLOR": "blOfHsv(comp({f}, 0), 3, {a}, {b})",
+    "SOFT_LIGHT": "((1 - {f}) * {a} + {f} * ((color(1) - {a}) * {b} * {a} +"
+    " {a} * (color(1) - (color(1) - {b}) * (color(1) - {a}))))",
+    "LINEAR_LIGHT": "({a} + {f} * (2 * {b} - color(1)))",
+}
 
 
 def mixed(c, blend, f, a, b):
@@ -53,13 +64,17 @@ def mix(c, n, out):
     if kind == "float":
         return c.let("float", "mix(%s, %s, %s)" % (a, b, f))
     f, a, b = (c.name_of("vector", "vector(%s)" % x) for x in (f, a, b))
-    return c.let("vector", "vector(%s)" % ", ".join("mix(%scomp(%s), %scomp(%s), %scomp(%s))" % (k, a, k, b, k, f) for k in "xyz"))
+    return c.let(
+        "vector", "vector(%s)" % ", ".join("mix(%scomp(%s), %scomp(%s), %scomp(%s))" % (k, a, k, b, k, f) for k in "xyz")
+    )
 
 
 @node("ShaderNodeHueSaturation")
 def hue_saturation(c, n, out):
     names = ("Hue", "Saturation", "Value", "Fac")
-    return c.let("color", "blHueSaturation(%s, %s)" % (", ".join(c.input(n, x, "float") for x in names), c.input(n, "Color", "color")))
+    return c.let(
+        "color", "blHueSaturation(%s, %s)" % (", ".join(c.input(n, x, "float") for x in names), c.input(n, "Color", "color"))
+    )
 
 
 @node("ShaderNodeInvert")
@@ -75,7 +90,11 @@ def gamma(c, n, out):
 
 @node("ShaderNodeBrightContrast")
 def bright_contrast(c, n, out):
-    return c.let("color", "blContrast(%s, %s, %s)" % (c.input(n, "Color", "color"), c.input(n, "Bright", "float"), c.input(n, "Contrast", "float")))
+    return c.let(
+        "color",
+        "blContrast(%s, %s, %s)"
+        % (c.input(n, "Color", "color"), c.input(n, "Bright", "float"), c.input(n, "Contrast", "float")),
+    )
 
 
 @node("ShaderNodeRGBToBW")
@@ -95,7 +114,10 @@ def table(c, colours, f):
     last = len(colours) - 1
     c.count += 1
     name = "table%d" % c.count
-    c.say("uniform color %s[%d] = {%s};" % (name, len(colours), ", ".join("color(%.7g, %.7g, %.7g)" % tuple(x[:3]) for x in colours)))
+    c.say(
+        "uniform color %s[%d] = {%s};"
+        % (name, len(colours), ", ".join("color(%.7g, %.7g, %.7g)" % tuple(x[:3]) for x in colours))
+    )
     at = c.name_of("float", "clamp(%s, 0, 1) * %d" % (f, last))
     i = c.name_of("float", "min(floor(%s), %d)" % (at, last - 1))
     return c.let("color", "mix(%s[%s], %s[%s + 1], color(%s - %s))" % (name, i, name, i, at, i))
@@ -132,14 +154,19 @@ def rgb_curve(c, n, out):
     whole = [[n.mapping.evaluate(n.mapping.curves[k], row[3]) for k in range(3)] for row in rows]
     colour = c.name_of("color", c.input(n, "Color", "color"))
     parts = [table(c, whole, "comp(%s, %d)" % (colour, k)).code for k in range(3)]
-    return c.let("color", "mix(%s, color(comp(%s, 0), comp(%s, 1), comp(%s, 2)), color(%s))" % (colour, *parts, c.input(n, "Fac", "float")))
+    return c.let(
+        "color",
+        "mix(%s, color(comp(%s, 0), comp(%s, 1), comp(%s, 2)), color(%s))" % (colour, *parts, c.input(n, "Fac", "float")),
+    )
 
 
 @node("ShaderNodeFloatCurve")
 def float_curve(c, n, out):
     rows = curves_table(n.mapping, 65)
     x = c.name_of("float", c.input(n, "Value", "float"))
-    return c.let("float", "mix(%s, comp(%s, 0), %s)" % (x, table(c, [(r[0],) * 3 for r in rows], x).code, c.input(n, "Factor", "float")))
+    return c.let(
+        "float", "mix(%s, comp(%s, 0), %s)" % (x, table(c, [(r[0],) * 3 for r in rows], x).code, c.input(n, "Factor", "float"))
+    )
 
 
 @node("ShaderNodeCombineRGB", "ShaderNodeCombineHSV", "ShaderNodeCombineXYZ", "ShaderNodeCombineColor")
@@ -178,7 +205,9 @@ def map_range(c, n, out):
     if getattr(n, "data_type", "FLOAT") == "FLOAT_VECTOR":
         c.lost("Map Range of vectors")
         return c.value(n, "Vector", "vector")
-    x, a, b, to_a, to_b = (c.name_of("float", c.input(n, k, "float")) for k in ("Value", "From Min", "From Max", "To Min", "To Max"))
+    x, a, b, to_a, to_b = (
+        c.name_of("float", c.input(n, k, "float")) for k in ("Value", "From Min", "From Max", "To Min", "To Max")
+    )
     f = c.name_of("float", "blSafeDivide(%s - %s, %s - %s)" % (x, a, b, a))
     kind = n.interpolation_type
     if kind == "STEPPED":
@@ -193,19 +222,47 @@ def map_range(c, n, out):
     return c.let("float", "clamp(%s, min(%s, %s), max(%s, %s))" % (code, to_a, to_b, to_a, to_b) if n.clamp else code)
 
 
-MATH = {"ADD": "{a} + {b}", "SUBTRACT": "{a} - {b}", "MULTIPLY": "{a} * {b}", "DIVIDE": "blSafeDivide({a}, {b})", "MULTIPLY_ADD": "{a} * {b} + {c}",
-        "POWER": "pow({a}, {b})", "LOGARITHM": "(({a} > 0 && {b} > 0 && {b} != 1) ? log({a}) / log({b}) : 0)", "SQRT": "sqrt(max({a}, 0))",
-        "INVERSE_SQRT": "inversesqrt(max({a}, 1e-20))", "ABSOLUTE": "abs({a})", "EXPONENT": "exp({a})", "MINIMUM": "min({a}, {b})",
-        "MAXIMUM": "max({a}, {b})", "LESS_THAN": "(({a} < {b}) ? 1 : 0)", "GREATER_THAN": "(({a} > {b}) ? 1 : 0)", "SIGN": "sign({a})",
-        "COMPARE": "((abs({a} - {b}) <= max({c}, 1e-5)) ? 1 : 0)", "ROUND": "floor({a} + .5)", "FLOOR": "floor({a})", "CEIL": "ceil({a})",
-        "TRUNC": "(({a} < 0) ? ceil({a}) : floor({a}))", "FRACT": "({a} - floor({a}))",
-        "MODULO": "(({b} == 0) ? 0 : {a} - {b} * (({a} / {b} < 0) ? ceil({a} / {b}) : floor({a} / {b})))",
-        "FLOORED_MODULO": "(({b} == 0) ? 0 : {a} - {b} * floor({a} / {b}))",
-        "WRAP": "(({b} == {c}) ? {c} : {a} - ({b} - {c}) * floor(({a} - {c}) / ({b} - {c})))", "SNAP": "(({b} == 0) ? 0 : floor({a} / {b}) * {b})",
-        "PINGPONG": "(({b} == 0) ? 0 : abs((({a} - {b}) / ({b} * 2) - floor(({a} - {b}) / ({b} * 2))) * {b} * 2 - {b}))",
-        "SINE": "sin({a})", "COSINE": "cos({a})", "TANGENT": "tan({a})", "ARCSINE": "asin(clamp({a}, -1, 1))", "ARCCOSINE": "acos(clamp({a}, -1, 1))",
-        "ARCTANGENT": "atan({a})", "ARCTAN2": "atan({a}, {b})", "SINH": "(.5 * (exp({a}) - exp(-{a})))", "COSH": "(.5 * (exp({a}) + exp(-{a})))",
-        "TANH": "(1 - 2 / (exp(2 * {a}) + 1))", "RADIANS": "radians({a})", "DEGREES": "degrees({a})"}
+MATH = {
+    "ADD": "{a} + {b}",
+    "SUBTRACT": "{a} - {b}",
+    "MULTIPLY": "{a} * {b}",
+    "DIVIDE": "blSafeDivide({a}, {b})",
+    "MULTIPLY_ADD": "{a} * {b} + {c}",
+    "POWER": "pow({a}, {b})",
+    "LOGARITHM": "(({a} > 0 && {b} > 0 && {b} != 1) ? log({a}) / log({b}) : 0)",
+    "SQRT": "sqrt(max({a}, 0))",
+    "INVERSE_SQRT": "inversesqrt(max({a}, 1e-20))",
+    "ABSOLUTE": "abs({a})",
+    "EXPONENT": "exp({a})",
+    "MINIMUM": "min({a}, {b})",
+    "MAXIMUM": "max({a}, {b})",
+    "LESS_THAN": "(({a} < {b}) ? 1 : 0)",
+    "GREATER_THAN": "(({a} > {b}) ? 1 : 0)",
+    "SIGN": "sign({a})",
+    "COMPARE": "((abs({a} - {b}) <= max({c}, 1e-5)) ? 1 : 0)",
+    "ROUND": "floor({a} + .5)",
+    "FLOOR": "floor({a})",
+    "CEIL": "ceil({a})",
+    "TRUNC": "(({a} < 0) ? ceil({a}) : floor({a}))",
+    "FRACT": "({a} - floor({a}))",
+    "MODULO": "(({b} == 0) ? 0 : {a} - {b} * (({a} / {b} < 0) ? ceil({a} / {b}) : floor({a} / {b})))",
+    "FLOORED_MODULO": "(({b} == 0) ? 0 : {a} - {b} * floor({a} / {b}))",
+    "WRAP": "(({b} == {c}) ? {c} : {a} - ({b} - {c}) * floor(({a} - {c}) / ({b} - {c})))",
+    "SNAP": "(({b} == 0) ? 0 : floor({a} / {b}) * {b})",
+    "PINGPONG": "(({b} == 0) ? 0 : abs((({a} - {b}) / ({b} * 2) - floor(({a} - {b}) / ({b} * 2))) * {b} * 2 - {b}))",
+    "SINE": "sin({a})",
+    "COSINE": "cos({a})",
+    "TANGENT": "tan({a})",
+    "ARCSINE": "asin(clamp({a}, -1, 1))",
+    "ARCCOSINE": "acos(clamp({a}, -1, 1))",
+    "ARCTANGENT": "atan({a})",
+    "ARCTAN2": "atan({a}, {b})",
+    "SINH": "(.5 * (exp({a}) - exp(-{a})))",
+    "COSH": "(.5 * (exp({a}) + exp(-{a})))",
+    "TANH": "(1 - 2 / (exp(2 * {a}) + 1))",
+    "RADIANS": "radians({a})",
+    "DEGREES": "degrees({a})",
+}
 
 
 @node("ShaderNodeMath")
@@ -223,19 +280,30 @@ def maths(c, n, out):
 
 
 def blackbody_colour(kelvin):
-    """Linear Rec. 709 colour of a black body, of luminance 1: Planck's spectrum with the CIE 1931 observer by the fits of Wyman, Sloan
+    """Linear Rec. 709 colour of a black body, of luminance 1: Planck's spectrum with the CIE 1931 observer by the fits of
+    Wyman, Sloan
     and Shirley, "Simple Analytic Approximations to the CIE XYZ Color Matching Functions" (JCGT 2013)."""
+
     def bell(x, middle, low, high):
         t = (x - middle) * (low if x < middle else high)
-        return math.exp(-.5 * t * t)
+        return math.exp(-0.5 * t * t)
+
     X = Y = Z = 0.0
     for nm in range(380, 781, 5):
         power = 1 / ((nm / 500) ** 5 * (math.exp(min(700, 1.4387769e7 / (nm * max(kelvin, 800)))) - 1))
-        X += power * (1.056 * bell(nm, 599.8, .0264, .0323) + .362 * bell(nm, 442, .0624, .0374) - .065 * bell(nm, 501.1, .0490, .0382))
-        Y += power * (.821 * bell(nm, 568.8, .0213, .0247) + .286 * bell(nm, 530.9, .0613, .0322))
-        Z += power * (1.217 * bell(nm, 437, .0845, .0278) + .681 * bell(nm, 459, .0385, .0725))
+        X += power * (
+            1.056 * bell(nm, 599.8, 0.0264, 0.0323)
+            + 0.362 * bell(nm, 442, 0.0624, 0.0374)
+            - 0.065 * bell(nm, 501.1, 0.0490, 0.0382)
+        )
+        Y += power * (0.821 * bell(nm, 568.8, 0.0213, 0.0247) + 0.286 * bell(nm, 530.9, 0.0613, 0.0322))
+        Z += power * (1.217 * bell(nm, 437, 0.0845, 0.0278) + 0.681 * bell(nm, 459, 0.0385, 0.0725))
     X, Z = X / Y, Z / Y
-    return (3.2404542 * X - 1.5371385 - .4985314 * Z, -.9692660 * X + 1.8760108 + .0415560 * Z, .0556434 * X - .2040259 + 1.0572252 * Z)
+    return (
+        3.2404542 * X - 1.5371385 - 0.4985314 * Z,
+        -0.9692660 * X + 1.8760108 + 0.0415560 * Z,
+        0.0556434 * X - 0.2040259 + 1.0572252 * Z,
+    )
 
 
 @node("ShaderNodeBlackbody")

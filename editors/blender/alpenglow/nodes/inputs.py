@@ -73,7 +73,11 @@ def texture_coordinate(c, n, out):
 def geometry(c, n, out):
     name = out.name
     if c.kind == "light":
-        return Value("vector", "-blD" if name in ("Normal", "Incoming", "True Normal") else "blD") if out.type == "VECTOR" else constant("float", 0.0)
+        return (
+            Value("vector", "-blD" if name in ("Normal", "Incoming", "True Normal") else "blD")
+            if out.type == "VECTOR"
+            else constant("float", 0.0)
+        )
     if name == "Position":
         return as_vector(c, WORLD_P)
     if name == "Normal":
@@ -89,14 +93,19 @@ def geometry(c, n, out):
     if name == "Parametric":
         return Value("vector", "vector(u, v, 0)")
     c.lost("Geometry node's %s" % name)
-    return constant("float", .5)
+    return constant("float", 0.5)
 
 
 @node("ShaderNodeObjectInfo")
 def object_info(c, n, out):
-    names = {"Location": ("color", "bllocation", "vector"), "Color": ("color", "blcolor", "color"), "Alpha": ("float", "blalpha", "float"),
-             "Object Index": ("float", "blobject", "float"), "Material Index": ("float", "blmaterial", "float"),
-             "Random": ("float", "blrandom", "float")}
+    names = {
+        "Location": ("color", "bllocation", "vector"),
+        "Color": ("color", "blcolor", "color"),
+        "Alpha": ("float", "blalpha", "float"),
+        "Object Index": ("float", "blobject", "float"),
+        "Material Index": ("float", "blmaterial", "float"),
+        "Random": ("float", "blrandom", "float"),
+    }
     kind, name, as_kind = names[out.name]
     variable = c.name_of(kind, "0")
     c.say('attribute("user:%s", %s);' % (name, variable))
@@ -112,7 +121,9 @@ def uv_map(c, n, out):
 def attribute_node(c, n, out):
     if getattr(n, "attribute_type", "GEOMETRY") != "GEOMETRY":
         c.lost("Attributes of the %s" % n.attribute_type.lower())
-        return constant({"Color": "color", "Vector": "vector"}.get(out.name, "float"), 0.0 if out.name in ("Fac", "Alpha") else (0, 0, 0))
+        return constant(
+            {"Color": "color", "Vector": "vector"}.get(out.name, "float"), 0.0 if out.name in ("Fac", "Alpha") else (0, 0, 0)
+        )
     if out.name == "Alpha":
         return constant("float", 1.0)
     found = attribute(c, n.attribute_name)
@@ -150,8 +161,14 @@ def value(c, n, out):
 @node("ShaderNodeLightPath")
 def light_path(c, n, out):
     name = out.name
-    kinds = {"Is Camera Ray": "camera", "Is Diffuse Ray": "diffuse", "Is Glossy Ray": "specular", "Is Singular Ray": "specular",
-             "Is Reflection Ray": "specular", "Is Shadow Ray": "transmission"}
+    kinds = {
+        "Is Camera Ray": "camera",
+        "Is Diffuse Ray": "diffuse",
+        "Is Glossy Ray": "specular",
+        "Is Singular Ray": "specular",
+        "Is Reflection Ray": "specular",
+        "Is Shadow Ray": "transmission",
+    }
     if name in kinds:
         if "blRay" not in c.values:
             c.values["blRay"] = True
@@ -170,7 +187,9 @@ def light_path(c, n, out):
 @node("ShaderNodeFresnel")
 def fresnel(c, n, out):
     ior, normal = c.input(n, "IOR", "float"), normal_of(c, n)
-    return c.let("float", "blDielectric(-(%s . normalize(I)), (blSide == 1) ? max(%s, 1e-5) : 1 / max(%s, 1e-5))" % (normal, ior, ior))
+    return c.let(
+        "float", "blDielectric(-(%s . normalize(I)), (blSide == 1) ? max(%s, 1e-5) : 1 / max(%s, 1e-5))" % (normal, ior, ior)
+    )
 
 
 @node("ShaderNodeLayerWeight")
@@ -179,14 +198,17 @@ def layer_weight(c, n, out):
     if out.name == "Fresnel":
         eta = c.name_of("float", "max(1 - %s, 1e-5)" % blend)
         return c.let("float", "blDielectric(-(%s . normalize(I)), (blSide == 1) ? 1 / %s : %s)" % (normal, eta, eta))
-    return c.let("float", "1 - pow(clamp(-(%s . normalize(I)), 0, 1), (%s == .5) ? 1 : (%s < .5) ? 2 * clamp(%s, 0, .99999) : "
-                 ".5 / (1 - clamp(%s, 0, .99999)))" % (normal, blend, blend, blend, blend))
+    return c.let(
+        "float",
+        "1 - pow(clamp(-(%s . normalize(I)), 0, 1), (%s == .5) ? 1 : (%s < .5) ? 2 * clamp(%s, 0, .99999) : "
+        ".5 / (1 - clamp(%s, 0, .99999)))" % (normal, blend, blend, blend, blend),
+    )
 
 
 @node("ShaderNodeHairInfo")
 def hair_info(c, n, out):
     if out.name in ("Intercept", "Length"):
-        return Value("float", "v") if out.name == "Intercept" else constant("float", .1)
+        return Value("float", "v") if out.name == "Intercept" else constant("float", 0.1)
     if out.name == "Tangent Normal":
         return world_vector(c, "normalize(dPdv)")
     if out.name == "Is Strand":
@@ -198,7 +220,7 @@ def hair_info(c, n, out):
         c.parameter("bl_random", "varying float bl_random = 0")
         return Value("float", "bl_random")
     c.lost("Hair Info's %s" % out.name)
-    return constant("float", .01)
+    return constant("float", 0.01)
 
 
 def normal_of(c, n, names="Normal"):

@@ -15,15 +15,22 @@ def place(c, n, default="generated"):
         code = (inputs.uv(c) if default == "uv" else inputs.generated(c)).code
     m = getattr(n, "texture_mapping", None)
     if m is not None:
-        if m.vector_type not in ("POINT", "TEXTURE") or (m.mapping_x, m.mapping_y, m.mapping_z) != ("X", "Y", "Z") or m.use_min or m.use_max:
+        if (
+            m.vector_type not in ("POINT", "TEXTURE")
+            or (m.mapping_x, m.mapping_y, m.mapping_z) != ("X", "Y", "Z")
+            or m.use_min
+            or m.use_max
+        ):
             c.lost("Texture Mapping of a node in its sidebar")
         t = Matrix.LocRotScale(m.translation, Euler(m.rotation), m.scale)
         if m.vector_type == "TEXTURE":
             t = t.inverted_safe()
         if any(abs(t[i][k] - (i == k)) > 1e-7 for i in range(3) for k in range(4)):
             w = c.name_of("vector", code)
-            code = "vector(%s)" % ", ".join(" + ".join(["(%.9g) * %scomp(%s)" % (t[i][k], "xyz"[k], w) for k in range(3)] + ["(%.9g)" % t[i][3]])
-                                            for i in range(3))
+            code = "vector(%s)" % ", ".join(
+                " + ".join(["(%.9g) * %scomp(%s)" % (t[i][k], "xyz"[k], w) for k in range(3)] + ["(%.9g)" % t[i][3]])
+                for i in range(3)
+            )
     return c.name_of("vector", code)
 
 
@@ -76,7 +83,12 @@ def image(c, n, out):
         s, t = (c.name_of("float", "1 - abs(mod(%s, 2) - 1)" % x) for x in (s, t))
     value, name = looked_up(c, n, n.image, s, t)
     if alpha:
-        if name is None or n.image.alpha_mode == "NONE" or n.image.channels not in (2, 4) and n.image.depth not in (16, 32, 64, 128):
+        if (
+            name is None
+            or n.image.alpha_mode == "NONE"
+            or n.image.channels not in (2, 4)
+            and n.image.depth not in (16, 32, 64, 128)
+        ):
             value = constant("float", 1.0)
         else:
             value = c.let("float", 'float texture(%s[3], %s, 1 - (%s), "fill", 1)' % (name, s, t))
@@ -112,7 +124,7 @@ ENVIRONMENT = "vector(-xcomp(%s), ycomp(%s), zcomp(%s))"
 @node("ShaderNodeTexSky")
 def sky(c, n, out):
     c.lost("Sky Texture (an even sky of its mean colour)")
-    return constant("color", (.25, .35, .55))
+    return constant("color", (0.25, 0.35, 0.55))
 
 
 @node("ShaderNodeTexChecker")
@@ -125,7 +137,11 @@ def checker(c, n, out):
 
 def four(c, n):
     """The fourth coordinate and how many there are."""
-    size = getattr(n, "noise_dimensions", None) or getattr(n, "voronoi_dimensions", None) or getattr(n, "musgrave_dimensions", "3D")
+    size = (
+        getattr(n, "noise_dimensions", None)
+        or getattr(n, "voronoi_dimensions", None)
+        or getattr(n, "musgrave_dimensions", "3D")
+    )
     return (c.input(n, "W", "float") if size in ("1D", "4D") else "0"), size[0]
 
 
@@ -134,8 +150,13 @@ def noise(c, n, out):
     if getattr(n, "noise_type", "FBM") != "FBM":
         c.lost("Noise Texture of type %s" % n.noise_type.title())
     w, size = four(c, n)
-    rest = ", ".join([place(c, n), w, size] + [c.input(n, k, "float", d) for k, d in
-                     (("Scale", 5.0), ("Detail", 2.0), ("Roughness", .5), ("Lacunarity", 2.0), ("Distortion", 0.0))])
+    rest = ", ".join(
+        [place(c, n), w, size]
+        + [
+            c.input(n, k, "float", d)
+            for k, d in (("Scale", 5.0), ("Detail", 2.0), ("Roughness", 0.5), ("Lacunarity", 2.0), ("Distortion", 0.0))
+        ]
+    )
     if out.name == "Color":
         return c.let("color", "blNoiseColor(%s)" % rest)
     return c.let("float", "blNoise(%s)" % rest)
@@ -150,8 +171,11 @@ def musgrave(c, n, out):
     octaves = c.name_of("float", "max(%s - 1, 0)" % c.input(n, "Detail", "float", 2.0))
     r = c.name_of("float", "clamp(%s, 0, 1)" % roughness)
     most = "((%s == 1) ? %s + 1 : (1 - pow(%s, %s + 1)) / (1 - %s))" % (r, octaves, r, octaves, r)
-    return c.let("float", "(2 * blNoise(%s, %s, %s, %s, %s, %s, %s, 0) - 1) * %s" % (
-        place(c, n), w, size, c.input(n, "Scale", "float", 5.0), octaves, r, c.input(n, "Lacunarity", "float", 2.0), most))
+    return c.let(
+        "float",
+        "(2 * blNoise(%s, %s, %s, %s, %s, %s, %s, 0) - 1) * %s"
+        % (place(c, n), w, size, c.input(n, "Scale", "float", 5.0), octaves, r, c.input(n, "Lacunarity", "float", 2.0), most),
+    )
 
 
 @node("ShaderNodeTexVoronoi")
@@ -164,18 +188,36 @@ def voronoi(c, n, out):
         c.lost("Voronoi Texture by %s in %s" % (n.distance.title(), n.voronoi_dimensions))
     if c.fixed(n, "Detail", 0.0) not in (0, 0.0):
         c.lost("Fractal Voronoi Texture (one layer is taken)")
-    d, colour, at = c.call("blVoronoi", ("float", "color", "vector"), place(c, n), n.voronoi_dimensions[0], c.input(n, "Scale", "float", 5.0),
-                           "clamp(%s, 0, 1)" % c.input(n, "Randomness", "float", 1.0), str(features.get(n.feature, 0)),
-                           str(metrics.get(n.distance, 0)))
-    return {"Distance": Value("float", d), "Color": Value("color", colour), "Position": Value("vector", at)}.get(out.name) or c.nothing(out)
+    d, colour, at = c.call(
+        "blVoronoi",
+        ("float", "color", "vector"),
+        place(c, n),
+        n.voronoi_dimensions[0],
+        c.input(n, "Scale", "float", 5.0),
+        "clamp(%s, 0, 1)" % c.input(n, "Randomness", "float", 1.0),
+        str(features.get(n.feature, 0)),
+        str(metrics.get(n.distance, 0)),
+    )
+    return {"Distance": Value("float", d), "Color": Value("color", colour), "Position": Value("vector", at)}.get(
+        out.name
+    ) or c.nothing(out)
 
 
 @node("ShaderNodeTexWave")
 def wave(c, n, out):
     rings = n.wave_type == "RINGS"
     axis = {"X": 0, "Y": 1, "Z": 2}.get(n.rings_direction if rings else n.bands_direction, 3)
-    rest = [c.input(n, k, "float", d) for k, d in (("Scale", 5.0), ("Distortion", 0.0), ("Detail", 2.0), ("Detail Scale", 1.0),
-                                                   ("Detail Roughness", .5), ("Phase Offset", 0.0))]
+    rest = [
+        c.input(n, k, "float", d)
+        for k, d in (
+            ("Scale", 5.0),
+            ("Distortion", 0.0),
+            ("Detail", 2.0),
+            ("Detail Scale", 1.0),
+            ("Detail Roughness", 0.5),
+            ("Phase Offset", 0.0),
+        )
+    ]
     profile = {"SIN": 0, "SAW": 1, "TRI": 2}[n.wave_profile]
     f = c.let("float", "blWave(%s, %d, %d, %d, %s)" % (place(c, n), rings, axis, profile, ", ".join(rest)))
     return c.convert(f, "color") if out.name == "Color" else f
@@ -190,7 +232,11 @@ def gradient(c, n, out):
 
 @node("ShaderNodeTexMagic")
 def magic(c, n, out):
-    colour = c.let("color", "blMagic(%s, %s, %s, %d)" % (place(c, n), c.input(n, "Scale", "float"), c.input(n, "Distortion", "float"), n.turbulence_depth))
+    colour = c.let(
+        "color",
+        "blMagic(%s, %s, %s, %d)"
+        % (place(c, n), c.input(n, "Scale", "float"), c.input(n, "Distortion", "float"), n.turbulence_depth),
+    )
     return colour if out.name == "Color" else c.convert(c.convert(colour, "vector"), "float")
 
 
@@ -210,7 +256,10 @@ def white_noise(c, n, out):
     w, _ = four(c, n)
     kind = "color" if out.name == "Color" else "float"
     p = c.name_of("vector", c.input(n, "Vector", "vector") if c.linked(n, "Vector") else "vector(0, 0, 0)")
-    return c.let(kind, "%s cellnoise(point(xcomp(%s) * 7919.3, ycomp(%s) * 7919.3, zcomp(%s) * 7919.3), (%s) * 7919.3)" % (kind, p, p, p, w))
+    return c.let(
+        kind,
+        "%s cellnoise(point(xcomp(%s) * 7919.3, ycomp(%s) * 7919.3, zcomp(%s) * 7919.3), (%s) * 7919.3)" % (kind, p, p, p, w),
+    )
 
 
 __all__ = ["math"]

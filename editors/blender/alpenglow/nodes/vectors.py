@@ -18,7 +18,9 @@ def turned(c, v, angles, back=False):
         m = rotation(*angles.constant)
         if back:
             m = [list(r) for r in zip(*m)]
-        return "vector(%s)" % ", ".join(" + ".join("(%.9g) * %scomp(%s)" % (m[i][k], "xyz"[k], v) for k in range(3)) for i in range(3))
+        return "vector(%s)" % ", ".join(
+            " + ".join("(%.9g) * %scomp(%s)" % (m[i][k], "xyz"[k], v) for k in range(3)) for i in range(3)
+        )
     a = c.name_of("vector", angles.code)
     p = c.name_of("point", "point(xcomp(%s), ycomp(%s), zcomp(%s))" % (v, v, v))
     sign, order = ("-", "zyx") if back else ("", "xyz")
@@ -42,9 +44,13 @@ def mapping(c, n, out):
     if kind == "TEXTURE":
         moved = c.name_of("vector", "%s - %s" % (v, place))
         back = c.name_of("vector", turned(c, moved, angles, True))
-        return c.let("vector", "vector(%s)" % ", ".join("blSafeDivide(%scomp(%s), %scomp(%s))" % (a, back, a, size) for a in "xyz"))
+        return c.let(
+            "vector", "vector(%s)" % ", ".join("blSafeDivide(%scomp(%s), %scomp(%s))" % (a, back, a, size) for a in "xyz")
+        )
     if kind == "NORMAL":
-        scaled = c.name_of("vector", "vector(%s)" % ", ".join("blSafeDivide(%scomp(%s), %scomp(%s))" % (a, v, a, size) for a in "xyz"))
+        scaled = c.name_of(
+            "vector", "vector(%s)" % ", ".join("blSafeDivide(%scomp(%s), %scomp(%s))" % (a, v, a, size) for a in "xyz")
+        )
         return c.let("vector", "normalize(%s)" % turned(c, scaled, angles))
     scaled = c.name_of("vector", product(v, size))
     code = turned(c, scaled, angles)
@@ -115,7 +121,9 @@ def transform(c, n, out):
     v = c.input(n, "Vector", "vector")
     spaces = {"WORLD": "world", "OBJECT": "object", "CAMERA": "camera"}
     kind, a, b = n.vector_type, spaces[n.convert_from], spaces[n.convert_to]
-    function, of = {"POINT": ("transform", "point"), "VECTOR": ("vtransform", "vector"), "NORMAL": ("ntransform", "normal")}[kind]
+    function, of = {"POINT": ("transform", "point"), "VECTOR": ("vtransform", "vector"), "NORMAL": ("ntransform", "normal")}[
+        kind
+    ]
     code = 'vector(%s("%s", "%s", %s(%s)))' % (function, a, b, of, v)
     return c.let("vector", "normalize(%s)" % code if kind == "NORMAL" else code)
 
@@ -127,7 +135,9 @@ def rotate(c, n, out):
     moved = c.name_of("vector", "%s - %s" % (v, centre))
     if kind == "EULER_XYZ":
         return c.let("vector", "%s + %s" % (turned(c, moved, c.value(n, "Rotation", "vector"), n.invert), centre))
-    axis = {"X_AXIS": "vector(1, 0, 0)", "Y_AXIS": "vector(0, 1, 0)", "Z_AXIS": "vector(0, 0, 1)"}.get(kind) or c.input(n, "Axis", "vector")
+    axis = {"X_AXIS": "vector(1, 0, 0)", "Y_AXIS": "vector(0, 1, 0)", "Z_AXIS": "vector(0, 0, 1)"}.get(kind) or c.input(
+        n, "Axis", "vector"
+    )
     angle = ("-" if n.invert else "") + c.input(n, "Angle", "float")
     return c.let("vector", "vector(rotate(point(%s), %s, point(0, 0, 0), point(%s))) + %s" % (moved, angle, axis, centre))
 
@@ -136,22 +146,49 @@ def rotate(c, n, out):
 def vector_math(c, n, out):
     op = n.operation
     vectors = [s for s in n.inputs if s.enabled and s.type == "VECTOR"]
-    a, b, d = ((c.name_of("vector", c.input(n, vectors[i].identifier, "vector")) if i < len(vectors) else "vector(0, 0, 0)") for i in range(3))
+    a, b, d = (
+        (c.name_of("vector", c.input(n, vectors[i].identifier, "vector")) if i < len(vectors) else "vector(0, 0, 0)")
+        for i in range(3)
+    )
     scale = next((c.input(n, s.identifier, "float") for s in n.inputs if s.enabled and s.type == "VALUE"), "1")
 
     def each(form):
-        return "vector(%s)" % ", ".join(form.replace("$a", "%scomp(%s)" % (k, a)).replace("$b", "%scomp(%s)" % (k, b))
-                                        .replace("$c", "%scomp(%s)" % (k, d)) for k in "xyz")
-    plain = {"ADD": "%s + %s" % (a, b), "SUBTRACT": "%s - %s" % (a, b), "CROSS_PRODUCT": "%s ^ %s" % (a, b), "SCALE": "%s * %s" % (scale, a),
-             "NORMALIZE": "(%s . %s == 0 ? %s : normalize(%s))" % (a, a, a, a), "PROJECT": "blSafeDivide(%s . %s, %s . %s) * %s" % (a, b, b, b, b),
-             "REFLECT": "%s - 2 * (%s . normalize(%s)) * normalize(%s)" % (a, a, b, b),
-             "FACEFORWARD": "((%s . %s < 0) ? %s : -%s)" % (d, b, a, a),
-             "REFRACT": "vector(refract(%s, normal(normalize(%s)), %s))" % (a, b, scale)}
-    forms = {"MULTIPLY": "$a * $b", "DIVIDE": "blSafeDivide($a, $b)", "MULTIPLY_ADD": "$a * $b + $c", "ABSOLUTE": "abs($a)", "FLOOR": "floor($a)",
-             "CEIL": "ceil($a)", "FRACTION": "($a - floor($a))", "MINIMUM": "min($a, $b)", "MAXIMUM": "max($a, $b)", "SINE": "sin($a)",
-             "COSINE": "cos($a)", "TANGENT": "tan($a)", "MODULO": "(($b == 0) ? 0 : $a - $b * (($a / $b < 0) ? ceil($a / $b) : floor($a / $b)))",
-             "SNAP": "(($b == 0) ? 0 : floor($a / $b) * $b)", "WRAP": "(($b == $c) ? $c : $a - ($b - $c) * floor(($a - $c) / ($b - $c)))",
-             "POWER": "pow($a, $b)", "SIGN": "sign($a)", "ROUND": "floor($a + .5)"}
+        return "vector(%s)" % ", ".join(
+            form.replace("$a", "%scomp(%s)" % (k, a)).replace("$b", "%scomp(%s)" % (k, b)).replace("$c", "%scomp(%s)" % (k, d))
+            for k in "xyz"
+        )
+
+    plain = {
+        "ADD": "%s + %s" % (a, b),
+        "SUBTRACT": "%s - %s" % (a, b),
+        "CROSS_PRODUCT": "%s ^ %s" % (a, b),
+        "SCALE": "%s * %s" % (scale, a),
+        "NORMALIZE": "(%s . %s == 0 ? %s : normalize(%s))" % (a, a, a, a),
+        "PROJECT": "blSafeDivide(%s . %s, %s . %s) * %s" % (a, b, b, b, b),
+        "REFLECT": "%s - 2 * (%s . normalize(%s)) * normalize(%s)" % (a, a, b, b),
+        "FACEFORWARD": "((%s . %s < 0) ? %s : -%s)" % (d, b, a, a),
+        "REFRACT": "vector(refract(%s, normal(normalize(%s)), %s))" % (a, b, scale),
+    }
+    forms = {
+        "MULTIPLY": "$a * $b",
+        "DIVIDE": "blSafeDivide($a, $b)",
+        "MULTIPLY_ADD": "$a * $b + $c",
+        "ABSOLUTE": "abs($a)",
+        "FLOOR": "floor($a)",
+        "CEIL": "ceil($a)",
+        "FRACTION": "($a - floor($a))",
+        "MINIMUM": "min($a, $b)",
+        "MAXIMUM": "max($a, $b)",
+        "SINE": "sin($a)",
+        "COSINE": "cos($a)",
+        "TANGENT": "tan($a)",
+        "MODULO": "(($b == 0) ? 0 : $a - $b * (($a / $b < 0) ? ceil($a / $b) : floor($a / $b)))",
+        "SNAP": "(($b == 0) ? 0 : floor($a / $b) * $b)",
+        "WRAP": "(($b == $c) ? $c : $a - ($b - $c) * floor(($a - $c) / ($b - $c)))",
+        "POWER": "pow($a, $b)",
+        "SIGN": "sign($a)",
+        "ROUND": "floor($a + .5)",
+    }
     values = {"DOT_PRODUCT": "%s . %s" % (a, b), "DISTANCE": "length(%s - %s)" % (a, b), "LENGTH": "length(%s)" % a}
     if op in values:
         return c.let("float", values[op])

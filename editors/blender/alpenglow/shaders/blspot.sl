@@ -1,5 +1,7 @@
-/* A spot light of Blender, along -z of "shader". edge: cosine of half the spot size; blend: part of the cone that is soft; falling 1: light falls
-   with the cosine, too, as up to Blender 3.5. As an area light (on a sphere) intensity is radiance, at a point watts per steradian over pi. */
+/* A spot light of Blender, along -z of "shader". edge: cosine of half the spot size; blend: part of the cone that is soft;
+   falling 1: light falls
+   with the cosine, too, as up to Blender 3.5. As an area light (on a sphere) intensity is radiance, at a point watts per
+   steradian over pi. */
 light blspot(color intensity = 1; float edge = .9, blend = .15, falling = 1, area = 0;) {
     vector axis = normalize(vtransform("shader", "current", vector(0, 0, -1)));
     float soft = (1 - edge) * blend;

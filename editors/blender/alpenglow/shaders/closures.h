@@ -1,5 +1,7 @@
-/* Blender's shader nodes as light that comes back: each function is the integral of its lobe. Roughness is Blender's, the square root of
-   the width of slopes. n: the shading normal on the viewer's side. BL_LIGHTS: what makes trace() see lights (the add-on defines it). */
+/* Blender's shader nodes as light that comes back: each function is the integral of its lobe. Roughness is Blender's, the
+   square root of
+   the width of slopes. n: the shading normal on the viewer's side. BL_LIGHTS: what makes trace() see lights (the add-on
+   defines it). */
 #ifndef BLENDER_CLOSURES_H
 #define BLENDER_CLOSURES_H
 #ifndef BL_LIGHTS
@@ -25,7 +27,8 @@ normal blSeen(normal n)
     return out;
 }
 /* Of each channel; below 0 as of 0. */
-color blPow(color c; float e) { return color(pow(max(comp(c, 0), 0), e), pow(max(comp(c, 1), 0), e), pow(max(comp(c, 2), 0), e)); }
+color blPow(color c; float e) { return color(pow(max(comp(c, 0), 0), e), pow(max(comp(c, 1), 0), e), pow(max(comp(c, 2), 0),
+    e)); }
 float blLuminance(color c) { return .2126 * comp(c, 0) + .7152 * comp(c, 1) + .0722 * comp(c, 2); }
 
 /* Fresnel reflectance of a dielectric; eta: index behind the surface over that before it. */
@@ -81,7 +84,8 @@ color blDiffuse(normal n; float roughness)
     extern vector I;
     color light = 0;
     if (roughness <= 0) light = diffuse(n);
-    else light = trace(P, n, "distribution", "oren-nayar", "wo", -normalize(I), "roughness", roughness, "type", "diffuse", BL_LIGHTS);
+    else light = trace(P, n, "distribution", "oren-nayar", "wo", -normalize(I), "roughness", roughness, "type", "diffuse",
+        BL_LIGHTS);
     return light;
 }
 color blTranslucent(normal n) { return diffuse(-n); }
@@ -121,7 +125,8 @@ void blGlass(normal n; float front, roughness, ior; output color mirrored, throu
         mirrored = kr * trace(P, 2 * (n . V) * n - V, BL_LIGHTS);
         through = (1 - kr) * trace(P, (ior == 1) ? -V : refract(-V, n, 1 / eta), BL_LIGHTS);
     } else {
-        color part[2] = trace(P, (front == 1) ? n : -n, "distribution", "glass-ggx", "wo", V, "roughness", a, "eta", ior, BL_LIGHTS);
+        color part[2] = trace(P, (front == 1) ? n : -n, "distribution", "glass-ggx", "wo", V, "roughness", a, "eta", ior,
+            BL_LIGHTS);
         mirrored = part[0];
         through = part[1];
     }
@@ -141,7 +146,8 @@ color blRefraction(normal n; float front, roughness, ior)
 color blSubsurface(color reflectance, radius; float anisotropy)
 {
     extern point P;
-    return subsurface(P, "reflectance", clamp(reflectance, color 0, color .999), "diffusemeanfreepath", max(radius, color 1e-6), "ior", 1,
+    return subsurface(P, "reflectance", clamp(reflectance, color 0, color .999), "diffusemeanfreepath", max(radius, color
+        1e-6), "ior", 1,
                       "unitlength", 1, "anisotropy", anisotropy);
 }
 /* Velvet and sheen: light about the rim. */
@@ -156,7 +162,8 @@ color blHair(vector along; color absorption; float roughness, radial, tilt, ior)
 {
     extern point P;
     extern vector I;
-    return trace(P, along, "distribution", "hair", "wo", -normalize(I), "udir", along, "absorption", absorption, "eta", ior, BL_LIGHTS);
+    return trace(P, along, "distribution", "hair", "wo", -normalize(I), "udir", along, "absorption", absorption, "eta", ior,
+        BL_LIGHTS);
 }
 
 /* The diffuse part of Principled BSDF up to Blender 3.6 (Burley 2012), averaged over the directions of light. */
@@ -166,8 +173,10 @@ float blBurley(float c, roughness)
     return .976 * (1 - .5 * f) + roughness * (f * (1 + .667 * c) + .0476 + .0119 * c);
 }
 /* Principled BSDF up to Blender 3.6. Layers are added, only metal and transmission take from the diffuse base. */
-color blPrincipled3(normal n, nc; vector tangent; float front; color base; float subsurface; color radius, subcolor; float metallic, specular,
-                    spectint, roughness, anisotropic, turn, sheen, sheentint, coat, coatroughness, ior, transmission, transroughness)
+color blPrincipled3(normal n, nc; vector tangent; float front; color base; float subsurface; color radius, subcolor; float
+    metallic, specular,
+                    spectint, roughness, anisotropic, turn, sheen, sheentint, coat, coatroughness, ior, transmission,
+                        transroughness)
 {
     extern vector I;
     vector V = -normalize(I);
@@ -177,7 +186,8 @@ color blPrincipled3(normal n, nc; vector tangent; float front; color base; float
     if (body > 0) {
         if (subsurface < 1) light += body * (1 - subsurface) * base * blBurley(c, roughness) * diffuse(n);
         if (subsurface > 0) light += body * subsurface * blSubsurface(subcolor, radius * subsurface, 0);
-        if (sheen > 0) light += body * sheen * .0476 * mix(color 1, tint, color sheentint) * (1 + 8 * blSchlick(c)) * diffuse(n);
+        if (sheen > 0) light += body * sheen * .0476 * mix(color 1, tint, color sheentint) * (1 + 8 * blSchlick(c)) *
+            diffuse(n);
     }
     vector u = blTurned(n, tangent, turn);
     blWidths(roughness, anisotropic, along, across);
@@ -200,8 +210,10 @@ color blPrincipled3(normal n, nc; vector tangent; float front; color base; float
     return light;
 }
 /* Principled BSDF from Blender 4.0 on: each layer lets through what it does not reflect. */
-color blPrincipled4(normal n, nc; vector tangent; float front; color base; float subsurface; color radius; float metallic, level; color spectint;
-                    float roughness, anisotropic, turn, sheen, sheenroughness; color sheentint; float coat, coatroughness, coatior; color coattint;
+color blPrincipled4(normal n, nc; vector tangent; float front; color base; float subsurface; color radius; float metallic,
+    level; color spectint;
+                    float roughness, anisotropic, turn, sheen, sheenroughness; color sheentint; float coat, coatroughness,
+                        coatior; color coattint;
                     float ior, transmission, diffuseroughness)
 {
     extern vector I;

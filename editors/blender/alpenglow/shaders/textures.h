@@ -16,7 +16,8 @@ color blDecode(color c) { return color(blDecoded(comp(c, 0)), blDecoded(comp(c, 
 /* Checker Texture: 1 for Color1. */
 float blChecker(vector p)
 {
-    float x = floor((xcomp(p) + .000001) * .999999), y = floor((ycomp(p) + .000001) * .999999), z = floor((zcomp(p) + .000001) * .999999);
+    float x = floor((xcomp(p) + .000001) * .999999), y = floor((ycomp(p) + .000001) * .999999), z = floor((zcomp(p) +
+        .000001) * .999999);
     return (mod(abs(x), 2) == mod(abs(y), 2)) ? ((mod(abs(z), 2) == 0) ? 0 : 1) : ((mod(abs(z), 2) == 0) ? 1 : 0);
 }
 /* Signed noise of mean 0. dimensions: 1 to 4. */
@@ -35,7 +36,8 @@ float blNoise(vector at; float where, dimensions, scale, detail, roughness, lacu
     vector p = at * scale;
     float w = where * scale, size = 1, amplitude = 1, most = 0, sum = 0, octaves = clamp(detail, 0, 15), i;
     if (distortion != 0)
-        p += distortion * vector(blSnoise(p + vector(13.5, 27.2, 5.1), w, dimensions), blSnoise(p + vector(71.3, 3.9, 44.7), w, dimensions),
+        p += distortion * vector(blSnoise(p + vector(13.5, 27.2, 5.1), w, dimensions), blSnoise(p + vector(71.3, 3.9, 44.7),
+            w, dimensions),
                                  blSnoise(p + vector(8.8, 61.1, 90.4), w, dimensions));
     float whole = floor(octaves);
     for (i = 0; i <= whole; i += 1) {
@@ -59,7 +61,8 @@ color blNoiseColor(vector p; float w, dimensions, scale, detail, roughness, lacu
 }
 /* Voronoi Texture: distance to the nearest or second nearest point, or to the edge; colour and place of the nearest.
    metric 0: Euclidean, 1: Manhattan, 2: Chebychev; feature 0: F1, 1: F2, 2: distance to edge. */
-void blVoronoi(vector at; float dimensions, scale, randomness, feature, metric; output float distance; output color c; output vector place)
+void blVoronoi(vector at; float dimensions, scale, randomness, feature, metric; output float distance; output color c; output
+    vector place)
 {
     vector p = at * scale, cell = vector(floor(xcomp(p)), floor(ycomp(p)), floor(zcomp(p))), nearest = 0, second = 0;
     float d1 = 1e9, d2 = 1e9, i, j, k, deep = (dimensions == 2) ? 0 : 1;
@@ -91,12 +94,14 @@ void blVoronoi(vector at; float dimensions, scale, randomness, feature, metric; 
     if (feature == 2) distance = (p - .5 * (nearest + second)) . normalize(nearest - second);
     place /= (scale == 0) ? 1 : scale;
 }
-/* Wave Texture. kind 0 bands, 1 rings; axis 0 x, 1 y, 2 z, 3 diagonal (bands) or spherical (rings); profile 0 sine, 1 saw, 2 triangle. */
+/* Wave Texture. kind 0 bands, 1 rings; axis 0 x, 1 y, 2 z, 3 diagonal (bands) or spherical (rings); profile 0 sine, 1 saw, 2
+   triangle. */
 float blWave(vector at; float kind, axis, profile, scale, distortion, detail, detailscale, detailroughness, phase)
 {
     vector p = (at * scale + vector(.000001, .000001, .000001)) * .999999;
     float n = 0;
-    if (kind == 0) n = (axis == 0) ? 20 * xcomp(p) : (axis == 1) ? 20 * ycomp(p) : (axis == 2) ? 20 * zcomp(p) : 10 * (xcomp(p) + ycomp(p) + zcomp(p));
+    if (kind == 0) n = (axis == 0) ? 20 * xcomp(p) : (axis == 1) ? 20 * ycomp(p) : (axis == 2) ? 20 * zcomp(p) : 10 *
+        (xcomp(p) + ycomp(p) + zcomp(p));
     else {
         vector r = (axis == 0) ? vector(0, ycomp(p), zcomp(p)) : (axis == 1) ? vector(xcomp(p), 0, zcomp(p)) :
             (axis == 2) ? vector(xcomp(p), ycomp(p), 0) : p;
@@ -141,7 +146,8 @@ color blMagic(vector at; float scale, distortion, depth)
     return color(.5 - x, .5 - y, .5 - z);
 }
 /* Brick Texture: colour of the brick's tint (0 to 1) and 1 in mortar. */
-void blBrick(vector at; float scale, mortar, smooth, bias, width, height, offset, every, squash, squashevery; output float tint, inmortar)
+void blBrick(vector at; float scale, mortar, smooth, bias, width, height, offset, every, squash, squashevery; output float
+    tint, inmortar)
 {
     vector p = at * scale;
     float row = floor(ycomp(p) / height), w = width, shift = 0;
@@ -169,7 +175,8 @@ color blHueSaturation(float hue, saturation, value, fac; color c)
     color out = blRgb(color(turned - floor(turned), clamp(comp(h, 1) * saturation, 0, 1), comp(h, 2) * value));
     return mix(c, max(out, color 0), color fac);
 }
-color blGamma(color c; float g) { return color(pow(max(comp(c, 0), 0), g), pow(max(comp(c, 1), 0), g), pow(max(comp(c, 2), 0), g)); }
+color blGamma(color c; float g) { return color(pow(max(comp(c, 0), 0), g), pow(max(comp(c, 1), 0), g), pow(max(comp(c, 2),
+    0), g)); }
 color blContrast(color c; float bright, contrast) { return max((1 + contrast) * c + color(bright - contrast * .5), color 0); }
 
 /* Mix colours by one of Blender's modes, in the order of its menu; a below, b above. */
@@ -196,7 +203,8 @@ color blDodge(color f, a, b)
     float i;
     color out = a;
     for (i = 0; i < 3; i += 1)
-        if (comp(a, i) != 0) setcomp(out, i, (1 - comp(f, i) * comp(b, i) <= 0) ? 1 : min(1, comp(a, i) / (1 - comp(f, i) * comp(b, i))));
+        if (comp(a, i) != 0) setcomp(out, i, (1 - comp(f, i) * comp(b, i) <= 0) ? 1 : min(1, comp(a, i) / (1 - comp(f, i) *
+            comp(b, i))));
     return out;
 }
 color blBurn(color f, a, b)

@@ -7,13 +7,11 @@ surface PxrFractal(varying float surfacePosition = 0, layers = 6, frequency = 1,
     RIS_PLACE(q);
     q = q * frequency + vector(variation * 17.3, variation * 5.1, variation * -9.7);
     float weight = 1, total = 0, sum = 0, size = 1, i;
-    float width = max(length(Du(q) * du), length(Dv(q) * dv));
     for (i = 0; i < layers; i += 1) {
-        float fade = 1 - smoothstep(.25, .75, width * size);
         float n = 2 * float noise(q * size) - 1;
         if (erosion > 0) n = mix(n, 1 - 2 * abs(n), erosion);
         if (turbulent != 0) n = abs(n);
-        sum += weight * fade * n;
+        sum += weight * n;
         total += weight;
         weight *= pow(lacunarity, -dimension);
         size *= lacunarity;

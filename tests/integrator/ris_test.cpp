@@ -181,7 +181,7 @@ TEST(RisLights, ARectangleIsOneAcrossAndShinesAlongZ) {
 
 TEST(RisLights, OthersHaveTheirUnitsToo) {
     expectPaint("Light \"PxrDiskLight\" \"l\" \"float intensity\" 4", 4 * .25 / (.25 + 4), "disk, R^2 / (R^2 + h^2)");
-    expectPaint("Light \"PxrSphereLight\" \"l\" \"float intensity\" 4", 4 * .25 / 4, "ball, (R / d)^2");
+    expectPaint("Light \"PxrSphereLight\" \"l\" \"float intensity\" 4", 4 * .25 / 4, "ball, (R / d)^2", .02);
     const double half = 5 * M_PI / 180;
     expectPaint("Light \"PxrDistantLight\" \"l\" \"float intensity\" 40 \"float angleExtent\" 10",
                 40 * std::pow(std::sin(half), 2), "sun, sin^2 of half its extent");

@@ -39,7 +39,7 @@ TEST(Ris, PatternsEndWithTheirBlock) {
     auto c = world("AttributeBegin\nPattern \"PxrMix\" \"mine\"\nAttributeEnd\nPattern \"PxrMix\" \"mind\"\n"
                    "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"mine:resultRGB\"]\nSphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::BadHandle);
-    EXPECT_EQ(c->only().place.line, 5);
+    EXPECT_EQ(c->only().place.line, 6);
     EXPECT_NE(c->only().hint.find("mind"), std::string::npos);
     EXPECT_TRUE(scene::connectionsOf(*c->primitive().attributes->surface).empty());
 }
@@ -93,8 +93,8 @@ TEST(Ris, LightsAreOnEverywhere) {
 }
 
 TEST(Ris, LightsOfAWorldEndWithIt) {
-    auto c =
-        read("WorldBegin\nLight \"PxrDomeLight\" \"s\"\nSphere 1 -1 1 360\nWorldEnd\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+    auto c = read("Integrator \"PxrPathTracer\" \"i\"\nWorldBegin\nLight \"PxrDomeLight\" \"s\"\nSphere 1 -1 1 "
+                  "360\nWorldEnd\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
     ASSERT_EQ(c->frames.size(), 2u);
     EXPECT_EQ(c->frames[0]->primitives[0]->attributes->lights.size(), 1u);
     EXPECT_EQ(c->frames[1]->primitives[0]->attributes->lights.size(), 0u);

@@ -98,8 +98,13 @@ void AssimpReader::cameras() {
         to.far = double(c.mClipPlaneFar);
         const double aspect = to.aspect > 0 ? to.aspect : 16.0 / 9, half = double(c.mHorizontalFOV) / 2;
         to.perspective = !(c.mOrthographicWidth > 0);
-        if (to.perspective) to.yfov = 2 * std::atan(std::tan(half) / aspect);
-        else to.halfHeight = double(c.mOrthographicWidth) / aspect;
+        if (to.perspective && half < .01) { // assimp 5.2 reads none of Collada's and leaves its default, taken for degrees
+            warn("the field of view of camera \"" + to.name + "\" cannot be read; 46 degrees are taken");
+        } else if (to.perspective) {
+            to.yfov = 2 * std::atan(std::tan(half) / aspect);
+        } else {
+            to.halfHeight = double(c.mOrthographicWidth) / aspect;
+        }
         below(c.mName, c.mPosition, c.mLookAt, c.mUp).camera = int(i);
     }
 }

@@ -13,10 +13,17 @@ set(help_folder ${CMAKE_BINARY_DIR}/share)
 add_custom_command(OUTPUT ${help_folder}/help-files DEPENDS alpenglow ${CMAKE_SOURCE_DIR}/cmake/helpfiles.cmake
   COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alpenglow> -DOUT=${help_folder} -P ${CMAKE_SOURCE_DIR}/cmake/helpfiles.cmake
   COMMENT "Manual pages and completions" VERBATIM)
-add_custom_target(installable ALL DEPENDS ${help_folder}/help-files alpenglow ${installed_targets})
+add_custom_target(installable ALL DEPENDS ${help_folder}/help-files alpenglow blender_addon ${installed_targets})
 
 install(TARGETS alpenglow RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS ${installed_targets} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/alpenglow)
+if(TARGET _alpenglow)
+  add_dependencies(installable _alpenglow)
+  set(python_place ${CMAKE_INSTALL_LIBDIR}/alpenglow/python)
+  install(TARGETS _alpenglow LIBRARY DESTINATION ${python_place}/alpenglow)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/python/ DESTINATION ${python_place} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi"
+    PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+endif()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/shaders)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/editors/vscode DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/editors)
 install(DIRECTORY ${help_folder}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR})

@@ -1,8 +1,14 @@
-/* PxrChecker: squares of two colours, of RIS, filtered by the footprint: eight by eight over s and t, or over one unit of a manifold. */
+/* PxrChecker: squares of two colours, of RIS, filtered by the footprint: two by two over one unit of s and t, or of a manifold.
+   dimensions 3 makes cubes of a manifold of places. */
 #include "rispattern.h"
-surface PxrChecker(varying color colorA = 0; varying color colorB = 1; RIS_MANIFOLD; RIS_RGB) {
+surface PxrChecker(varying color colorA = 0; varying color colorB = 1; float dimensions = 2; RIS_MANIFOLD; RIS_RGB) {
     RIS_COORDINATES(x, y);
-    float a = risWave(x * 4), b = risWave(y * 4);
-    resultRGB = mix(colorB, colorA, color(a * b + (1 - a) * (1 - b)));
+    float a = risWave(x), b = risWave(y);
+    float same = a * b + (1 - a) * (1 - b);
+    if (dimensions == 3) {
+        float c = risWave(zcomp(manifold_Q));
+        same = same * c + (1 - same) * (1 - c);
+    }
+    resultRGB = mix(colorB, colorA, color(same));
     RIS_CHANNELS
 }

@@ -1,5 +1,6 @@
 // RiBegin("file.rib"): the program writes RIB.
 #include "capi/output.h"
+#include "ri/c/ribformat.h"
 #include "ri/c/ribtarget.h"
 #include <fmt/format.h>
 #include <unistd.h>
@@ -28,8 +29,8 @@ std::unique_ptr<Output> ribFile(const std::string& name, Diagnostics& diags) {
         diags.report(Severity::Error, Rie::NoFile, {}, fmt::format("RiBegin: \"{}\" cannot be written: {}", name, why));
         return nullptr;
     }
-    ri::RibFormat format;
-    format.gzip = name.ends_with(".gz") || name.ends_with(".ribz");
+    ri::RibFormat format = ri::takeRibFormat();
+    format.gzip |= name.ends_with(".gz") || name.ends_with(".ribz");
     return std::make_unique<RibFile>(std::move(sink), format, diags);
 }
 

@@ -5,6 +5,8 @@
 #include "texture/maketexture.h"
 #include "texture/volume.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace alpenglow::cli {
@@ -18,13 +20,36 @@ struct MaketxArguments {
     std::vector<float> width;
     float fov = 90;
     int side = 8, radius = 1, smooth = 0;
-    bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false;
+    bool latlong = false, cube = false, shadow = false, faces = false, gradients = false, srgb = false, linear = false,
+         newer = false;
 };
 
 void checkFiles(const MaketxArguments& a) {
     if (a.files.size() != (a.cube ? 7u : 2u))
         throw CLI::ValidationError("files", a.cube ? "--envcube takes six pictures and the map" : "takes a picture and the map");
     refuseOwnInput(a.files);
+}
+
+/// Whether the map is there and younger than all that it is made of.
+bool upToDate(const std::vector<std::string>& files) {
+    std::error_code ec;
+    const auto made = std::filesystem::last_write_time(files.back(), ec);
+    if (ec) return false;
+    return std::none_of(files.begin(), files.end() - 1, [&](const std::string& f) {
+        const auto t = std::filesystem::last_write_time(f, ec);
+        return ec || t > made;
+    });
+}
+
+bool makeMap(const MaketxArguments& a, const PtexOptions& faces, Diagnostics& diags) {
+    const std::vector<std::string> in(a.files.begin(), a.files.end() - 1);
+    const std::string& out = a.files.back();
+    const texture::MakeOptions& o = a.options;
+    if (a.faces) return makePtex(in[0], out, faces, diags);
+    if (a.cube) return texture::makeCubeFaceEnvironment(in, out, a.fov, o, diags);
+    if (a.latlong) return texture::makeLatLongEnvironment(in[0], out, o, diags);
+    if (a.gradients) return texture::makeGradients(in[0], out, a.radius, a.smooth, o, diags);
+    return a.shadow ? texture::makeShadow(in[0], out, o, diags) : texture::makeTexture(in[0], out, o, diags);
 }
 
 } // namespace
@@ -61,6 +86,7 @@ void addMaketx(CLI::App& app, int* status) {
         ->check(positive())
         ->type_name("S [T]")
         ->allow_extra_args(false);
+    c->add_flag("--newer", a->newer, "Make nothing if the map is newer than its pictures");
     auto* srgb = c->add_flag("--srgb", a->srgb, "Read the pictures as sRGB, whatever they declare, and store linear light");
     c->add_flag("--linear", a->linear, "Read the pictures as linear light or data, whatever they declare")->excludes(srgb);
     c->add_option("--fov", a->fov, "Field of view of the six pictures, in degrees")->check(between(1, 179))->type_name("DEGREES");
@@ -71,12 +97,13 @@ void addMaketx(CLI::App& app, int* status) {
         ->check(between(0, 64))
         ->type_name("N");
     c->footer("The spellings of older tools work as well: -envlatl, -envcube, -shadow, -ptex, -mode, -smode, -tmode, -filter, "
-              "-gradients.");
+              "-gradients. -resize, -format, -compression, -byte and the like are noted and have no effect (docs/options.md).");
     c->callback([a, status] {
         Diagnostics diags(printer());
         texture::MakeOptions& o = a->options;
         if (!a->output.empty()) a->files.push_back(a->output);
         checkFiles(*a);
+        if (a->newer && upToDate(a->files)) return;
         std::string s = !a->smode.empty() ? a->smode : a->mode, t = !a->tmode.empty() ? a->tmode : a->mode;
         if (!s.empty()) o.swrap = s;
         if (!t.empty()) o.twrap = t;
@@ -87,8 +114,6 @@ void addMaketx(CLI::App& app, int* status) {
         using Colours = texture::MakeOptions::Colours;
         o.colours = a->srgb ? Colours::Srgb : a->linear ? Colours::Light : Colours::Auto;
         o.policy.allowWrite = true;
-        std::vector<std::string> in(a->files.begin(), a->files.end() - 1);
-        const std::string& out = a->files.back();
         PtexOptions faces;
         faces.number = ptex::Number::Byte;
         while (1 << faces.log < a->side) ++faces.log;
@@ -97,12 +122,7 @@ void addMaketx(CLI::App& app, int* status) {
             if (a->number == name) break;
             faces.number = ptex::Number(int(faces.number) + 1);
         }
-        bool ok = a->faces       ? makePtex(in[0], out, faces, diags)
-                  : a->cube      ? texture::makeCubeFaceEnvironment(in, out, a->fov, o, diags)
-                  : a->latlong   ? texture::makeLatLongEnvironment(in[0], out, o, diags)
-                  : a->gradients ? texture::makeGradients(in[0], out, a->radius, a->smooth, o, diags)
-                  : a->shadow    ? texture::makeShadow(in[0], out, o, diags)
-                                 : texture::makeTexture(in[0], out, o, diags);
+        const bool ok = makeMap(*a, faces, diags);
         *status = ok ? (diags.errors() ? kDoneWithErrors : kDone) : kOutputFailed;
         if (ok) return;
         for (const Diagnostic& d : diags.all())

@@ -12,7 +12,8 @@ using Use = OldFlag::Use;
 constexpr std::string_view
     kDisplay = "the scene's displays are written as files; --display TYPE:NAME:MODE adds one, `alpenglow view` shows "
                "the picture as it grows",
-    kPaths = "--searchpath $1", kNoRib = "RIB is not written by this program", kNetwork = "there is no network render here";
+    kPaths = "--searchpath $1", kRib = "`alpenglow rib` converts, expands and filters RIB",
+    kNetwork = "there is no network render here";
 
 constexpr OldFlag kFlags[] = {
     {"-Progress", 0, "prman, aqsis", Use::Accepted, "--progress plain"},
@@ -22,10 +23,8 @@ constexpr OldFlag kFlags[] = {
     {"-base", 1, "aqsis", Use::Accepted, "--cwd $1"},
     {"-beep", 0, "renderdl", Use::Dropped, "nothing beeps"},
     {"-beeps", 0, "renderdl", Use::Dropped, "nothing beeps"},
-    {"-binary", 0, "renderdl", Use::Answered, kNoRib},
-    {"-capture", 1, "prman", Use::Answered, kNoRib},
-    {"-cat", 0, "renderdl", Use::Answered, kNoRib},
-    {"-catrib", 1, "prman, renderdl", Use::Answered, kNoRib},
+    {"-binary", 0, "renderdl", Use::Answered, kRib},
+    {"-capture", 1, "prman", Use::Answered, kRib},
     {"-checkpoint", 1, "prman", Use::Noted, "name a file: --checkpoint FILE; it is written every half minute"},
     {"-crop", 4, "prman, renderdl, aqsis", Use::Accepted, "--crop $1,$2,$3,$4"},
     {"-cwd", 1, "prman", Use::Accepted, "--cwd $1"},
@@ -88,11 +87,11 @@ bool wholeNumber(const std::string& s) {
     return !s.empty() && std::all_of(s.begin(), s.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
-const OldFlag* find(const std::string& argument, std::string* inlineValue) {
+const OldFlag* find(std::span<const OldFlag> table, const std::string& argument, std::string* inlineValue) {
     if (argument.size() < 2 || argument[0] != '-' || argument[1] == '-') return nullptr;
     const size_t at = argument.find_first_of(":=");
     const std::string name = argument.substr(0, at);
-    for (const OldFlag& f : kFlags)
+    for (const OldFlag& f : table)
         if (f.name == name && (at == argument.npos || f.values > 0)) {
             *inlineValue = at == argument.npos ? "" : argument.substr(at + 1);
             return &f;
@@ -185,21 +184,25 @@ void takeFlag(const OldFlag& f, const std::string& inlineValue, const std::vecto
 
 std::span<const OldFlag> oldFlags() { return kFlags; }
 
-TranslatedFlags translateOldFlags(const std::vector<std::string>& arguments) {
+TranslatedFlags translateOldFlags(const std::vector<std::string>& arguments) { return translateFlags(kFlags, arguments); }
+
+TranslatedFlags translateFlags(std::span<const OldFlag> table, const std::vector<std::string>& arguments) {
     TranslatedFlags out;
     for (size_t i = 0; i < arguments.size() && out.error.empty(); ++i) {
         std::string inlineValue;
-        const OldFlag* f = find(arguments[i], &inlineValue);
+        const OldFlag* f = find(table, arguments[i], &inlineValue);
         if (f) takeFlag(*f, inlineValue, arguments, &i, &out);
         else out.arguments.push_back(arguments[i]);
     }
     return out;
 }
 
-std::string oldFlagsPage() {
+std::string oldFlagsPage() { return flagsPage(kFlags); }
+
+std::string flagsPage(std::span<const OldFlag> table) {
     std::string out = "| flag | of | here |\n|---|---|---|\n";
     std::vector<const OldFlag*> sorted;
-    for (const OldFlag& f : kFlags) sorted.push_back(&f);
+    for (const OldFlag& f : table) sorted.push_back(&f);
     std::sort(sorted.begin(), sorted.end(), [](const OldFlag* a, const OldFlag* b) { return a->name < b->name; });
     for (const OldFlag* f : sorted) {
         const std::string text = f->use == Use::Accepted  ? "`" + std::string(f->here) + "`"

@@ -34,8 +34,11 @@ struct TranslatedFlags {
 
 /// `arguments`: those of `render`, without its name. Arguments that are no such flags stay as they are.
 TranslatedFlags translateOldFlags(const std::vector<std::string>& arguments);
+/// The same by another table.
+TranslatedFlags translateFlags(std::span<const OldFlag> table, const std::vector<std::string>& arguments);
 
-/// The table for docs/options.md.
+/// The table for docs/options.md; of render's flags, or of others.
 std::string oldFlagsPage();
+std::string flagsPage(std::span<const OldFlag> table);
 
 } // namespace alpenglow::cli

@@ -1,5 +1,6 @@
 #include "cli/optionmanual.h"
 #include "cli/oldflags.h"
+#include "cli/oldnames.h"
 #include "display/driver.h"
 #include "ri/requests/manual.h"
 #include "scene/knownoptions.h"
@@ -162,6 +163,10 @@ std::string optionsPage() {
            "are their values, which may\n"
            "also stand behind a colon or an equals sign (`-t:4`). `-v` notes what became of each.\n\n" +
            oldFlagsPage();
+    out += "\n## Programs of other renderers\n\nUnder these names, by links to it (`ln -s $(which alpenglow) ~/bin/txmake`), the "
+           "program does what it has in\n"
+           "their place. None is made when it is installed, for they may be those of another package.\n\n" +
+           oldNamesPage();
     return out;
 }
 

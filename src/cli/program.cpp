@@ -7,10 +7,13 @@
 #include "cli/completion.h"
 #include "cli/manpage.h"
 #include "cli/oldflags.h"
+#include "cli/oldnames.h"
 #include "cli/version.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <fmt/format.h>
+#include <iterator>
 #include <sstream>
 #include <unistd.h>
 
@@ -56,10 +59,33 @@ CommandLine helpFor(const std::vector<std::string>& args, const CLI::App& app) {
     return {command.empty() ? std::vector<std::string>{"--help"} : std::vector<std::string>{command, "--help"}, "", ""};
 }
 
-/// Flags of other renderers, as render takes them; what was replaced is noted under -v.
+/// Called by the name of another renderer's program: its command, and what there is to say.
+void takeOldName(CommandLine& line, const OldName& name) {
+    std::vector<std::string>& args = line.arguments;
+    if (name.command.empty()) {
+        line.error = fmt::format("{} is not done here: {}", name.name, name.instead);
+        return;
+    }
+    if (!name.instead.empty())
+        std::fprintf(stderr, "note: %s: %s\n", std::string(name.name).c_str(), std::string(name.instead).c_str());
+    const auto is = [&](const char* flag) { return std::find(args.begin(), args.end(), flag) != args.end(); };
+    if (is("-version") || is("--version")) {
+        args = {"--version"};
+        return;
+    }
+    std::istringstream words{std::string(name.command)};
+    const std::vector<std::string> command{std::istream_iterator<std::string>(words), {}};
+    const bool files =
+        std::any_of(args.begin(), args.end(), [](const std::string& a) { return !a.starts_with('-') || a == "-"; });
+    if (command[0] == "compile" && !files && !is("--help") && !is("-h")) args.push_back("-"); // what these tools read then
+    args.insert(args.begin(), command.begin(), command.end());
+}
+
+/// Flags of other renderers, as render and the tools take them; what was replaced is noted under -v.
 void takeOldFlags(CommandLine& line) {
     std::vector<std::string>& args = line.arguments;
-    TranslatedFlags t = translateOldFlags({args.begin() + 1, args.end()});
+    const std::vector<std::string> given(args.begin() + 1, args.end());
+    TranslatedFlags t = args[0] == "render" ? translateOldFlags(given) : translateFlags(toolFlags(args[0]), given);
     line.error = t.error;
     args.resize(1);
     args.insert(args.end(), t.arguments.begin(), t.arguments.end());
@@ -77,6 +103,9 @@ CommandLine normalise(int argc, char** argv, const CLI::App& app) {
     CommandLine line{{argv + 1, argv + argc}, "", ""};
     std::vector<std::string>& args = line.arguments;
     const std::vector<std::string> commands = commandNames(app);
+    const OldName* const old = oldNameOf(argc > 0 ? argv[0] : nullptr);
+    if (old) takeOldName(line, *old);
+    if (!line.error.empty()) return line;
     if (args.empty() && standardInputHasData()) args = {"render"}; // prman < scene.rib
     if (!args.empty()) {
         if (args[0] == "help") return helpFor(args, app);
@@ -84,7 +113,8 @@ CommandLine normalise(int argc, char** argv, const CLI::App& app) {
         if (!known) line.error = unknownCommand(args[0], commands);
         if (!known && args[0] != "-h" && args[0] != "--help" && args[0] != "--version" && args[0] != "--help-all")
             args.insert(args.begin(), "render");
-        if (args[0] == "render" && line.error.empty()) takeOldFlags(line);
+        takeCatrib(args, old);
+        if ((args[0] == "render" || !toolFlags(args[0]).empty()) && line.error.empty()) takeOldFlags(line);
     }
     for (size_t i = 1; i < args.size(); ++i) {
         std::string& a = args[i];

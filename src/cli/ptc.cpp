@@ -138,7 +138,7 @@ int tell(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
 int runPtc(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
     if (a.action == "info") return tell(a, d, found);
     if (a.action == "brick") {
-        if (clouds::brickMapOfFiles(std::span(&a.files[0], 1), a.files[1], kAnywhere, d)) return kDone;
+        if (clouds::brickMapOfFiles(std::span(a.files).first(a.files.size() - 1), a.files.back(), kAnywhere, d)) return kDone;
         const auto unwritten = [](const Diagnostic& m) { return m.code == Rie::System || m.code == Rie::DiskFull; };
         const std::vector<Diagnostic> said = d.all();
         return std::any_of(said.begin(), said.end(), unwritten) ? kOutputFailed : kNothingRendered;
@@ -216,11 +216,11 @@ void addPtc(CLI::App& app, int* status) {
         nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
         Diagnostics diags(printerOr(a->json, said));
         const size_t least = a->action == "info" ? 1 : 2;
-        if (a->files.size() < least || (least == 2 && a->action != "merge" && a->files.size() != 2))
-            throw CLI::ValidationError("files",
-                                       a->action + (a->action == "merge" ? " takes clouds and the name of what they become"
-                                                    : least == 1         ? " takes files"
-                                                                         : " takes a file and the name of what is written"));
+        const bool several = a->action == "merge" || a->action == "brick";
+        if (a->files.size() < least || (least == 2 && !several && a->files.size() != 2))
+            throw CLI::ValidationError("files", a->action + (several      ? " takes clouds and the name of what they become"
+                                                             : least == 1 ? " takes files"
+                                                                          : " takes a file and the name of what is written"));
         if (least == 2) refuseOwnInput(a->files);
         if (!a->box.empty()) {
             const auto corners = parseNumbers(a->box, 6);

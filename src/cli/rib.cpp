@@ -8,7 +8,9 @@
 #include "ri/requeststats.h"
 #include "ri/writer.h"
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <unistd.h>
@@ -27,44 +29,34 @@ struct RibArguments {
     bool writes() const { return !validate && (!stats || !output.empty()); }
 };
 
-/// Writes what comes, or only counts it.
+/// Writes what comes, or counts it, or both.
 class Writing : public ri::RequestReceiver {
 public:
-    Writing(ri::RibWriter& to, bool flushes, ri::RequestStats* counts) : to_(to), flushes_(flushes), counts_(counts) {}
+    /// flushes: requests that come by a pipe leave by a pipe at once. Pointers may be null.
+    Writing(ri::RibWriter* to, bool flushes, ri::RequestStats* counts) : to_(to), flushes_(flushes), counts_(counts) {}
     void request(const ri::Call& c) override {
-        const uint64_t before = to_.bytes();
-        to_.write(c);
-        if (counts_) counts_->add(c, to_.bytes() - before);
+        if (counts_) counts_->add(c);
+        if (to_) to_->write(c);
         flush();
     }
     void unknown(const std::string& name, const std::vector<ri::Value>& values) override {
-        const uint64_t before = to_.bytes();
-        uint64_t numbers = 0;
-        for (const ri::Value& v : values) numbers += v.numbers.size();
-        to_.write(name, values);
-        if (counts_) counts_->addUnknown(name, numbers, to_.bytes() - before);
+        if (counts_) counts_->addUnknown(name, values);
+        if (to_) to_->write(name, values);
         flush();
     }
     void comment(const std::string& kind, const std::string& text) override {
-        kind == "structure" ? to_.structure(text) : to_.comment(text);
+        if (to_) kind == "structure" ? to_->structure(text) : to_->comment(text);
         flush();
     }
+    bool over() const override { return to_ && !to_->failure().empty(); }
 
 private:
-    /// Requests that come by a pipe leave by a pipe at once.
     void flush() {
-        if (flushes_) to_.flush();
+        if (to_ && flushes_) to_->flush();
     }
-    ri::RibWriter& to_;
+    ri::RibWriter* to_;
     bool flushes_;
-    ri::RequestStats* counts_; ///< may be null
-};
-
-/// Takes bytes and keeps none.
-class Nowhere : public ri::ByteSink {
-public:
-    bool write(std::string_view) override { return true; }
-    bool flush() override { return true; }
+    ri::RequestStats* counts_;
 };
 
 /// Throws CLI::ValidationError.
@@ -150,10 +142,11 @@ Outcome rewrite(const RibArguments& a, ri::FilterRules rules, std::unique_ptr<ri
     const StopFlag* stop = watchInterrupts();
     Outcome done;
     const std::vector<int> frames = rules.frames;
-    ri::RibWriter writer(std::move(sink), {a.binary, a.gzip, a.indent, a.columns});
+    std::optional<ri::RibWriter> writer;
+    if (sink) writer.emplace(std::move(sink), ri::RibFormat{a.binary, a.gzip, a.indent, a.columns});
     const bool piped = a.writes() && (a.output.empty() || a.output == "-");
     const bool flushes = piped && a.files.size() == 1 && a.files[0] == "-" && !a.gzip;
-    Writing last(writer, flushes, counts);
+    Writing last(writer ? &*writer : nullptr, flushes, counts);
     ri::RequestFilter filter(std::move(rules), last);
     for (const std::string& f : a.files) {
         const bool all = a.expand || a.validate;
@@ -161,9 +154,9 @@ Outcome rewrite(const RibArguments& a, ri::FilterRules rules, std::unique_ptr<ri
     }
     filter.finish();
     done.interrupted = *stop != 0;
-    done.written = writer.finish();
-    if (!done.written && piped)
-        diags.report(Severity::Error, Rie::System, {}, "standard output takes no more: " + writer.failure());
+    done.written = !writer || writer->finish();
+    if (!done.written && piped && writer->failure() != std::strerror(EPIPE)) // a reader that went away (head) needs no message
+        diags.report(Severity::Error, Rie::System, {}, "standard output takes no more: " + writer->failure());
     for (const int f : frames)
         if (!filter.frames().count(f) && !done.interrupted)
             diags.report(Severity::Warning, Rie::MissingData, {}, fmt::format("there is no frame {} in it", f));
@@ -174,7 +167,7 @@ int runRib(const RibArguments& a, ri::FilterRules rules, Diagnostics& diags, nlo
     std::optional<OutputFile> file;
     std::unique_ptr<ri::ByteSink> sink;
     if (!a.writes()) {
-        sink = std::make_unique<Nowhere>();
+        // only checks and counts
     } else if (a.output.empty() || a.output == "-") {
         sink = ri::descriptorSink(STDOUT_FILENO);
     } else {

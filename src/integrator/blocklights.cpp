@@ -55,10 +55,11 @@ void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
     connect(light, c);
 }
 
-/// Whether lobes of a site ask a light for samples. trace() knows emitters and skies, and not those that are illuminance's.
+/// Whether lobes of a site ask a light for samples. trace() without "samplelights" knows emitters and skies; it knows none that
+/// are illuminance's.
 bool BlockVertices::samples(const Site& s, const BoundLight& light) {
     if (!s.lights || s.lighting) return s.lights;
-    return (light.kind == LightKind::Area || light.sky) && light.strategy != LightStrategy::Illuminance;
+    return (light.kind == LightKind::Area || light.sky || s.info->allLights) && light.strategy != LightStrategy::Illuminance;
 }
 
 /// The numbers of a stream (NumberBlock) at all points.
@@ -162,7 +163,7 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
                                 BatchContext& c, const size_t* pointOf) {
     Lanes failed = 0, fresh = 0;
     s.addBeside(lobe.lights & l.asked, l.w, pointOf, value_[kRowPdf]);
-    const float* kept = !s.lighting ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
+    const float* kept = !s.lighting && l.met ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
     Lanes some = stages_.contribute(points, lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting, value_[0],
                                     shadow_, &failed);
     for (; failed; failed &= failed - 1) accumulator_.notFinite(c, c.rays[pointOf[std::countr_zero(failed)]], uint32_t(s.number));

@@ -94,7 +94,7 @@ Color Connection::contribution(const Reached& r) {
     const LightValue& v = lightSampling_.queries.value[k];
     const bool area = light.kind == LightKind::Area;
     const float fcos = r.value.fcos, drawn = lightSampling_.queries.drawn[k].pdf, chance = lightSampling_.queries.chance[k];
-    const float kept = l.lobeOfShader ? v.kept(l.rays->type) : 1;
+    const float kept = l.lobeOfShader || !light.hasDensity() ? v.kept(l.rays->type) : 1;
     Color c = l.ownsTarget ? l.weight * v.Cl : l.weight * rayOf(l).weight * v.Cl;
     c *= r.value.colour /
          (fcos * float(lightSampling_.lightSamples(l))); // as many rays go along the lobe: of its weight n is no matter
@@ -138,9 +138,9 @@ void Connection::send(const Reached& r) {
             {from, normalizeOr(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
         // A ray of trace() sees the sky behind what lies beyond its distance, too.
-        const float far = light.sky                          ? l.maxDistance
-                          : light.kind == LightKind::Distant ? 1e38f
-                                                             : length(lightSampling_.queries.value[k].L);
+        const float away = length(lightSampling_.queries.value[k].L);
+        if (l.trace && !light.sky && light.kind != LightKind::Distant && away > l.maxDistance) return;
+        const float far = light.sky ? l.maxDistance : light.kind == LightKind::Distant ? 1e38f : away;
         shadows_.queue.push_back(
             {from, r.w, far < 1e30f && !light.sky ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
         if (const float radius = lightSampling_.queries.value[k].shadowRadius; radius > 0) {
@@ -159,7 +159,8 @@ void Connection::send(const Reached& r) {
     shadow.path = path;
     if (path) shadow.light = paths_.lights[size_t(&light - world_.lights_.data())];
     // As in light loops there, nothing is in the way; or the light's shader looked for itself.
-    if ((c_->below && !rules_.pickOne && !light.shadows) || lightSampling_.queries.value[k].ownShadow) shadow.distance = 0;
+    const bool asInLoops = c_->below || (l.trace && !area && !light.sky);
+    if ((asInLoops && !rules_.pickOne && !light.shadows) || lightSampling_.queries.value[k].ownShadow) shadow.distance = 0;
 }
 
 } // namespace alpenglow::transport

@@ -57,7 +57,8 @@ void LightQueries::clear() {
     drawn.clear();
 }
 
-/// Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
+/// Whether a lobe asks this light for samples. trace() without "samplelights" knows emitters only; it knows none that are
+/// illuminance's.
 bool LightSampling::samples(const LobeVertex& l, const BoundLight& light) const {
     if (!light.importance && (l.trace || rules_.emissionCounts)) return false; // rays alone find it
     if (photonScatter_.leftToPhotons(l, light)) return false;

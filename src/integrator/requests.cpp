@@ -171,7 +171,8 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
         l.elsewhere = true;
         l.from = from;
     }
-    l.deltaLights = l.lobeOfShader = false;
+    l.deltaLights = s.allLights;
+    l.lobeOfShader = false;
     l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
     if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
     if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)

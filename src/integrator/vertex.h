@@ -48,7 +48,7 @@ struct LobeVertex {
     TargetId target = shading::kNoTarget;
     const RayKind* rays = &kDiffuseKind;
     bool lights = true;       ///< estimate lights here
-    bool deltaLights = true;  ///< point, spot and distant ones too (lighting shadeops, not trace())
+    bool deltaLights = true;  ///< point, spot and distant ones too (not trace() without "samplelights")
     bool lobeOfShader = true; ///< a lighting shadeop: counts for the energy rule and may be chosen among
     uint32_t site = 0, occurrence = 0;
     uint32_t before = 0; ///< rays that the same waiting kernel has asked for at this point before

@@ -45,7 +45,7 @@ struct alignas(64) LobeBlock {
 struct LobeArguments {
     int axis = -1, wo = -1, horizon = -1, a = -1;
     int from = -1;        ///< trace(): where its ray starts
-    int lights = -1;      ///< trace(): "samplearealights"; points that say no are looked at one by one
+    int lights = -1;      ///< trace(): "samplearealights" or "samplelights"; points that say no are looked at one by one
     int samples = -1;     ///< trace(): how many rays it asks for; more than kMostSamples are reported point by point
     float otherwise = 0;  ///< `a` where there is no row
     float perRow = 0;     ///< > 0: `a` is this over the row

@@ -245,6 +245,7 @@ void ImageLoop::tell(double fraction, bool last) {
     s.samplesDone = fraction * nx_ * ny_;
     s.samplesTotal = uint64_t(nx_ * ny_);
     s.raysPerMS = raysPerMS(job_.rayTotal, job_.elapsed());
+    if (job_.settings.watcher) job_.settings.watcher->progress(s, job_.what);
     if (last) job_.progress.finish(s, job_.what);
     else job_.progress.update(s, job_.what);
 }

@@ -163,6 +163,7 @@ void PathLoop::tell(double inPass, bool last) {
     if (settings_.seconds > 0) s.fraction = std::max(s.fraction, std::min(1.0, t / settings_.seconds));
     if (settings_.noise > 0 && noise_.noise > 0)
         s.fraction = std::max(s.fraction, std::min(1.0, settings_.noise / noise_.noise * (settings_.noise / noise_.noise)));
+    if (settings_.watcher) settings_.watcher->progress(s, job_.what);
     if (last) job_.progress.finish(s, job_.what);
     else job_.progress.update(s, job_.what);
 }

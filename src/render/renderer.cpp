@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/processors.h"
 #include "base/realpath.h"
+#include "base/zipname.h"
 #include "display/driver.h"
 #include "render/curve.h"
 #include "render/digest.h"
@@ -51,7 +52,8 @@ Renderer::~Renderer() = default;
 void Renderer::setScene(const std::string& path, const std::set<std::string>& read) {
     read_.clear();
     for (const std::string& name : read) read_.insert(fileIdentity(name));
-    settings_.scenePath = path == "-" ? "." : folderOf(path);
+    const auto inside = zipName(path);
+    settings_.scenePath = path == "-" ? "." : folderOf(inside ? inside->zip : path);
     settings_.sceneFile = path;
     parseMark_ = clockSeconds();
 }
@@ -230,11 +232,13 @@ RenderStats Renderer::stats() const {
     return s;
 }
 
+std::string Renderer::statsText() const { return statsJson(stats(), frames_, settings_); }
+
 bool Renderer::writeStats() {
     if (settings_.statsFile.empty()) return true;
     auto out = OutputFile::open(settings_.statsFile, {".", true}, diagnostics_);
     if (!out) return !(outcome_.outputFailed = true);
-    std::string json = statsJson(stats(), frames_, settings_);
+    const std::string json = statsText();
     out->write(json.data(), json.size());
     if (out->commit(diagnostics_)) return true;
     outcome_.outputFailed = true;

@@ -55,6 +55,8 @@ public:
     const Outcome& outcome() const { return outcome_; }
     /// Figures of all frames so far: times, rays and counts are sums; size, samples and noise are the last frame's.
     RenderStats stats() const;
+    /// What --stats writes: the same figures as JSON, and those of each frame.
+    std::string statsText() const;
     /// Writes --stats; false when it could not.
     bool writeStats();
 

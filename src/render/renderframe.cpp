@@ -331,7 +331,7 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
     stats_.spp = uint64_t(samples.mean + 0.5);
     stats_.sppLeast = samples.least;
     stats_.sppMost = samples.most;
-    if (writesFiles(settings_)) stats_.noise = noiseFigures(*film);
+    if (!settings_.watcher || settings_.watcher->wantsNoise()) stats_.noise = noiseFigures(*film);
     stats_.saturated += film->saturated();
     f.nonFinite = film->nonFinite();
     if (settings_.watcher) settings_.watcher->finished(any ? std::move(film) : nullptr);

@@ -34,11 +34,15 @@ public:
     virtual ~Watcher() = default;
     /// False: pictures are only looked at. No file is written, and no name of one is checked.
     virtual bool writes() const { return true; }
+    /// Whether the noise figures of the frame are wanted in Renderer::stats(), which takes a look at every pixel.
+    virtual bool wantsNoise() const { return writes(); }
     virtual void begin(const WatchedFrame&) {}
     /// Under path the samples to go on with; null: none. What comes is of this description.
     virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }
     /// Under path after each pass, else when the picture is whole; and about every 20 ms between.
     virtual void look(const Glance&) {}
+    /// How far the samples of a frame are, as often as the progress line is told. what: the picture.
+    virtual void progress(const ProgressState&, const std::string& what) { (void)what; }
     /// The end of a frame; also of one that was interrupted. Under path with its film, if a pass is whole.
     virtual void finished(std::unique_ptr<Film>) {}
 };

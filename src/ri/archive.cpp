@@ -4,7 +4,9 @@
 #include "base/limits.h"
 #include "base/realpath.h"
 #include "ri/interpreter.h"
+#include "ri/limits.h"
 #include "ri/parser.h"
+#include "ri/zip.h"
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -48,7 +50,24 @@ bool namedAsRib(const std::string& path) {
     return std::find(std::begin(kKnown), std::end(kKnown), e) != std::end(kKnown);
 }
 
+bool namedAsZip(const std::string& path) { return zipName(path + "!").has_value(); }
+
+/// What an archive in a zip archive calls `name`: a file beside it, or at the top; "" when neither is there.
+std::string besideInZip(const ZipName& of, const std::string& name) {
+    const std::vector<std::string> all = zipMembers(of.zip, limits::kZipEntries, nullptr);
+    for (const fs::path& folder : {fs::path(of.member).parent_path(), fs::path()}) {
+        std::string member = (folder / name).lexically_normal().string();
+        if (std::find(all.begin(), all.end(), member) != all.end()) return member;
+    }
+    return {};
+}
+
 } // namespace
+
+std::string folderOf(const std::string& file) {
+    const auto inside = zipName(file);
+    return fs::path(inside ? inside->zip : file).parent_path().string();
+}
 
 std::vector<std::string> splitSearchPath(const std::string& text) {
     std::vector<std::string> out;
@@ -146,7 +165,7 @@ std::string Interpreter::locate(const char* what, const std::string& name, const
                 folders.push_back((fs::path(sceneFolder_) / f).string());
         }
     folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
-    std::string beside = fs::path(place.file).parent_path().string();
+    std::string beside = folderOf(place.file);
     folders.push_back(beside.empty() ? "." : beside);
     folders.push_back(".");
     std::string fallback, outside;
@@ -183,9 +202,17 @@ std::optional<ArchiveShelf::Found> Interpreter::locateArchive(const std::string&
     const std::string question = name + '\0' + fs::path(place.file).parent_path().string() + '\0' + sceneFolder_ + '\0' +
                                  (path ? searched->second.strings[0] : "");
     if (const ArchiveShelf::Found* known = shelf_.found(question)) return *known;
-    const std::string file = locate("archive", name, place, namedAsRib);
-    if (file.empty()) return {};
-    ArchiveShelf::Found found{file, followedPath(file)};
+    ArchiveShelf::Found found;
+    const auto inside = zipName(name), around = zipName(place.file);
+    if (const std::string member = around && !inside ? besideInZip(*around, name) : ""; !member.empty()) {
+        found = {around->zip + "!" + member, followedPath(around->zip) + "!" + member};
+    } else {
+        const std::string file =
+            inside ? locate("zip archive", inside->zip, place, namedAsZip) : locate("archive", name, place, namedAsRib);
+        if (file.empty()) return {};
+        const std::string behind = inside ? "!" + inside->member : "";
+        found = {file + behind, followedPath(file) + behind};
+    }
     shelf_.note(question, found);
     return found;
 }

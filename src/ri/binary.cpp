@@ -1,12 +1,18 @@
 // The binary tokens of RIB, RISpec 3.2, appendix C.2. Integers and fixed point numbers are signed, as the specification says.
 #include "base/limits.h"
 #include "ri/lexer.h"
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace alpenglow::ri {
 namespace {
+
+constexpr size_t kBuffered = 64u << 10; // bytes of an array that memory is taken for before they come
+
+uint32_t fromBig(uint32_t v) { return std::endian::native == std::endian::little ? __builtin_bswap32(v) : v; }
 
 uint64_t bigEndian(const std::string& s) {
     uint64_t v = 0;
@@ -57,8 +63,32 @@ bool Lexer::binaryString(std::string& out, const char* what) {
     return false;
 }
 
+/// n floats to t.floats, as many as come: a lying length costs nothing.
+bool Lexer::binaryFloats(Token& t, uint64_t n) {
+    t.floats.clear();
+    t.floats.reserve(size_t(std::min<uint64_t>(n, kBuffered / 4)));
+    while (n > 0) {
+        const size_t have = size_t(std::min<uint64_t>(n, (end_ - pos_) / 4)), old = t.floats.size();
+        if (have == 0) {
+            if (!more()) return truncated("a binary array");
+            continue;
+        }
+        t.floats.resize(old + have);
+        const char* from = buffer_.data() + pos_;
+        double* to = t.floats.data() + old;
+        for (size_t i = 0; i < have; ++i) {
+            uint32_t bits;
+            std::memcpy(&bits, from + 4 * i, 4);
+            to[i] = double(std::bit_cast<float>(fromBig(bits)));
+        }
+        pos_ += 4 * have;
+        n -= have;
+    }
+    return true;
+}
+
 bool Lexer::binary(Token& t) {
-    SourcePlace where = here();
+    const int line = line_, at = int(column());
     unsigned c = 0, b = 0;
     byte(c);
     std::string data;
@@ -77,7 +107,8 @@ bool Lexer::binary(Token& t) {
             n = bigEndian(data);
         }
         if (n > limits::kStringBytes) {
-            reporter_.error(Rie::Limit, where, "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
+            reporter_.error(Rie::Limit, place(line, at),
+                            "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
             return false; // what follows cannot be told from noise; the request is lost, the reader resynchronises
         }
         t.kind = Token::Kind::String;
@@ -93,19 +124,13 @@ bool Lexer::binary(Token& t) {
         t.kind = Token::Kind::Identifier;
         t.text = requestCodes_[b];
         if (!t.text.empty()) return true;
-        reporter_.error(Rie::BadFile, where, "request code " + std::to_string(b) + " was not defined");
+        reporter_.error(Rie::BadFile, place(line, at), "request code " + std::to_string(b) + " was not defined");
         return false;
     }
     if (c >= 0310 && c <= 0313) {
         if (!bytes(c - 0310 + 1, data)) return truncated("an array's length");
-        uint64_t n = bigEndian(data);
         t.kind = Token::Kind::Floats;
-        t.floats.clear();
-        for (uint64_t i = 0; i < n; ++i) {
-            if (!bytes(4, data)) return truncated("a binary array");
-            t.floats.push_back(double(std::bit_cast<float>(uint32_t(bigEndian(data)))));
-        }
-        return true;
+        return binaryFloats(t, bigEndian(data));
     }
     if (c == 0314) {
         if (!byte(b)) return truncated("a request definition");
@@ -122,14 +147,14 @@ bool Lexer::binary(Token& t) {
         }
         auto i = stringCodes_.find(code);
         if (i == stringCodes_.end()) {
-            reporter_.error(Rie::BadFile, where, "string code " + std::to_string(code) + " was not defined");
+            reporter_.error(Rie::BadFile, place(line, at), "string code " + std::to_string(code) + " was not defined");
             return false;
         }
         t.kind = Token::Kind::String;
         t.text = i->second;
         return true;
     }
-    reporter_.error(Rie::BadFile, where, "byte " + std::to_string(c) + " is reserved in binary RIB");
+    reporter_.error(Rie::BadFile, place(line, at), "byte " + std::to_string(c) + " is reserved in binary RIB");
     return false;
 }
 

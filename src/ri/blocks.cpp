@@ -223,6 +223,7 @@ void Interpreter::worldEnd(Block& b) {
     if (!frameWanted()) return ended_.clear(), consumer.passOver(frame->options);
     risOptions(frame->options);
     if (settings.overrides) settings.overrides(frame->options);
+    addHeadlight(*frame);
     overrideAttributes(*frame);
     sayUnlit(*frame);
     consumer.render(std::move(frame));

@@ -23,6 +23,7 @@ void Interpreter::tell(const Call& call) {
     const std::string_view name = call.request->name;
     const bool archive = name == "ReadArchive";
     if (archive && (inlineArchives_.count(call.text(0)) || locateArchive(call.text(0), call.place))) return perform(call);
+    if (name == "ArchiveBegin") return perform(call); // what is in it stands where it is read
     if (name == "Procedural") return tellProcedural(call, call.text(0));
     if (name == "Procedural2") {
         std::string kind = call.text(0);

@@ -32,6 +32,7 @@ void Interpreter::nextScene() {
     shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
     ris_ = false;
+    headlight_ = true;
     integratorSurface_ = nullptr;
 }
 
@@ -68,8 +69,7 @@ void Interpreter::expand(const std::string& requests, const Call& call, scene::P
 
 void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string& name) {
     SourcePlace end{name, 0, 0};
-    size_t slash = name.find_last_of('/');
-    sceneFolder_ = slash == std::string::npos ? "" : name.substr(0, slash);
+    sceneFolder_ = folderOf(name);
     ahead_ = ReadAhead();
     shelf_.forgetPlaces();
     unscanned_ = name;

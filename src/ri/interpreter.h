@@ -117,6 +117,8 @@ public:
     void isRis() { ris_ = true; }
     /// The shader that an Integrator sees instead of all surfaces; null: none.
     void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
+    /// Whether the integrator lights a scene without lights from the eye.
+    void headlight(bool on) { headlight_ = on; }
 
     void light(const Call& call, bool area);
     void illuminate(const Call& call);
@@ -242,6 +244,7 @@ private:
     // ris.cpp
     std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
     void overrideAttributes(scene::Frame&) const;
+    void addHeadlight(scene::Frame&);
     void risOptions(scene::Options&) const;
     // unlit.cpp
     void noteEnded(const Block&);
@@ -336,6 +339,7 @@ private:
     std::set<int> ended_;                                 ///< lights of this world that an AttributeEnd has ended
     std::set<int> globalLights_;                          ///< lights of this world that are on everywhere
     scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
+    bool headlight_ = true;                               ///< no integrator, or PxrDefault: what has no light is lit from the eye
     bool ris_ = false;                                    ///< the scene has requests of RIS
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
@@ -387,6 +391,8 @@ using MayRead = std::function<bool(const std::string& path)>;
 /// The path of an archive along folders: as given, then with '/' for '\', its base name, other case. "" = not found.
 /// *fallback says which liberty was taken, or is "".
 std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback, const MayRead& may);
+/// The folder that a RIB file lies in, or the zip archive that holds it; "" for the current one.
+std::string folderOf(const std::string& file);
 /// "a:b;c" to folders; a single letter before ":/" or ":\" is a drive, "&" and "@" are left to the caller.
 std::vector<std::string> splitSearchPath(const std::string& text);
 

@@ -263,10 +263,11 @@ void Lexer::numbers(std::vector<double>& out) {
 
 void Lexer::identifier(std::string& out) {
     out.clear();
-    SourcePlace where = here();
+    const int line = line_, first = int(column());
     while (at() && (letter(peek()) || digit(peek()))) {
         if (out.size() == limits::kTokenBytes) {
-            reporter_.error(Rie::Limit, where, "a name is longer than " + std::to_string(limits::kTokenBytes) + " bytes");
+            reporter_.error(Rie::Limit, place(line, first),
+                            "a name is longer than " + std::to_string(limits::kTokenBytes) + " bytes");
             while (at() && (letter(peek()) || digit(peek()))) ++pos_;
             return;
         }

@@ -3,6 +3,7 @@
 #include "ri/reporter.h"
 #include "ri/source.h"
 #include <array>
+#include <cstdint>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -59,6 +60,7 @@ private:
     void badBytes();
     // binary.cpp
     bool binary(Token& out); ///< decodes at pos_; false when it made no token
+    bool binaryFloats(Token& out, uint64_t n);
     bool byte(unsigned& out);
     bool bytes(size_t n, std::string& out);
     bool binaryString(std::string& out, const char* what);

@@ -93,9 +93,8 @@ void Parser::collect(std::vector<Value>& out) {
 }
 
 bool Parser::next(Call& call) {
-    std::vector<Value> values;
     for (;;) {
-        values.clear();
+        values_.clear();
         if (!pending_) lexer_.next(token_);
         passComments();
         pending_ = false;
@@ -103,32 +102,34 @@ bool Parser::next(Call& call) {
             pending_ = true;
             return false;
         }
-        SourcePlace place = lexer_.place(token_.line, token_.column);
+        call.place.file = lexer_.file(); // the caller's call keeps its memory
+        call.place.line = token_.line;
+        call.place.column = token_.column;
         lexer_.mark(token_);
         if (token_.kind != Token::Kind::Identifier) {
-            reporter_.error(Rie::Syntax, place, "a request is expected here");
+            reporter_.error(Rie::Syntax, call.place, "a request is expected here");
             pending_ = true;
-            collect(values);
+            collect(values_);
             continue;
         }
-        call = Call{};
-        call.place = place;
+        call.arguments.clear();
+        call.params.clear();
         call.request = findRequest(token_.text);
         if (!call.request) {
             std::string shown = token_.text.substr(0, 60);
             std::string near = nearestName(shown, requestNames());
             if (unknown_.size() >= size_t(limits::kUnknownNames) || unknown_.insert(shown).second) // each name once
-                reporter_.error(Rie::BadToken, place, "unknown request '" + shown + "'",
+                reporter_.error(Rie::BadToken, call.place, "unknown request '" + shown + "'",
                                 near.empty() ? "" : "did you mean " + near + "?");
             const std::string name = std::move(token_.text);
-            collect(values);
-            if (unknown) unknown(name, values);
+            collect(values_);
+            if (unknown) unknown(name, values_);
             continue;
         }
         // Without arguments it is done at once: a pipe's WorldEnd renders before the next request is written.
         if (call.request->args.empty() && !call.request->parameters) return true;
-        collect(values);
-        if (matchArguments(values, call, reporter_)) return true;
+        collect(values_);
+        if (matchArguments(values_, call, reporter_)) return true;
     }
 }
 

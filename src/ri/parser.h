@@ -31,6 +31,7 @@ private:
     Lexer lexer_;
     Reporter& reporter_;
     Token token_;
+    std::vector<Value> values_;     ///< of the request that is read
     bool pending_ = false;          ///< token_ was read ahead
     std::set<std::string> unknown_; ///< names that are no requests, reported
 };

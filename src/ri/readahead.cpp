@@ -33,6 +33,8 @@ std::string nameAt(std::string_view text, size_t at) {
 
 std::unique_ptr<ParsedArchive> parseArchive(const std::string& path) {
     std::string why;
+    std::error_code ec;
+    if (!fs::is_regular_file(path, ec)) return nullptr; // a file in a zip archive is packed
     auto source = fileSource(path, &why, true);
     unsigned char magic[2] = {};
     std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(magic), 2);

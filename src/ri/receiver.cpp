@@ -20,7 +20,7 @@ void pass(std::unique_ptr<ByteSource> source, const std::string& name, RequestRe
                   [&](const std::string& kind, const std::string& text) { to.comment(kind, text); });
     parser.unknown = [&](const std::string& n, const std::vector<Value>& values) { to.unknown(n, values); };
     reporter.lineText = [&](const SourcePlace& p) { return parser.lineText(p); };
-    for (Call call; !(stop && *stop) && parser.next(call);) to.request(call);
+    for (Call call; !(stop && *stop) && !to.over() && parser.next(call);) to.request(call);
     reporter.flush(parser.here());
 }
 

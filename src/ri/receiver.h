@@ -16,6 +16,8 @@ public:
     virtual void unknown(const std::string& name, const std::vector<Value>& values) = 0;
     /// kind: "comment" or "structure"; the text behind # or ##.
     virtual void comment(const std::string& kind, const std::string& text) = 0;
+    /// Whether the rest of the stream is of no use: it need not be read.
+    virtual bool over() const { return false; }
 };
 
 /// The requests of a file as they stand: no archive is read, no condition decided, nothing executed, so that streams of any

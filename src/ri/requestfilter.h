@@ -45,6 +45,7 @@ public:
     void request(const Call&) override;
     void unknown(const std::string& name, const std::vector<Value>& values) override;
     void comment(const std::string& kind, const std::string& text) override;
+    bool over() const override { return to_.over(); }
     /// After the last stream: what waits for a first request comes even if there was none.
     void finish() { begin(); }
     /// Numbers of the frames that were met.

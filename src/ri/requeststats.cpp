@@ -10,6 +10,14 @@ namespace {
 
 constexpr size_t kNames = 100'000; // that are kept of hostile files
 
+constexpr uint64_t kCode = 2, kNumber = 4; // bytes in binary
+
+void hold(RequestStats::Count& c, const std::vector<double>& numbers, const std::vector<std::string>& strings) {
+    c.numbers += numbers.size();
+    c.bytes += kNumber * numbers.size();
+    for (const std::string& s : strings) c.bytes += s.size() + 1;
+}
+
 void keep(std::set<std::string>& names, const std::string& name) {
     if (!name.empty() && names.size() < kNames) names.insert(name);
 }
@@ -23,11 +31,14 @@ std::string listed(const char* what, const std::set<std::string>& names) {
 
 } // namespace
 
-void RequestStats::add(const Call& call, uint64_t bytes) {
+void RequestStats::add(const Call& call) {
     const Request& r = *call.request;
-    Count one{1, 0, bytes};
-    for (const Argument& a : call.arguments) one.numbers += a.numbers.size();
-    for (const RawParam& p : call.params) one.numbers += p.value.numbers.size();
+    Count one{1, 0, kCode};
+    for (const Argument& a : call.arguments) hold(one, a.numbers, a.strings);
+    for (const RawParam& p : call.params) {
+        one.bytes += p.token.size() + 1;
+        hold(one, p.value.numbers, p.value.strings);
+    }
     const auto count = [&](Count& c) {
         c.times += one.times;
         c.numbers += one.numbers;
@@ -49,12 +60,12 @@ void RequestStats::add(const Call& call, uint64_t bytes) {
     if (r.name.ends_with("End")) open_ = std::max(0, open_ - 1);
 }
 
-void RequestStats::addUnknown(const std::string& name, uint64_t numbers, uint64_t bytes) {
+void RequestStats::addUnknown(const std::string& name, const std::vector<Value>& values) {
     if (requests.size() >= kNames && !requests.count(name)) return;
     for (Count* c : {&requests[name], &all}) {
         ++c->times;
-        c->numbers += numbers;
-        c->bytes += bytes;
+        c->bytes += kCode;
+        for (const Value& v : values) hold(*c, v.numbers, v.strings);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace alpenglow::ri {
 
@@ -13,10 +14,10 @@ public:
     struct Count {
         uint64_t times = 0;
         uint64_t numbers = 0; ///< in its arguments and parameters
-        uint64_t bytes = 0;   ///< as it is written
+        uint64_t bytes = 0;   ///< about what they take in binary: four for a number
     };
-    void add(const Call&, uint64_t bytes);
-    void addUnknown(const std::string& name, uint64_t numbers, uint64_t bytes);
+    void add(const Call&);
+    void addUnknown(const std::string& name, const std::vector<Value>& values);
 
     std::map<std::string, Count> requests; ///< by name
     Count all, primitives, lights;

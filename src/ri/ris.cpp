@@ -2,6 +2,7 @@
 // docs/ris.md has what they mean here.
 #include "ri/ris.h"
 #include "ri/interpreter.h"
+#include "ri/motion.h"
 #include "scene/network.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -149,7 +150,19 @@ std::shared_ptr<scene::ShaderCall> Interpreter::networkCall(const Call& call) {
     return s;
 }
 
-void Interpreter::pattern(const Call& call) { attributes().coshaders[call.text(1)] = networkCall(call); }
+void Interpreter::pattern(const Call& call) {
+    std::shared_ptr<scene::ShaderCall> p = networkCall(call);
+    if (p->name == "PxrOSL") { // its "shader" is the pattern
+        const auto named = std::find_if(p->params.begin(), p->params.end(), [](const auto& v) { return v.name == "shader"; });
+        if (named == p->params.end() || named->strings.empty()) {
+            reporter.error(Rie::MissingData, call.place, "Pattern \"PxrOSL\" needs \"string shader\"");
+            return;
+        }
+        p->name = named->strings[0];
+        p->params.erase(named);
+    }
+    attributes().coshaders[call.text(1)] = std::move(p);
+}
 
 scene::ShaderRef Interpreter::network(const Call& call, scene::Keeper keeper) {
     const std::shared_ptr<scene::ShaderCall> root = networkCall(call);
@@ -178,6 +191,9 @@ void Interpreter::risLight(const Call& call) {
         globalLights_.insert(int(lights().size()) - 1);
         return;
     }
+    if (!inWorld())
+        return reporter.once("ri:worldlight", Severity::Warning, Rie::Incapable, call.place,
+                             "a light with a shape before WorldBegin is left out", "put it behind WorldBegin");
     if (!begin(BlockKind::Attribute, call)) return;
     light(plain, true);
     scene::Attributes& a = attributes();
@@ -225,6 +241,29 @@ void Interpreter::overrideAttributes(scene::Frame& frame) const {
     for (scene::Object& o : frame.objects) all(o.primitives);
     for (scene::Instance& i : frame.instances)
         if (i.attributes) i.attributes = light(i.attributes);
+}
+
+/// A scene of RIS without lights and without an integrator that follows light is lit along the axis of the camera: white paint
+/// that faces it has radiance 1.
+void Interpreter::addHeadlight(scene::Frame& frame) {
+    if (!ris_ || !headlight_ || !frame.lights.empty() || frame.primitives.empty()) return;
+    auto call = std::make_shared<scene::ShaderCall>();
+    call->name = "PxrDistantLight";
+    const auto give = [&](const char* name, float value) {
+        scene::Param p;
+        p.name = name;
+        p.numbers = {value};
+        call->params.push_back(std::move(p));
+    };
+    give("intensity", 3.14159265f);
+    give("areaNormalize", 1);
+    call->toWorld = inverse(frame.options.worldToCamera);
+    call->place = frame.primitives[0]->place;
+    scene::Light l;
+    l.shader = std::move(call);
+    l.attributes = std::make_shared<scene::Attributes>();
+    globalLights_.insert(0);
+    frame.lights.push_back(std::move(l));
 }
 
 /// What a scene of RIS is drawn with when it names no hider that could: by path, with as many samples as its raytrace has.

@@ -1,4 +1,5 @@
 #include "ri/shelf.h"
+#include "ri/zip.h"
 #include <sys/stat.h>
 
 namespace alpenglow::ri {
@@ -7,7 +8,8 @@ const ArchiveShelf::Found* ArchiveShelf::found(const std::string& question) cons
     const auto i = found_.find(question);
     if (i == found_.end()) return nullptr;
     struct stat st{};
-    return ::stat(i->second.file.c_str(), &st) == 0 && S_ISREG(st.st_mode) ? &i->second : nullptr;
+    const auto inside = zipName(i->second.file);
+    return ::stat((inside ? inside->zip : i->second.file).c_str(), &st) == 0 && S_ISREG(st.st_mode) ? &i->second : nullptr;
 }
 
 std::shared_ptr<const ParsedArchive> ArchiveShelf::take(const std::string& file) {

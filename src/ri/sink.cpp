@@ -9,9 +9,9 @@
 namespace alpenglow::ri {
 namespace {
 
-class Text : public ByteSink {
+class TextSink : public ByteSink {
 public:
-    explicit Text(std::string& to) : to_(to) {}
+    explicit TextSink(std::string& to) : to_(to) {}
     bool write(std::string_view bytes) override {
         to_ += bytes;
         return true;
@@ -36,10 +36,10 @@ private:
     std::ostream& to_;
 };
 
-class Descriptor : public ByteSink {
+class DescriptorSink : public ByteSink {
 public:
-    Descriptor(int fd, bool owned) : fd_(fd), owned_(owned) {}
-    ~Descriptor() override {
+    DescriptorSink(int fd, bool owned) : fd_(fd), owned_(owned) {}
+    ~DescriptorSink() override {
         if (fd_ >= 0 && owned_) ::close(fd_);
     }
     bool write(std::string_view bytes) override {
@@ -64,9 +64,9 @@ private:
     bool owned_;
 };
 
-class Output : public ByteSink {
+class OutputSink : public ByteSink {
 public:
-    explicit Output(OutputFile& to) : to_(to) {}
+    explicit OutputSink(OutputFile& to) : to_(to) {}
     bool write(std::string_view bytes) override {
         if (to_.write(bytes.data(), bytes.size())) return true;
         failure_ = "writing failed"; // the file keeps the reason and reports it when it is committed
@@ -129,9 +129,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<ByteSink> stringSink(std::string& to) { return std::make_unique<Text>(to); }
+std::unique_ptr<ByteSink> stringSink(std::string& to) { return std::make_unique<TextSink>(to); }
 std::unique_ptr<ByteSink> streamSink(std::ostream& to) { return std::make_unique<StreamSink>(to); }
-std::unique_ptr<ByteSink> descriptorSink(int fd) { return std::make_unique<Descriptor>(fd, false); }
+std::unique_ptr<ByteSink> descriptorSink(int fd) { return std::make_unique<DescriptorSink>(fd, false); }
 
 std::unique_ptr<ByteSink> fileSink(const std::string& path, std::string* why) {
     constexpr mode_t kMode = 0666; // less what the user masks
@@ -140,10 +140,10 @@ std::unique_ptr<ByteSink> fileSink(const std::string& path, std::string* why) {
         if (why) *why = std::strerror(errno);
         return nullptr;
     }
-    return std::make_unique<Descriptor>(fd, true);
+    return std::make_unique<DescriptorSink>(fd, true);
 }
 
-std::unique_ptr<ByteSink> outputSink(OutputFile& to) { return std::make_unique<Output>(to); }
+std::unique_ptr<ByteSink> outputSink(OutputFile& to) { return std::make_unique<OutputSink>(to); }
 std::unique_ptr<ByteSink> deflating(std::unique_ptr<ByteSink> to) { return std::make_unique<Deflating>(std::move(to)); }
 
 } // namespace alpenglow::ri

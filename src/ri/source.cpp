@@ -1,5 +1,6 @@
 #include "ri/source.h"
 #include "base/limits.h"
+#include "ri/zip.h"
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -166,6 +167,9 @@ std::unique_ptr<ByteSource> streamSource(std::istream& in) { return std::make_un
 
 std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular, const StopFlag* stop) {
     std::error_code ec;
+    if (const auto inside = zipName(path); inside && !std::filesystem::exists(path, ec))
+        return zipSource(inside->zip, inside->member, why);
+    if (zipName(path + "!") && std::filesystem::is_regular_file(path, ec)) return onlyRibOfZip(path, why);
     const bool waits = stop && std::filesystem::is_fifo(path, ec); // for its writer: where it is read, not where it is opened
     if (std::filesystem::is_directory(path, ec)) {
         if (why) *why = "it is a directory";

@@ -30,7 +30,8 @@ protected:
 std::unique_ptr<ByteSource> memorySource(std::string_view text);
 /// The stream must outlive the source.
 std::unique_ptr<ByteSource> streamSource(std::istream& in);
-/// Null when the file cannot be opened or is a directory; *why says which. regular: nor anything else but a regular file, at
+/// A file, or one in a zip archive: "a.zip!b.rib", or "a.zip" where only one is RIB (zip.h). Null when it cannot be opened or is
+/// a directory; *why says which. regular: nor anything else but a regular file, at
 /// once; opening a pipe waits for its writer. stop: set: the source is at its end, also where it waits for bytes; may be null.
 std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular = false,
                                        const StopFlag* stop = nullptr);

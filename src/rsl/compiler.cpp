@@ -9,6 +9,8 @@
 #include "rsl/jit/identity.h"
 #include "rsl/jit/jit.h"
 #include "rsl/jit/sha256.h"
+#include "rsl/kernelkey.h"
+#include "rsl/oslsource.h"
 #include "rsl/passes/looplimit.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/plugins.h"
@@ -33,43 +35,11 @@ namespace {
 using KernelPtr = std::shared_ptr<const CompiledKernel>;
 using ShaderPtr = std::shared_ptr<const CompiledShader>;
 
-// Everything that a descriptor says and that decides about code.
-const std::string& descriptorDigest() {
-    static const std::string digest = [] {
-        std::string all;
-        for (const Shadeop& op : shadeops()) {
-            all += op.name + '\1' + char('0' + int(op.lowering)) + char('0' + int(op.derivative)) + char('0' + op.pure) +
-                   char('0' + op.outOfLine) + op.rsl + '\1';
-            for (const Signature& s : op.signatures) all += s.text + '\2' + s.symbol + '\1';
-            for (const OptionalParameter& p : op.optional) all += toString(p.type) + p.name + p.defaultText + '\1';
-        }
-        return jit::sha256(all);
-    }();
-    return digest;
-}
-
 std::string readText(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-} // namespace
-
-namespace {
-/// What the co-shaders are and what their parameters say: all of it is in the code.
-std::string coShaderKey(const KernelOptions& o) {
-    std::string k;
-    for (const CoShader& c : o.coShaders) {
-        k += '\1' + c.handle + '\2' + c.digest + '\10' + c.space + (c.light ? "l" : "");
-        for (const auto& name : c.computed) k += '\7' + name;
-        for (const auto& [name, value] : c.strings) k += '\3' + name + '\4' + value;
-        for (const auto& [name, value] : c.numbers) {
-            k += '\5' + name + '\6';
-            k.append(reinterpret_cast<const char*>(value.data()), value.size() * sizeof(float));
-        }
-    }
-    return k;
-}
 } // namespace
 
 struct ShaderCompiler::State {
@@ -201,6 +171,12 @@ ShaderPtr ShaderCompiler::find(const std::string& name, const std::vector<std::s
     const auto ofOther = [&](const char* e) { return name.ends_with(e) || at(name + e); };
     if (!found && std::none_of(std::begin(kCompiled), std::end(kCompiled), ofOther))
         if (auto shared = fileWithShader(stem, directories)) found = FoundFile{*shared};
+    if (!found)
+        if (const auto osl = findOsl(name, directories)) {
+            std::string text;
+            auto program = compileOsl(*osl, state_->front(), diagnostics, text);
+            return finish(std::move(program), *osl, {}, text);
+        }
     const auto& reads = state_->settings.reads;
     if (reads) found ? reads->add(found->path) : reads->addMissing(stem + ".sl", directories);
     if (found && leadsToNoSource(found->path, diagnostics)) return nullptr;

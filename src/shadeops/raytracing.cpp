@@ -117,6 +117,14 @@ std::vector<OptionalParameter> subsurfaceParameters() {
         {kF, "anisotropy", false, "0", "ours: mean cosine of Henyey and Greenstein; of walks"}};
 }
 
+/// Which lights a lobe of trace() samples.
+std::vector<OptionalParameter> lightParameters() {
+    return {{kF, "samplearealights", false, "0", "1: area lights with strategy \"trace\" are seen"},
+            {kF, "samplelights", false, "0",
+             "ours: 1: all lights are seen as diffuse() sees them, point, spot and distant ones too, but those with strategy "
+             "\"illuminance\"; in place of samplearealights. A shader that loops over lights for the same lobe leaves it out"}};
+}
+
 } // namespace
 
 std::vector<OptionalParameter> distributionParameters() {
@@ -164,13 +172,12 @@ std::vector<Shadeop> raytracingShadeops() {
                          "vector comes nothing.");
     list.back().examples = {{"trace(P, N)", "1 1 1", "", kWhite}};
     trace.lastResort = {Base::Float};
-    trace.optional = trace.optional + distributionParameters() +
+    trace.optional = trace.optional + distributionParameters() + lightParameters() +
                      std::vector<OptionalParameter>{
                          {kS, "environmentmap", false, "\"\"", "light of directions that hit nothing"},
                          {kS, "environmentspace", false, "\"current\"", "space of the map"},
                          {kC, "environmenttint", false, "1", "multiplies the map"},
                          {kF, "exponent", false, "1000", "\"slphong\": Phong exponent; 1000 and above is one direction"},
-                         {kF, "samplearealights", false, "0", "1: area lights with strategy \"trace\" are seen"},
                          {kC, "transmission", true, "", "transmission along the rays"},
                          {kV, "hitnormal", true, "", "ours: normal of the surface at the nearest hit, 0 for none"},
                          {kC, "environmentcontribution", true, "",

@@ -448,7 +448,9 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         i.rowExponent = rowOf("exponent");
         i.rowCone = rowOf("samplecone");
         i.rowHorizon = rowOf("horizon");
-        i.rowLights = rowOf("samplearealights");
+        i.rowLights = rowOf("samplelights");
+        i.allLights = i.rowLights >= 0;
+        if (!i.allLights) i.rowLights = rowOf("samplearealights");
         if (i.kind == SiteKind::Trace || i.kind == SiteKind::Transmission || i.kind == SiteKind::Occlusion ||
             i.kind == SiteKind::Gather) {
             auto text = [&](const char* name) {

@@ -1,6 +1,7 @@
 // Networks of patterns as kernels know them: which co-shaders the connections of a shader reach.
 #include "scene/network.h"
 #include "rsl/front/connections.h"
+#include "rsl/front/seexpr.h"
 #include "world/impl.h"
 #include "world/patterns.h"
 #include <algorithm>
@@ -40,8 +41,40 @@ void connect(ShaderInstance& i, const scene::Connection& c, Diagnostics& d) {
                   {}});
 }
 
+/// A pattern that is an expression: its shader is made of it and of the values that come with it.
+static InstanceRef expression(WorldImpl& world, const scene::ShaderCall& call, Diagnostics& d) {
+    scene::ShaderCall rest = call;
+    std::string text;
+    std::vector<rsl::front::SeExprVariable> variables;
+    const auto add = [&](const std::string& name, bool color) {
+        const auto same = [&](const auto& v) { return v.name == name; };
+        if (std::none_of(variables.begin(), variables.end(), same)) variables.push_back({name, color});
+    };
+    std::erase_if(rest.params, [&](const scene::Param& p) {
+        if (p.name == "expression" && !p.strings.empty()) text = p.strings[0];
+        return p.type == scene::Type::String && !scene::connectionOf(p);
+    });
+    for (const scene::Param& p : rest.params)
+        if (const auto c = scene::connectionOf(p)) add(c->parameter, true);
+        else add(p.name, p.numbers.size() == 3);
+    const auto rsl = rsl::front::rslFromSeExpr(text, variables, call.place, d);
+    Diagnostics said;
+    auto program = rsl ? world.compiler_->loadText(*rsl, "SeExpr", said) : nullptr;
+    for (Diagnostic m : said.all())
+        if (m.severity >= Severity::Error) m.place = call.place, d.report(std::move(m));
+    if (!program) return nullptr;
+    auto i = std::make_shared<ShaderInstance>();
+    i->name = call.name;
+    i->program = std::move(program);
+    i->place = call.place;
+    i->toCurrent = scene::at(call.toWorld, world.shutter_.open) * world.worldToCamera_;
+    world.setParameters(*i, rest, d);
+    return i;
+}
+
 /// A pattern; null, which is said once, where there is no shader of that name.
 static InstanceRef pattern(WorldImpl& world, const scene::ShaderCall& call, Diagnostics& d) {
+    if (call.name == "PxrSeExpr") return expression(world, call, d);
     Diagnostics said;
     InstanceRef i = world.instance(call, rsl::ShaderKind::Surface, said, true);
     for (const Diagnostic& m : said.all()) {

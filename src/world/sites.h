@@ -185,6 +185,7 @@ struct SiteInfo {
     const LobeKind* lobe = nullptr; ///< Trace: the distribution; the lobe of a lighting shadeop
     float exponent = 1;             ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`
+    bool allLights = false; ///< Trace: rowLights is of "samplelights": point, spot and distant lights are sampled, too
     std::shared_ptr<const struct TraceSite> trace;    ///< Trace: what only some calls use; Diffuse: null, or `apart`
     std::shared_ptr<const OcclusionSite> occlusion;   ///< Occlusion, which has `trace` for its map, too
     std::shared_ptr<const SubsurfaceSite> subsurface; ///< Subsurface

@@ -43,6 +43,10 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"render",
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "clouds", "photons", "integrator",
       "display"}},
+    {"cli", {"base",   "scene",   "geometry", "accel", "rsl",     "shadeops",   "texture", "shading", "lobes", "lanes",
+             "clouds", "photons", "ptex",     "world", "answers", "integrator", "display", "render",  "ri",    "view"}},
+    {"capi", {"base", "scene", "display", "integrator", "render", "ri", "cli"}},
+    {"python", {"base", "scene", "rsl", "world", "answers", "display", "render", "ri", "cli"}},
     {"cli",
      {"base",    "scene", "geometry", "accel",   "rsl",        "shadeops", "texture", "shading", "lobes", "lanes", "clouds",
       "photons", "ptex",  "world",    "answers", "integrator", "display",  "render",  "ri",      "view",  "models"}},
@@ -53,6 +57,10 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
 
 // Header prefix -> the only folders that may include it.
 const std::map<std::string, std::set<std::string>> kForeign = {
+    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},    {"embree3", {}},          {"OpenImageIO", {"texture"}},
+    {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}},   {"png.h", {"display"}},   {"tiffio.h", {"display"}},
+    {"jpeglib.h", {"display"}},   {"CLI", {"cli", "python"}}, {"pybind11", {"python"}}, {"boost", {"view"}},
+    {"xxhash.h", {"base"}},       {"Imath", {"base"}},
     {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},  {"embree3", {}},        {"OpenImageIO", {"texture"}},
     {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}}, {"png.h", {"display"}}, {"tiffio.h", {"display"}},
     {"jpeglib.h", {"display"}},   {"CLI", {"cli"}},         {"boost", {"view"}},    {"xxhash.h", {"base"}},

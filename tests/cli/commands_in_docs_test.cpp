@@ -33,7 +33,7 @@ TEST_F(CommandsInDocs, AreCommandsAndOptionsThatThereAre) {
     for (const auto& e : fs::directory_iterator(root / "docs"))
         if (e.path().extension() == ".md") pages.push_back(e.path());
     const std::set<std::string> commands{"render", "view",  "eval", "shade",  "compile", "info", "probe",
-                                         "ptc",    "merge", "diff", "maketx", "lsp",     "help"};
+                                         "ptc",    "merge", "diff", "maketx", "lsp",     "help", "rib"};
     std::map<std::string, std::string> help;
     int lines = 0, options = 0;
     for (const fs::path& page : pages)

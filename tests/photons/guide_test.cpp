@@ -94,39 +94,48 @@ std::vector<Case> cases() {
     };
     const std::string sheet =
         "AttributeBegin Surface \"sheet\" Polygon \"P\" [-1 1.5 -1  -1 1.5 1  1 1.5 1  1 1.5 -1] AttributeEnd\n";
-    return {{"mirror", mirrored(kMirror, kMatte), up, .04},
-            {"glass ball", lamp(3, .8, 5) + kBall + kMatte + kWideFloor, down, .04},
-            {"mirror that spreads, too", mirrored("Surface \"half\" ", kMatte), up, .04},
-            {"several lobes", mirrored(kMirror, "Surface \"two\" "), up, .04},
-            {"behind a sheet", mirrored(kMirror, kMatte, sheet), up, .05},
-            {"a pane before the lamp",
+    return {
+        {"mirror", mirrored(kMirror, kMatte), up, .04},
+        {"glass ball", lamp(3, .8, 5) + kBall + kMatte + kWideFloor, down, .04},
+        {"mirror that spreads, too", mirrored("Surface \"half\" ", kMatte), up, .04},
+        {"several lobes", mirrored(kMirror, "Surface \"two\" "), up, .04},
+        {"behind a sheet", mirrored(kMirror, kMatte, sheet), up, .05},
+        {"a pane before the lamp",
+         mirrored(kMirror, kMatte,
+                  "AttributeBegin Surface \"sheet\" Polygon \"P\" [-1 .5 -1  -1 .5 1  1 .5 1  1 .5 -1] AttributeEnd\n"),
+         up, .05},
+        {"a ball that is overruled before the lamp",
+         "AttributeBegin Surface \"null\" Interior \"medium\" \"color absorption\" [.1 .1 .1] \"color scattering\" [0 0 0] "
+         "\"float "
+         "priority\" 2 Translate 0 1 0 Sphere 1.6 -1.6 1.6 360 AttributeEnd\n" +
              mirrored(kMirror, kMatte,
-                      "AttributeBegin Surface \"sheet\" Polygon \"P\" [-1 .5 -1  -1 .5 1  1 .5 1  1 .5 -1] AttributeEnd\n"),
-             up, .05},
-            {"a ball that is overruled before the lamp",
-             "AttributeBegin Surface \"null\" Interior \"medium\" \"color absorption\" [.1 .1 .1] \"color scattering\" [0 0 0] "
-             "\"float "
-             "priority\" 2 Translate 0 1 0 Sphere 1.6 -1.6 1.6 360 AttributeEnd\n" +
-                 mirrored(kMirror, kMatte,
-                          "AttributeBegin " + kMatte +
-                              "Interior \"medium\" \"float priority\" 1 Translate 0 .5 0 Sphere .3 -.3 .3 360 AttributeEnd\n"),
-             up, .05},
-            {"mirror that waits", mirrored("Surface \"waits\" ", kMatte), up, .05},
-            {"water",
-             lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" +
-                 kMatte + kWideFloor,
-             rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .04},
-            {"air",
-             "AttributeBegin Atmosphere \"beer\" \"k\" .3 " + lamp(1, .5, 5) +
-                 "AttributeEnd Illuminate 1 1 AttributeBegin Atmosphere \"beer\" \"k\" .5 " + kMirror + kMirrorBelow +
-                 "AttributeEnd Atmosphere \"beer\" \"k\" .2 " + kMatte + kCeiling,
-             up, .05},
-            {"fog",
-             "AttributeBegin Surface \"null\" Interior \"medium\" \"color scattering\" [.3 .2 .1] \"color absorption\" "
-             "[.1 .1 .1] Translate 0 1 0 Sphere 1.6 -1.6 1.6 360 AttributeEnd\n" +
-                 mirrored(kMirror, kMatte),
-             up, .06},
-            {"sky in a mirror", "LightSource \"envlight\" 3\n" + mirrored(kMirror, kMatte), up, .04}};
+                      "AttributeBegin " + kMatte +
+                          "Interior \"medium\" \"float priority\" 1 Translate 0 .5 0 Sphere .3 -.3 .3 360 AttributeEnd\n"),
+         up, .05},
+        {"mirror that waits", mirrored("Surface \"waits\" ", kMatte), up, .05},
+        {"water",
+         lamp(3, .8, 5) + "AttributeBegin " + kGlass + "Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n" + kMatte +
+             kWideFloor,
+         rayTo({.3f, .6f, .4f}, {.1f, 0, .1f}), .04},
+        {"air",
+         "AttributeBegin Atmosphere \"beer\" \"k\" .3 " + lamp(1, .5, 5) +
+             "AttributeEnd Illuminate 1 1 AttributeBegin Atmosphere \"beer\" \"k\" .5 " + kMirror + kMirrorBelow +
+             "AttributeEnd Atmosphere \"beer\" \"k\" .2 " + kMatte + kCeiling,
+         up, .05},
+        {"fog",
+         "AttributeBegin Surface \"null\" Interior \"medium\" \"color scattering\" [.3 .2 .1] \"color absorption\" "
+         "[.1 .1 .1] Translate 0 1 0 Sphere 1.6 -1.6 1.6 360 AttributeEnd\n" +
+             mirrored(kMirror, kMatte),
+         up, .06},
+        {"mirror of the principled surface",
+         mirrored("Surface \"standard\" \"base_color\" [1 1 1] \"metalness\" 1 \"specular_roughness\" 0 ", kMatte), up, .04},
+        {"ball of its glass",
+         lamp(3, .8, 5) +
+             "AttributeBegin Surface \"standard\" \"transmission\" 1 \"specular_roughness\" 0 Translate 0 1 0 Sphere .6 -.6 .6 "
+             "360 AttributeEnd\n" +
+             kMatte + kWideFloor,
+         down, .04},
+        {"sky in a mirror", "LightSource \"envlight\" 3\n" + mirrored(kMirror, kMatte), up, .04}};
 }
 
 } // namespace

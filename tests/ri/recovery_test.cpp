@@ -254,15 +254,6 @@ TEST(Foreign, LaterNamesOfTheSameThings) {
     EXPECT_EQ(c->primitive().attributes->interior->name, "haze");
 }
 
-TEST(Foreign, ShadersWithoutALanguageAreOneSentence) {
-    auto c = world(
-        "Bxdf \"PxrSurface\" \"a\" \"color diffuseColor\" [1 0 0]\nPattern \"PxrTexture\" \"b\" \"string filename\" [\"x\"]\n"
-        "Integrator \"PxrPathTracer\" \"c\"\nDisplace \"PxrDisplace\" \"d\" \"float dispAmount\" [.1]\nSphere 1 -1 1 360");
-    EXPECT_EQ(c->only().code, Rie::Incapable);
-    EXPECT_EQ(c->only().severity, Severity::Warning);
-    EXPECT_EQ(c->frame().primitives.size(), 1u);
-}
-
 TEST(Foreign, ArchiveOfAProcedure) {
     auto c = read("ArchiveBegin \"part.rib\"\nColor 0 1 0\nSphere 1 -1 1 360\nArchiveEnd\n"
                   "WorldBegin\nProcedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1] \"string "

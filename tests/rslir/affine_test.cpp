@@ -37,6 +37,24 @@ TEST(Affine, ShippedMaterialsUnderPath) {
     }
 }
 
+// The principled surface and all materials of RIS.
+TEST(Affine, PrincipledMaterials) {
+    std::vector<std::string> names = {"standard"};
+    for (const auto& f : std::filesystem::directory_iterator(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders/ris"))
+        if (f.path().extension() == ".sl") names.push_back("ris/" + f.path().stem().string());
+    ASSERT_GE(names.size(), 20u);
+    for (const std::string& name : names) {
+        SCOPED_TRACE(name);
+        const std::string text = shipped(name);
+        if (text.find("surface " + name.substr(name.find('/') + 1)) == std::string::npos) continue; // a pattern
+        const Compiled c = compile(text, pathOptions());
+        ASSERT_NE(c.kernel, nullptr);
+        EXPECT_TRUE(c.kernel->facts.affine) << c.kernel->facts.whyNot;
+        EXPECT_FALSE(c.kernel->facts.suspends);
+        EXPECT_TRUE(c.kernel->facts.direct.empty());
+    }
+}
+
 TEST(Affine, SlprojectMaterial) { expectAffine(compile(shipped("slmaterial"), pathOptions()), 4); }
 
 TEST(Affine, SumInLoopScaledBefore) {

@@ -1,5 +1,5 @@
 """Alpenglow as a render engine of Blender 3.4 and later: writes RIB and RSL and runs the program `alpenglow`."""
-bl_info = {"name": "Alpenglow", "author": "The Alpenglow authors", "version": (0, 3, 0), "blender": (3, 4, 0),
+bl_info = {"name": "Alpenglow", "author": "The Alpenglow authors", "version": (0, 2, 0), "blender": (3, 4, 0),
            "location": "Render Properties > Render Engine", "category": "Render",
            "description": "Renders by the RenderMan renderer Alpenglow: RIB, RSL, path tracing"}
 

@@ -10,7 +10,21 @@ FLIP = Matrix.Diagonal((1, 1, -1, 1))  # Blender looks along -z, RIB along +z
 
 def placed(camera):
     """From the world to the camera, as RIB has it. camera: the evaluated object."""
-    return ribs.matrix(FLIP @ camera.matrix_world.normalized().inverted_safe())
+    return from_eye(camera.matrix_world)
+
+
+def from_eye(eye):
+    """The same of the matrix of an eye that looks along -z."""
+    return ribs.matrix(FLIP @ eye.normalized().inverted_safe())
+
+
+def write_view(rib, view):
+    """A viewport's projection. view: as viewport.view_camera() gives it. Returns parameters for the hider."""
+    _, screen, perspective, clipping = view
+    rib.request("Projection", "perspective" if perspective else "orthographic", {"float fov": 90.0} if perspective else {})
+    rib.request("ScreenWindow", *screen)
+    rib.request("Clipping", max(clipping[0], 1e-6), clipping[1])
+    return {}
 
 
 def window(camera, scene):

@@ -40,10 +40,12 @@ def border_of(render):
     return render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y
 
 
-def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None):
-    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture."""
+def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=None, size=None, samples=None, progress=None,
+           view=None):
+    """Writes scene.rib and its shaders into a folder; the report of what was left out. listed: passes. size: of the picture. view: as view_camera()
+    gives it, in place of the scene's camera."""
     lights = "samplelights" if program.knows(binary_of_program, "trace", "samplelights") else "samplearealights"
-    writer = scene.Scene(depsgraph, folder, settings, lights, frame_set, progress)
+    writer = scene.Scene(depsgraph, folder, settings, lights, frame_set, progress, view)
     if lights != "samplelights":
         writer.report.lost("Highlights of lights without a size: this version of the program does not find them in trace()")
     writer.read()
@@ -71,8 +73,7 @@ def export(depsgraph, folder, settings, binary_of_program, listed, frame_set=Non
         rib.request("Option", "trace", {"int maxdepth": settings.max_depth})
         for line in filter(None, [settings.requests.strip()]):
             rib.file.write((line + "\n").encode())
-    report = writer.write(os.path.join(folder, "scene.rib"), head)
-    return report
+    return writer.write(os.path.join(folder, "scene.rib"), head)
 
 
 def arguments(binary, settings, frame, samples=None, crop=None):
@@ -110,14 +111,12 @@ def flat(picture, names, window, box):
 
 
 def channels_of(picture, output, number, count):
-    """Names of channels that hold an output."""
-    base = "pass%d" % number if output.startswith("lpe:") else output
+    """Names of the channels that hold an output."""
+    base = ("pass%d" % number if output.startswith("lpe:") else output).lower()
+    named = {n.lower(): n for n in picture}
     if count == 1:
-        for name in (base, base + ".Z", base + ".Y", base.upper()):
-            if name in picture:
-                return [name]
-        return [next((n for n in picture if n == base or n.split(".")[0] == base), None)]
-    return [next((n for n in picture if n in ("%s.%s" % (base, a), "%s.%s" % (base, b))), None) for a, b in zip("RGB", "XYZ")]
+        return [named.get(base) or next((n for low, n in named.items() if low.split(".")[0] == base), None)]
+    return [named.get("%s.%s" % (base, a)) or named.get("%s.%s" % (base, b)) for a, b in zip("rgb", "xyz")]
 
 
 class AlpenglowEngine(bpy.types.RenderEngine):
@@ -214,10 +213,12 @@ class AlpenglowEngine(bpy.types.RenderEngine):
         picture, window, size = exr.read(path)
         width, height = size
         left, right, bottom, top = border_of(render)
-        x0, x1, y0, y1 = (round(a * b) for a, b in ((left, width), (right, width), (bottom, height), (top, height)))
+        x0, x1, y0, y1 = (int(a * b) for a, b in ((left, width), (right, width), (bottom, height), (top, height)))
         box = (x0, height - y1, x1 - x0, y1 - y0)
-        result = self.begin_result(0 if render.use_crop_to_border else x0, 0 if render.use_crop_to_border else y0, box[2], box[3],
-                                   layer=layer.name)
+        result = self.begin_result(0, 0, box[2], box[3], layer=layer.name)  # Blender's picture is the border alone
+        if result is None:
+            self.report({"ERROR"}, "Blender takes no picture of %d x %d pixels" % box[2:])
+            return
         shown = result.layers[0].passes
         rgba = flat(picture, ["R", "G", "B", "A"], window, box)
         if not depsgraph.scene_eval.render.film_transparent:
@@ -249,7 +250,10 @@ class AlpenglowEngine(bpy.types.RenderEngine):
             self.view.draw(context, depsgraph)
 
     def __del__(self):
-        view = getattr(self, "view", None)
+        try:
+            view = self.view
+        except ReferenceError:  # Blender has taken it away already
+            return
         if view is not None:
             view.close()
 

@@ -30,15 +30,16 @@ class Instance:
 
 
 class Scene:
-    """Everything that is written of a depsgraph. frame_set(frame, subframe): evaluates another time (for motion); None: no motion."""
+    """Everything that is written of a depsgraph. frame_set(frame, subframe): evaluates another time (for motion); None: no motion.
+    view: an eye in place of the scene's camera."""
 
-    def __init__(self, depsgraph, folder, settings, lights_word, frame_set=None, progress=None):
+    def __init__(self, depsgraph, folder, settings, lights_word, frame_set=None, progress=None, view=None):
         self.depsgraph, self.folder, self.settings, self.frame_set = depsgraph, folder, settings, frame_set
         self.progress = progress or (lambda part, text: None)
         self.report, self.shapes, self.instances, self.lamps = Report(), {}, {}, {}
         self.images = Images(folder, self.report)
         self.materials = Materials(folder, self.report, self.images, lights_word)
-        self.camera = None
+        self.camera, self.view = None, view
 
     # Reading.
     def read(self):
@@ -87,6 +88,8 @@ class Scene:
                 s.mesh.P = [points[key]]
 
     def _camera_place(self):
+        if self.view is not None:
+            return camera.from_eye(self.view[0])
         eye = self.depsgraph.scene_eval.camera
         return None if eye is None else camera.placed(eye)
 
@@ -214,7 +217,10 @@ class Scene:
             rib.request("version", 3.03)
             if len(self.times) > 1:
                 rib.request("Shutter", 0, 1)
-            hider = camera.write(rib, scene.camera, scene, self.report)
+            if self.view is not None:
+                hider = camera.write_view(rib, self.view)
+            else:
+                hider = camera.write(rib, scene.camera, scene, self.report)
             head(rib, hider)
             ribs.transform(rib, self.camera, self.times)
             with Block(rib, "World"):

@@ -36,6 +36,15 @@ AL_INLINE vf withinTurn(vf u) {
 /// The facet that is turned by half a turn about the normal, z.
 AL_INLINE Direction turnedAbout(const Direction& h) { return {-h.x, -h.y, h.z}; }
 
+/// About what facets reflect by Fresnel's law, for choosing between lobes: at the cosine that their mean facet has with the
+/// viewer (a fit for facets of Trowbridge and Reitz). Never 0.
+AL_INLINE vf reflectanceOfFacets(const Given& p) {
+    const vf a = minLanes(vf(1), rootLanes(sane(p.number(kRowRoughness)) * sane(p.number(kRowRoughnessV))));
+    const vf least = rootLanes(a) * vf(.5f), c = mad(absLanes(dot(p.axis(), p.wo())), vf(1) - a * vf(.13f) - least, least);
+    const Direction f = fresnelOrFull3(minLanes(c, vf(1)), p.triple(kRowEta), p.triple(kRowK));
+    return maxLanes((f.x + f.y + f.z) * vf(1 / 3.f), vf(.02f));
+}
+
 /// Facets draws half vectors about +z, x along udir, in rows of its own from 6 on; 0 to 5 are the tangents. `o`: wo in these
 /// axes.
 template <class Facets> struct FacetLobe {
@@ -45,7 +54,7 @@ template <class Facets> struct FacetLobe {
     static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface;
     static AL_MEMBER Pair<Direction> tangentsOf(const Given& p) { return {p.ownTriple(0), p.ownTriple(3)}; }
     static AL_MEMBER void prepare(const Rows& p) {
-        p.common(vf(1), spreadOfRoughness(p), vf(0));
+        p.common(Facets::kFresnel ? reflectanceOfFacets(p) : vf(1), spreadOfRoughness(p), vf(0));
         const Pair<Direction> t = tangents(p.axis(), p.triple(kRowUdir));
         p.own(0, t.a), p.own(3, t.b);
         Facets::prepare(p);
@@ -102,6 +111,7 @@ AL_INLINE vf visibleInGroove(const Facet<vf>& f, vf dn) { return minLanes(divide
 
 struct BlinnFacets {
     static constexpr const char* name = "blinn";
+    static constexpr bool kFresnel = true;
     static constexpr const char* doc = "Facets whose slopes follow a power of the cosine.";
     static AL_MEMBER void prepare(const Rows& p) {
         const vf e = exponentOf(p.number(kRowRoughness));
@@ -118,6 +128,7 @@ struct BlinnFacets {
 };
 struct AshikhminFacets {
     static constexpr const char* name = "ashikhmin-shirley";
+    static constexpr bool kFresnel = true;
     static constexpr const char* doc = "Anisotropic facets; roughness along udir, roughnessv across.";
     static AL_MEMBER void prepare(const Rows& p) {
         const vf eu = exponentOf(p.number(kRowRoughness)), ev = exponentOf(p.number(kRowRoughnessV));
@@ -140,6 +151,7 @@ struct AshikhminFacets {
 };
 struct BeckmannFacets {
     static constexpr const char* name = "cook-torrance";
+    static constexpr bool kFresnel = true;
     static constexpr const char* doc = "Facets with Beckmann's distribution of slopes.";
     static AL_MEMBER void prepare(const Rows& p) {
         const vf m = sane(p.number(kRowRoughness));
@@ -155,6 +167,7 @@ struct BeckmannFacets {
 };
 struct WardFacets {
     static constexpr const char* name = "ward";
+    static constexpr bool kFresnel = false;
     static constexpr const char* doc = "Anisotropic Gaussian slopes; roughness along udir, roughnessv across.";
     static AL_MEMBER void prepare(const Rows& p) {
         p.own(6, sane(p.number(kRowRoughness))), p.own(7, sane(p.number(kRowRoughnessV)));

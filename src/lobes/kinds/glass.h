@@ -16,7 +16,6 @@ struct Glass {
     // of both parts.
     enum : int { kSide = 0, kAlong = 3, kAcross = 6, kHere = 9, kThere, kRoughA, kRoughB, kFirst, kSecond };
     static AL_MEMBER void prepare(const Rows& p) {
-        p.common(vf(1), spreadOfRoughness(p), vf(0));
         const GlassSide<vf> s =
             glassSide(p.axis(), p.wo(), p.triple(kRowUdir), p.number(kRowRoughness), p.number(kRowRoughnessV), p.number(kRowEta));
         const vf part = p.number(kRowPart);
@@ -25,6 +24,10 @@ struct Glass {
         p.own(kRoughA, s.a), p.own(kRoughB, s.b);
         p.own(kFirst, where(part != 1, select(count > 0, p.number(kRowLobes), vf(1))));
         p.own(kSecond, where(part != 0, select(count > 1, p.number(kRowLobes + 1), vf(1))));
+        const vf f =
+            dielectricReflectance(minLanes(absLanes(dot(s.o, s.n)), vf(1)), s.here / s.there); // of the mean facet, about
+        const vf both = mad(absLanes(p.own(kFirst)), f, absLanes(p.own(kSecond)) * (vf(1) - f));
+        p.common(maxLanes(both, vf(.02f)), spreadOfRoughness(p), vf(0));
     }
     static AL_MEMBER GlassSide<vf> sideOf(const Given& p) {
         return {p.wo(),         p.ownTriple(kSide), {p.ownTriple(kAlong), p.ownTriple(kAcross)}, p.own(kHere), p.own(kThere),

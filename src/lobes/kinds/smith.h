@@ -21,6 +21,7 @@ AL_INLINE Direction visibleGgx(const Direction& o, vf low, vf a, vf b, const Pai
 /// Sampling for the Smith-GGX BRDF", 2023).
 struct GgxFacets {
     static constexpr const char* name = "ggx";
+    static constexpr bool kFresnel = true;
     static constexpr const char* doc =
         "Facets of Trowbridge and Reitz; roughness along udir, roughnessv across. Metals: \"eta\" of two.";
     enum : int { kA = 6, kB, kPerDensity, kLambda, kLow };
@@ -75,6 +76,7 @@ AL_INLINE vf visibleBeckmannSlope(vf cosine, vf u) {
 }
 struct SmithBeckmannFacets {
     static constexpr const char* name = "beckmann";
+    static constexpr bool kFresnel = true;
     static constexpr const char* doc =
         "Facets with Gaussian slopes; roughness along udir, roughnessv across. Metals: \"eta\" of two.";
     enum : int { kA = 6, kB, kPerDensity, kLambda };

@@ -1,4 +1,5 @@
 #include "ri/c/filters.h"
+#include "base/exact.h"
 #include <cmath>
 
 namespace alpenglow::ri {
@@ -17,11 +18,20 @@ double cubicOf(double t, double B, double C) {
     return 0;
 }
 
-double sincOf(double t) { return std::fabs(t) < 1e-6 ? 1 : std::sin(kCirclePi * t) / (kCirclePi * t); }
+double sincOf(double t) { return std::fabs(t) < 1e-6 ? 1 : exact::sin(kCirclePi * t) / (kCirclePi * t); }
 
 double blackmanHarris(double t, double w) {
     const double a = 2 * kCirclePi * (t / w + 0.5);
-    return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) - 0.01168 * std::cos(3 * a);
+    return 0.35875 - 0.48829 * exact::cos(a) + 0.14128 * exact::cos(2 * a) - 0.01168 * exact::cos(3 * a);
+}
+
+/// Bessel function of the first kind, order 1: (1/pi) int_0^pi cos(t - x sin t) dt by the trapezoid rule, which converges
+/// exponentially because the integrand is even and periodic.
+double besselOf(double x) {
+    const int n = 24 + int(std::fabs(x));
+    double sum = 0;
+    for (int i = 1; i < n; ++i) sum += exact::cos(kCirclePi * i / n - x * exact::sin(kCirclePi * i / n));
+    return sum / n; // the ends cancel: cos(0) + cos(pi)
 }
 
 bool inside(double x, double y, double xw, double yw) { return std::fabs(x) <= xw / 2 && std::fabs(y) <= yw / 2; }
@@ -73,6 +83,7 @@ Building& filterName(Building& b, RtFilterFunc filter, RtFloat xw, RtFloat yw) {
 
 } // namespace alpenglow::ri
 
+using namespace alpenglow;
 using namespace alpenglow::ri;
 
 extern "C" {
@@ -90,11 +101,11 @@ RtFloat RiSeparableCatmullRomFilter(RtFloat x, RtFloat y, RtFloat, RtFloat) {
 }
 RtFloat RiGaussianFilter(RtFloat x, RtFloat y, RtFloat xw, RtFloat yw) {
     const double u = 2 * double(x) / xw, v = 2 * double(y) / yw;
-    return RtFloat(std::exp(-2 * (u * u + v * v)));
+    return RtFloat(exact::exp(-2 * (u * u + v * v)));
 }
 RtFloat RiSincFilter(RtFloat x, RtFloat y, RtFloat xw, RtFloat yw) {
     if (!inside(x, y, xw, yw)) return 0;
-    return RtFloat(sincOf(x) * std::cos(kCirclePi * x / (2 * xw)) * sincOf(y) * std::cos(kCirclePi * y / (2 * yw)));
+    return RtFloat(sincOf(x) * exact::cos(kCirclePi * x / (2 * xw)) * sincOf(y) * exact::cos(kCirclePi * y / (2 * yw)));
 }
 RtFloat RiDiskFilter(RtFloat x, RtFloat y, RtFloat xw, RtFloat yw) {
     const double u = 2 * double(x) / xw, v = 2 * double(y) / yw;
@@ -104,7 +115,7 @@ RtFloat RiBesselFilter(RtFloat x, RtFloat y, RtFloat xw, RtFloat yw) {
     const double u = 2 * double(x) / xw, v = 2 * double(y) / yw, q = u * u + v * v;
     const double r = std::sqrt(double(x) * x + double(y) * y);
     if (q >= 1) return 0;
-    return RtFloat(r < 1e-8 ? kCirclePi : std::cos(kCirclePi / 2 * std::sqrt(q)) * 2 * ::j1(kCirclePi * r) / r);
+    return RtFloat(r < 1e-8 ? kCirclePi : exact::cos(kCirclePi / 2 * std::sqrt(q)) * 2 * besselOf(kCirclePi * r) / r);
 }
 RtFloat RiMitchellFilter(RtFloat x, RtFloat y, RtFloat xw, RtFloat yw) {
     return RtFloat(cubicOf(4 * x / xw, 1.0 / 3, 1.0 / 3) * cubicOf(4 * y / yw, 1.0 / 3, 1.0 / 3));

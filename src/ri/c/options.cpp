@@ -1,6 +1,7 @@
 // ri.h: cameras, displays and other options.
 #include "ri/c/filters.h"
 #include "ri/c/pairs.h"
+#include "ri/c/ribformat.h"
 
 using namespace alpenglow;
 using namespace alpenglow::ri;
@@ -59,6 +60,13 @@ RtVoid RiColorSamples(RtInt n, RtFloat nRGB[], RtFloat RGBn[]) {
     Building("ColorSamples").numbers(nRGB, 3 * int64_t(n)).numbers(RGBn, 3 * int64_t(n)).run();
 }
 RtVoid RiRelativeDetail(RtFloat factor) { numeric("RelativeDetail", factor); }
-ALPENGLOW_NAMED(Option, name ? name : "")
+RtVoid RiOptionV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]) {
+    if (!noteRibFormat(name, n, tokens, values))
+        Building("Option").text(name).parameters(n, tokens, values, nullptr, name ? name : "").run();
+}
+RtVoid RiOption(RtToken name, ...) {
+    ALPENGLOW_PAIRS(name);
+    RiOptionV(name, ALPENGLOW_LIST);
+}
 
 } // extern "C"

@@ -15,9 +15,9 @@
 #define ALPENGLOW_LIST pairs.count(), pairs.tokens.data(), pairs.values.data()
 
 // Both forms of a call whose request has a name and a parameter list, in this order.
-#define ALPENGLOW_NAMED(request, ...)                                                                                            \
+#define ALPENGLOW_NAMED(request)                                                                                                 \
     RtVoid Ri##request##V(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]) {                                         \
-        Building(#request).text(name).parameters(n, tokens, values __VA_OPT__(, nullptr, ) __VA_ARGS__).run();                   \
+        Building(#request).text(name).parameters(n, tokens, values).run();                                                       \
     }                                                                                                                            \
     RtVoid Ri##request(RtToken name, ...) {                                                                                      \
         ALPENGLOW_PAIRS(name);                                                                                                   \

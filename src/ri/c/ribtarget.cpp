@@ -1,14 +1,8 @@
 #include "ri/c/ribtarget.h"
+#include "ri/c/ribformat.h"
 #include <fmt/format.h>
 
 namespace alpenglow::ri {
-
-namespace {
-
-/// The last word of a token, "string format": its name.
-std::string_view nameIn(std::string_view token) { return token.substr(token.find_last_of(' ') + 1); }
-
-} // namespace
 
 RibTarget::RibTarget(std::unique_ptr<ByteSink> sink, RibFormat format, Diagnostics& diags)
     : sink_(std::move(sink)), format_(format), reporter_(diags) {}
@@ -30,17 +24,15 @@ RibWriter& RibTarget::writer(bool headed) {
 bool RibTarget::formatOption(const Call& call) {
     if (call.request->name != "Option" || call.text(0) != "rib") return false;
     for (const RawParam& p : call.params) {
-        const std::string_view name = nameIn(p.token);
-        const std::string value = p.value.strings.empty() ? "" : p.value.strings[0];
-        if (name != "format" && name != "compression") continue; // of other writers: how decimals and lines look
-        const bool known = name == "format" ? value == "ascii" || value == "binary" : value == "none" || value == "gzip";
-        if (!known)
-            reporter_.error(Rie::BadToken, call.place, fmt::format("Option \"rib\" \"{}\": \"{}\" is not known", name, value),
-                            name == "format" ? "ascii or binary" : "none or gzip");
-        else if (writer_)
+        const std::string_view token = p.token, name = token.substr(token.find_last_of(' ') + 1);
+        RibFormat now = format_;
+        const std::string wrong = setRibFormat(now, name, p.value.strings.empty() ? "" : p.value.strings[0]);
+        const bool changes = now.binary != format_.binary || now.gzip != format_.gzip;
+        if (!wrong.empty()) reporter_.error(Rie::BadToken, call.place, wrong);
+        else if (changes && writer_)
             reporter_.error(Rie::IllState, call.place, fmt::format("Option \"rib\" \"{}\" comes too late", name),
                             "it stands before RiBegin, or before all other calls");
-        else (name == "format" ? format_.binary : format_.gzip) = value == "binary" || value == "gzip";
+        else format_ = now;
     }
     return true;
 }

@@ -48,7 +48,8 @@ RtPointer light(const char* request, const char* shader, RtInt n, RtToken tokens
     std::vector<RtPointer> of(values, values + n);
     RtPointer handle = newHandle(*b.client());
     if (auto own = ownHandle(names, of)) b.client()->to.nameHandle(int(reinterpret_cast<uintptr_t>(handle)), *own);
-    b.text(shader).text(handleName(*b.client(), handle)).parameters(RtInt(names.size()), names.data(), of.data()).run();
+    const std::string name = handleName(*b.client(), handle);
+    b.text(shader).text(name).parameters(RtInt(names.size()), names.data(), of.data()).run();
     return handle;
 }
 

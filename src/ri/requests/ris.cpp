@@ -43,6 +43,7 @@ void integrator(Interpreter& in, const Call& c) {
         return p && !p->numbers.empty() ? std::optional(p->numbers[0]) : std::nullopt;
     };
     in.integratorSurface(nullptr);
+    in.headlight(name == "PxrDefault");
     const bool follows = name == "PxrPathTracer" || name == "PxrVCM" || name == "PxrUnified" || name == "PxrUPBP" ||
                          name == "PxrDefault" || name == "PxrUnidirectional" || name == "PxrBakeTexture";
     if (name == "PxrVCM" || name == "PxrUPBP")

@@ -7,8 +7,8 @@
 namespace alpenglow::rsl::front {
 
 namespace {
-constexpr Base kAll[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
-                         Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kAllBases[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
+                              Base::Normal, Base::Matrix, Base::String, Base::Bool};
 } // namespace
 
 /// Type and children are known: `varying` follows from the children.
@@ -45,7 +45,7 @@ void Checker::settle(ExprPtr& e, Type want, Handle handle) {
     }
     Base best = Base::Void;
     int cost = kNever;
-    for (Base b : kAll) {
+    for (Base b : kAllBases) {
         const int c = info.cost[int(b)] + implicitCost(b, want.base);
         if (c < cost) {
             cost = c;
@@ -102,7 +102,7 @@ void Checker::settleCheapest(ExprPtr& e) {
 void Checker::settleIndexed(ExprPtr& e) {
     const Info& info = infos_.at(e.get());
     Base best = Base::Void;
-    for (Base b : kAll)
+    for (Base b : kAllBases)
         if (Type{b, 0}.isTuple() && info.cost[int(b)] < (best == Base::Void ? kNever : info.cost[int(best)])) best = b;
     if (info.any || info.array.array || info.listLength >= 0 || best == Base::Void || e->kind == ExprKind::Member)
         return settleCheapest(e);
@@ -117,7 +117,7 @@ void Checker::settleCondition(ExprPtr& e) {
     }
     Base best = Base::Void;
     int cost = kNever;
-    for (Base b : kAll) {
+    for (Base b : kAllBases) {
         const int c = info.cost[int(b)] + conditionCost(b);
         if (c < cost) {
             cost = c;
@@ -285,7 +285,7 @@ void Checker::settleAs(ExprPtr& e, Base t) {
         const Info& a = infos_.at(e->args[0].get());
         Base best = t;
         int cost = kNever;
-        for (Base b : kAll) {
+        for (Base b : kAllBases) {
             const int c = a.cost[int(b)] + castCost(b, t);
             if (c < cost) {
                 cost = c;
@@ -326,8 +326,8 @@ void Checker::settleBinary(ExprPtr& e, Base t) {
     int cost = kNever;
     Base left = Base::Void, right = Base::Void;
     Operation best{};
-    for (Base a : kAll)
-        for (Base b : kAll) {
+    for (Base a : kAllBases)
+        for (Base b : kAllBases) {
             if (l.cost[int(a)] >= kNever || r.cost[int(b)] >= kNever) continue;
             const auto o = operation(e->op, a, b);
             if (!o || o->result != t) continue;
@@ -397,7 +397,7 @@ void Checker::settleAssign(ExprPtr& e) {
         const Info& r = infos_.at(e->args[1].get());
         int cost = kNever;
         Base best = Base::Void, operand = target.base;
-        for (Base b : kAll) {
+        for (Base b : kAllBases) {
             if (r.cost[int(b)] >= kNever) continue;
             const auto o = operation(e->op, target.base, b);
             if (!o || implicitCost(o->result, target.base) >= kNever) continue;

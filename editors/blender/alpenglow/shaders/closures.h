@@ -141,8 +141,8 @@ color blRefraction(normal n; float front, roughness, ior)
 color blSubsurface(color reflectance, radius; float anisotropy)
 {
     extern point P;
-    return subsurface(P, "reflectance", clamp(reflectance, color 0, color .999), "meanfreepath", max(radius, color 1e-6), "ior", 1,
-                      "scale", 1, "anisotropy", anisotropy);
+    return subsurface(P, "reflectance", clamp(reflectance, color 0, color .999), "diffusemeanfreepath", max(radius, color 1e-6), "ior", 1,
+                      "unitlength", 1, "anisotropy", anisotropy);
 }
 /* Velvet and sheen: light about the rim. */
 color blVelvet(normal n; float roughness)

@@ -1,0 +1,67 @@
+/* PxrLayer: a layer of materials, of RIS: the values of a PxrSurface, for PxrLayerMixer and PxrLayerSurface. Those that are here are handed
+   on; others of PxrSurface (normals, iridescence, single scatter) are not. */
+surface PxrLayer(float enableDiffuse = 1, enableDoubleSided = 1, enableSpecular = 1, enableRoughSpecular = 1, enableClearCoat = 1, enableIridescence = 1, enableFuzz = 1,
+    enableSubsurface = 1, enableSingleScatter = 1, enableGlass = 1, enableGlow = 1;
+    varying float diffuseGain = 1; varying color diffuseColor = .18; varying float diffuseRoughness = 0;
+    varying color specularFaceColor = 0; varying color specularEdgeColor = 0; varying color specularIor = 1.5;
+    varying color specularExtinctionCoeff = 0; varying float specularRoughness = .2; varying float specularAnisotropy = 0;
+    varying color roughSpecularFaceColor = 0; varying color roughSpecularEdgeColor = 0; varying color roughSpecularIor = 1.5;
+    varying color roughSpecularExtinctionCoeff = 0; varying float roughSpecularRoughness = .6;
+    varying color clearcoatFaceColor = 0; varying color clearcoatEdgeColor = 0; varying color clearcoatIor = 1.5;
+    varying float clearcoatRoughness = 0; varying float fuzzGain = 0; varying color fuzzColor = 1;
+    varying float subsurfaceGain = 0; varying color subsurfaceColor = color(.83, .791, .753);
+    varying float subsurfaceDmfp = 10; varying color subsurfaceDmfpColor = color(.851, .557, .395);
+    varying float refractionGain = 0; varying float reflectionGain = 0; varying color refractionColor = 1;
+    varying float glassRoughness = .1; varying float glassIor = 1.5; varying float glowGain = 0; varying color glowColor = 1;
+    output varying float pxrMaterialOut_diffuseGain = 1; output varying color pxrMaterialOut_diffuseColor = .18;
+    output varying float pxrMaterialOut_diffuseRoughness = 0; output varying color pxrMaterialOut_specularFaceColor = 0;
+    output varying color pxrMaterialOut_specularEdgeColor = 0; output varying color pxrMaterialOut_specularIor = 1.5;
+    output varying color pxrMaterialOut_specularExtinctionCoeff = 0;
+    output varying float pxrMaterialOut_specularRoughness = .2; output varying float pxrMaterialOut_specularAnisotropy = 0;
+    output varying color pxrMaterialOut_roughSpecularFaceColor = 0;
+    output varying color pxrMaterialOut_roughSpecularEdgeColor = 0; output varying color pxrMaterialOut_roughSpecularIor = 1.5;
+    output varying color pxrMaterialOut_roughSpecularExtinctionCoeff = 0;
+    output varying float pxrMaterialOut_roughSpecularRoughness = .6;
+    output varying color pxrMaterialOut_clearcoatFaceColor = 0; output varying color pxrMaterialOut_clearcoatEdgeColor = 0;
+    output varying color pxrMaterialOut_clearcoatIor = 1.5; output varying float pxrMaterialOut_clearcoatRoughness = 0;
+    output varying float pxrMaterialOut_fuzzGain = 0; output varying color pxrMaterialOut_fuzzColor = 1;
+    output varying float pxrMaterialOut_subsurfaceGain = 0;
+    output varying color pxrMaterialOut_subsurfaceColor = color(.83, .791, .753);
+    output varying float pxrMaterialOut_subsurfaceDmfp = 10;
+    output varying color pxrMaterialOut_subsurfaceDmfpColor = color(.851, .557, .395);
+    output varying float pxrMaterialOut_refractionGain = 0; output varying float pxrMaterialOut_reflectionGain = 0;
+    output varying color pxrMaterialOut_refractionColor = 1; output varying float pxrMaterialOut_glassRoughness = .1;
+    output varying float pxrMaterialOut_glassIor = 1.5; output varying float pxrMaterialOut_glowGain = 0;
+    output varying color pxrMaterialOut_glowColor = 1) {
+    pxrMaterialOut_diffuseGain = diffuseGain;
+    pxrMaterialOut_diffuseColor = diffuseColor;
+    pxrMaterialOut_diffuseRoughness = diffuseRoughness;
+    pxrMaterialOut_specularFaceColor = specularFaceColor;
+    pxrMaterialOut_specularEdgeColor = specularEdgeColor;
+    pxrMaterialOut_specularIor = specularIor;
+    pxrMaterialOut_specularExtinctionCoeff = specularExtinctionCoeff;
+    pxrMaterialOut_specularRoughness = specularRoughness;
+    pxrMaterialOut_specularAnisotropy = specularAnisotropy;
+    pxrMaterialOut_roughSpecularFaceColor = roughSpecularFaceColor;
+    pxrMaterialOut_roughSpecularEdgeColor = roughSpecularEdgeColor;
+    pxrMaterialOut_roughSpecularIor = roughSpecularIor;
+    pxrMaterialOut_roughSpecularExtinctionCoeff = roughSpecularExtinctionCoeff;
+    pxrMaterialOut_roughSpecularRoughness = roughSpecularRoughness;
+    pxrMaterialOut_clearcoatFaceColor = clearcoatFaceColor;
+    pxrMaterialOut_clearcoatEdgeColor = clearcoatEdgeColor;
+    pxrMaterialOut_clearcoatIor = clearcoatIor;
+    pxrMaterialOut_clearcoatRoughness = clearcoatRoughness;
+    pxrMaterialOut_fuzzGain = fuzzGain;
+    pxrMaterialOut_fuzzColor = fuzzColor;
+    pxrMaterialOut_subsurfaceGain = subsurfaceGain;
+    pxrMaterialOut_subsurfaceColor = subsurfaceColor;
+    pxrMaterialOut_subsurfaceDmfp = subsurfaceDmfp;
+    pxrMaterialOut_subsurfaceDmfpColor = subsurfaceDmfpColor;
+    pxrMaterialOut_refractionGain = refractionGain;
+    pxrMaterialOut_reflectionGain = reflectionGain;
+    pxrMaterialOut_refractionColor = refractionColor;
+    pxrMaterialOut_glassRoughness = glassRoughness;
+    pxrMaterialOut_glassIor = glassIor;
+    pxrMaterialOut_glowGain = glowGain;
+    pxrMaterialOut_glowColor = glowColor;
+}

@@ -1,0 +1,10 @@
+// Limits of this room, beside those of base/limits.h.
+#pragma once
+#include <cstddef>
+
+namespace alpenglow::limits {
+
+inline constexpr size_t kZipEntries = 1'000'000; ///< files in one zip archive
+inline constexpr size_t kZipDirectoryBytes = size_t(256) << 20;
+
+} // namespace alpenglow::limits

@@ -1,0 +1,19 @@
+// Files inside zip archives (PKWARE's APPNOTE 6.3): stored or deflated, with the extensions for large ones.
+#pragma once
+#include "base/zipname.h"
+#include "ri/source.h"
+#include <string>
+#include <vector>
+
+namespace alpenglow::ri {
+
+/// Names of the files in a zip archive, in its order, at most `most`. Empty: it cannot be read; *why says the reason.
+std::vector<std::string> zipMembers(const std::string& zip, size_t most, std::string* why);
+
+/// The only RIB file in a zip archive. Null: there is none, or several; *why says so and names some.
+std::unique_ptr<ByteSource> onlyRibOfZip(const std::string& zip, std::string* why);
+/// The bytes of a file in a zip archive. By its name as it is there, else by one that differs in case or slashes. Null: *why says
+/// the reason. Limits: limits::kZipEntries, kGzipRatio and kGzipBytes.
+std::unique_ptr<ByteSource> zipSource(const std::string& zip, const std::string& member, std::string* why);
+
+} // namespace alpenglow::ri

@@ -1,0 +1,27 @@
+// The words of an OSL text. Inside of osl.cpp.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::rsl::front {
+
+struct OslWord {
+    enum class Kind : uint8_t { Name, Number, String, Sign, Directive };
+    Kind kind;
+    std::string text;
+    int lines = 0; ///< that begin between the word before and this
+    int line = 0, column = 0;
+};
+
+/// Comments and [[metadata]] left out.
+std::vector<OslWord> oslWords(std::string_view text);
+
+/// Whether it names a type of a value that RSL has, too.
+bool isOslType(std::string_view);
+
+/// Whether RSL means something else by a name, so that a variable cannot have it.
+bool isRslWord(const std::string& name);
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,162 @@
+// RIS: connected parameters begin with what patterns give, and lights have the closed forms of their units (docs/ris.md).
+#include "integrator/harness.h"
+
+namespace risscene_test {
+
+using namespace alpenglow;
+using namespace alpenglow::transport;
+using namespace alpenglow::transport::testing;
+
+namespace {
+
+const char* kSquare = "Polygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2]\n";
+
+Settings path() {
+    Settings s;
+    s.hider = Hider::Path;
+    return s;
+}
+void writeShaders() {
+    writeShader("showcolor", "surface showcolor(varying color c = color(.1, .2, .3);) { Oi = 1; Ci = c; }\n");
+    writeShader("shownumber", "surface shownumber(varying float x = .25;) { Oi = 1; Ci = color(x, 0, 0); }\n");
+    writeShader("shownormal",
+                "surface shownormal(varying normal n = 0;) { Oi = 1; Ci = color(xcomp(n), ycomp(n), zcomp(n)); }\n");
+    writeShader("paint", "surface paint(varying color diffuseColor = .5;) { Oi = 1; Ci = diffuseColor * "
+                         "diffuse(faceforward(normalize(N), I)); }\n");
+    writeShader("fixed",
+                "surface fixed(color a = 0; output varying color resultRGB = 0; output varying float resultF = 0;) { resultRGB "
+                "= a; resultF = 7; Ci = 5; }\n");
+}
+Color shown(const std::string& requests, int errors = 0) {
+    writeShaders();
+    Scene s("WorldBegin\n" + requests + kSquare + "WorldEnd\n", path(), errors);
+    return s.one(rayTo({0, 0, 0}, {.25f, .5f, 2}));
+}
+
+TEST(RisNetwork, AParameterBeginsWithWhatThePatternGives) {
+    const Color c = shown("Pattern \"PxrMix\" \"m\" \"color color1\" [.2 .4 .6] \"color color2\" [.6 .8 1] \"float mix\" .25\n"
+                          "Bxdf \"showcolor\" \"b\" \"reference color c\" [\"m:resultRGB\"]\n");
+    EXPECT_NEAR(c.x, .3f, 1e-6);
+    EXPECT_NEAR(c.y, .5f, 1e-6);
+    EXPECT_NEAR(c.z, .7f, 1e-6);
+}
+
+TEST(RisNetwork, PatternsTakeOutputsOfPatternsAndOneMayServeSeveral) {
+    const Color c =
+        shown("Pattern \"fixed\" \"f\" \"color a\" [.2 .4 .8]\n"
+              "Pattern \"PxrInvert\" \"i\" \"reference color inputRGB\" [\"f:resultRGB\"]\n"
+              "Pattern \"PxrMix\" \"m\" \"reference color color1\" [\"f:resultRGB\"] \"reference color color2\" "
+              "[\"i:resultRGB\"] \"float mix\" .5\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"m:resultRGB\"]\n");
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], .5f, 1e-6);
+}
+
+TEST(RisNetwork, NumbersAreGreysAndColorsGiveTheirMean) {
+    const Color grey = shown("Pattern \"fixed\" \"f\"\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"f:resultF\"]\n");
+    EXPECT_EQ(grey, Color(7, 7, 7));
+    const Color mean = shown(
+        "Pattern \"fixed\" \"f\" \"color a\" [.3 .6 .9]\nBxdf \"shownumber\" \"b\" \"reference float x\" [\"f:resultRGB\"]\n");
+    EXPECT_NEAR(mean.x, .6f, 1e-6);
+}
+
+TEST(RisNetwork, WhatIsNotThereLeavesTheParameterItsOwnValue) {
+    EXPECT_NEAR(shown("Pattern \"NoSuchPattern\" \"f\"\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"f:resultRGB\"] ").y,
+                .2f, 1e-6);
+    EXPECT_NEAR(shown("Pattern \"fixed\" \"f\"\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"f:resultX\"]\n").z, .3f, 1e-6);
+    EXPECT_NEAR(shown("Bxdf \"showcolor\" \"b\" \"reference color c\" [\"f:resultX\"]\n", 1).x, .1f, 1e-6);
+}
+
+TEST(RisNetwork, AManifoldIsTakenMemberByMember) {
+    // s = x, so so both waves of the checker are known.
+    const Color c =
+        shown("Pattern \"PxrManifold2D\" \"m\" \"float scaleS\" .001 \"float scaleT\" .001 \"float offsetS\" .7\n"
+              "Pattern \"PxrChecker\" \"k\" \"color colorA\" [1 0 0] \"color colorB\" [0 0 1] \"reference struct manifold\" "
+              "[\"m:result\"]\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"k:resultRGB\"]\n");
+    EXPECT_NEAR(c.x, 0, 1e-3); // .7 is in the upper half of a wave, .0005 in the lower
+    EXPECT_NEAR(c.z, 1, 1e-3);
+}
+
+TEST(RisNetwork, DerivativesGoThroughConnections) {
+    // A height of .5 s over the square, where s is x: the normal leans by (.5, 0) to 1.
+    const Color n =
+        shown("Pattern \"PxrVariable\" \"v\" \"string variable\" [\"s\"]\nPattern \"PxrBump\" \"b\" \"float scale\" .5 "
+              "\"reference float inputBump\" [\"v:resultF\"]\nBxdf \"shownormal\" \"b2\" \"reference normal n\" "
+              "[\"b:resultN\"]\n");
+    EXPECT_NEAR(std::fabs(n.x / n.z), .5, 1e-4);
+    EXPECT_NEAR(n.y, 0, 1e-5);
+}
+
+TEST(RisNetwork, MaterialsWithPatternsDoNotWait) {
+    writeShaders();
+    Scene s(std::string(
+                "WorldBegin\nLight \"PxrDomeLight\" \"l\"\nPattern \"PxrChecker\" \"k\"\nBxdf \"paint\" \"b\" \"reference color "
+                "diffuseColor\" [\"k:resultRGB\"]\n") +
+                kSquare + "WorldEnd\n",
+            path());
+    EXPECT_EQ(s.world->facts().suspending, 0);
+}
+
+/// diffuse() of white paint at the middle of the square, which faces a light behind the eye.
+void expectPaint(const std::string& light, double want, const std::string& what, double precision = .01) {
+    writeShaders();
+    Scene s("WorldBegin\nAttributeBegin\n" + light + "\nAttributeEnd\nBxdf \"paint\" \"b\" \"color diffuseColor\" [1 1 1]\n" +
+                kSquare + "WorldEnd\n",
+            path());
+    expectMean(s.estimate(rayTo({.5f, 0, 0}, {0, 0, 2}), samples(4000, 200'000)), want, precision, what);
+}
+/// The form factor of a rectangle of half sides a and b, parallel to an element on its axis at distance h (Siegel and Howell,
+/// Thermal Radiation Heat Transfer, B-4, four times).
+double ofRectangle(double a, double b, double h) {
+    const double x = a / h, y = b / h, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+    return 2 / M_PI * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
+}
+
+TEST(RisLights, ARectangleIsOneAcrossAndShinesAlongZ) {
+    expectPaint("Light \"PxrRectLight\" \"l\" \"float intensity\" 3 \"float exposure\" 1", 6 * ofRectangle(.5, .5, 2),
+                "unit square");
+    expectPaint("Scale 3 2 1\nLight \"PxrRectLight\" \"l\" \"float intensity\" 3", 3 * ofRectangle(1.5, 1, 2), "3 by 2");
+    expectPaint("Scale 3 2 1\nLight \"PxrRectLight\" \"l\" \"float intensity\" 3 \"int areaNormalize\" 1",
+                .5 * ofRectangle(1.5, 1, 2), "of normalised area");
+    writeShaders();
+    Scene away(
+        std::string("WorldBegin\nAttributeBegin\nRotate 180 1 0 0\nLight \"PxrRectLight\" \"l\"\nAttributeEnd\nBxdf \"paint\" "
+                    "\"b\"\n") +
+            kSquare + "WorldEnd\n",
+        path());
+    EXPECT_EQ(away.one(rayTo({.5f, 0, 0}, {0, 0, 2})), Color(0));
+}
+
+TEST(RisLights, OthersHaveTheirUnitsToo) {
+    expectPaint("Light \"PxrDiskLight\" \"l\" \"float intensity\" 4", 4 * .25 / (.25 + 4), "disk, R^2 / (R^2 + h^2)");
+    expectPaint("Light \"PxrSphereLight\" \"l\" \"float intensity\" 4", 4 * .25 / 4, "ball, (R / d)^2");
+    const double half = 5 * M_PI / 180;
+    expectPaint("Light \"PxrDistantLight\" \"l\" \"float intensity\" 40 \"float angleExtent\" 10",
+                40 * std::pow(std::sin(half), 2), "sun, sin^2 of half its extent");
+    expectPaint("Light \"PxrDistantLight\" \"l\" \"float intensity\" 2 \"float angleExtent\" 10 \"int areaNormalize\" 1",
+                2 / M_PI, "sun of irradiance 2");
+    expectPaint("Light \"PxrDomeLight\" \"l\" \"float intensity\" .25 \"float exposure\" 2 \"color lightColor\" [.5 .5 .5]", .5,
+                "even sky");
+}
+
+TEST(RisLights, AFurnaceUnderADomeIsEven) {
+    writeShaders();
+    Scene s(
+        "WorldBegin\nLight \"PxrDomeLight\" \"l\" \"float intensity\" 2\nBxdf \"paint\" \"b\" \"color diffuseColor\" [1 1 1]\n"
+        "Translate 0 0 3\nSphere 1 -1 1 360\nWorldEnd\n",
+        path());
+    expectMean(s.estimate(rayTo({0, 0, 0}, {.3f, .4f, 2.2f}), 2000), 2, .01, "white ball");
+}
+
+TEST(RisLights, TheCameraDoesNotSeeThemUnlessAsked) {
+    writeShaders();
+    const std::string light = "Translate 0 0 2\nRotate 180 1 0 0\n";
+    Scene hidden("WorldBegin\n" + light + "Light \"PxrRectLight\" \"l\" \"float intensity\" 3\nWorldEnd\n", path());
+    EXPECT_EQ(hidden.one(rayTo({0, 0, 0}, {.1f, .2f, 2})), Color(0));
+    Scene seen("WorldBegin\n" + light +
+                   "Attribute \"visibility\" \"int camera\" 1\nLight \"PxrRectLight\" \"l\" \"float intensity\" 3\n"
+                   "WorldEnd\n",
+               path());
+    EXPECT_NEAR(seen.one(rayTo({0, 0, 0}, {.1f, .2f, 2})).x, 3, 1e-5);
+}
+
+} // namespace
+} // namespace risscene_test

@@ -1,0 +1,175 @@
+// Requests of RIS: networks of patterns by handle, lights that are on everywhere, the hider that follows (docs/ris.md).
+#include "ri/collect.h"
+#include "ri/ris.h"
+#include "scene/network.h"
+
+namespace ris_test {
+
+using namespace alpenglow;
+using namespace alpenglow::ri;
+
+namespace {
+
+/// The connection of the surface of a primitive, and the pattern that it means.
+scene::Connection connectionOf(const scene::Primitive& p) {
+    const auto all = scene::connectionsOf(*p.attributes->surface);
+    EXPECT_EQ(all.size(), 1u);
+    return all.empty() ? scene::Connection{} : all[0];
+}
+float valueOf(const scene::Primitive& p, const std::string& parameter) {
+    const auto pattern = p.attributes->coshaders.find(connectionOf(p).handle);
+    const scene::Param* v = pattern == p.attributes->coshaders.end() ? nullptr : scene::find(pattern->second->params, parameter);
+    EXPECT_NE(v, nullptr);
+    return v ? v->numbers[0] : -1;
+}
+
+TEST(Ris, AHandleMeansThePatternThatItHasWhenTheBxdfStands) {
+    auto c = world("Pattern \"PxrMix\" \"m\" \"float mix\" .25\nBxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" "
+                   "[\"m:resultRGB\"]\nSphere 1 -1 1 360\nPattern \"PxrMix\" \"m\" \"float mix\" .75\nSphere 2 -2 2 360\n"
+                   "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"m:resultRGB\"]\nSphere 3 -3 3 360");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(connectionOf(c->primitive(0)).parameter, "diffuseColor");
+    EXPECT_EQ(connectionOf(c->primitive(0)).output, "resultRGB");
+    EXPECT_EQ(valueOf(c->primitive(0), "mix"), .25f);
+    EXPECT_EQ(valueOf(c->primitive(1), "mix"), .25f); // the surface is still the first
+    EXPECT_EQ(valueOf(c->primitive(2), "mix"), .75f);
+}
+
+TEST(Ris, PatternsEndWithTheirBlock) {
+    auto c = world("AttributeBegin\nPattern \"PxrMix\" \"mine\"\nAttributeEnd\nPattern \"PxrMix\" \"mind\"\n"
+                   "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"mine:resultRGB\"]\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::BadHandle);
+    EXPECT_EQ(c->only().place.line, 5);
+    EXPECT_NE(c->only().hint.find("mind"), std::string::npos);
+    EXPECT_TRUE(scene::connectionsOf(*c->primitive().attributes->surface).empty());
+}
+
+TEST(Ris, HandlesMayHaveColonsAndElementsMayBeConnected) {
+    auto c = world("Pattern \"PxrMix\" \"ns:m\"\nPattern \"PxrMix\" \"n\"\nBxdf \"X\" \"d\" \"reference float[2] w\" [\"\" "
+                   "\"ns:m:resultR\"]\nSphere 1 -1 1 360");
+    const scene::Connection k = connectionOf(c->primitive());
+    EXPECT_EQ(scene::plainHandle(k.handle), "ns:m");
+    EXPECT_EQ(k.output, "resultR");
+    EXPECT_EQ(k.element, 1);
+}
+
+TEST(Ris, CirclesAreErrorsAndTheRestIsConnected) {
+    auto c =
+        world("Pattern \"PxrMix\" \"a\" \"reference color color1\" [\"b:resultRGB\"]\nPattern \"PxrMix\" \"b\" \"reference color "
+              "color1\" [\"a:resultRGB\"]\nBxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"a:resultRGB\"]\n"
+              "Sphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::BadHandle);
+    EXPECT_NE(c->only().message.find("a > b > a"), std::string::npos) << c->messages();
+    EXPECT_EQ(scene::plainHandle(connectionOf(c->primitive()).handle), "a");
+    auto own = world("Bxdf \"LamaLayer\" \"l\" \"reference bxdf materialTop\" [\"l:bxdf_out\"]\nSphere 1 -1 1 360");
+    EXPECT_NE(own->only().message.find("l > l"), std::string::npos) << own->messages();
+}
+
+TEST(Ris, ChainsHaveABound) {
+    std::string text = "Pattern \"PxrMix\" \"p0\"\n";
+    for (size_t i = 1; i <= kNetworkDepth + 10; ++i)
+        text += "Pattern \"PxrMix\" \"p" + std::to_string(i) + "\" \"reference color color1\" [\"p" + std::to_string(i - 1) +
+                ":resultRGB\"]\n";
+    auto c = world(text + "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"p" + std::to_string(kNetworkDepth + 10) +
+                   ":resultRGB\"]\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::Limit) << c->messages();
+}
+
+TEST(Ris, LightsAreOnEverywhere) {
+    auto c =
+        world("Sphere 1 -1 1 360\nAttributeBegin\nLight \"PxrRectLight\" \"l\" \"float intensity\" 2\nAttributeEnd\n"
+              "AttributeBegin\nLight \"PxrDomeLight\" \"s\"\nAttributeEnd\nSphere 2 -2 2 360\nObjectBegin 1\nSphere 3 -3 3 360\n"
+              "ObjectEnd\nObjectInstance 1");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    const scene::Frame& f = c->frame();
+    ASSERT_EQ(f.lights.size(), 2u);
+    EXPECT_TRUE(f.lights[0].area);
+    EXPECT_FALSE(f.lights[1].area);
+    ASSERT_EQ(f.primitives.size(), 3u); // with the rectangle
+    for (const auto& p : f.primitives) EXPECT_EQ(p->attributes->lights.size(), 2u) << p->kind;
+    EXPECT_EQ(f.primitives[1]->attributes->areaLight, 0);
+    ASSERT_EQ(f.instances.size(), 1u);
+    EXPECT_EQ(f.instances[0].attributes->lights.size(), 2u);
+}
+
+TEST(Ris, LightsOfAWorldEndWithIt) {
+    auto c =
+        read("WorldBegin\nLight \"PxrDomeLight\" \"s\"\nSphere 1 -1 1 360\nWorldEnd\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+    ASSERT_EQ(c->frames.size(), 2u);
+    EXPECT_EQ(c->frames[0]->primitives[0]->attributes->lights.size(), 1u);
+    EXPECT_EQ(c->frames[1]->primitives[0]->attributes->lights.size(), 0u);
+}
+
+TEST(Ris, TheHiderIsPathUnlessTheSceneChoosesAnother) {
+    const std::string ball = "WorldBegin\nBxdf \"PxrDiffuse\" \"d\"\nSphere 1 -1 1 360\nWorldEnd\n";
+    EXPECT_EQ(read(ball)->frame().options.hider, "path");
+    EXPECT_EQ(read("Hider \"hidden\"\n" + ball)->frame().options.hider, "hidden");
+    EXPECT_EQ(world("Sphere 1 -1 1 360")->frame().options.hider, "hidden");
+    const auto traced = read("Hider \"raytrace\" \"int maxsamples\" 48 \"int incremental\" 1\n" + ball);
+    EXPECT_EQ(traced->frame().options.hider, "path");
+    EXPECT_EQ(traced->frame().options.pixelSamplesX * traced->frame().options.pixelSamplesY, 48);
+    EXPECT_EQ(read("PixelSamples 4 4\nHider \"raytrace\" \"int maxsamples\" 48\n" + ball)->frame().options.pixelSamplesX, 4);
+}
+
+TEST(Ris, IntegratorsSayHowDeepPathsGo) {
+    const auto depthOf = [](const std::string& integrator) {
+        auto c = read(integrator + "\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+        const auto v = c->frame().options.values.find("trace:maxdepth");
+        return v == c->frame().options.values.end() ? -1 : v->second.numbers[0];
+    };
+    EXPECT_EQ(depthOf("Integrator \"PxrPathTracer\" \"i\" \"int maxPathLength\" 6"), 6);
+    EXPECT_EQ(depthOf("Integrator \"PxrVCM\" \"i\" \"int maxPathLength\" 3"), 3);
+    EXPECT_EQ(depthOf("Integrator \"PxrPathTracer\" \"i\""), -1);
+    EXPECT_EQ(depthOf("Integrator \"PxrDirectLighting\" \"i\""), 1);
+    auto other = read("Integrator \"PxrWonder\" \"i\"\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+    EXPECT_EQ(other->only().code, Rie::Incapable);
+    EXPECT_EQ(other->frame().options.hider, "path");
+}
+
+TEST(Ris, WithoutLightsAndIntegratorTheEyeHasALamp) {
+    const std::string ball = "WorldBegin\nBxdf \"PxrDiffuse\" \"d\"\nSphere 1 -1 1 360\nWorldEnd\n";
+    auto c = read(ball);
+    ASSERT_EQ(c->frame().lights.size(), 1u);
+    EXPECT_TRUE(c->primitive().attributes->lights.contains(0));
+    EXPECT_EQ(read("Integrator \"PxrDefault\" \"i\"\n" + ball)->frame().lights.size(), 1u);
+    EXPECT_EQ(read("Integrator \"PxrPathTracer\" \"i\"\n" + ball)->frame().lights.size(), 0u);
+    EXPECT_EQ(world("Sphere 1 -1 1 360")->frame().lights.size(), 0u);
+}
+
+TEST(Ris, PxrOcclusionSeesOneSurfaceEverywhere) {
+    auto c = read("Integrator \"PxrOcclusion\" \"i\"\nWorldBegin\nBxdf \"PxrDiffuse\" \"d\"\nSphere 1 -1 1 360\nWorldEnd\n");
+    EXPECT_EQ(c->primitive().attributes->surface->name, "PxrOcclusion");
+}
+
+TEST(Ris, WhatIsLeftOutIsSaidOnce) {
+    auto c = world("LightFilter \"PxrBarn\" \"b\"\nLightFilter \"PxrBarn\" \"c\"\nSampleFilter \"PxrCryptomatte\" \"m\"\n"
+                   "EnableLightFilter \"l\" \"b\" 1\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->count(), 2u) << c->messages();
+    for (const Diagnostic& d : c->diagnostics.all()) EXPECT_EQ(d.severity, Severity::Warning);
+}
+
+TEST(Ris, LightsHaveGeometry) {
+    auto c = world(
+        "Geometry \"rectlight\"\nGeometry \"envsphere\"\nAreaLightSource \"PxrStdAreaLight\" \"a\"\nGeometry \"spherelight\"");
+    ASSERT_EQ(c->frame().primitives.size(), 2u) << c->messages();
+    EXPECT_EQ(c->primitive(0).kind, "Polygon");
+    EXPECT_EQ(c->primitive(1).kind, "Sphere");
+    EXPECT_TRUE(c->primitive(0).attributes->lights.contains(0)); // of PRMan 19: on everywhere, too
+}
+
+TEST(Ris, PxrOslNamesItsShader) {
+    auto c = world("Pattern \"PxrOSL\" \"p\" \"string shader\" [\"band\"] \"float fuzz\" .1\nPattern \"PxrOSL\" \"q\"\n"
+                   "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"p:Cout\"]\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::MissingData);
+    EXPECT_EQ(valueOf(c->primitive(), "fuzz"), .1f);
+    EXPECT_EQ(c->primitive().attributes->coshaders.at(connectionOf(c->primitive()).handle)->name, "band");
+}
+
+TEST(Ris, PxrVolumeIsWhatIsInside) {
+    auto c = world("Bxdf \"PxrVolume\" \"v\" \"color diffuseColor\" [1 1 1]\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->primitive().attributes->interior->name, "PxrVolume");
+    EXPECT_EQ(c->primitive().attributes->surface->name, "null");
+}
+
+} // namespace
+} // namespace ris_test

@@ -1,4 +1,4 @@
-// Light that reaches a target. All of it comes through here.
+// Adds light to targets. All light passes through this file.
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
 #include "integrator/lightpathstates.h"
@@ -16,9 +16,9 @@ void Accumulator::begin(size_t samples) {
 }
 
 void Accumulator::deposit(Sched& sched, const Deposit& d) {
-    if (!isFinite(d.light) && d.event != LightEvent::Output) // of those the target keeps count
+    if (!isFinite(d.light) && d.event != LightEvent::Output) // the target counts those
         return notFinite(d.path, d.event == LightEvent::Sampled ? "light that is sampled" : "light", d.of);
-    // The guide's rays bring the light of lights that they meet; all other light is that of the lobe's own ray.
+    // Rays of the caustic guide carry only the light of lights that they hit; all other light belongs to the lobe's own ray.
     if (d.path && d.path->guided() && d.event != LightEvent::Met && d.event != LightEvent::Sky) return;
     sched.add(d.target, d.light);
     depositPart(sched, d.path, d.end, d.light);
@@ -46,14 +46,14 @@ void Accumulator::notFinite(const PathRay* ray, const char* what, const ShaderIn
 }
 
 void Accumulator::notFinite(const BatchContext& c, const PathRay& ray, uint32_t site) {
-    if (site >= c.bound->sites.size()) return notFinite(&ray, "light that is scattered in a medium", nullptr); // no call's
+    if (site >= c.bound->sites.size()) return notFinite(&ray, "light that is scattered in a medium", nullptr); // no call site
     const rsl::ir::Site& s = *c.bound->sites[site].site;
     const auto& files = c.bound->kernel->files();
     notFinite(&ray, "light of " + s.op + "(), or its weight,",
               {s.place.file < int(files.size()) ? files[size_t(s.place.file)] : "", s.place.line, s.place.column});
 }
 
-/// The parts of what a volume shader shows: what the surface gives by itself, `met` of it, and what the volume adds.
+/// Splits light that passed a volume shader: light of the surface behind it (`met`), and the volume's own.
 void Accumulator::depositThroughVolume(Sched& sched, const PathRay& ray, const Color& met, const Color& shown) {
     if (ray.guided()) return;
     depositPart(sched, &ray, paths_.next(ray.path, paths_.object), ray.weight * met);

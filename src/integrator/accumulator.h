@@ -1,5 +1,5 @@
-// Accumulate: light that reaches targets, and what it is shared with. The only way that light is added; sums are exact, so that
-// order does not matter. Values that are not finite numbers spoil their camera sample.
+// Accumulation: the only place where light is added to targets and to the outputs that share it. Sums are exact, so their order
+// does not matter. A value that is not finite invalidates its camera sample.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -13,18 +13,18 @@ struct StageSet;
 class Accumulator final : Stage {
 public:
     explicit Accumulator(const StageSet&);
-    void begin(size_t samples); ///< of a call: targets and shares of the one before are gone
-    /// Adds light to a target, and its parts to the outputs that share it.
+    void begin(size_t samples); ///< Starts a call with so many camera samples; drops the targets and shares of the call before.
+    /// Adds light to a target, and the corresponding parts to the outputs that share it.
     void deposit(Sched&, const Deposit&);
-    /// The parts of what a volume shader shows, by light path: what the surface gives by itself, `met` of it, and what the volume
-    /// adds.
+    /// Splits light that passed a volume shader by light path. met: light from the surface behind the volume; shown: what the
+    /// volume makes of it. The difference is the volume's own contribution.
     void depositThroughVolume(Sched&, const PathRay&, const Color& met, const Color& shown);
-    /// A value on the way of a ray is not a finite number: the whole camera sample is left out. `what` made it, at `place`: said
-    /// once.
+    /// Discards the camera sample of a ray that carries a value that is not finite. `what` made the value, at `place`; each place
+    /// is reported once.
     void notFinite(const PathRay*, const std::string& what, const SourcePlace& place);
     void notFinite(const PathRay* ray, const char* what, const ShaderInstance* of);
-    void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< what a call site gives
-    /// Sums of a target, where its trace() asks for them; else null.
+    void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< The value came from this call site
+    /// Sums of a target whose trace() asks for them (TraceSums); else null.
     TraceSums* sumsOf(TargetId t) {
         if (traceSums.empty()) return nullptr;
         auto i = traceSums.find(t);
@@ -34,10 +34,10 @@ public:
     std::unordered_map<TargetId, TraceSums> traceSums;
     std::vector<Share> shares;
     std::vector<SampleResult*> results;    ///< by camera sample
-    std::vector<TargetId> lightTargets;    ///< by camera sample, WorldImpl::lightOutputs_
-    std::vector<TargetId> partTargets;     ///< by camera sample and part of the outputs by light path
-    TargetId nowhere = shading::kNoTarget; ///< nobody reads it
-    std::vector<int> spoiled;              ///< PathSample::path of samples that notFinite() has seen; some twice
+    std::vector<TargetId> lightTargets;    ///< by camera sample: WorldImpl::lightOutputs_
+    std::vector<TargetId> partTargets;     ///< by camera sample and part of the light path outputs
+    TargetId nowhere = shading::kNoTarget; ///< a target that no one reads
+    std::vector<int> spoiled;              ///< PathSample::path of samples to discard; may hold duplicates
 
 private:
     void depositPart(Sched&, const PathRay*, uint16_t end, const Color& light);

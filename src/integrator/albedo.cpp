@@ -1,5 +1,5 @@
-// The output "albedo": what lobes give back of even light. Of those whose albedo is no more than an estimate (facets with Fresnel
-// reflection, highlights) it is measured, by directions drawn as their rays are: right on average.
+// The output "albedo": reflected fraction of uniform light. For lobes without an exact albedo (microfacets with Fresnel,
+// highlights) it is an unbiased estimate from sampled directions.
 #include "integrator/accumulator.h"
 #include "integrator/lobeselection.h"
 #include "integrator/raystore.h"

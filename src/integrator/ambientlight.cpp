@@ -1,5 +1,5 @@
-// ambient() under path: what of the ambient lights reaches a point from the hemisphere that is seen. The lights shine from
-// everywhere evenly; a shadow ray in a direction drawn by the cosine says whether a surface is before them.
+// ambient() under path: light of ambient lights from the visible part of the hemisphere. Ambient light is uniform over all
+// directions; a shadow ray in a cosine-distributed direction tests for occlusion.
 #include "integrator/ambientlight.h"
 #include "base/direction.h"
 #include "integrator/accumulator.h"
@@ -24,8 +24,8 @@ AmbientLight::AmbientLight(const StageSet& s)
     : Stage(s.context), lights(anyAmbient(world_)), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths),
       litSurfaces_(s.litSurfaces), media_(s.media), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces) {}
 
-/// Turns what was asked for into directions: those of the vertex, whatever asks, so that parts of Ci that ask by themselves find
-/// the same.
+/// Samples the directions of the calls. The random numbers are those of the vertex, whoever calls, so that kernels for parts of
+/// Ci get the same directions.
 void AmbientLight::draw(const BatchContext& c, std::vector<AmbientAsked>& calls) {
     numbers_.clear();
     for (const AmbientAsked& a : calls) {
@@ -42,8 +42,8 @@ void AmbientLight::draw(const BatchContext& c, std::vector<AmbientAsked>& calls)
     }
 }
 
-/// Sends the light of an ambient light along the ray of a call. Lights that outputs tell apart have rays of their own; the others
-/// share that of `last`, the number of a shadow ray or -1.
+/// Sends the light of one ambient light along the shadow ray of a call. Lights that light path outputs distinguish have rays of
+/// their own; the others share that of `last`, the index of a shadow ray or -1.
 void AmbientLight::send(const BatchContext& c, const AmbientAsked& a, const Color& light, int number, int& last) {
     const PathRay& ray = c.rays[size_t(a.point)];
     const int32_t share = a.owns ? -1 : store_.extraOf(ray).share;

@@ -1,4 +1,4 @@
-// ambient() under path: what of the ambient lights reaches a point from the hemisphere that is seen, by a shadow ray a call.
+// ambient() under path: light of ambient lights that arrives from the visible part of the hemisphere. One shadow ray per call.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/batchcontext.h"
@@ -20,17 +20,17 @@ class SurfacePoints;
 class AmbientLight final : Stage {
 public:
     explicit AmbientLight(const StageSet&);
-    /// Makes shadow rays of the calls of a batch.
+    /// Makes the shadow rays for the ambient() calls of a batch.
     void gather(BatchContext&);
 
-    std::vector<AmbientAsked> asked; ///< of the batch whose requests are taken
-    const bool lights;               ///< some light answers ambient()
+    std::vector<AmbientAsked> asked; ///< calls of the batch whose requests are being processed
+    const bool lights;               ///< at least one light contributes to ambient()
 
 private:
     void draw(const BatchContext&, std::vector<AmbientAsked>& calls);
     void send(const BatchContext&, const AmbientAsked&, const Color& light, int number, int& last);
     render::NumberRows numbers_;
-    std::vector<int> litBy_; ///< RayExtra::lit of the queries of a light
+    std::vector<int> litBy_; ///< RayExtra::lit, by query of a light
     Accumulator& accumulator_;
     LightKernels& lightKernels_;
     const LightPathStates& paths_;

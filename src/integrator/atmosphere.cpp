@@ -1,5 +1,5 @@
-// Atmospheres and media: volume shaders run over what a ray met. They are affine in the light that comes in (Ci = a + slope Ci),
-// which the compiler proves where it can; the slope scales what is added later: requests, and the light of an emitter.
+// Atmospheres and media: runs volume shaders between a ray's origin and its hit. They are affine in the incoming light (Ci' = a +
+// slope Ci), which the compiler proves where it can; the slope scales light that is added later: requests and emission.
 #include "integrator/atmosphere.h"
 #include "integrator/context.h"
 #include "integrator/kernelinputs.h"
@@ -43,14 +43,14 @@ void Atmosphere::haze(const Medium& medium, const SurfaceBinding& binding, std::
     };
     run([&](size_t i, const Color& ci, const Color& oi, const Color& slope) { out[i] = {ci, oi, slope, true}; });
     if (slopeAt >= 0 || !wantSlope) return;
-    // Not affine, or not proved: the slope between no light and light of 1. World::build has said so.
+    // Not affine, or not proved: use the slope between no light and light of radiance 1. World::build has reported this.
     for (ShadePoint& p : points) p.Ci = Color(0);
     run([&](size_t i, const Color& ci, const Color&, const Color&) { out[i].slope = -ci; });
     for (ShadePoint& p : points) p.Ci = Color(1);
     run([&](size_t i, const Color& ci, const Color&, const Color&) { out[i].slope += ci; });
 }
 
-/// Outputs that displays ask for and that the surface does not have, or may not have.
+/// Adds outputs of the volume that displays request and that the surface lacks, or may not write.
 void Atmosphere::keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of) {
     const auto& wanted = world_.wanted_;
     size_t all = 0, at = 0;
@@ -82,7 +82,7 @@ void Atmosphere::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlo
     for (int i = first; i < end; ++i) {
         const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[size_t(i)])];
         const Medium* medium = mediumOf(i) >= 0 ? &world_.media_[size_t(mediumOf(i))] : &b.atmosphere;
-        if (!medium->shader || medium->homogeneous || done[size_t(i - first)]) continue; // a flight has gone through the latter
+        if (!medium->shader || medium->homogeneous || done[size_t(i - first)]) continue; // a flight has handled homogeneous media
         points.clear();
         of.clear();
         for (int k = i; k < end; ++k) {
@@ -113,7 +113,7 @@ void Atmosphere::scaleRequests(BatchContext& c) {
 void Atmosphere::hazeOfPhotons(BatchContext& c) {
     const WorldImpl& world = world_;
     c.haze.clear();
-    // Where each way is seen to begin and end, by the volume that it is in.
+    // Origin and end of each segment as the volume shader sees them, by medium.
     struct Way {
         const Medium* medium;
         int binding;
@@ -127,7 +127,7 @@ void Atmosphere::hazeOfPhotons(BatchContext& c) {
         const int binding = in >= 0 ? world.media_[size_t(in)].binding : r.lobeBinding;
         if (binding < 0) continue;
         const Medium& m = in >= 0 ? world.media_[size_t(in)] : world.bindings_[size_t(binding)].atmosphere;
-        if (!m.shader || m.homogeneous) continue; // flights see to the latter
+        if (!m.shader || m.homogeneous) continue; // flights handle homogeneous media
         ways.push_back({&m, binding, i, in >= 0 ? r.origin : r.lobeOrigin});
     }
     if (ways.empty()) return;

@@ -1,4 +1,5 @@
-// Volume shaders over what rays met: what they add, what they leave of light (Ci = a + slope Ci), and their outputs.
+// Volume shaders between a ray's origin and its hit: in-scattered light and transmittance (Ci' = a + slope Ci), and their
+// outputs.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -11,23 +12,22 @@ struct StageSet;
 class Atmosphere final : Stage {
 public:
     explicit Atmosphere(const StageSet&);
-    /// Runs a volume shader over points with Ci, Oi, I, P set. The points' Ci is void afterwards. The binding is that of what was
-    /// met. `surface`, `of`: the run of the surface shader, and the points' numbers there; may be missing.
+    /// Runs a volume shader over points with Ci, Oi, I and P set; their Ci is undefined afterwards. The binding is that of the
+    /// surface behind the volume. `surface`, `of`: the batch of the surface shader and the index of each point in it; optional.
     void haze(const Medium&, const SurfaceBinding&, std::vector<ShadePoint>&, std::span<Haze> out, bool wantSlope,
               BatchContext* surface = nullptr, std::span<const int> of = {});
-    /// Fills c.haze for points first to first + count - 1 of a shaded batch.
+    /// Sets c.haze of points first to first + count - 1 of a shaded batch.
     void hazeOfBatch(BatchContext&, int first, int count, bool wantSlope);
-    /// What the volumes before the points of a batch leave of the light that its kernel has asked for: scales the weights.
+    /// Multiplies the weights of the kernel's light requests by the transmittance of the volume before each point.
     static void scaleRequests(BatchContext&);
-    /// Takes from the light of emitters what their atmosphere takes between them and the lit points.
-    /// inMedium: LightCall::inMedium.
+    /// Attenuates light of emitters by the atmosphere between them and the lit points. inMedium: LightCall::inMedium.
     void hazeOfEmitters(const BoundLight&, std::span<const ShadePoint>, std::span<LightValue>, const std::vector<char>* inMedium);
-    /// Fills c.haze: what the way of each photon loses, which an eye would see the other way round from here. That is in the
-    /// volume between, or in the atmosphere of the surface that the photon comes from.
+    /// Sets c.haze for photons: the transmittance of the volume between their origin and their hit, or of the atmosphere of the
+    /// surface that they left. By symmetry, the volume shader runs as for an eye at the other end.
     void hazeOfPhotons(BatchContext&);
 
 private:
-    int running_ = 0; ///< runs of volumes' kernels, one within the other
+    int running_ = 0; ///< volume kernels that are running, nested
     void keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of);
     KernelInputs& inputs_;
 };

@@ -15,7 +15,7 @@ bool bakesAt(const BoundKernel& k) {
     return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.cloud && s.cloud->writes; });
 }
 
-/// Whether some shader bakes at the points of a surface: of those that run there.
+/// Whether a shader bakes at the points of a surface, among those that run there.
 bool bakesAt(const WorldImpl& w, const SurfaceBinding& b) {
     bool bakes = false;
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) bakes |= bakesAt(*k);
@@ -31,7 +31,7 @@ Vec3 placeOf(const WorldImpl& w, const shading::GridPoint& p) {
 } // namespace
 
 bool bakes(const World& world) {
-    const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of others have worlds of their own
+    const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of other folders use their own World
     return w && w->clouds_ && w->clouds_->bakes;
 }
 

@@ -1,4 +1,4 @@
-// Baking: the points of grids over primitives whose shaders bake, as rays that find them, and the files that come of it.
+// Baking: rays to the grid points of primitives whose shaders bake, and the files that result.
 #pragma once
 #include "base/diagnostics.h"
 #include "clouds/bakelog.h"
@@ -9,27 +9,27 @@
 
 namespace alpenglow::transport {
 
-/// Whether some shader of the frame bakes.
+/// Whether a shader of the frame bakes.
 bool bakes(const World&);
-/// The shapes with a grid whose surface shaders bake, by number.
+/// Numbers of the shapes that have a grid and whose surface shaders bake.
 std::vector<uint32_t> bakedShapes(const World&);
-/// Whether all points of such a shape bake, or none of them: where conditions on the way to the calls do not vary over it. Of
-/// lights, those points at which they are run.
+/// Whether either all points of this shape bake or none, i.e. the conditions around the baking calls are uniform. For lights: all
+/// points at which they run.
 bool bakesAllOrNone(const World&, uint32_t shape);
-/// Begins to note which lights are run. Nobody traces meanwhile.
+/// Starts to record which lights run. Call while no thread traces.
 void noteLightsOfBakes(const World&);
-/// Ends that. Whether all lights of a shape that could bake there were run. Nobody traces meanwhile.
+/// Stops recording. Returns whether every light that could bake at the shape has run. Call while no thread traces.
 bool bakingLightsRan(const World&, uint32_t shape);
-/// Adds the points of a shape's grid, in their order. Points of solids that bound nothing are left out.
+/// Appends the grid points of a shape in order, without points of CSG solids that are not on the boundary.
 void bakedPoints(const World&, uint32_t shape, std::vector<shading::GridPoint>&);
-/// A ray from the eye that finds a point, whatever is before it; number: among those of its shape. `pixel`: a ray of the camera,
-/// whose footprint and time it gets. The point outlives the ray's trace, and gets its distance.
+/// A ray from the eye to a grid point that ignores all geometry before it. number: index of the point within its shape. `pixel`:
+/// a camera ray that supplies footprint and time. The point must outlive the trace, which sets its distance.
 CameraRay rayTo(const World&, shading::GridPoint&, int number, const CameraRay& pixel);
-/// Whether anything was baked since the last time. Nobody traces meanwhile.
+/// Whether anything was baked since the last call. Call while no thread traces.
 bool bakedNow(const World&);
-/// What was baked since the last time goes behind what was baked before, or is forgotten. Nobody traces meanwhile.
+/// Appends what was baked since the last call to the earlier records (keep), or discards it. Call while no thread traces.
 void settleBakes(const World&, bool keep);
-/// Writes what was baked, but over no file of the others. False: an error was reported.
+/// Writes the baked files, except those that `others` own. Returns false after an error, which is reported.
 bool writeBakes(const World&, bool allowWrite, const clouds::FileOwners& others, Diagnostics&);
 
 } // namespace alpenglow::transport

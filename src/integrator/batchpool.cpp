@@ -21,10 +21,10 @@ std::shared_ptr<BatchContext> BatchPool::take() {
 
 void BatchPool::giveBack(std::shared_ptr<BatchContext> c) {
     constexpr size_t kMost = 64;
-    if (c.use_count() != 1 || pool_.size() >= kMost) return; // a strip waits in it
+    if (c.use_count() != 1 || pool_.size() >= kMost) return; // a strip still uses it
     if (c->batch.use_count() != 1) c->batch.reset();
     store_.freeExtras(*c);
-    c->forget(); // points stay: SurfacePoints writes them again
+    c->forget(); // points are kept: SurfacePoints overwrites them
     c->targets.clear();
     c->hits.clear();
     c->emits.clear();

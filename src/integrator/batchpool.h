@@ -1,4 +1,4 @@
-// Batches and their memory, used again: a slice makes several, of some hundred kilobytes.
+// A pool of batches. A slice makes several batches of some hundred kilobytes, so their memory is reused.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -12,8 +12,8 @@ class BatchPool final : Stage {
 public:
     explicit BatchPool(const StageSet&);
     std::shared_ptr<BatchContext> take();
-    void giveBack(std::shared_ptr<BatchContext>); ///< kept when nobody else has it
-    /// Gives back a batch whose points are shaded: its targets wait for it no longer.
+    void giveBack(std::shared_ptr<BatchContext>); ///< reused if no one else holds it
+    /// Returns a batch whose points are shaded and releases its hold on their targets.
     void finish(std::shared_ptr<BatchContext>, Sched&);
 
 private:

@@ -1,4 +1,4 @@
-// Lights that rays of surfaces may pass in a medium (beside.h): which, and how many of the draws of a lobe are for one.
+// Light-directed sampling for surfaces in media (beside.h): selects the light and its share of a lobe's samples.
 #include "integrator/beside.h"
 #include "integrator/lobeselection.h"
 #include "integrator/mediastacks.h"
@@ -10,8 +10,8 @@
 namespace alpenglow::transport {
 
 namespace {
-constexpr float kMostBeside = 0.3f; ///< of a lobe's draws
-constexpr float kThin = 0.2f;       ///< optical length to a light where it is half of that
+constexpr float kMostBeside = 0.3f; ///< largest share of a lobe's samples
+constexpr float kThin = 0.2f;       ///< optical distance to the light at which the share is half of that
 } // namespace
 
 float Beside::density(const Vec3& w, float ofLobe) const {
@@ -35,7 +35,7 @@ bool MediumFlights::surfacesAim() const {
            world_.settings_.mediumSampling != MediumSampling::Distance;
 }
 
-/// On the side that the point is seen from, else on the other one.
+/// Tries the side of the surface that the ray arrives from first, then the other one.
 Beside MediumFlights::besideSurface(const KernelRun& c, size_t point) const {
     const PathRay& ray = c.rays[point];
     const ShadePoint& p = c.points[point];
@@ -48,7 +48,7 @@ Beside MediumFlights::besideSurface(const KernelRun& c, size_t point) const {
         float away = 0;
         const Vec3 to = besideLight(m, ray, p.P, &away);
         if (!(dot(to, side) > 0)) continue;
-        const float thick = away * mean(m.homogeneous->scattering); // less where little is scattered on the way there
+        const float thick = away * mean(m.homogeneous->scattering); // small where little is scattered on the way
         return {to, kMostBeside * thick / (thick + kThin)};
     }
     return {};

@@ -1,5 +1,6 @@
-// Rays that leave surfaces in a medium and pass a light there: what they find is about 1 / sine of the angle that they are off
-// its direction, so that draws by a lobe alone bring it with a variance without bound. A part of the draws is even in that angle.
+// Light-directed phase sampling at surfaces within a medium. Single scattering along a ray at angle a from the direction of a
+// light is about 1 / sin a, so sampling the lobe alone has unbounded variance. A share of the samples is therefore uniform in
+// that angle.
 #pragma once
 #include "base/vec.h"
 #include "lobes/lobe.h"
@@ -8,14 +9,14 @@
 namespace alpenglow::transport {
 
 struct Beside {
-    Vec3 light;      ///< unit, toward it; where there is one
-    float share = 0; ///< of the draws; 0: there is none
+    Vec3 light;      ///< unit, toward the light, if there is one
+    float share = 0; ///< probability of sampling toward the light; 0: no light
 
-    /// The density of draws toward w, of which those of the lobe alone have `ofLobe`.
+    /// Mixture density of direction w, per steradian. ofLobe: density of the lobe alone.
     float density(const Vec3& w, float ofLobe) const;
-    /// A direction beside the light by u, or nothing: then u is for the lobe.
+    /// A direction sampled around the light by u. Without a value, u has been rescaled for sampling the lobe.
     std::optional<Vec3> draw(Vec2& u) const;
-    /// Fewer draws the less the lobe gives back from the light, whose value this is.
+    /// Reduces the share where the lobe reflects little of this light. v: value of the lobe toward the light.
     void weigh(const LobeValue& v) { share *= v.fcos > 0 && v.pdf > 0 ? std::min(1.f, v.pdf * float(kPi)) : 0; }
 };
 

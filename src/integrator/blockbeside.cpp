@@ -1,14 +1,14 @@
-// Vertices in blocks on surfaces in media that scatter: lights that rays of their lobes may pass (beside.h).
+// Light-directed sampling (beside.h) for vertices in blocks on surfaces in scattering media.
 #include "integrator/blockvertices.h"
 #include "integrator/medium.h"
 #include <bit>
 
 namespace alpenglow::transport {
 
-/// LobeSelection::besideLights().
+/// Block version of LobeSelection::besideLights().
 void BlockVertices::besideLights(const BatchContext& c) {
     for (size_t k = 0; k < count_; ++k) sites_[k].beside.clear();
-    if (waits_ || c.between || !mediumFlights_.surfacesAim()) return; // rays of waiting kernels follow their lobe alone
+    if (waits_ || c.between || !mediumFlights_.surfacesAim()) return; // rays of waiting kernels follow the lobe's density alone
     for (size_t b = 0; b < blocks_; ++b) {
         Lanes some = 0;
         for (size_t k = 0; k < count_; ++k) some |= sites_[k].spreads(b);

@@ -1,4 +1,4 @@
-// Guide, in blocks: guidescatter.h for vertices that are followed 16 at a time (blockvertices.h), with its bits.
+// Guide rays for vertices in blocks of 16 (blockvertices.h). Same bits as guidescatter.h.
 #pragma once
 #include "integrator/blockvertices.h"
 #include "integrator/guiderays.h"
@@ -9,15 +9,15 @@ class BlockVertices::Guided {
 public:
     explicit Guided(BlockVertices&, GuideRays&);
     bool on() const { return guide_.on(); }
-    /// Marks the points of a block whose rays the guide aimed.
+    /// Marks the rays of a block that were aimed by the guide.
     void mark(size_t block, const BatchContext&);
-    /// Behind select(): sends the guide's rays of all points.
+    /// After select(): sends the guide rays of all points.
     void run(BatchContext&, Sched&);
-    /// Behind run(): trail and pdf of the rays that go on from a block, where lobe and incoming ray say anything of them.
+    /// After run(): sets trail and pdf of the next rays of a block where they depend on the lobe and the incoming ray.
     void keep(size_t block, const BatchContext&);
 
 private:
-    /// The lobe of a point that the guide helps: number of its site; -1: none.
+    /// The lobe of a point that gets a guide ray, by call site; -1: none.
     struct Point {
         int site = -1;
         GuideRays::Aim aim;
@@ -26,8 +26,8 @@ private:
     void send(size_t block, int site, Lanes, BatchContext&, Sched&);
     BlockVertices& b_;
     GuideRays& guide_;
-    std::vector<Point> points_; ///< of all blocks
-    alignas(64) Row w_[3];      ///< directions of a block's rays
+    std::vector<Point> points_; ///< over all blocks
+    alignas(64) Row w_[3];      ///< directions of the guide rays of a block
 };
 
 } // namespace alpenglow::transport

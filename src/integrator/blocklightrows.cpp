@@ -1,5 +1,5 @@
-// Samples of lights for vertices in blocks whose points, kernel and values are rows, no structure a point: of emitters of a few
-// flat triangles, and of lights without geometry. What the others do in blocklights.cpp, with the same bits.
+// Light samples for vertices in blocks where points, kernel and values are rows, without a structure for each point: emitters of
+// a few flat triangles, and lights without geometry. blocklights.cpp handles the other lights, with the same bits.
 #include "base/direction.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
@@ -14,7 +14,7 @@
 
 namespace alpenglow::transport {
 
-/// Whether points of the light come from the stage `place` or are one, and a kernel of it asks for nothing but what that gives.
+/// Whether stage `place` makes the points on the light, or the light is a point, and its kernel needs nothing else.
 bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
     if (!of || l.hazy || (emitter && !l.emitter)) return false;
@@ -30,7 +30,7 @@ void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
     connect(light, c);
 }
 
-/// A sample of the light for each point of litBlocks_ that is lit.
+/// Samples the light for each lit point of litBlocks_.
 void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
     placeInRows(light);
     const size_t n = litBlocks_.size() * kBlock;
@@ -54,7 +54,7 @@ void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
     batches_.giveBack(std::move(call));
 }
 
-/// A point of the light for each point of blocks where some sample it.
+/// Chooses points on the light for blocks in which some points sample it.
 void BlockVertices::placeInRows(const BoundLight& light) {
     beginLights(light);
     const size_t n = litBlocks_.size() * kBlock;
@@ -76,7 +76,7 @@ void BlockVertices::placeInRows(const BoundLight& light) {
     }
 }
 
-/// The same for one of litBlocks_: shape by shape, of each the points that chance gives it.
+/// The same for one of litBlocks_ on an emitter, shape by shape, each for the points that chose it.
 void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
     const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
     float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
@@ -112,7 +112,7 @@ void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
     }
 }
 
-/// The light at the points, from the outputs of its kernel.
+/// Reads the light at the points from the outputs of its kernel.
 void BlockVertices::takeRows(const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
     values_.clear();
     queryAt_.clear();
@@ -125,7 +125,7 @@ void BlockVertices::takeRows(const BoundLight& light, const shading::Batch& from
     }
 }
 
-/// The same of one of litBlocks_.
+/// The same for one of litBlocks_.
 void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
     const size_t b = litBlocks_[k], first = k * kBlock;
     LightBlock& l = lights_[b];
@@ -135,7 +135,7 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
     };
     for (int q = 0; q < 3; ++q) std::copy_n(row(light.outCl, q), kBlock, l.Cl[q]);
     for (int i = 0; light.intensityScale > 0 && i < kBlock;
-         ++i) { // the kernel divided by the squared distance: radiance does not
+         ++i) { // the kernel divided by the squared distance; radiance does not
         const float scale = dot(way(i), way(i)) * light.intensityScale;
         for (int q = 0; q < 3; ++q) l.Cl[q][i] *= scale;
     }
@@ -164,7 +164,7 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
     }
 }
 
-/// Where a light without geometry stands as seen from the points of a block. at: of its first one in the batch.
+/// Position of a light without geometry, seen from the points of a block. at: index of the block's first point in the batch.
 void BlockVertices::placeFar(const BoundLight& light, const shading::Batch& from, size_t at, LightBlock& l) const {
     alignas(64) static constexpr Row kNone[3] = {};
     const float* L = light.outL < 0 ? kNone[0] : from.row(light.outL, 0).data() + at;
@@ -176,7 +176,7 @@ void BlockVertices::placeFar(const BoundLight& light, const shading::Batch& from
     }
 }
 
-/// Whether the light's shadow is that of a disk; then how large it is. at: in the batch.
+/// Whether the light has a disk-shaped shadow source, and its size. at: index in the batch.
 bool BlockVertices::asksShadowDisk(const BoundLight& light, const shading::Batch& from, size_t at, LightValue& v) {
     if (light.shadowRadius < 0) return false;
     const float samples = light.shadowSamples < 0 ? 1 : from.value(light.shadowSamples, 0, int(at));

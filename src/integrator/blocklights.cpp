@@ -1,4 +1,4 @@
-// Samples of lights for vertices in blocks, and what their lobes give back of them.
+// Light sampling for vertices in blocks, and the lobes' response.
 #include "base/direction.h"
 #include "integrator/accumulator.h"
 #include "integrator/chosenlights.h"
@@ -17,7 +17,7 @@
 namespace alpenglow::transport {
 
 void BlockVertices::light(BatchContext& c) {
-    if (paths_.automaton) surfaces_.pointsOfRows(c); // to tell reflection from transmission
+    if (paths_.automaton) surfaces_.pointsOfRows(c); // needed to tell reflection from transmission
     const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
     if (!list.chooser.empty()) {
         findLit(nullptr);
@@ -26,14 +26,14 @@ void BlockVertices::light(BatchContext& c) {
     }
     for (const int number : list.sampled) {
         const BoundLight& light = world_.lights_[size_t(number)];
-        if (!light.importance) continue; // rays alone find it
+        if (!light.importance) continue; // only rays find it
         findLit(&light);
         if (c.between) takeParts(light, c);
         if (!litBlocks_.empty()) lightAlone(light, c);
     }
 }
 
-/// The points that sample a light; null: some light.
+/// Finds the points that sample a light; null: any light.
 void BlockVertices::findLit(const BoundLight* light) {
     lit_.assign(blocks_, 0);
     for (size_t k = 0; k < count_; ++k)
@@ -44,7 +44,7 @@ void BlockVertices::findLit(const BoundLight* light) {
         if (lit_[b]) litBlocks_.push_back(b);
 }
 
-/// One light, for the points of lit_ and litBlocks_.
+/// Samples one light for the points of lit_ and litBlocks_.
 void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
     if (inRows_[size_t(&light - world_.lights_.data())]) return lightInRows(light, c);
     sampleLight(light, c);
@@ -55,14 +55,14 @@ void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
     connect(light, c);
 }
 
-/// Whether lobes of a site ask a light for samples. trace() without "samplelights" knows emitters and skies; it knows none that
-/// are illuminance's.
+/// Whether lobes of a call site sample a light. trace() without "samplelights" samples emitters and skies only; it samples none
+/// that illuminance loops handle.
 bool BlockVertices::samples(const Site& s, const BoundLight& light) {
     if (!s.lights || s.lighting) return s.lights;
     return (light.kind == LightKind::Area || light.sky || s.info->allLights) && light.strategy != LightStrategy::Illuminance;
 }
 
-/// The numbers of a stream (NumberBlock) at all points.
+/// Draws the random numbers of a stream (NumberBlock) at all points.
 void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock>& to, bool ofLights) {
     to.resize(blocks_);
     for (size_t b = 0; b < blocks_; ++b) {
@@ -78,16 +78,16 @@ void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock
     render::drawBlocks(to);
 }
 
-/// A point of the light for a lit one. False: this draw brings nothing.
+/// Chooses a point on the light for a lit one. Returns false if the sample carries no light.
 bool BlockVertices::placeQuery(const BoundLight& light, const LightNumbers& u, const ShadePoint& lit, ShadePoint& q,
                                Emitter::Sample& s) const {
     tellLit(q, lit);
     if (!placeLightSample(world_, light, u, true, q, s)) return false;
-    // Sides 1: from where rays pass through the emitter they cannot meet it, and it sends nothing.
+    // Sides 1: rays pass through the emitter from its back, so it sends nothing there.
     return light.kind != LightKind::Area || light.mean || !s.shape->oneSided() || dot(meetsNormal(q.surface), s.direction) < 0;
 }
 
-/// A point of the light for each point that samples it.
+/// Chooses a point on the light for each point that samples it.
 void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
     if (takesPair(light, true)) drawNumbers(use << 1, pairs_);
@@ -97,7 +97,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     for (size_t b = 0; b < blocks_; ++b)
         for (Lanes left = lit_[b]; left; left &= left - 1) {
             const int lane = std::countr_zero(left), point = int(b) * kBlock + lane;
-            if (asked_.size() == queries_.size()) queries_.emplace_back(); // those of the light before are written again
+            if (asked_.size() == queries_.size()) queries_.emplace_back(); // queries of the previous light are overwritten
             ShadePoint& q = queries_[asked_.size()];
             BlockQuery& a = asked_.emplace_back();
             a.point = point;
@@ -110,7 +110,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     queries_.resize(asked_.size());
 }
 
-/// Room for what a light sends, nothing yet.
+/// Makes room for the light's radiance; zero at first.
 void BlockVertices::beginLights(const BoundLight& light) {
     lights_.resize(blocks_);
     for (LightBlock& l : lights_) {
@@ -120,7 +120,7 @@ void BlockVertices::beginLights(const BoundLight& light) {
     }
 }
 
-/// The light at the points, in rows.
+/// Copies the light at the points into rows.
 void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
     beginLights(light);
     queryAt_.resize(points_);
@@ -135,7 +135,7 @@ void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
     }
 }
 
-/// What a light sends from a point of it, in a lane.
+/// Copies the radiance from one point on a light into a lane.
 void BlockVertices::takeValue(LightBlock& l, int lane, const BoundLight& light, const LightValue& value, const ShadePoint& query,
                               const Emitter::Sample& sample) {
     const bool drawn = l.emitter || light.sky;
@@ -157,8 +157,8 @@ void BlockVertices::connect(const BoundLight& light, BatchContext& c) {
         if (lights_[b].asked) connectBlock(b, light, c);
 }
 
-/// What lobes of a site at `points` give back of their lights, by value_: along the rays of shadow_ that were sent already.
-/// pointOf: by lane, the point of the batch. Returns the lanes whose ray is still to be sent.
+/// Evaluates the lobes of a call site at `points` for their lights, into value_; adds the result to shadow rays that were already
+/// sent. pointOf: by lane, index in the batch. Returns the lanes whose ray is still to be sent.
 Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l,
                                 BatchContext& c, const size_t* pointOf) {
     Lanes failed = 0, fresh = 0;
@@ -182,7 +182,7 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
     return fresh;
 }
 
-/// Shadow rays from the points of a block: one from each, for all of its lobes.
+/// Makes the shadow rays of a block: one per point, for all of its lobes.
 void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
     size_t points[kBlock];
     std::iota(points, points + kBlock, b * kBlock);
@@ -205,7 +205,7 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
     }
 }
 
-/// RayExtra::share of what goes on from a ray.
+/// RayExtra::share of the continuing ray.
 int32_t BlockVertices::shareOf(const PathRay& r) const { return waits_ ? -1 : store_.extraOf(r).share; }
 
 uint16_t BlockVertices::pathOf(const Site& s, bool delta, size_t point, const Vec3& w, const BatchContext& c) const {
@@ -213,7 +213,7 @@ uint16_t BlockVertices::pathOf(const Site& s, bool delta, size_t point, const Ve
     return paths_.atLobe(*s.kind, *s.rays, delta, c.points[point], c.rays[point], w);
 }
 
-/// The ray of a lane of shadow_, from a point towards w; says: what the light says of its shadow, null: nothing more.
+/// Sends the shadow ray of a lane of shadow_, from a point toward w; says: shadow parameters of the light, or null.
 void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, const Vec3& w, const BoundLight& of,
                                const LightValue* says, BatchContext& c) {
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
@@ -226,7 +226,7 @@ void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, cons
     s.path = pathOf(site, false, point, w, c);
     if (s.path) s.light = paths_.lights[size_t(&of - world_.lights_.data())];
     if (!says) return;
-    if (says->shadowRadius > 0) { // to a point of the disk
+    if (says->shadowRadius > 0) { // to a point on the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
         const Vec2 u = store_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
         const VertexBlock& v = vertices_[point / kBlock];
@@ -235,7 +235,7 @@ void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, cons
         s.dir = normalizeOr(to, s.dir);
         s.distance = length(to) * (1 - 1e-5f);
     }
-    if (says->ownShadow) s.distance = 0; // the light's shader looked for itself
+    if (says->ownShadow) s.distance = 0; // the light's shader computed visibility itself
 }
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// What a call site of a kernel asks for at the points of a batch, in blocks.
+// The lobes that a call site requests at the points of a batch, in blocks of 16.
 #pragma once
 #include "base/numberblock.h"
 #include "integrator/beside.h"
@@ -10,47 +10,47 @@
 
 namespace alpenglow::transport {
 
-/// A call site of the kernel that asks for lobes of some points.
+/// A call site of the kernel that requests lobes.
 struct BlockLobes {
-    int number = 0;                 ///< of the kernel, or kFlight
-    const SiteInfo* info = nullptr; ///< null: no call, but a medium that scatters
+    int number = 0;                 ///< call site of the kernel, or kFlight
+    const SiteInfo* info = nullptr; ///< null: the phase function of a medium, not a call
     const LobeKind* kind = nullptr;
     const LobeLanes* lanes = nullptr;
     const RayKind* rays = nullptr;
     bool lighting = false; ///< a lighting shadeop
     bool lights = false;   ///< its lobe samples lights
-    bool diffuse = false;  ///< of its rays
+    bool diffuse = false;  ///< its rays are diffuse
     std::vector<LobeBlock> lobes;
-    std::vector<Beside> beside; ///< by point, lights that its rays may pass; empty: none do
-    std::vector<float> narrow;  ///< of kernels with strips below a block: arguments, by block
+    std::vector<Beside> beside; ///< by point: light-directed sampling (beside.h); empty: none
+    std::vector<float> narrow;  ///< arguments, by block, for kernels whose strips are narrower than a block
 
-    /// Points of a block whose lobe may be followed and spreads light.
+    /// Points of a block whose lobe may be followed and is not a delta.
     Lanes spreads(size_t block) const;
-    /// Beside::weigh() for the points of a block. value: room for kValueRows.
+    /// Beside::weigh() for the points of a block. value: space for kValueRows rows.
     void weighBeside(size_t block, Row* value);
-    /// Makes densities of lobes alone, toward w, those of all draws. pointOf: by lane, the point of the batch.
+    /// Turns pdf toward w from the density of the lobes alone into the mixture density. pointOf: by lane, index in the batch.
     void addBeside(Lanes, const Row* w, const size_t* pointOf, float* pdf) const;
-    /// Draws directions by u, some of them beside lights, to `drawn`, kDrawnRows.
+    /// Samples directions by u, some of them toward lights, and writes kDrawnRows rows to `drawn`.
     void draw(size_t block, Lanes, render::NumberBlock& u, Row* drawn) const;
 };
 
-/// A sample of a light for a point in a medium, and what the medium makes of light from there.
+/// A light sample for a point in a medium, and the value of the phase function there.
 struct BlockLit {
     size_t point;
-    Vec3 w, end; ///< toward the light, unit; of an emitter where the way to it ends
+    Vec3 w, end; ///< w: unit, toward the light; end: end of the shadow ray at an emitter
     Color Cl;
     float density, far, kept, phase; ///< as in LightBlock; kept: by diffuse lobes
     float shadowRadius;              ///< LightValue
-    Vec3 L;                          ///< where that is not 0
+    Vec3 L;                          ///< valid if shadowRadius is not 0
 };
 
-/// What a light is asked at points.
+/// A light sample to be evaluated by a light's kernel.
 struct BlockQuery {
     int point = 0;
     Emitter::Sample sample;
 };
 
-/// Points that have one of a light; of these, those whose rays could meet it by chance.
+/// Points that have a sample of one light; of these, those whose diffuse or specular rays could hit the light.
 struct BlockPlaced {
     Lanes points = 0, metDiffuse = 0, metSpecular = 0;
 };

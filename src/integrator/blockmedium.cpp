@@ -1,4 +1,4 @@
-// Points inside of media that scatter, in blocks: their lobes are those of the medium, and no kernel asks for them (medium.h).
+// Points inside scattering media, in blocks: their lobe is the phase function of the medium, without a kernel (medium.h).
 #include "answers/random.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
@@ -9,7 +9,7 @@
 
 namespace alpenglow::transport {
 
-/// Whether what the lights of a binding are asked at points inside of media is more than rows hold.
+/// Whether light kernels of a binding read more at points inside media than rows hold.
 bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
     const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
     return !usable_ || paths_.automaton || !list.chooser.empty() ||
@@ -54,7 +54,7 @@ bool BlockVertices::light(const BatchContext& c, const Homogeneous& h, const Bou
     return true;
 }
 
-/// The points of a block.
+/// Fills the points of a block.
 void BlockVertices::loadFlown(size_t b, const BatchContext& c) {
     VertexBlock& v = vertices_[b];
     const RayBlock& rays = rays_[b];
@@ -65,7 +65,7 @@ void BlockVertices::loadFlown(size_t b, const BatchContext& c) {
         const float t = c.flown[first + std::min(k, n - 1)].t;
         for (int q = 0; q < 3; ++q) v.P[q][k] = rays.origin[q][k] + rays.direction[q][k] * t;
     }
-    for (int q = 0; q < 3; ++q) { // there are no sides, and nobody asks from where it is seen
+    for (int q = 0; q < 3; ++q) { // no sides and no viewing direction
         std::fill_n(v.n[q], kBlock, 0.f);
         std::fill_n(v.I[q], kBlock, 0.f);
         std::fill_n(v.clear[q], kBlock, 0.f);
@@ -74,7 +74,7 @@ void BlockVertices::loadFlown(size_t b, const BatchContext& c) {
     std::fill_n(v.bias, kBlock, c.binding->bias);
 }
 
-/// The lobes: of points near a light those that know of it.
+/// Sets the lobes; near a light, those with light-directed sampling.
 void BlockVertices::beginMedium(std::span<const Vec3> beside, float anisotropy) {
     static const LobeKind* const kKinds[] = {findLobe("henyey-greenstein"), findLobe("henyey-greenstein-beside")};
     count_ = std::any_of(beside.begin(), beside.end(), [](const Vec3& l) { return l != Vec3(0); }) ? 2 : 1;
@@ -107,7 +107,7 @@ void BlockVertices::beginMedium(std::span<const Vec3> beside, float anisotropy) 
     }
 }
 
-/// What samples of a light for these points have of its light; those that have nothing are not lit by it.
+/// Applies the MIS weights of distance sampling to the light samples; removes samples of weight 0.
 void BlockVertices::takeParts(const BoundLight& light, const BatchContext& c) {
     lights_.resize(blocks_);
     std::erase_if(litBlocks_, [&](size_t b) {

@@ -1,4 +1,4 @@
-// The rays on which paths go on from vertices in blocks.
+// Continuation rays of paths from vertices in blocks.
 #include "integrator/accumulator.h"
 #include "integrator/blockguide.h"
 #include "integrator/blockvertices.h"
@@ -15,7 +15,7 @@
 namespace alpenglow::transport {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
-    const bool chooses = !c.between && (count_ > 1 || !c.clear.empty()); // each point of a medium has one lobe
+    const bool chooses = !c.between && (count_ > 1 || !c.clear.empty()); // in a medium each point has one lobe
     if (chooses) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_, false);
     pairs_.resize(1);
     for (size_t b = 0; b < blocks_; ++b) {
@@ -27,14 +27,14 @@ void BlockVertices::scatter(BatchContext& c, Sched& sched) {
     }
 }
 
-/// Points whose lobe is that of a site.
+/// Points that picked the lobe of a call site.
 static Lanes pickedOf(const ScatterBlock& s, int site) {
     Lanes picked = 0;
     for (int i = 0; i < kBlock; ++i) picked |= Lanes(s.site[i] == site) << i;
     return picked;
 }
 
-/// Directions of the lobes that were picked, and what they give back from there.
+/// Samples the directions of the picked lobes and evaluates the lobes there.
 void BlockVertices::drawDirections(size_t b) {
     const VertexBlock& v = vertices_[b];
     size_t points[kBlock];
@@ -65,7 +65,7 @@ void BlockVertices::drawDirections(size_t b) {
     }
 }
 
-/// Numbers that decide whether paths go on.
+/// Draws the roulette numbers.
 void BlockVertices::throwDice(size_t b) {
     const VertexBlock& v = vertices_[b];
     uint32_t keys[kMostSites];
@@ -95,7 +95,7 @@ void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
     spawn(rays_[b], sched);
 }
 
-/// The rays of a block go on from its vertices.
+/// Moves the rays of a block on from its vertices.
 void BlockVertices::turnRays(size_t b, BatchContext& c) {
     const VertexBlock& v = vertices_[b];
     RayBlock& r = rays_[b];
@@ -126,24 +126,24 @@ void BlockVertices::turnRays(size_t b, BatchContext& c) {
         r.path[i] += uint32_t(c.between) << 16;
         r.specular[i] = (r.specular[i] & 0xffff0000u) | uint16_t(r.specular[i] + !s.diffuse);
         n.depthMax = std::max(n.depthMax, bounces);
-        n.depthSum += 1; // over camera rays: the mean number of bounces
+        n.depthSum += 1; // over camera rays: mean number of bounces
         if (s.diffuse) continue;
         if (s.rays->label == context_.totalReflection) ++n.totalReflected;
         else ++(towards[i] * from[i] > 0 ? n.refracted : n.reflected);
     }
 }
 
-/// What the rays of a block tell of the lobes that drew them.
+/// Stores in the rays of a block what MIS needs of the lobes that sampled them.
 void BlockVertices::keepLobes(size_t b, BatchContext& c) {
     RayBlock& r = rays_[b];
     const VertexBlock& v = vertices_[b];
-    for (int i = 0; i < kBlock; ++i) r.flags[i] = (r.flags[i] & kAskedBits) | (waits_ ? kFirstBit : 0); // and no trail
+    for (int i = 0; i < kBlock; ++i) r.flags[i] = (r.flags[i] & kAskedBits) | (waits_ ? kFirstBit : 0); // clears the trail
     for (Lanes left = next_.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         const Site& s = sites_[size_t(next_.site[i])];
         const uint64_t kind = reinterpret_cast<uintptr_t>(s.rays);
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
-        const bool sampled = s.lights && !(next_.single >> i & 1); // then an emitter that it meets counts with the weight of both
+        const bool sampled = s.lights && !(next_.single >> i & 1); // then emission that it hits is weighted by MIS
         r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
         if (const uint16_t path = uint16_t(r.path[i])) {

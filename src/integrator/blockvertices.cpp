@@ -1,4 +1,4 @@
-// From requests of a kernel to lobes in blocks, and the chances that their rays are followed.
+// Vertices in blocks: from the requests of a kernel to lobes, and the probabilities of following them.
 #include "integrator/accumulator.h"
 #include "integrator/blockguide.h"
 #include "integrator/chosenlights.h"
@@ -17,7 +17,7 @@ namespace alpenglow::transport {
 namespace {
 Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
 
-/// Whether a light's samples are what blocks hold: an emitter or a light with a place, told nothing and asked for nothing more.
+/// Whether blocks support a light: an emitter or a light with a position that queries no surface and has no further outputs.
 bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels && l.sentCl < 0 && !usesFootprint(l); }
 } // namespace
 
@@ -33,7 +33,7 @@ BlockVertices::BlockVertices(const StageSet& s)
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
     usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
-    usable_ &= world_.accel_ != nullptr; // of a world that is whole
+    usable_ &= world_.accel_ != nullptr; // requires a complete world
     guided_ = std::make_unique<Guided>(*this, s.guide);
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
@@ -81,7 +81,7 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
 bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
     if (!select(c)) return false;
-    if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // on which side of them rays go on
+    if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
     besideLights(c);
     light(c);
     guided_->run(c, sched);
@@ -89,7 +89,7 @@ bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     return true;
 }
 
-/// The points and rays, from their structures to rows.
+/// Copies points and rays from structures to rows.
 bool BlockVertices::loadVertices(const BatchContext& c) {
     for (size_t b = 0; b < blocks_; ++b) {
         const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
@@ -105,14 +105,14 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
     return true;
 }
 
-/// What paths need to know of the rays that came to a block.
+/// Copies ray data that paths need into a block.
 void BlockVertices::takeRays(const RayBlock& rays, bool between) {
     VertexBlock& v = vertices_[size_t(&rays - rays_.data())];
     v.last = 0;
     for (int k = 0; k < kBlock; ++k) {
         v.bounces[k] = int16_t(rays.bounces[k]);
         v.last |= Lanes(v.bounces[k] - int16_t(rays.path[k] >> 16) - between >= world_.maxDepth_)
-                  << k; // those in media do not count
+                  << k; // scattering in media does not count
     }
     for (int k = 0; k < kBlock; ++k) {
         const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
@@ -121,7 +121,7 @@ void BlockVertices::takeRays(const RayBlock& rays, bool between) {
         v.index[k] = sample->numbers.index();
     }
     v.waits = waits_;
-    for (int q = 0; q < 3; ++q) std::copy_n(waits_ ? whole_ : rays.weight[q], kBlock, v.weight[q]); // of its target alone
+    for (int q = 0; q < 3; ++q) std::copy_n(waits_ ? whole_ : rays.weight[q], kBlock, v.weight[q]); // relative to its target
     std::copy_n(rays.vertex, kBlock, v.vertex);
     std::copy_n(rays.vertex, kBlock, v.lightVertex);
 }
@@ -133,7 +133,7 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
     v.through = !c.clear.empty();
     const bool rows = c.points.empty();
     for (size_t k = 0; k < size_t(kBlock); ++k) {
-        const size_t i = first + std::min(k, n - 1); // the last point again
+        const size_t i = first + std::min(k, n - 1); // repeats the last point
         const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
         const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
         if (s.matte || s.maxDiffuse >= 0 || s.maxSpecular >= 0 || !(rows || c.points[i].P == p.P)) return false;
@@ -149,11 +149,11 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
     return true;
 }
 
-/// The sites that ask, in the order of the calls. A site that asks twice at a point is in a loop: false.
+/// Finds the requesting call sites in the order of the calls. Returns false if a site requests twice at a point, i.e. in a loop.
 bool BlockVertices::findSites(const BatchContext& c) {
     count_ = 0;
     int first = -1;
-    size_t next = 0; // behind the place of the call before
+    size_t next = 0; // index after the position of the previous call
     for (const EmitRecord& e : c.emits) {
         if (!c.bound->sites[size_t(e.site)].block) continue;
         if (e.first != first) next = 0;
@@ -195,7 +195,7 @@ bool BlockVertices::request(const BatchContext& c) {
         const auto site = std::find_if(sites_.begin(), sites_.end(), [&](const Site& s) { return s.number == e.site; });
         if (!requestOf(*site, e, c)) return false;
     }
-    for (size_t k = 0; k < count_; ++k) { // strips below a block: their rows are together now
+    for (size_t k = 0; k < count_; ++k) { // strips narrower than a block: their rows are now contiguous
         Site& s = sites_[k];
         for (size_t b = 0; b < blocks_ && !s.narrow.empty(); ++b) {
             const Lanes asked = std::exchange(s.lobes[b].asked, 0) & vertices_[b].points;
@@ -207,7 +207,7 @@ bool BlockVertices::request(const BatchContext& c) {
     return true;
 }
 
-/// What a site asks for at the points of a strip.
+/// Reads the request of a call site at the points of a strip.
 bool BlockVertices::requestOf(Site& s, const EmitRecord& e, const BatchContext& c) {
     const float* rows = c.arena.data() + e.offset;
     if (e.lanes >= kBlock) {

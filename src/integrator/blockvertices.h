@@ -1,5 +1,5 @@
-// Vertices whose kernel asks for lobes and nothing else, under path: from the kernel's requests to the next rays, 16 points at a
-// time (lanes/stages.h). What it does not take goes point by point (gather.h), with the same bits.
+// Vertices whose kernel requests lobes only, under path: from the kernel's requests to the next rays, 16 points at a time
+// (lanes/stages.h). All other batches are processed point by point (gather.h), with the same bits.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/batchcontext.h"
@@ -13,25 +13,26 @@ namespace alpenglow::transport {
 
 class BlockVertices final : Stage {
 public:
-    static constexpr size_t kMostSites = 32; ///< that ask, of a kernel
+    static constexpr size_t kMostSites = 32; ///< most requesting call sites of a kernel
     explicit BlockVertices(const StageSet&);
     ~BlockVertices();
-    /// Whether all that this kernel of a binding asks for is of this kind, with the lights of the binding.
+    /// Whether all requests of this kernel, bound with these lights, can be processed in blocks.
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
-    /// Whether all that a batch whose kernel has run asks for is of this kind.
+    /// Whether all requests of a batch whose kernel has run can be processed in blocks.
     bool takes(const BatchContext&) const;
-    /// Whether the rays that came to a batch are: no photons, albedos or skies at their end must be looked for.
+    /// Whether the rays that hit a batch can: no photons, no albedo output, no skies to sample at the last vertex.
     bool takesRays(const BatchContext&) const;
-    /// Lights its points and sends their rays; shadow rays are left in ShadowRays::queue. False: nothing was done, for some point
-    /// needs a look by itself.
+    /// Lights the points and sends the next rays; leaves shadow rays in ShadowRays::queue. Returns false, without effect, if a
+    /// point needs processing on its own.
     bool run(BatchContext&, Sched&);
-    /// The same for what strips of a batch wait for. False: nothing was done, and they must ask one by one.
+    /// The same for the requests of suspended strips. Returns false, without effect, if the strips must request one by one.
     bool run(BatchContext&, std::span<class KernelStrip* const>, Sched&);
-    /// The same inside of a medium, whose lobes are its. beside: by point, MediumFlights::besideLight(). needsPoints(): its
-    /// points.
+    /// The same for points inside a medium, with its phase function as lobe. beside: by point, MediumFlights::besideLight().
+    /// needsPoints(): whether the batch needs its points.
     bool run(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
-    /// Samples of one light for such points, and the values of their lobes toward them, to `found`. False: nothing was done.
+    /// Samples one light for such points and evaluates their lobes toward it, to `found`. Returns false, without effect, if not
+    /// possible.
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 
 private:
@@ -71,7 +72,7 @@ private:
     void sendShadow(const Site&, size_t point, size_t lane, const Vec3& w, const BoundLight&, const LightValue* says,
                     BatchContext&);
     int32_t shareOf(const PathRay&) const;
-    /// PathRay::path of light that a lobe of a site sends towards w.
+    /// PathRay::path of light that a lobe of a call site scatters toward w.
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
     // blocklightrows.cpp
     bool inRows(const BoundLight&, const BoundKernel&) const;
@@ -114,14 +115,14 @@ private:
     VertexLight& vertexLight_;
     const Stages& stages_;
     LobeLanesList lanes_;
-    bool usable_ = false; ///< by what the world is
+    bool usable_ = false; ///< the world and the settings allow blocks
     Roulette roulette_ = Roulette::None;
-    bool lastSkies_ = false;                     ///< where paths end by their length skies must be asked (Gather::lastSkies)
-    size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: of sites_ that are asked
-    bool waits_ = false;                         ///< the kernel waits for what it asks for
-    std::vector<uint32_t> before_;               ///< then, by point: rays that it has asked for before
+    bool lastSkies_ = false;                     ///< at the last vertex of a path, skies are sampled (Gather::lastSkies)
+    size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: requesting sites in sites_
+    bool waits_ = false;                         ///< the kernel waits for its results
+    std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
     std::vector<VertexBlock> vertices_;
-    std::vector<RayBlock> rays_;    ///< that came to them, then those that go on
+    std::vector<RayBlock> rays_;    ///< incoming rays, then the next rays
     std::vector<Site> sites_;       ///< the first `count_`, in the order of the calls
     std::vector<LobeBlock*> block_; ///< lobesOf()
     std::vector<Lanes> lit_;        ///< by block: points that sample lights
@@ -130,19 +131,19 @@ private:
     std::vector<ShadePoint> queries_;
     std::vector<BlockQuery> asked_;
     std::vector<LightValue> values_;
-    std::vector<int32_t> queryAt_;    ///< by point: in values_; -1, or empty: that says nothing more than lights_
-    std::vector<size_t> litBlocks_;   ///< blocks of which some points sample lights
-    std::vector<float> lamp_;         ///< LightRows of their points
-    std::vector<BlockPlaced> placed_; ///< of litBlocks_
+    std::vector<int32_t> queryAt_;    ///< by point: index in values_; -1, or empty: lights_ holds all
+    std::vector<size_t> litBlocks_;   ///< blocks with points that sample lights
+    std::vector<float> lamp_;         ///< LightRows of these blocks
+    std::vector<BlockPlaced> placed_; ///< by litBlocks_
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
     ScatterBlock next_{};
     ShadowBlock shadow_{};
-    int32_t sent_[kBlock];     ///< shadow rays of a block, in ShadowRays::queue; -1: none yet
-    std::vector<char> inRows_; ///< by light: its samples need no points
-    std::vector<char> plain_;  ///< by light list: all lights are what blocks hold
+    int32_t sent_[kBlock];     ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
+    std::vector<char> inRows_; ///< by light: can be sampled without points
+    std::vector<char> plain_;  ///< by light list: blocks support all lights
     std::unique_ptr<ChosenLights> chosen_;
     std::unique_ptr<Guided> guided_;
-    alignas(64) Row whole_; ///< 1
+    alignas(64) Row whole_; ///< all ones
     alignas(64) float value_[kValueRows][kBlock] = {};
     alignas(64) float drawn_[kDrawnRows][kBlock] = {};
 };

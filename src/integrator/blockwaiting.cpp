@@ -1,4 +1,4 @@
-// What kernels that wait ask for, in blocks: each call has a target of its own, to which its rays bring what they find.
+// Requests of waiting kernels in blocks: each call has a target of its own for the light of its rays.
 #include "answers/random.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
@@ -10,7 +10,7 @@
 
 namespace alpenglow::transport {
 
-/// Whether strips of a batch ask for the same, for the first time and for one ray each, at about all of the batch's points.
+/// Whether the strips of a batch all make the same first request, for one ray each, at nearly all points of the batch.
 bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
     const SurfaceBinding& b = *c.binding;
     if (!usable_ || !plain_[size_t(b.lightList)] || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
@@ -37,7 +37,7 @@ bool BlockVertices::run(BatchContext& c, std::span<KernelStrip* const> strips, S
     std::vector<float> arena;
     std::vector<TargetId> targets = c.targets;
     before_.assign(c.points.size(), 0);
-    for (const KernelStrip* s : strips) { // as a kernel that does not wait emits it: before the arguments the weight, 1
+    for (const KernelStrip* s : strips) { // as a kernel that does not wait emits it: weight 1, then the arguments
         const StripRequest r = s->request();
         EmitRecord& e = emits.emplace_back();
         e.site = r.site, e.first = r.first, e.lanes = r.lanes, e.offset = arena.size();
@@ -68,12 +68,12 @@ bool BlockVertices::run(BatchContext& c, std::span<KernelStrip* const> strips, S
     return true;
 }
 
-/// The key of the light samples at points whose kernel waits: of the call.
+/// Random number key of the light samples for waiting kernels: that of the call.
 void BlockVertices::nameLights(VertexBlock& v, uint32_t site) const {
     for (int i = 0; i < kBlock; ++i) v.lightVertex[i] = childVertex(v.vertex[i], kLightPoint + site, 0);
 }
 
-/// Chance ends rays that a waiting kernel asked for by how many it asks for.
+/// Roulette for rays of a waiting kernel, by the number of rays that it requests.
 void BlockVertices::endByChance(size_t b) {
     RayBlock& r = rays_[b];
     for (Lanes left = next_.goes; left; left &= left - 1) {

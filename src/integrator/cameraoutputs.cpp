@@ -16,7 +16,7 @@ void CameraOutputs::see(const PathRay& ray, const Color& opacity, float z, bool 
     else if (r.zSecond >= 1e38f) r.zSecond = z;
 }
 
-/// The unit shading normal on the side of a surface that a ray sees; 0 where there is none.
+/// The unit shading normal on the side that the ray sees; 0 if there is none.
 static Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
     const float l = length(p.N);
     if (l > 0 && std::isfinite(l)) return onSeenSide(p.N, p, dir) * (1 / l);
@@ -35,7 +35,7 @@ void CameraOutputs::begin(const BatchContext& c) {
     for (const rsl::OutputName& name : world_.wanted_) wantedAt_.push_back(outputsNamed(*c.batch, name));
 }
 
-/// Whether lights or the atmosphere give an output, and not the surface.
+/// Whether lights or the atmosphere write an output, rather than the surface.
 bool CameraOutputs::givenByOthers(const BatchContext& c, size_t output, int point) {
     if (wantedAt_[output].empty() || c.lightChannels.empty()) return wantedAt_[output].empty();
     if (perhaps_.empty())
@@ -52,7 +52,7 @@ void CameraOutputs::add(const BatchContext& c, int point) {
     SampleResult& r = *accumulator_.results[size_t(ray.sample->path)];
     size_t at = 0;
     for (size_t k = 0; k < wantedAt_.size(); at += size_t(world_.outputWidths_[k++])) {
-        if (!binding.aside.empty() && binding.aside[k]) continue; // LightOutputs::asides() give it
+        if (!binding.aside.empty() && binding.aside[k]) continue; // LightOutputs::asides() adds it
         const int width = world_.outputWidths_[k];
         if (!givenByOthers(c, k, point)) {
             int to = 0;

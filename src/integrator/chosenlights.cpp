@@ -20,11 +20,11 @@ BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
         for (int k = 0; k < 4; ++k) all_.push_back({&g.kernel, (k & 1) != 0, {}});
     for (const BoundLight& l : world_.lights_) {
         together_.push_back(togetherOf(l));
-        origins_.push_back(l.instance ? originOfLight(*l.instance, 0) : Vec3()); // none: its shader was refused
+        origins_.push_back(l.instance ? originOfLight(*l.instance, 0) : Vec3()); // none: the shader was rejected
     }
 }
 
-/// Lights of a group share its kernel; those together that have a density, or not, and whose samples are rows, or not.
+/// Index of the lights that share a kernel, all of them with a density or without, and sampled in rows or not.
 int BlockVertices::ChosenLights::togetherOf(const BoundLight& l) const {
     if (l.group < 0) return -1;
     return 4 * l.group + 2 * int(l.hasDensity()) + int(b_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel));
@@ -35,7 +35,7 @@ void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchC
     for (size_t k = 0; k < list.sampled.size(); ++k) {
         if (begin_[k] == begin_[k + 1]) continue;
         const int number = list.sampled[k];
-        if (!world_.lights_[size_t(number)].importance) continue; // rays alone find it
+        if (!world_.lights_[size_t(number)].importance) continue; // only rays find it
         const auto asked = std::span(sorted_).subspan(begin_[k], begin_[k + 1] - begin_[k]);
         if (together_[size_t(number)] < 0) {
             askByPoints(nullptr, asked, c);
@@ -55,7 +55,7 @@ void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchC
     }
 }
 
-/// The lights of each point, by their place in the list.
+/// Chooses the lights of each point, as indices in the list.
 void BlockVertices::ChosenLights::choose(const WorldImpl::LightList& list) {
     b_.drawNumbers(kChooseLight << 1 | render::SampleNumbers::kSingle, b_.choices_);
     chosen_.clear();
@@ -95,7 +95,7 @@ void BlockVertices::ChosenLights::askInRows(const BoundKernel& kernel, std::span
     b_.batches_.giveBack(std::move(call));
 }
 
-/// The same where the samples of lights are points. group: the kernel that they share; null: they are of one light.
+/// The same where light samples need points. group: the kernel that the lights share; null: a single light.
 void BlockVertices::ChosenLights::askByPoints(const BoundKernel* group, std::span<const Asked> asked, BatchContext& c) {
     gatherPoints(asked);
     drawNumbers();
@@ -125,7 +125,7 @@ void BlockVertices::ChosenLights::askByPoints(const BoundKernel* group, std::spa
         if (blocks_[k].lights.asked) connect(blocks_[k], c);
 }
 
-/// Points of the lights, one by one: BlockVertices::queries_.
+/// Makes points on the lights one by one: BlockVertices::queries_.
 void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
     std::vector<ShadePoint>& queries = b_.queries_;
     samples_.clear();
@@ -139,7 +139,7 @@ void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
             const int lane = std::countr_zero(left);
             const BoundLight& light = world_.lights_[size_t(q.asked[lane]->light)];
             const LightNumbers u{{pairs_[k].x[lane], pairs_[k].y[lane]}, choices_.empty() ? 0 : choices_[k].x[lane]};
-            if (of_.size() == queries.size()) queries.emplace_back(); // those of before are written again
+            if (of_.size() == queries.size()) queries.emplace_back(); // earlier queries are overwritten
             samples_.emplace_back();
             if (b_.placeQuery(light, u, c.points[size_t(q.asked[lane]->point)], queries[of_.size()], samples_.back()))
                 of_.emplace_back(k, lane);
@@ -149,7 +149,7 @@ void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
     queries.resize(of_.size());
 }
 
-/// The points of the questions, in rows; the last one again where a block is not full.
+/// Copies the points of the light samples into rows; the last one repeats if a block is not full.
 void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
     count_ = (asked.size() + kBlock - 1) / kBlock;
     blocks_.resize(std::max(blocks_.size(), count_));
@@ -184,7 +184,7 @@ void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
     }
 }
 
-/// Points of the lights: P and N of LightRows, and of emitters what their samples are.
+/// Makes points on the lights: P and N of LightRows, and samples of emitters.
 void BlockVertices::ChosenLights::placeLights() {
     const size_t n = count_ * kBlock;
     lamp_.resize(9 * n);
@@ -238,7 +238,7 @@ void BlockVertices::ChosenLights::placeOnEmitters(size_t k) {
     q.there &= b_.stages_.placeEach(q.points, q.lamp, pairs_[k].x, pairs_[k].y, share, q.lights, P, P + 3 * n, int(n));
 }
 
-/// The kernel over the questions, each with the parameters of its light.
+/// Runs the kernel over the light samples, each with the parameters of its light.
 const shading::Batch& BlockVertices::ChosenLights::run(const BoundKernel& kernel, std::span<const Asked> asked,
                                                        BatchContext& call) {
     const size_t n = count_ * kBlock;
@@ -270,11 +270,11 @@ const shading::Batch& BlockVertices::ChosenLights::run(const BoundKernel& kernel
     return *call.batch;
 }
 
-/// What the lights send, from the outputs of their kernel.
+/// Reads the radiance of the lights from the outputs of their kernel.
 void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from, const BatchContext& c) {
     Questions& q = blocks_[k];
     LightBlock& l = q.lights;
-    const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)]; // outputs have the same places in all of them
+    const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)]; // outputs have the same indices in all of them
     const size_t at = k * kBlock;
     const auto row = [&](int output, int component) { return from.row(output, component).data() + at; };
     const auto kept = [&](int output, Row& to) {
@@ -289,7 +289,7 @@ void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from
         const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
         const Vec3 L = light.outL < 0 ? Vec3() : Vec3(row(light.outL, 0)[i], row(light.outL, 1)[i], row(light.outL, 2)[i]);
         Color Cl{l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};
-        if (light.intensityScale > 0) { // the kernel divided by the squared distance: radiance does not
+        if (light.intensityScale > 0) { // the kernel divided by the squared distance; radiance does not
             Cl *= dot(L, L) * light.intensityScale;
             for (int r = 0; r < 3; ++r) l.Cl[r][i] = Cl[r];
         }
@@ -307,7 +307,7 @@ void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from
     }
 }
 
-/// What a light says of its shadow. at: in the batch.
+/// Reads the shadow parameters of a light. at: index in the batch.
 void BlockVertices::ChosenLights::takeShadow(Questions& q, int i, const Vec3& L, const shading::Batch& from, size_t at) {
     const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
     LightValue v;
@@ -317,10 +317,10 @@ void BlockVertices::ChosenLights::takeShadow(Questions& q, int i, const Vec3& L,
     b_.values_.push_back(v);
 }
 
-/// Lobes of a site at the points of the questions, as far as they are evaluated. Returns those that sample the light.
+/// Copies the evaluated lobes of a call site at the points of the samples. Returns the lanes that sample the light.
 Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVertices::Site& s) {
     Lanes asked = 0;
-    const float* from[kBlock]; // the first row of each lobe's block, at its place
+    const float* from[kBlock]; // by lane: first row of the lobe's block, at its column
     for (int i = 0; i < kBlock; ++i) {
         const Asked& a = *q.asked[i];
         const size_t at = size_t(a.point % kBlock);
@@ -348,7 +348,7 @@ Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVe
     return lobe_.lights;
 }
 
-/// Shadow rays of a block of questions: one of each, for all lobes of its point.
+/// Makes the shadow rays of a block of samples: one each, for all lobes of its point.
 void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
     BlockVertices& b = b_;
     b.stages_.aim(q.points, q.lights, b.shadow_);

@@ -1,6 +1,5 @@
-// Where there are many lights: those that chance chooses at each point (world/lightchooser.h), for vertices in blocks
-// (blockvertices.h). What is asked of lights of one kernel stands in blocks of its own, a question a lane, with the bits of
-// gather.h.
+// Scenes with many lights: each point samples some lights at random (world/lightchooser.h), for vertices in blocks
+// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane. Same bits as gather.h.
 #pragma once
 #include "integrator/blockvertices.h"
 
@@ -9,32 +8,31 @@ namespace alpenglow::transport {
 class BlockVertices::ChosenLights {
 public:
     explicit ChosenLights(BlockVertices&);
-    /// Lights the points of a batch of which BlockVertices::lit_ says that they ask for light. Shadow rays are left in
-    /// ShadowRays::queue.
+    /// Lights the points of a batch that BlockVertices::lit_ marks. Leaves shadow rays in ShadowRays::queue.
     void light(const WorldImpl::LightList&, BatchContext&);
 
 private:
-    static constexpr size_t kAtOnce = 32; ///< blocks: they stay in a core's cache
-    /// A light that a point asks, and the chance with which it was chosen there.
+    static constexpr size_t kAtOnce = 32; ///< blocks processed at once: they fit into the cache of a core
+    /// A light that a point samples, and the probability of choosing it.
     struct Asked {
         int light = 0, point = 0;
         float chance = 1;
     };
-    /// Lights whose questions one kernel answers; rows: it reads nothing but rows.
+    /// Lights that share a kernel; rows: the kernel reads rows only.
     struct Together {
         const BoundKernel* kernel = nullptr;
         bool rows = false;
         std::vector<Asked> asked;
     };
-    /// Of a block of questions.
+    /// A block of light samples.
     struct Questions {
         VertexBlock points;
         LightBlock lights;
-        Lanes there = 0; ///< there are so many
+        Lanes there = 0; ///< lanes in use
         const Asked* asked[kBlock] = {};
-        const FlatEmitter* lamp[kBlock] = {}; ///< of an emitter, the shape
+        const FlatEmitter* lamp[kBlock] = {}; ///< for an emitter, its shape
         uint32_t visibility[kBlock] = {};     ///< of that shape
-        int32_t says[kBlock] = {};            ///< BlockVertices::values_; -1: nothing more
+        int32_t says[kBlock] = {};            ///< index in BlockVertices::values_; -1: none
     };
 
     int togetherOf(const BoundLight&) const;
@@ -54,20 +52,20 @@ private:
 
     BlockVertices& b_;
     const WorldImpl& world_;
-    std::vector<int> together_; ///< by light, of all_; -1: it has a kernel of its own
+    std::vector<int> together_; ///< by light: index in all_; -1: it has a kernel of its own
     std::vector<Vec3> origins_; ///< by light
     std::vector<Together> all_;
     std::vector<Asked> chosen_, sorted_;
-    std::vector<size_t> begin_; ///< by place in the list, in sorted_
+    std::vector<size_t> begin_; ///< by index in the list: first in sorted_
     std::vector<Questions> blocks_;
-    size_t count_ = 0; ///< of these
+    size_t count_ = 0; ///< used in blocks_
     std::vector<render::NumberBlock> pairs_, choices_;
     std::vector<float> lamp_; ///< shading::LightRows
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_;
-    std::vector<ChosenLight> chosenHere_;    ///< of a block
-    std::vector<Emitter::Sample> samples_;   ///< of BlockVertices::queries_,
-    std::vector<std::pair<size_t, int>> of_; ///< whose blocks and lanes these are
+    std::vector<ChosenLight> chosenHere_;    ///< for one block
+    std::vector<Emitter::Sample> samples_;   ///< for BlockVertices::queries_
+    std::vector<std::pair<size_t, int>> of_; ///< block and lane of each of these
     LobeBlock lobe_;
 };
 

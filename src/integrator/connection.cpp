@@ -1,5 +1,5 @@
-// Stage connect: what lobes give back of the light that lights send them. Lobes of a vertex share the sample of a light, and so
-// the way to it: one shadow ray carries what all of them give.
+// Stage Connection: evaluates lobes for light samples. The lobes of a vertex share the sample of a light, so one shadow ray
+// carries the light of all of them.
 #include "integrator/connection.h"
 #include "base/direction.h"
 #include "integrator/accumulator.h"
@@ -36,7 +36,7 @@ void Connection::connect() {
     for (const Reached& r : reached_) send(r);
 }
 
-/// The values of the lobes for the light that reaches them: in turns, in which each lobe is asked once.
+/// Evaluates the lobes for the samples that reach them, in rounds with each lobe at most once.
 void Connection::evaluate() {
     turns_.assign(requests_.lobes.size(), 0);
     int turns = 0;
@@ -53,7 +53,7 @@ void Connection::evaluate() {
     }
 }
 
-/// Notes the lobes that the light of a query reaches.
+/// Collects the lobes that the sample of a query reaches.
 void Connection::reach(int query) {
     const LightQueries& q = lightSampling_.queries;
     const size_t k = size_t(query);
@@ -64,7 +64,7 @@ void Connection::reach(int query) {
         const LobeVertex& l = requests_.lobes[size_t(i)];
         if (!lightSampling_.samples(l, light) || q.draw[k].nth >= lightSampling_.lightSamples(l)) continue;
         if (q.spread[k] >= 0 && q.spread[k] != spreadBehind(rayOf(l), requests_.rows.spread(l.place))) continue;
-        // Sides 1: from where rays of this lobe pass through the emitter they cannot meet it, and it sends nothing.
+        // Sides 1: rays of this lobe pass through the emitter from its back, so it sends nothing there.
         const accel::Sides sides = l.rays->set.sides;
         if (area && !light.mean && q.drawn[k].shape->oneSided() && sides != accel::Sides::Both &&
             (dot(meetsNormal(q.at[k].surface), w) >= 0) != (sides == accel::Sides::Back))
@@ -73,8 +73,7 @@ void Connection::reach(int query) {
     }
 }
 
-/// A light sample of trace() finds what a ray of it could meet there: within its distance, of its set, from the sides that it
-/// meets.
+/// Whether a ray of trace() could hit a light sample: within its distance, in its set of shapes, on a side that it can hit.
 bool Connection::meets(const LobeVertex& l, int query, const Vec3& w, const Vec3& from, const Vec3& end) const {
     const geometry::Shape& shape = *lightSampling_.queries.drawn[size_t(query)].shape;
     const shading::RaySet& set = l.rays->set;
@@ -86,7 +85,7 @@ bool Connection::meets(const LobeVertex& l, int query, const Vec3& w, const Vec3
     return dot(way, w) > 0 && !(length(way) > l.maxDistance);
 }
 
-/// What a lobe gives back of the light, before what stands between.
+/// Light that a lobe reflects from the sample, before occlusion.
 Color Connection::contribution(const Reached& r) {
     const LobeVertex& l = requests_.lobes[size_t(r.lobe)];
     const size_t k = size_t(r.query);
@@ -96,13 +95,12 @@ Color Connection::contribution(const Reached& r) {
     const float fcos = r.value.fcos, drawn = lightSampling_.queries.drawn[k].pdf, chance = lightSampling_.queries.chance[k];
     const float kept = l.lobeOfShader || !light.hasDensity() ? v.kept(l.rays->type) : 1;
     Color c = l.ownsTarget ? l.weight * v.Cl : l.weight * rayOf(l).weight * v.Cl;
-    c *= r.value.colour /
-         (fcos * float(lightSampling_.lightSamples(l))); // as many rays go along the lobe: of its weight n is no matter
+    c *= r.value.colour / (fcos * float(lightSampling_.lightSamples(l))); // the lobe's weight counts once for all its rays
     if (area && l.trace && l.trace->sums)
         if (TraceSums* of = accumulator_.sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, c * (fcos / (drawn * chance)));
     if (c_->between) c *= mediumFlights_.shareOfDistance(c_->flown[size_t(l.point)], light);
     if (!light.hasDensity()) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi
-    float other = 0; // the density with which the lobe's own ray would have come here
+    float other = 0; // density of this direction by the lobe's own sampling
     if (!world_.settings_.lightOnly && l.chosen > 0 && (lightSampling_.queries.drawn[k].visibility & visibilityBit(l.rays->type)))
         other = l.beside.density(r.w, r.value.pdf) * l.chosen;
     const float pdf = drawn * chance;
@@ -118,7 +116,7 @@ void Connection::send(const Reached& r) {
     const BoundLight& light = *lightSampling_.queries.light[k];
     const bool area = light.kind == LightKind::Area, sums = l.trace && l.trace->sums;
     const Vec3 from = origin(l, r.w);
-    // The light's own surface must not block: stop short of it by both error bounds.
+    // The light's own surface must not occlude: stop before it by both error bounds.
     const Vec3 end = area ? leavesFrom(lightSampling_.queries.at[k].surface, -r.w) : Vec3();
     if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
     const Color given = contribution(r);
@@ -137,7 +135,7 @@ void Connection::send(const Reached& r) {
         shadows_.queue.push_back(
             {from, normalizeOr(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
-        // A ray of trace() sees the sky behind what lies beyond its distance, too.
+        // A ray of trace() sees the sky also behind geometry beyond its distance.
         const float away = length(lightSampling_.queries.value[k].L);
         if (l.trace && !light.sky && light.kind != LightKind::Distant && away > l.maxDistance) return;
         const float far = light.sky ? l.maxDistance : light.kind == LightKind::Distant ? 1e38f : away;
@@ -158,7 +156,8 @@ void Connection::send(const Reached& r) {
     shadow.share = share;
     shadow.path = path;
     if (path) shadow.light = paths_.lights[size_t(&light - world_.lights_.data())];
-    // As in light loops there, nothing is in the way; or the light's shader looked for itself.
+    // Not occluded: light loops and trace() with "samplelights" under the other hiders, and lights whose shader computed
+    // visibility.
     const bool asInLoops = c_->below || (l.trace && !area && !light.sky);
     if ((asInLoops && !rules_.pickOne && !light.shadows) || lightSampling_.queries.value[k].ownShadow) shadow.distance = 0;
 }

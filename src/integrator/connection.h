@@ -1,5 +1,5 @@
-// Connect: what lobes give back of the light that samples send them, weighed against sampling the lobe (MIS). One shadow ray for
-// all lobes of a vertex that can share it. Reads LightSampling::queries; writes ShadowRays::queue.
+// Connection: evaluates lobes for light samples and weights them by MIS against sampling the lobe. One shadow ray carries the
+// light of all lobes of a vertex that can share it. Reads LightSampling::queries; writes ShadowRays::queue.
 #pragma once
 #include "integrator/vertexlobes.h"
 #include "lobes/lobe.h"
@@ -20,11 +20,11 @@ class Connection final : VertexStage {
 public:
     Connection(const StageSet&, const VertexLobes&, LightSampling&);
     void connect();
-    /// What a trace() that tells sums would see in direction w were nothing in the way (unshadowed.cpp).
+    /// The light that a trace() with sums would see in direction w without occlusion (unshadowed.cpp).
     void unshadowed(const LobeVertex&, const Vec3& w, const Color& through, const Color& environment, TraceSums&);
 
 private:
-    /// A lobe that light of a query reaches from direction w. `turn`: how many queries have reached it before.
+    /// A lobe and a light sample that reaches it from direction w. `turn`: how many samples have reached the lobe before.
     struct Reached {
         int query, lobe, turn;
         Vec3 w;
@@ -36,8 +36,8 @@ private:
     void send(const Reached&);
     Color contribution(const Reached&);
     std::vector<Reached> reached_;
-    std::vector<int> turns_; ///< by lobe: queries that have reached it
-    int lastQuery_ = -1;     ///< that of the shadow ray sent last, which other lobes of its point may share
+    std::vector<int> turns_; ///< by lobe: light samples that have reached it
+    int lastQuery_ = -1;     ///< query of the last shadow ray, which other lobes of its point may share
     LightSampling& lightSampling_;
     Accumulator& accumulator_;
     Intersector& intersector_;

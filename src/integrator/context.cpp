@@ -1,4 +1,4 @@
-// The context of a thread, and its counts.
+// The context of a thread, and its counters.
 #include "integrator/context.h"
 
 namespace alpenglow::transport {

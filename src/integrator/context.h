@@ -1,42 +1,43 @@
-// What all stages of a thread share: the frame, how its light is followed, counts, and whether to stop.
+// What the stages of a thread share: the world, the rules of the hider, counters, the stop flag.
 #pragma once
 #include "integrator/rays.h"
 #include "integrator/samples.h"
 
 namespace alpenglow::transport {
 
-/// How the hider follows light.
+/// How a hider transports light.
 struct Rules {
-    bool pickOne = false;          ///< path: one ray goes on from a vertex, chosen by chance; else all do
-    bool roulette = false;         ///< rays end by chance
-    bool lightsAtRequests = false; ///< lobes sample lights
-    bool emissionCounts = false;   ///< what shines is seen by rays whose lobes sample no lights, too
+    bool pickOne = false;          ///< path: one continuation per vertex, chosen at random; else all
+    bool roulette = false;         ///< Russian roulette ends rays
+    bool lightsAtRequests = false; ///< lobes sample lights at their requests
+    bool emissionCounts = false;   ///< rays of lobes that sample no lights also see emission
     explicit Rules(const Settings& s)
         : pickOne(s.hider == Hider::Path), roulette(pickOne && s.roulette), lightsAtRequests(s.direct && !s.bsdfOnly),
           emissionCounts(pickOne) {}
 };
 
-/// Of one thread.
+/// One for each thread.
 struct Context {
     Context(std::shared_ptr<const WorldImpl>, Diagnostics&);
-    const std::shared_ptr<const WorldImpl> frame; ///< keeps the world
+    const std::shared_ptr<const WorldImpl> frame; ///< keeps the world alive
     const WorldImpl& world;
     Diagnostics& diagnostics;
     const render::SeedKey seed;
     const int32_t totalReflection; ///< the label of rays that Counters::totalReflected counts
     Rules rules;
     Counters counters;
-    const StopFlag* stop = nullptr; ///< null: nobody stops what runs
-    /// What runs now is done again, with fewer points at a time, if a shader asks for more rays than there is room for.
+    const StopFlag* stop = nullptr; ///< null: cannot be stopped
+    /// The current call can still be repeated with fewer points at a time, so exceeding the memory for requests is not yet an
+    /// error.
     bool beginsAnew = false;
-    /// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core. Fewer once a
-    /// shader has asked for more rays at the points of a batch than there is room for.
+    /// Rays followed at once: enough to fill batches, few enough that their points stay in the cache of a core. Reduced after a
+    /// shader requested more rays for the points of a batch than memory allows.
     static constexpr int kSlice = limits::kSliceRays / 8;
     int raysAtOnce = kSlice;
-    uint64_t& raysOf(RayType); ///< the counter of such rays
+    uint64_t& raysOf(RayType); ///< the counter of rays of this type
 };
 
-/// What every stage has of the context. Stages keep references to the stages they call, and no others (stageset.h).
+/// Base of all stages: access to the context. A stage keeps references to the stages that it calls and to no others (stageset.h).
 class Stage {
 public:
     Stage(const Stage&) = delete;

@@ -1,5 +1,4 @@
-// What deep shadow maps see: along each camera ray the light that is left behind every surface, and within media (Lokovic, Veach
-// 2000).
+// Deep shadow maps: transmittance along camera rays, behind every surface and within media (Lokovic and Veach 2000).
 #include "integrator/depthrays.h"
 #include "base/exact.h"
 #include "integrator/context.h"
@@ -15,12 +14,11 @@ DepthRays::DepthRays(const StageSet& s)
 
 namespace {
 
-/// A step of light within a medium takes no more than this part of what comes to it, as long as there are enough of them.
+/// Largest fraction of the light that a step within a medium removes, if there are enough steps.
 constexpr float kHazeStep = 1 / 64.f;
 constexpr int kHazeSteps = 64;
 
-/// Where steps of equal light end on a way through a medium that leaves `left` of it, were it the same all along: parts of the
-/// way.
+/// Ends of steps of equal attenuation along a homogeneous segment with transmittance `left`, as fractions of its length.
 std::vector<float> hazeSteps(const Color& left) {
     const float least = std::clamp(std::min({left.x, left.y, left.z}), 1e-4f, 1.f);
     const int count = std::clamp(int((1 - least) / kHazeStep) + 1, 1, kHazeSteps);
@@ -33,14 +31,14 @@ std::vector<float> hazeSteps(const Color& left) {
     return ends;
 }
 
-/// A part of a camera ray within a medium; its sample, and its number among those that are on their way.
+/// A segment of a camera ray within a medium; its sample, and its index among the rays in flight.
 struct HazyWay {
     int medium;
     size_t sample, going;
     Vec3 from, to;
 };
 
-/// A way through a medium up to a hit.
+/// Appends the segments within media up to a hit.
 void enterMedia(const WorldImpl& world, const shading::Media* m, const Vec3& begin, const accel::Hit& h, size_t sample,
                 size_t going, std::vector<HazyWay>& ways) {
     if (!m || m->top() < 0) return;
@@ -48,10 +46,10 @@ void enterMedia(const WorldImpl& world, const shading::Media* m, const Vec3& beg
     ways.push_back({m->top(), sample, going, begin, at.displaced ? at.displacedP : at.P});
 }
 
-/// Adds what is left within them; `left`, by way: what comes to it, and then what leaves it.
+/// Appends the transmittance within the segments; `left`, by segment: on entry before it, on exit behind it.
 void seeHaze(MediaStacks& media, std::span<const HazyWay> ways, std::span<const ShadowRay> asked, std::span<SampleResult> out,
              std::span<Color> left) {
-    // All of each way first: it says how finely to cut.
+    // First the transmittance of each whole segment: it determines the number of steps.
     std::vector<ShadowRay> rays;
     std::vector<MediumPart> parts;
     for (const HazyWay& w : ways) {
@@ -70,7 +68,7 @@ void seeHaze(MediaStacks& media, std::span<const HazyWay> ways, std::span<const 
             const Vec3 way = w.to - w.from;
             parts.push_back({w.medium, rays.size(), w.from + way * begin, w.from + way * end});
             rays.push_back(asked[w.sample]);
-            z.push_back((w.from + way * (.5f * (begin + end))).z); // the middle: the staircase is as often above as below
+            z.push_back((w.from + way * (.5f * (begin + end))).z); // the middle: the error of the staircase has mean 0
             of.push_back(i);
             begin = end;
         }
@@ -87,12 +85,12 @@ void seeHaze(MediaStacks& media, std::span<const HazyWay> ways, std::span<const 
 
 } // namespace
 
-/// Surfaces are those that camera rays meet; what each takes is the opacity that it has for shadow rays. Shaders that give it
-/// run for all rays that have come to one, wave by wave.
+/// Traces camera rays through the surfaces that they hit; each attenuates by its opacity for shadow rays. Opacity shaders run for
+/// all rays that have reached a surface, wave by wave.
 class DepthRays::Looking {
 public:
     Looking(DepthRays& stage, std::span<SampleResult> out) : stage_(stage), world_(stage.world_), out_(out) {}
-    void add(const PathRay&); ///< the next camera ray; it must stay where it is
+    void add(const PathRay&); ///< the next camera ray, which must not move
     bool run();
 
 private:
@@ -113,11 +111,11 @@ private:
     DepthRays& stage_;
     const WorldImpl& world_;
     std::span<SampleResult> out_;
-    std::vector<ShadowRay> asked_; ///< by ray: for the shaders that say Oi
+    std::vector<ShadowRay> asked_; ///< by ray, for the opacity shaders
     std::vector<Going> now_, next_;
-    std::vector<accel::Hit> hits_; ///< of now_
+    std::vector<accel::Hit> hits_; ///< by now_
     std::vector<OpacityQuery> met_;
-    std::vector<Waiting> waiting_; ///< of met_: their place in next_, and how deep
+    std::vector<Waiting> waiting_; ///< rays in met_: index in next_, and depth
     std::vector<HazyWay> ways_;
     std::vector<Color> hazy_;
 };
@@ -139,7 +137,7 @@ bool DepthRays::Looking::takes(Going& g, const Color& opacity, float z) {
     return maxComponent(g.left) > 0;
 }
 
-/// The next surface of each ray, and what the media before it take.
+/// Finds the next surface of each ray and applies the media before it.
 void DepthRays::Looking::meet() {
     hits_.assign(now_.size(), {});
     ways_.clear();

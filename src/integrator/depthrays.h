@@ -1,5 +1,5 @@
-// What deep shadow maps see: along each camera ray the light that is left behind every surface, and within media (Lokovic and
-// Veach, Deep Shadow Maps, 2000).
+// Deep shadow maps: transmittance along each camera ray, behind every surface and within media (Lokovic and Veach, Deep Shadow
+// Maps, 2000).
 #pragma once
 #include "integrator/context.h"
 
@@ -13,7 +13,7 @@ struct StageSet;
 class DepthRays final : Stage {
 public:
     explicit DepthRays(const StageSet&);
-    /// SampleResult::left of camera rays; begin: makes the i-th path ray of the call. False: stopped.
+    /// Fills SampleResult::left of camera rays. begin: makes the i-th path ray of the call. Returns false if stopped.
     bool seeThrough(std::span<const CameraRay>, std::span<SampleResult>,
                     const std::function<void(const CameraRay&, size_t, PathRay&)>& begin);
 

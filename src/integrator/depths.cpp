@@ -14,7 +14,7 @@ bool tells(const BoundKernel& k) {
 } // namespace
 
 bool depthsNeedNoShaders(const World& world) {
-    const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of others have worlds of their own
+    const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of other folders use their own World
     if (!w || !w->allOpaque_ || !w->media_.empty() || !w->clippingPlanes_.empty() || hasUnmade(world) || bakes(world))
         return false;
     for (const SurfaceBinding& b : w->bindings_)

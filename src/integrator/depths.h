@@ -4,9 +4,9 @@
 
 namespace alpenglow::transport {
 
-/// Whether rays with CameraRay::depthOnly tell the depth of what camera rays meet first as those of a picture do, to the bit, and
-/// nobody misses the shaders: every surface is opaque for shadow rays, no volume stands about the eye, no clipping plane and no
-/// procedural that is made when rays come to it, and no shader prints or bakes.
+/// Whether rays with CameraRay::depthOnly give the depth of the first hit with the same bits as a complete picture, so that no
+/// shader needs to run. Requires: all surfaces are opaque to shadow rays; no volume around the eye; no clipping plane; no
+/// deferred procedural; no shader that prints or bakes.
 bool depthsNeedNoShaders(const World&);
 
 } // namespace alpenglow::transport

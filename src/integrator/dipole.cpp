@@ -1,4 +1,4 @@
-// Diffusion in place of walks: points of the surface about the shaded one.
+// Diffusion in place of walks: samples surface points near the shaded one.
 #include "lobes/dipole.h"
 #include "integrator/intersector.h"
 #include "integrator/raystore.h"
@@ -8,8 +8,8 @@
 
 namespace alpenglow::transport {
 
-/// Points of the surface about the shaded one, met by lines along one of three axes, chosen by chance; all that a line meets
-/// count (King and others, BSSRDF Importance Sampling, 2013).
+/// Finds surface points by lines along one of three axes, chosen at random; all intersections of a line count (King et al.,
+/// BSSRDF Importance Sampling, 2013).
 void Walks::probe(int asked) {
     const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(asked)];
@@ -23,7 +23,7 @@ void Walks::probe(int asked) {
     const Vec3 from = entered->at;
     Color part(std::fabs(a.weight.x), std::fabs(a.weight.y), std::fabs(a.weight.z));
     for (int k = 0; k < 3; ++k)
-        if (!(b.scattering[k] > 0)) part[k] = 0; // it brings nothing, and chooses nothing
+        if (!(b.scattering[k] > 0)) part[k] = 0; // no contribution, so it is not chosen
     const double sum = double(part.x) + part.y + part.z;
     if (!(sum > 0)) return;
     std::vector<Dipole> dipoles;
@@ -50,7 +50,7 @@ void Walks::probe(int asked) {
     const Vec3 axis = axes[k], x = axes[(k + 1) % 3], y = axes[(k + 2) % 3];
     const geometry::Bounds box = world.bounds();
     const float far = length(box.hi - box.lo) + length(from - (box.lo + box.hi) * 0.5f) + 1;
-    if (!(r < far)) return; // nothing is there
+    if (!(r < far)) return; // outside of the range
     Walker line{asked, from + x * float(r * turn.x) + y * float(r * turn.y) + axis * far, -axis, a.weight, a.weight, a.vertex};
     accel::Ray probe = rayOf(line, 2 * double(far));
     accel::Hit hit;
@@ -59,7 +59,7 @@ void Walks::probe(int asked) {
         if (!belongs(hit.shape, b.group)) continue;
         const geometry::SurfacePoint s = world.accel_->point(hit);
         const Vec3 n = s.displaced ? s.displacedN : s.n, to = (s.displaced ? s.displacedP : s.P) - from;
-        double density = 0; // of all ways to come here
+        double density = 0; // of all axes and channels that could have sampled this point
         for (int j = 0; j < 3; ++j) {
             const Vec3 beside = to - axes[j] * dot(to, axes[j]);
             double d = 0;

@@ -1,4 +1,4 @@
-// Displacement again at hits, for P, N and what the surface's shader asks of it.
+// Displacement at hits: P, N and the displacement outputs that the surface shader reads.
 #include "integrator/displacement.h"
 #include "integrator/context.h"
 #include "integrator/kernelinputs.h"
@@ -18,7 +18,7 @@ std::shared_ptr<BatchContext> Displacement::displace(const BatchContext& c) {
     d->points = c.points;
     d->rays = c.rays;
     d->bindings = c.bindings;
-    d->again = c.forShadow; // it bakes at the surface
+    d->again = c.forShadow; // baking happens at the surface
     for (size_t k = 0; k < d->rays.size(); ++k) {
         d->points[k].ray = &d->rays[k];
         if (turnedOver(*d->points[k].shape)) turnOver(d->points[k]);
@@ -33,7 +33,7 @@ std::shared_ptr<BatchContext> Displacement::displace(const BatchContext& c) {
     return d;
 }
 
-/// Displacement again at the hit, for P, N (docs/design/decisions.md). All points of a group with displacement share its binding.
+/// Runs the displacement at the hit, for P and N (docs/design/decisions.md). All points of a displaced group share its binding.
 void Displacement::take(BatchContext& c) {
     const auto d = displace(c);
     if (!d) return;
@@ -49,7 +49,8 @@ void Displacement::take(BatchContext& c) {
         }
         const float turn = turnedOver(*p.shape) && !p.shape->givesNormals() ? -1.f : 1.f;
         if (no >= 0) p.N = Vec3(d->batch->color(no, int(k))) * turn;
-        // The surface shader's derivatives are those of the displaced surface. Its second partials stay those of the plain one.
+        // Derivatives for the surface shader are those of the displaced surface; second partials remain those of the undisplaced
+        // one.
         if (po >= 0 && dpu >= 0 && dpv >= 0) {
             p.surface.dPdu = d->batch->color(dpu, int(k));
             p.surface.dPdv = d->batch->color(dpv, int(k));
@@ -59,7 +60,7 @@ void Displacement::take(BatchContext& c) {
             p.surface.dNdu = Vec3(d->batch->color(dnu, int(k))) * turn;
             p.surface.dNdv = Vec3(d->batch->color(dnv, int(k))) * turn;
         }
-        if (p.surface.displaced) { // rays left and met the facet; shading offsets start there
+        if (p.surface.displaced) { // rays hit and leave the facet; offsets start there
             p.surface.P = p.surface.displacedP;
             p.surface.n = p.surface.displacedN;
             p.P = p.surface.displacedP;

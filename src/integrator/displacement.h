@@ -1,4 +1,4 @@
-// Displacement again at hits, for P, N and what the surface's shader asks of it.
+// Displacement at hits: P, N and the displacement outputs that the surface shader reads.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -11,11 +11,11 @@ struct StageSet;
 class Displacement final : Stage {
 public:
     explicit Displacement(const StageSet&);
-    /// Moves the points of a batch as their displacement shader says.
+    /// Displaces the points of a batch by their displacement shader.
     void take(BatchContext&);
-    /// Runs the displacement shader at the points of a batch (all of one binding); null where it waits for rays.
+    /// Runs the displacement shader at the points of a batch (all of one binding). Returns null if it waits for rays.
     std::shared_ptr<BatchContext> displace(const BatchContext&);
-    /// Points of surfaces whose shaders move P, once the kernel has its inputs: rays met, and will leave, the facets.
+    /// After displacement: moves the points to the facets of the diced surface, because rays hit the facets and start there.
     static void moveToFacets(BatchContext&);
 
 private:

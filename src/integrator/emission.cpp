@@ -1,4 +1,4 @@
-// Which lights emit photons, and how their numbers are drawn.
+// The distribution of photons over lights, and their random numbers.
 #include "integrator/emission.h"
 #include "integrator/lightkernels.h"
 #include "world/photonattributes.h"
@@ -7,10 +7,10 @@
 namespace alpenglow::transport {
 
 namespace {
-/// Uses of the numbers of a photon; its first ray has vertex 0, as a camera ray has.
+/// Keys of a photon's random numbers; its first ray has vertex 0, as a camera ray has.
 enum Use : uint32_t { kUseLight = 1u << 24, kUsePlace, kUseWay, kUseCone, kUseChoose, kUseSide, kUsePhotonTime };
-constexpr int kProbes = 64;       ///< of a light whose power is measured
-constexpr double kUnlearned = .1; ///< of the photons go where nothing was found, so that all is found in the end
+constexpr int kProbes = 64;       ///< samples for measuring the power of a light
+constexpr double kUnlearned = .1; ///< fraction of photons for bins where nothing was found, so that learning stays complete
 
 bool mayEmit(const BoundLight& l, bool sky) {
     if (l.kernel && l.photons) return true;
@@ -66,11 +66,11 @@ std::vector<uint8_t> EmissionPlan::met(bool both) const {
         const PhotonBinding& b = world_.bindings_[size_t(world_.bindingOf_[i])].photons;
         by.push_back(both ? b.meetsBoth : b.meets);
     }
-    by.push_back(0); // never empty
+    by.push_back(0); // not empty
     return by;
 }
 
-/// Where a light stands that has one place for all that it lights.
+/// Position of a light that has the same one for all points that it lights.
 bool EmissionPlan::findPlace(LightKernels& lights, Light& l) {
     std::vector<ShadePoint> q;
     for (const Vec3& to : {Vec3(1, 0, 0), Vec3(-.3f, .9f, .2f), Vec3(.1f, -.4f, -.8f)}) {
@@ -90,7 +90,7 @@ bool EmissionPlan::findPlace(LightKernels& lights, Light& l) {
     return true;
 }
 
-/// About how much light a light sends out, and on which side of an emitter. Numbers of a sequence, which no photon has.
+/// Estimates the power of a light, and which side of an emitter it leaves. Uses a sequence that no photon uses.
 void EmissionPlan::measure(LightKernels& lights, Light& l) {
     std::vector<EmissionStart> starts;
     const render::Sampler numbers(0x6d656173757265ull, l.number & 0xffffff, l.number >> 24);
@@ -120,7 +120,7 @@ void EmissionPlan::measure(LightKernels& lights, Light& l) {
 void EmissionPlan::share() {
     double sum = 0;
     for (const Light& l : lights_) sum += l.power;
-    const double floor = sum > 0 ? .01 / double(std::max<size_t>(lights_.size(), 1)) : 1; // a spot that no probe met
+    const double floor = sum > 0 ? .01 / double(std::max<size_t>(lights_.size(), 1)) : 1; // a spot that no probe hit
     double until = 0, shares = 0;
     for (Light& l : lights_) shares += l.share = sum > 0 ? std::max(l.power / sum, floor) : 1;
     for (Light& l : lights_) {
@@ -146,7 +146,7 @@ EmissionDraw EmissionPlan::draw(const render::SampleNumbers& n) const {
     d.side = n.get1(0, kUseSide, 0);
     d.time = n.get1(0, kUsePhotonTime, 0);
     if (d.light < 0 || lights_[size_t(d.light)].guide.empty()) return d;
-    // A row by its share, a bin of it by its density; what is left of the numbers is even again.
+    // Chooses a row by its probability, then a bin in it by its density; the remainders of the numbers are uniform again.
     const Light& l = lights_[size_t(d.light)];
     const auto pick = [](float u, const float* shares, float whole, int& bin) {
         float until = 0;
@@ -167,7 +167,7 @@ EmissionDraw EmissionPlan::draw(const render::SampleNumbers& n) const {
 }
 
 void EmissionPlan::learn(std::span<const StoredPhoton> stored, const PhotonJob& job, uint32_t emitted) {
-    constexpr size_t kMostGuided = 256; // guides of more lights say too little each
+    constexpr size_t kMostGuided = 256; // guides of more lights would have too few photons each
     if (stored.empty() || lights_.size() > kMostGuided || emitted == 0) return;
     std::vector<std::vector<double>> found(lights_.size(), std::vector<double>(size_t(kBins) * kBins));
     std::vector<double> ofLight(lights_.size());
@@ -190,7 +190,7 @@ void EmissionPlan::learn(std::span<const StoredPhoton> stored, const PhotonJob& 
         l.guide.assign(size_t(kBins) * kBins, 0);
         l.rows.assign(kBins, 0);
         double mean = 0;
-        std::vector<double> smooth(size_t(kBins) * kBins); // what is next to what was found is likely found, too
+        std::vector<double> smooth(size_t(kBins) * kBins); // bins next to photons likely have some, too
         for (int y = 0; y < kBins; ++y)
             for (int x = 0; x < kBins; ++x)
                 for (int dy = -1; dy <= 1; ++dy)

@@ -1,4 +1,4 @@
-// The beginning of photons: where they leave their lights, and with what power.
+// The start of photons: where they leave lights, and with what power.
 #pragma once
 #include "integrator/photonjob.h"
 
@@ -7,22 +7,22 @@ namespace alpenglow::transport {
 /// A photon before its first ray.
 struct EmissionStart {
     EmissionDraw drawn;
-    Vec3 origin, dir;               ///< dir: unit; zero: this draw brings nothing
+    Vec3 origin, dir;               ///< dir: unit; zero: the sample carries no power
     geometry::SurfacePoint surface; ///< Area
     const geometry::Shape* shape = nullptr;
-    Color power{0};     ///< BoundLight::photons
-    float pdf = 0;      ///< and what generatePhoton() says of it
-    float factor = 0;   ///< of what the light's kernel says, before `length`
-    float length = 0;   ///< of the way to what it meets first; 0: nothing
-    float kept = 1;     ///< LightValue::kept() of rays of highlights, where the photon arrives first
-    bool front = false; ///< Area: on the side of n
+    Color power{0};     ///< from BoundLight::photons
+    float pdf = 0;      ///< density returned by its generatePhoton()
+    float factor = 0;   ///< multiplies the value of the light's kernel, before `length` applies
+    float length = 0;   ///< distance to the first hit; 0: no hit
+    float kept = 1;     ///< LightValue::kept() of rays of highlights, at the photon's first hit
+    bool front = false; ///< Area: leaves on the side of n
 };
 
-/// Fills what follows from `drawn`, for photons of one light.
+/// Completes photons of one light from their `drawn`.
 void startPhotons(LightKernels&, const EmissionPlan&, const EmissionPlan::Light&, std::span<EmissionStart>);
 
-/// The power of one photon that is emitted alone, by what the light's shader says where it arrives first. 0 where `length` is.
-/// Fills `kept`.
+/// The power of each photon, from the light's shader at the photon's first hit, as if it were the only photon. 0 where `length`
+/// is 0. Sets `kept`.
 std::vector<Color> emittedPower(LightKernels&, const EmissionPlan::Light&, std::span<EmissionStart>);
 
 } // namespace alpenglow::transport

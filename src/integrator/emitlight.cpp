@@ -1,6 +1,6 @@
-// How each kind of light emits photons. What a light's shader says where a photon arrives decides its power: so the light that
-// falls on what it meets first is that of the same shader at the same point, also where it does not fall off with the square of
-// the distance, or falls through a slide.
+// Emission of photons, by kind of light. The value of the light's shader at the photon's first hit determines its power. So
+// direct light by photons equals the shader's light at each point, even if it does not fall off with the square of the distance,
+// or is projected through a slide.
 #include "integrator/emission.h"
 #include "integrator/lightkernels.h"
 #include "lobes/sampling.h"
@@ -17,7 +17,7 @@ Vec3 evenDirection(Vec2 u) {
     return {r * d.x, r * d.y, z};
 }
 
-/// A point of the disc about all that photons meet, on the side from which they come along `dir`.
+/// A point on the disk that covers the bounding sphere of all geometry, on the side where photons along `dir` enter.
 Vec3 onDisc(const EmissionPlan& plan, const Vec3& dir, Vec2 u) {
     const float r = plan.radius * std::sqrt(u.x);
     const Vec2 d = unitCircle(u.y);
@@ -25,9 +25,9 @@ Vec3 onDisc(const EmissionPlan& plan, const Vec3& dir, Vec2 u) {
     return plan.centre - dir * (plan.radius * 1.001f) + b.t * (r * d.x) + b.u * (r * d.y);
 }
 
-/// From an emitter: by area, and by the cosine to the side that was drawn. What turns to rays shows every direction its front:
-/// a direction comes first, and then a point as it is seen from there. A light of mean samples has no radiance; it sends the same
-/// from each point as a point light would.
+/// From an emitter: uniform by area, and by cosine on the chosen side. Emitters that turn to the ray show their front to every
+/// direction: there the direction is sampled first, then a point visible from it. A light of mean samples has no radiance; it
+/// emits from each point like a point light.
 void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionStart& s) {
     const Emitter& emitter = *l.light->emitter;
     float perArea = 0;
@@ -54,7 +54,7 @@ void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionSta
     s.origin = leavesFrom(s.surface, s.dir);
 }
 
-/// What a light's shader is asked about a photon that lights `at`.
+/// The query to a light's shader for a photon that lights `at`.
 ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const EmissionStart& s, const Vec3& at) {
     ShadePoint p;
     p.Ps = at;
@@ -78,7 +78,7 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
     return p;
 }
 
-/// From a light that is far away: its shader says where from.
+/// From a distant light: its shader gives the direction.
 void startDistant(LightKernels& lights, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
     std::vector<ShadePoint> q;
     for (const EmissionStart& s : starts) q.push_back(queryOf(lights.world(), l, s, plan.centre));
@@ -94,7 +94,7 @@ void startDistant(LightKernels& lights, const EmissionPlan& plan, const Emission
     }
 }
 
-/// From a light that has a place, and moves: its shader says where it stands.
+/// From a moving light with a position: its shader gives the position.
 void startMoving(LightKernels& lights, const EmissionPlan& plan, const EmissionPlan::Light& l, std::span<EmissionStart> starts) {
     std::vector<ShadePoint> q;
     for (EmissionStart& s : starts) {
@@ -106,8 +106,8 @@ void startMoving(LightKernels& lights, const EmissionPlan& plan, const EmissionP
     for (size_t i = 0; i < starts.size(); ++i) starts[i].origin = q[i].Ps - v[i].L;
 }
 
-/// From a class light with generatePhoton(): as it says. Its power is a radiance times an area, so pi of it in all directions,
-/// and photons of a light differ by power over pdf.
+/// From a class light with generatePhoton(): origin and direction from that method. Its power is a radiance times an area, so pi
+/// of it over all directions; photons of the light differ by power over pdf.
 void startGenerated(LightKernels& lights, const EmissionPlan& plan, const EmissionPlan::Light& l,
                     std::span<EmissionStart> starts) {
     std::vector<shading::PathSample> samples(starts.size());
@@ -159,7 +159,7 @@ void startPhotons(LightKernels& lights, const EmissionPlan& plan, const Emission
         case LightKind::Point:
             s.dir = evenDirection(s.drawn.way);
             if (!moves) s.origin = l.place;
-            s.factor = 4 * kPiF * kPiF; // power: pi Cl d^2 a steradian
+            s.factor = 4 * kPiF * kPiF; // power: pi Cl d^2 per steradian
             break;
         case LightKind::Environment:
             s.dir = evenDirection(s.drawn.way);
@@ -188,12 +188,12 @@ std::vector<Color> emittedPower(LightKernels& lights, const EmissionPlan::Light&
         of.push_back(i);
     }
     std::vector<LightValue> v(q.size());
-    const std::vector<char> apart(q.size(), 1); // an emitter's atmosphere counts where photons arrive
+    const std::vector<char> apart(q.size(), 1); // an emitter's atmosphere is applied at the photon's hit
     LightCall call;
     call.inMedium = &apart;
     lights.evaluateLight(*l.light, q, v, call);
     std::vector<Color> power(starts.size(), Color(0));
-    const bool falls = l.light->kind == LightKind::Point || l.light->mean; // what the shader says is irradiance
+    const bool falls = l.light->kind == LightKind::Point || l.light->mean; // then the shader's value is an irradiance
     for (size_t k = 0; k < of.size(); ++k) {
         EmissionStart& s = starts[of[k]];
         s.kept = v[k].kept(RayType::Specular);

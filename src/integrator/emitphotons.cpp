@@ -1,4 +1,4 @@
-// Emitting a block of photons: they start at their lights, and are followed as rays of a path are, through the same stages.
+// Emits a block of photons and traces them through the same stages as paths.
 #include "base/memory.h"
 #include "integrator/accumulator.h"
 #include "integrator/emission.h"
@@ -15,10 +15,10 @@ namespace alpenglow::transport {
 
 namespace {
 
-/// Between levels of detail: what a photon meets on its whole way.
+/// Random number that selects the level of detail for all hits of a photon.
 float levelOf(const render::SampleNumbers& n) { return Random(n).one(0, kLevel, 0); }
 
-/// Photons of a block by light, and what they carry: light by light, since a kernel call is of one light.
+/// Starts the photons of a block, light by light, because a kernel call is for one light.
 std::vector<EmissionStart> startBlock(const StageSet& set, const PhotonJob& job, uint32_t first, uint32_t count,
                                       std::vector<Color>& power) {
     const EmissionPlan& plan = *job.plan;
@@ -36,7 +36,7 @@ std::vector<EmissionStart> startBlock(const StageSet& set, const PhotonJob& job,
         some.clear();
         for (uint32_t i : of[l]) some.push_back(all[i]);
         startPhotons(set.lightKernels, plan, plan.lights()[l], some);
-        for (size_t k = 0; k < some.size(); ++k) { // what it meets first
+        for (size_t k = 0; k < some.size(); ++k) { // finds the first hit
             EmissionStart& s = some[k];
             if (s.dir == Vec3(0.f)) continue;
             accel::Ray ray;
@@ -95,7 +95,7 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
     t.from.assign(count, {});
     set.store.samples.resize(count);
     set.accumulator.begin(0);
-    const TargetId root = set.accumulator.nowhere = sched.newRoot(); // nobody asks what photons see
+    const TargetId root = set.accumulator.nowhere = sched.newRoot(); // the light that photon rays see is discarded
     for (uint32_t i = 0; i < count; ++i) {
         const EmissionStart& s = starts[i];
         const float most = maxComponent(t.power[i]);
@@ -113,14 +113,14 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         PathRay& r = sched.spawn(0, root).payload;
         r.origin = s.origin;
         r.dir = s.dir;
-        r.weight = t.power[i] / most; // so that roulette looks at what is left of it
+        r.weight = t.power[i] / most; // roulette uses the weight
         t.power[i] = Color(most);
         r.sample = &sample;
         r.kind = set.store.kindOf(t.specular);
         PhotonDepths().to(r);
         t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
         r.media = set.photons.aboutLight(plan.lights()[size_t(s.drawn.light)], s);
-        if (s.shape) // what its light loses in the atmosphere there is told where it arrives
+        if (s.shape) // the atmosphere at the light is applied at the hit
             if (const auto hazy = w.hazyEmitters_.find(s.shape); hazy != w.hazyEmitters_.end()) {
                 r.lobeBinding = hazy->second;
                 r.lobeOrigin = meetsAt(s.surface);

@@ -1,4 +1,4 @@
-// Where a ray ends without a shader of its own: light of emitters and sky, and what goes on through surfaces.
+// Emission: light of emitters that rays hit, and of skies behind escaped rays.
 #include "integrator/emittedlight.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
@@ -21,7 +21,7 @@ EmittedLight::EmittedLight(const StageSet& s)
       media_(s.media), mediumFlights_(s.mediumFlights), photons_(s.photons), store_(s.store) {}
 
 void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
-    for (const Sched::Task* t : tasks) // the map of a trace()
+    for (const Sched::Task* t : tasks) // the environment map of a trace()
         if (const PathRay& r = t->payload; maxComponent(store_.extraOf(r).environment) > 0) {
             accumulator_.deposit(sched, {t->target, r.weight * store_.extraOf(r).environment, LightEvent::Map, &r,
                                          store_.extraOf(r).share, nullptr, paths_.next(r.path, paths_.map)});
@@ -34,8 +34,8 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
     std::vector<LightValue> value;
     for (const int number : world_.skies_) {
         const BoundLight& l = world_.lights_[size_t(number)];
-        if (l.kind == LightKind::Ambient) continue; // ambient() asks for it
-        // Outside of path a sky is a light of loops, or a background of rays.
+        if (l.kind == LightKind::Ambient) continue; // ambient() handles it
+        // Under the other hiders a sky is either a light of loops or a background for rays.
         if (!rules_.emissionCounts && (l.kind != LightKind::Environment || l.strategy != LightStrategy::Trace)) continue;
         q.clear();
         of.clear();
@@ -43,7 +43,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
         for (const Sched::Task* t : tasks) {
             const PathRay& r = t->payload;
             if (!l.seenBy(*r.kind)) continue;
-            // A lobe that samples lights: those that are off for its surface do not light it by chance either.
+            // For a lobe that samples lights: a light that is off for its surface does not light it by chance either.
             if (r.lobeBinding >= 0 && !world_.bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
             if (photons_.bringsPhotons(r, number) || (r.guided() && !(r.trail & shading::kTrailMirrored))) continue;
             ShadePoint& p = q.emplace_back();
@@ -63,7 +63,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
         for (size_t i = 0; i < of.size(); ++i)
             if (value[i].lit) {
                 const PathRay& r = of[i]->payload;
-                const bool weighed = r.bounces > 0 && !r.kind->fromTrace; // met by a lobe of a lighting shadeop
+                const bool weighed = r.bounces > 0 && !r.kind->fromTrace; // hit by a lobe of a lighting shadeop
                 float weight = weighed ? value[i].kept(r.type()) : 1.f;
                 if (r.lobePdf < 0) weight *= -r.lobePdf;
                 if (l.sky && r.lobePdf >= 0) { // its lobe has sampled this sky
@@ -107,7 +107,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
         for (size_t i = 0; i < inMedium.size(); ++i) {
             if (!inMedium[i] || !value[i].lit) continue;
             const PathRay& r = *met[first + i].point->ray;
-            if (world_.media_[size_t(r.medium())].homogeneous) continue; // its flight has gone through it
+            if (world_.media_[size_t(r.medium())].homogeneous) continue; // its flight has handled it
             const MediumPart part{r.medium(), 0, r.volumeBegin(), met[first + i].point->P};
             ShadowRay way{};
             way.ray = &r;
@@ -138,7 +138,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
     }
 }
 
-/// Light of the emitters among the points.
+/// Adds the light of the emitters among the points.
 void EmittedLight::shine(const BatchContext& c, Sched& sched) {
     std::vector<Met> met;
     for (size_t i = 0; i < c.points.size(); ++i) {
@@ -147,7 +147,7 @@ void EmittedLight::shine(const BatchContext& c, Sched& sched) {
         if (b.areaLight < 0 || (b.matte && r.camera()) || (r.guided() && !(r.trail & shading::kTrailMirrored))) continue;
         if (!rules_.emissionCounts && r.lobePdf < 0 && !r.kind->asksLights) continue;
         if (r.lobeBinding >=
-            0) { // a lobe that samples lights: those that are off for its surface do not light it by chance either
+            0) { // a lobe that samples lights: a light that is off for its surface does not light it by chance either
             if (!world_.bindings_[size_t(r.lobeBinding)].lights.contains(b.areaLight)) continue;
         }
         const BoundLight& light = world_.lights_[size_t(b.areaLight)];

@@ -1,4 +1,4 @@
-// Emission: light of emitters that rays met, and of skies that they left for, weighed against sampling those lights (MIS).
+// Emission: light of emitters that rays hit and of skies that escaped rays reach, weighted by MIS against sampling these lights.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -18,9 +18,9 @@ struct StageSet;
 class EmittedLight final : Stage {
 public:
     explicit EmittedLight(const StageSet&);
-    /// Light of the emitters among the points of a batch.
+    /// Adds light of the emitters among the points of a batch.
     void shine(const BatchContext&, Sched&);
-    /// Light of skies, for rays that left the scene.
+    /// Adds light of skies to rays that left the scene.
     void misses(std::span<const Sched::Task* const>, Sched&);
 
 private:
@@ -30,7 +30,7 @@ private:
         const ShadePoint* point;
     };
     void emission(std::span<const Met>, Sched&); ///< sorted by light
-    std::vector<int> litBy_;                     ///< RayExtra::lit of the queries of a light
+    std::vector<int> litBy_;                     ///< RayExtra::lit, by query of a light
     Accumulator& accumulator_;
     LightKernels& lightKernels_;
     const LightPathStates& paths_;

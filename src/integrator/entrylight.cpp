@@ -1,4 +1,4 @@
-// Where a walk below a surface comes out, the shader there may say what light enters: by "irradiance" of its own subsurface().
+// At the exit of a subsurface walk, the shader there may define the entering light by "irradiance" of its own subsurface().
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
 #include "integrator/displacement.h"
@@ -41,7 +41,7 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
     c->again = true;
     settleAt(*c, exits);
     for (ShadePoint& p : c->points) {
-        p.P = p.surface.P; // as surface and displacement shaders begin
+        p.P = p.surface.P; // initial values for surface and displacement shaders
         shading::setFootprint(p, p.ray->footprint, p.ray->dir, 0, 1);
     }
     if (b.displacement) displacement_.take(*c);
@@ -69,7 +69,7 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
     return kept;
 }
 
-/// What that light is made of besides, where the shader gathers it.
+/// Evaluates further light at the exits where the shader gathers it.
 void Walks::askLights(BatchContext& c, std::span<const Exit> exits, Sched& sched) {
     const size_t had = requests_.lobes.size();
     requests_.requestPairs(c, nullptr, sched);

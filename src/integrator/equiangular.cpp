@@ -1,5 +1,5 @@
-// Lights with a place inside of media or near them: their light falls off with the square of the distance, which points that are
-// chosen by how far rays come do not know.
+// Equiangular sampling: lights with a position inside of media or near them. Their light falls off with the square of the
+// distance, which distance sampling ignores.
 #include "base/exact.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
@@ -22,7 +22,7 @@ bool Equiangular::look(const FreeFlight& f, const BoundLight& l, MediumSampling 
     const Vec3d beside = to - dir * nearest_;
     away_ = std::max({std::sqrt(dot(beside, beside)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
     const double sigma = (double(f.extinction.x) + f.extinction.y + f.extinction.z) / 3;
-    const double reach = sigma * f.length > 4 ? 4 / sigma : double(f.length); // beyond it little is left
+    const double reach = sigma * f.length > 4 ? 4 / sigma : double(f.length); // beyond it little light is left
     if (!(away_ > 0) || (how == MediumSampling::Both && !(away_ < 2 * reach))) return false;
     const double behind = length_ - nearest_, square = away_ * away_;
     return away_ * length_ > 1e-9 * std::sqrt((square + nearest_ * nearest_) * (square + behind * behind)); // sine of the angle
@@ -46,13 +46,13 @@ double Equiangular::density(float t) const {
     return away_ / ((to_ - from_) * (away_ * away_ + d * d));
 }
 
-/// Whether points that are chosen for a light bring all of its light. Where ways are thin those by distance are no better, and
-/// cost a shadow ray; of lights that shine into a cone they still are.
+/// Whether equiangular samples alone estimate a light. On thin segments distance samples are no better and cost a shadow ray; for
+/// spotlights they still help.
 static bool alone(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
     return how == MediumSampling::Equiangular || (f.thin && l.kind == LightKind::Area);
 }
 
-/// Where lights are chosen for a way as a whole.
+/// Position for which the lights of a whole segment are chosen.
 static Vec3 middle(const FreeFlight& f) { return f.origin + f.dir * (0.5f * f.length); }
 
 float MediumFlights::shareOfDistance(const FreeFlight& f, const BoundLight& l) const {
@@ -67,7 +67,7 @@ float MediumFlights::shareOfDistance(const FreeFlight& f, const BoundLight& l) c
 
 namespace {
 
-/// A point that was chosen for a light, and the part of the light of that point that it stands for.
+/// A point chosen for a light, and its weight in that light's estimate.
 struct Near {
     const FreeFlight* way;
     const Flight* flight;
@@ -77,7 +77,7 @@ struct Near {
 
 } // namespace
 
-/// What one light brings to points that were chosen for it.
+/// Light of one light at the points chosen for it.
 class MediumFlights::NearLight {
 public:
     NearLight(MediumFlights& stage, const Medium& m, const BoundLight& l, std::span<const Near> points)
@@ -99,7 +99,7 @@ public:
 private:
     uint32_t use() const { return kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data()); }
     static uint32_t vertexOf(const PathRay& r) { return childVertex(r.vertex, kFlight, 5); }
-    /// By blocks, where the light is such a one.
+    /// In blocks, where the light supports them.
     bool runInRows() {
         auto c = stage_.batches_.take();
         c->between = true;
@@ -149,7 +149,7 @@ private:
         bool there = light_.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light_.pointNeeds);
         if (there && w.accel_->hasSolids())
             there = w.accel_->keeps(w.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter);
-        if (!there || (s.shape->oneSided() && dot(meetsNormal(p.surface), s.direction) >= 0)) s.pdf = 0; // or from behind
+        if (!there || (s.shape->oneSided() && dot(meetsNormal(p.surface), s.direction) >= 0)) s.pdf = 0; // or from its back
         p.shape = s.shape;
         p.P = meetsAt(p.surface);
         p.N = p.surface.n;
@@ -174,13 +174,13 @@ private:
         if (v.ownShadow) shadow.distance = 0;
         queue(shadow, n);
     }
-    /// What comes back along the way of the light Cl at its point. density: of the sample of an emitter; 0: of another light.
+    /// Light scattered back along the segment for light Cl at its point. density: of the sample on an emitter; 0: another light.
     Color scattered(const Near& n, const Color& Cl, float phase, float kept, float density) const {
         const Homogeneous& h = *medium_.homogeneous;
         const Color c = *n.weight * h.scattering * h.left(n.t) * Cl;
         return c * (phase * n.scale * kept * (density > 0 ? 1 / density : float(kPi))); // Cl is irradiance / pi
     }
-    /// Turns a shadow ray to a point of the disk about a light.
+    /// Redirects a shadow ray to a point on the disk around a light.
     void toDisk(ShadowRay& s, const Vec3& L, const Vec3& to, float radius, const Near& n) const {
         const PathRay& r = *n.flight->ray;
         const Vec2 u = stage_.store_.random(r).pair(vertexOf(r), use(), 0);

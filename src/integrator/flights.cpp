@@ -1,4 +1,4 @@
-// Stage fly. Where nothing can happen it costs nothing.
+// Runs the events between hit and shader. Costs nothing without events.
 #include "integrator/flights.h"
 #include "integrator/context.h"
 #include "integrator/flight.h"
@@ -16,7 +16,7 @@ void Flights::fly(BatchContext& c, Sched& sched) {
     list_.clear();
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const ShadePoint& p = c.points[i];
-        const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P; // rays meet facets
+        const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P; // rays hit facets
         list_.push_back({&c.rays[i], c.targets[i], length(at - c.rays[i].origin), &p, c.bindings[i]});
     }
     for (FlightEvent* e : events) e->happen(list_, sched);
@@ -50,9 +50,9 @@ void Flights::fly(std::vector<const Sched::Task*>& missed, Sched& sched) {
 
 void Flights::divert(Flight& f, PathRay next, Sched& sched, float way) {
     if (photons_.photonTrace()) next.trail = shading::kTrailSpread;
-    else if (!guide_.on()) next.trail = 0; // photons do not come this way
+    else if (!guide_.on()) next.trail = 0; // photons do not scatter in media
     guide_.passThrough(next, f.binding);
-    RayExtra extra = store_.extraOf(*f.ray); // each ray has its own
+    RayExtra extra = store_.extraOf(*f.ray); // extras have a single owner
     if (extra.fade.fades()) extra.way += way;
     next.extra = store_.newExtra(extra);
     sched.spawn(next.bounces + next.layers, f.target, next);

@@ -1,4 +1,4 @@
-// Between hit and shader: what happens to rays on their way (flight.h). Where nothing can happen it costs nothing.
+// Runs the events between hit and shader (flight.h). Costs nothing without events.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -14,13 +14,13 @@ struct StageSet;
 class Flights final : Stage {
 public:
     explicit Flights(const StageSet&);
-    /// From now on this may happen on the way of rays; before the first of them. It must outlive the pipeline.
+    /// Registers an event, before the first ray. It must outlive the pipeline.
     void happens(FlightEvent& e) { events.push_back(&e); }
-    /// Flights that are over leave the batch, or the list.
+    /// Runs all events on the rays of a batch, or on rays without a hit, and removes the segments that they ended.
     void fly(BatchContext&, Sched&);
     void fly(std::vector<const Sched::Task*>& missed, Sched&);
-    /// For events: the flight is over, and its ray goes on as `next`, a copy of it with what has changed (at least the vertex).
-    /// way: how far it has come, where it goes straight on.
+    /// For events: ends the segment and sends its ray on as `next`, a copy with the changes (at least the vertex). way: distance
+    /// covered, if it goes straight on.
     void divert(Flight&, PathRay next, Sched&, float way = 0);
 
     std::vector<FlightEvent*> events;

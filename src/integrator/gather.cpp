@@ -1,4 +1,4 @@
-// The stages of gather.h in order, and what they share.
+// Runs the stages of gather.h in order, and their shared functions.
 #include "integrator/gather.h"
 #include "integrator/litsurfaces.h"
 #include "integrator/photonstage.h"
@@ -39,8 +39,8 @@ void VertexLobes::begin(BatchContext& c, std::span<const LobeVertex> lobes) {
     for (size_t i = 0; i < lobes.size(); ++i) order[size_t(next_[size_t(lobes[i].point)]++)] = int(i);
 }
 
-/// A vertex has one answer for lights that ask. Where its requests are summed up, its kernel is done: its outputs as they are
-/// now.
+/// A vertex gives one answer to lights that query its surface. If its requests are summed, its kernel has finished: outputs have
+/// their final values.
 void Gather::tellLights() {
     for (size_t point = 0; point < c_->points.size(); ++point) {
         const auto list = lobesOf(point);

@@ -1,13 +1,13 @@
-// What becomes of the lobes that a batch asks light for (Requests::lobes), stage by stage, each an object of its own:
-//   LobeSelection  how much each lobe gives back, and the chance that its ray is followed; lights that rays may pass in media
-//   LightSampling  points of lights for the points of the batch, and what the lights' kernels send from there
-//   Connection     lobes with those points: contributions, with one shadow ray for all lobes of a vertex that can share it
-//   LastSkies      at the last vertex of a path: skies that only rays would find
-//   GuideScatter   rays toward where caustics come from
-//   PhotonScatter  photons that rest, and what paths gather of them
-//   ScatterRays    directions of the lobes whose rays are followed, and the rays
-// A stage reads what the ones before it wrote and changes nothing else; none looks at two points at a time, so results do not
-// depend on who shares the batch.
+// Light transport at the lobes that a batch requests (Requests::lobes), in stages, each an object:
+//   LobeSelection  albedo of each lobe, probability of following its ray; light-directed phase sampling in media
+//   LightSampling  points on lights for the points of the batch, and the radiance from the lights' kernels there
+//   Connection     evaluates lobes for these samples; one shadow ray for all lobes of a vertex that can share it
+//   LastSkies      at the last vertex of a path: samples skies that only rays would reach
+//   GuideScatter   rays toward the origin of caustics
+//   PhotonScatter  stores photons; density estimation for paths
+//   ScatterRays    samples the selected lobes and makes the next rays
+// A stage reads what earlier stages wrote and changes nothing else. No stage compares points, so results do not depend on the
+// other members of the batch.
 #pragma once
 #include "integrator/connection.h"
 #include "integrator/guidescatter.h"
@@ -25,7 +25,7 @@ class PhotonStage;
 class Gather final : VertexLobes, VertexStage {
 public:
     explicit Gather(const StageSet&);
-    /// Gathers light over Requests::lobes, all of points of this batch, and takes them. Shadow rays are left in
+    /// Transports light over Requests::lobes, all of points of this batch, and removes them. Leaves shadow rays in
     /// ShadowRays::queue.
     void run(BatchContext&, Sched&);
 

@@ -1,4 +1,4 @@
-// Rays of gather statements.
+// Rays of gather() statements.
 #include "integrator/gathercalls.h"
 #include "base/direction.h"
 #include "base/exact.h"
@@ -22,13 +22,13 @@ GatherCalls::GatherCalls(const StageSet& s) : Stage(s.context), set_(s), inputs_
 
 namespace {
 
-/// A gather over more than this half angle looks for light from all sides; a smaller one may well look into what refracts.
+/// A gather() with a larger half angle collects light from all sides; a smaller one may look along a refracted ray.
 constexpr float kHemisphere = 1.4f;
 
 using Of = GatherSite::Of;
 using Output = GatherSite::Output;
 
-/// One lane of a request: what it asks for, and the point that asks.
+/// One lane of a request: its arguments and its point.
 struct Asking {
     const StageSet& set;
     BatchContext& c;
@@ -61,7 +61,7 @@ struct Asking {
     }
 
     Random numbers(int k, int count) const { return set.store.random(*point().ray).draw(uint32_t(k), uint32_t(count)); }
-    /// Of ray k of count.
+    /// For ray k of count.
     Vec2 pair(int k, int count) const { return numbers(k, count).pair(point().ray->vertex, site(), occurrence * 4096); }
 
     Vec3 direction(int k, int count) const {
@@ -80,7 +80,7 @@ struct Asking {
         return Basis(axis).toWorld({r * d.x, r * d.y, std::sqrt(std::max(0.f, 1 - r2))});
     }
 
-    /// Whether a ray may go on from here at all.
+    /// Whether the depth limits forbid a ray from here.
     bool tooDeep(RayType type) const {
         const PathRay& from = *point().ray;
         const bool diffuse = type == RayType::Diffuse;
@@ -94,7 +94,7 @@ struct Asking {
         const ShadePoint& p = point();
         PathRay r = *p.ray;
         r.trail = 0;
-        r.path = 0; // what it brings is the loop's
+        r.path = 0; // its light belongs to the loop
         r.weight = Color(s.gather->light ? 1.f : 0.f);
         r.vertex = childVertex(p.ray->vertex, site(), occurrence * 4096 + uint32_t(k));
         ++r.bounces;
@@ -106,7 +106,7 @@ struct Asking {
         r.media = c.light ? nullptr : set.media.towards(c, first + lane, w);
         r.parted = r.passed = false;
         r.extra = -1;
-        r.lobePdf = -1; // no light is sampled for it: all that shines counts
+        r.lobePdf = -1; // no light is sampled for it: emission counts in full
         r.lobeBinding = -1;
         r.footprint = p.ray->footprint.after(length(at() - p.ray->origin));
         r.footprint.spread = std::max(r.footprint.spread, std::min(std::max(f(s.rows[2]), 0.f), .7f) / std::sqrt(float(count)));
@@ -116,7 +116,7 @@ struct Asking {
     }
 };
 
-/// The first surface that takes so much of the light behind it, with all before it, that its share is over the threshold.
+/// Finds the first surface at which the accumulated opacity exceeds the threshold.
 bool meet(const StageSet& set, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
     Color through(1);
     for (int layers = 0; layers < limits::kShadowLayers; ++layers) {
@@ -151,7 +151,7 @@ void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count
     }
 }
 
-/// Oi of what a ray met whose shaders are not run for light.
+/// Oi of a hit whose shaders do not run for light.
 Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const Vec3& w, const RayKind* kind) {
     const WorldImpl& world = a.set.context.world;
     const int binding = world.bindingOf_[hit.shape];
@@ -170,9 +170,9 @@ Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const 
     return c;
 }
 
-/// Behind the camera's hit light is not followed of all rays that met something; the others bring what those would have. What
-/// else a gather is told does not depend on it: all its rays are cast, and the shaders run that give its outputs. `before`: rays
-/// that the kernel has asked for; `many`: those of this call, as far as is known.
+/// Behind a camera ray's hit, light is followed only for some of the rays with a hit, with weights that compensate. Other outputs
+/// of gather() do not depend on this choice: all rays are cast, and shaders run for them. `before`: rays that the kernel has
+/// requested; `many`: those of this call, as far as known.
 bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t before, uint32_t many) {
     if (!a.set.context.rules.roulette) return true;
     const PathRay& from = *a.point().ray;
@@ -185,15 +185,15 @@ bool goesOn(const Asking& a, PathRay& sent, int count, uint32_t before, uint32_t
     return true;
 }
 
-/// A ray of a gather that has met something whose shaders may have to run.
+/// A ray of a gather() with a hit whose shaders may have to run.
 struct GatherMet {
     PathRay ray;
     float* row;
     accel::Hit hit;
 };
 
-/// Of the rays of turns begin to end of `turns` those whose hits are shaded. All are cast before the first of them is chosen: how
-/// many have met something is known for all. `asked`: rays of the kernel before, and behind the call with these.
+/// Selects the hits to shade among rays begin to end of `turns`. All rays are cast before the selection, which depends on the
+/// number of hits. `asked`: rays requested before the kernel's call, and after it including these.
 void sendMet(const Asking& a, std::span<GatherMet> met, int begin, int end, int turns, int count, const RayKind* kind,
              uint32_t& asked, std::vector<GatherSent>& out) {
     const GatherSite& g = *a.s.gather;
@@ -218,9 +218,9 @@ void sendMet(const Asking& a, std::span<GatherMet> met, int begin, int end, int 
     }
 }
 
-/// Rays that are cast for `count` turns, a power of two or all. Where a gather asks for outputs the shaders run at all that it
-/// meets. Behind one that has met such a gather each casts only its share of that one's rays, so that gathers within gathers stay
-/// linear in their rays: each ray for several turns. What a loop adds up over its turns keeps its mean.
+/// Number of rays to cast for `count` iterations: a power of two, or all. If a gather() requests outputs, shaders run at all
+/// hits. Behind such a hit each gather() casts only its share of rays, so that nested gathers cost linear time: one ray serves
+/// several iterations. Sums over the iterations keep their mean.
 int raysFor(const Asking& a, int count) {
     const PathRay& from = *a.point().ray;
     if (!a.set.context.rules.roulette || from.bounces < 1 || from.asked < 2 || !(from.quiet || a.s.gather->asks)) return count;
@@ -229,12 +229,12 @@ int raysFor(const Asking& a, int count) {
     return rays <= rsl::kGatherRays && rays < count ? rays : count;
 }
 
-/// Rays of one lane that are cast.
+/// Casts the rays of one lane.
 void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, uint32_t& asked, std::vector<GatherSent>& out) {
     const GatherSite& g = *a.s.gather;
     const RaySite& r = *a.s.rays;
     const ShadePoint& p = a.point();
-    const bool aimed = a.triple(a.s.rows[1]) != Vec3(0); // refract() at total reflection gives no direction
+    const bool aimed = a.triple(a.s.rows[1]) != Vec3(0); // refract() gives no direction at total reflection
     const bool cast = g.category == GatherSite::Category::Rays && a.set.context.world.accel_ && aimed;
     RayKind kind{RayType::Specular, true, {}, 0};
     kind.set = a.set.store.raySetOf(a.s, [&](int row) { return a.f(row); }, p.shape, kind.type, kind.label);

@@ -1,5 +1,5 @@
-// The rays of gather statements. A kernel that asks for a handful waits only where shaders must run at what they met; what the
-// rays, the primitives and their attributes say is known at once.
+// Rays of gather() statements. A kernel waits only if its outputs need shaders at the hits; values of the rays, the primitives
+// and their attributes are available at once.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -10,31 +10,31 @@ namespace alpenglow::transport {
 class KernelInputs;
 struct StageSet;
 
-/// A ray of a gather whose hit must be shaded, and where that goes.
+/// A ray of a gather() whose hit must be shaded, and where the result goes.
 struct GatherSent {
     PathRay ray;
-    float* row = nullptr; ///< of GatherRows
+    float* row = nullptr; ///< in GatherRows
     const geometry::Shape* met = nullptr;
     const GatherSite* site = nullptr;
-    bool quiet = false;        ///< its light and opacity are told already
+    bool quiet = false;        ///< light and opacity are in the row already
     bool told = false;         ///< the shaders at the hit have run
-    std::vector<float> values; ///< of GatherSite::sent, one after the other
+    std::vector<float> values; ///< of GatherSite::sent, concatenated
 };
 
 class GatherCalls final : Stage {
 public:
     explicit GatherCalls(const StageSet&);
-    /// Makes the rays of one request of a gather and finds what they meet; those whose hits must be shaded go to `sent`. `in`:
-    /// rows of arguments; `occurrence`, `asked`: by lane, how often the statement ran there before, and the rays that the kernel
-    /// has asked for. The rows are the batch's until the strip ends.
+    /// Makes the rays of one gather() request and intersects them; rays whose hits need shading are appended to `sent`. `in`:
+    /// argument rows. `occurrence`, by lane: how often the statement ran there before. `asked`, by lane: rays that the kernel has
+    /// requested. The batch owns the rows until the strip ends.
     GatherRows& cast(BatchContext&, const SiteInfo&, int first, uint64_t mask, int lanes, const float* in,
                      std::span<const uint32_t> occurrence, std::span<uint32_t> asked, std::vector<GatherSent>& sent);
-    /// Parameters at points that rays of gathers have met, as these have sent them.
+    /// Sets shader parameters at points hit by gather() rays to the values that the rays send (category "sent").
     void takeSent(BatchContext&) const;
-    /// What the shaders at a hit give to the gather whose ray met it; `point` of a batch that has run.
+    /// Writes the shader results at a hit to the gather() whose ray found it; `point`: in a batch that has run.
     void tellGather(const BatchContext&, int point, GatherSent&);
 
-    std::unordered_map<TargetId, GatherSent*> gathered; ///< rays of gathers that ask shaders, by target
+    std::unordered_map<TargetId, GatherSent*> gathered; ///< rays of gathers that need shaders, by target
 
 private:
     const StageSet& set_;

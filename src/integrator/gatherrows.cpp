@@ -6,13 +6,13 @@
 namespace alpenglow::transport {
 
 void putGathered(float* row, const GatherSite::Output& o, std::initializer_list<float> numbers) {
-    if (int(numbers.size()) != o.rows || o.elements || o.open || o.kind == rsl::ir::Kind::String) return; // another type
+    if (int(numbers.size()) != o.rows || o.elements || o.open || o.kind == rsl::ir::Kind::String) return; // different type
     row[o.at] = 1;
     std::copy(numbers.begin(), numbers.end(), row + o.at + 1);
 }
 void putGathered(float* row, const GatherSite::Output& o, const Vec3& v) { putGathered(row, o, {v.x, v.y, v.z}); }
 
-/// A value of any type, where that fits the variable.
+/// Writes a value of any type that fits the variable.
 void putGathered(float* row, const GatherSite::Output& o, const Told& t) {
     using rsl::ir::Kind;
     const bool array = o.elements > 0 || o.open, text = o.kind == Kind::String;
@@ -28,7 +28,7 @@ void putGathered(float* row, const GatherSite::Output& o, const Told& t) {
         to[k] = text ? std::bit_cast<float>(rsl::internString(t.texts[k])) : t.numbers[k];
 }
 
-/// What is known of a ray without a shader.
+/// Writes the values of a ray that need no shader.
 void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& dir, float distance) {
     for (const GatherSite::Output& o : g.outputs) {
         if (o.of == GatherSite::Of::Origin) putGathered(row, o, origin);
@@ -44,7 +44,7 @@ void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const acce
     for (const GatherSite::Output& o : g.outputs) {
         if (o.of != GatherSite::Of::Primitive && o.of != GatherSite::Of::Attribute && o.of != GatherSite::Of::Surface) continue;
         const std::string& name = rsl::internedString(o.id);
-        if (o.of == GatherSite::Of::Surface && !fixed.count(name)) continue; // the shader tells
+        if (o.of == GatherSite::Of::Surface && !fixed.count(name)) continue; // written by the shader
         if (name == "I") {
             putGathered(row, o, dir * float(hit.distance));
             continue;

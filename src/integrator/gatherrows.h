@@ -1,4 +1,4 @@
-// Rows of a gather: what its outputs are told of each ray, known without a shader or once one has run.
+// Rows of a gather(): the values of its outputs for each ray, with or without running a shader.
 #pragma once
 #include "answers/answers.h"
 #include "integrator/batchcontext.h"
@@ -6,13 +6,13 @@
 
 namespace alpenglow::transport {
 
-/// A value of a gather's output: 1 in the row before it says that it is there. Left out where it has another type.
+/// Writes a value of a gather output and sets its presence row, the one before it, to 1. Does nothing if the types differ.
 void putGathered(float* row, const GatherSite::Output&, std::initializer_list<float>);
 void putGathered(float* row, const GatherSite::Output&, const Vec3&);
-void putGathered(float* row, const GatherSite::Output&, const Told&); ///< of any type, where that fits the variable
+void putGathered(float* row, const GatherSite::Output&, const Told&); ///< of any type that converts to the variable's
 void tellRay(const GatherSite&, float* row, const Vec3& origin, const Vec3& dir, float distance);
 void tellHit(const WorldImpl&, const GatherSite&, float* row, const accel::Hit&, const Vec3& dir);
-/// What came back for a ray that was sent.
+/// Writes the result of a ray that was traced.
 void endGatherRay(const GatherSite&, const shading::TargetValue&, float* row);
 
 } // namespace alpenglow::transport

@@ -13,7 +13,7 @@ namespace alpenglow::transport {
 
 namespace {
 
-constexpr int kColour = 0, kOpacity = 3, kClear = 6, kOutputs = 9; ///< floats of a slot
+constexpr int kColour = 0, kOpacity = 3, kClear = 6, kOutputs = 9; ///< offsets in a slot, in floats
 constexpr uint32_t kFree = 0xffffffffu;
 
 Color colourAt(const float* v) { return {v[0], v[1], v[2]}; }
@@ -48,7 +48,7 @@ void GridShading::forget() {
     last_ = kFree;
 }
 
-/// Doubles the table.
+/// Doubles the size of the table.
 void GridShading::grow() {
     table_.assign(2 * table_.size(), {kFree, 0});
     for (uint32_t slot = 0; slot < keys_.size(); ++slot) {
@@ -64,7 +64,7 @@ void GridShading::begin(std::span<const CameraRay> rays, std::span<SampleResult>
     samples_.resize(rays.size());
     own_.clear();
     for (size_t i = 0; i < rays.size(); ++i) {
-        std::vector<float> outputs = std::move(out[i].aovs); // its memory is used again
+        std::vector<float> outputs = std::move(out[i].aovs); // reuses its memory
         outputs.assign(colour_.size(), 0.f);
         out[i] = SampleResult{};
         out[i].aovs = std::move(outputs);
@@ -74,7 +74,7 @@ void GridShading::begin(std::span<const CameraRay> rays, std::span<SampleResult>
     }
 }
 
-/// What the samples that go on meet next: hits_, points_.
+/// Finds the next hits of the continuing samples: hits_, points_.
 void GridShading::meet(std::span<const CameraRay> rays) {
     rays_.resize(samples_.size());
     hits_.assign(samples_.size(), {});
@@ -95,9 +95,9 @@ void GridShading::meet(std::span<const CameraRay> rays) {
     for (size_t i = 0; i < samples_.size(); ++i) points_[i] = rays_[i].org + rays_[i].dir * float(hits_[i].distance);
 }
 
-/// The slot of a micropolygon; a new one is noted, to be shaded.
+/// The slot of a micropolygon; a new one is queued for shading.
 uint32_t GridShading::slotOf(const MicropolygonShare& s) {
-    if (last_ < keys_.size() && keys_[last_] == s.key && s.key.shared()) return last_; // samples of a pixel come together
+    if (last_ < keys_.size() && keys_[last_] == s.key && s.key.shared()) return last_; // samples of a pixel are consecutive
     const uint32_t next = uint32_t(keys_.size());
     if (s.key.shared()) {
         if (2 * keys_.size() >= table_.size()) grow();
@@ -126,7 +126,7 @@ void GridShading::findShares() {
     }
 }
 
-/// The rays by which the eye sees micropolygons: work_.
+/// Makes the rays from the eye to micropolygons: work_.
 void GridShading::aimAt(std::span<const MicropolygonShare> some) {
     work_.points.resize(some.size());
     work_.places.resize(some.size());
@@ -145,9 +145,9 @@ void GridShading::aimAt(std::span<const MicropolygonShare> some) {
     }
 }
 
-/// The ray by which the eye sees a micropolygon at p.
+/// The ray from the eye to a micropolygon at p.
 CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::SurfacePoint& p, shading::GridPoint& point) {
-    MicropolygonKey key = s.key; // numbers do not depend on which procedurals were made
+    MicropolygonKey key = s.key; // random numbers must not depend on which procedurals were expanded
     key.shape = world_.keyOfShape(s.key.shape);
     point = {s.key.shape, s.key.prim, s.b1, s.b2};
     point.corner = false;
@@ -187,7 +187,7 @@ void GridShading::keep(uint32_t slot, const SampleResult& r) {
     std::copy(r.aovs.begin(), r.aovs.end(), v + kOutputs);
 }
 
-/// Shades the new ones. False: stopped, and nothing of the cache is valid.
+/// Shades the queued micropolygons. Returns false if stopped; the cache is then invalid.
 bool GridShading::shade(const StopFlag* stop) {
     values_.resize(keys_.size() * stride_);
     constexpr size_t kAtOnce = 4096;
@@ -207,7 +207,7 @@ bool GridShading::shade(const StopFlag* stop) {
     return true;
 }
 
-/// A sample goes on behind what it met, `clear` of which lets light through. False: it ends.
+/// Continues a sample behind its hit, which has transparency `clear`. Returns false if the sample ends.
 bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit, const Color& clear) const {
     if (!(maxComponent(clear) > 0)) return false;
     if (++s.layers > limits::kPathDepth / 32) {
@@ -222,15 +222,14 @@ bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit,
     return true;
 }
 
-/// Whether a sample is to be shaded where it lies after all: it comes to a volume, along which it has a way of its own, or to a
-/// sky.
+/// Whether a sample must be shaded at its own hit: it enters a volume, through which its path is its own, or it reaches a sky.
 bool GridShading::ownWay(const Sample& s, const accel::Hit& hit) const {
     if (s.n == 0) return seesSky_ && !hit.valid();
     const SurfaceBinding& b = world_.bindings_[size_t(world_.bindingOf_[hit.shape])];
     return b.inside >= 0 || b.outside >= 0;
 }
 
-/// Adds what samples have met to their results. Those that go on stay in samples_.
+/// Adds the hits of samples to their results. Continuing samples stay in samples_.
 void GridShading::show(std::span<const CameraRay> rays, std::span<SampleResult> out) {
     size_t left = 0;
     for (size_t i = 0; i < samples_.size(); ++i) {
@@ -263,10 +262,10 @@ void GridShading::show(std::span<const CameraRay> rays, std::span<SampleResult> 
 }
 
 bool GridShading::trace(std::span<const CameraRay> rays, std::span<SampleResult> out, const StopFlag* stop) {
-    pipeline_.stages().context.stop = stop; // camera rays meet surfaces before anything is shaded
+    pipeline_.stages().context.stop = stop; // visibility is computed before anything is shaded
     unfinished_ = false;
     const bool whole = follow(rays, out, stop) && followSampleBySample(rays, out, stop);
-    if (!whole || unfinished_) forget(); // what was shaded is void
+    if (!whole || unfinished_) forget(); // shading results are undefined
     pipeline_.unfinished() = unfinished_;
     return whole;
 }
@@ -288,7 +287,7 @@ bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult
     pipeline_.counters().paths += rays.size();
     pipeline_.counters().camera += rays.size();
     while (!samples_.empty()) {
-        if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget(); // between layers: none keeps slots of another
+        if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget(); // between layers, when no sample holds a slot
         pipeline_.unfinished() = false;
         meet(rays);
         if (stop && *stop) return false;

@@ -10,7 +10,7 @@
 namespace alpenglow::transport {
 
 GuideRays::GuideRays(const StageSet& s) : Stage(s.context), store_(s.store) {
-    // A kernel that waits decides on what its rays bring; of the others' lobes only those of trace() may be single directions.
+    // A waiting kernel decides by the results of its rays; in other kernels only lobes of trace() can be deltas.
     const auto mirrors = [](const BoundKernel& k) {
         return k && !k.kernel->facts().suspends &&
                std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.kind == SiteKind::Trace; });
@@ -27,7 +27,7 @@ GuideRays::Aim GuideRays::aimAt(const Vec3& P, const Vec3& n, const Vec3& in, fl
     return a;
 }
 
-/// An even number of a ray's vertex, by a hash, which takes a tenth of one that is even over the samples of a pixel, too.
+/// A uniform number for a ray's vertex by hash; its tenths are equidistributed over the samples of a pixel.
 static double hashOf(const render::SampleNumbers& n, const PathRay& from, uint64_t use) {
     const uint64_t key = (uint64_t(n.high()) << 32 | n.low()) ^ render::mix64(uint64_t(from.vertex) << 32 | n.index());
     return double(render::mix64(key ^ use) >> 11) * 0x1p-53;
@@ -89,7 +89,7 @@ float GuideRays::pdfBehindMirror(const PathRay& from) const {
     const CausticGuide::Cell* cell = guide()->find(from.lobeOrigin, from.trail / shading::kTrailSide);
     if (!cell) return -1;
     const float density = CausticGuide::chanceOf(code) * guide()->density(*cell, from.lobeOrigin, from.dir);
-    return -std::max(misWeight(from.lobePdf, density), 1e-30f); // below 0: no light is sampled at a mirror
+    return -std::max(misWeight(from.lobePdf, density), 1e-30f); // < 0: no light is sampled at a mirror
 }
 
 bool GuideRays::bringsNothing(const PathRay& r, int binding) const {

@@ -11,7 +11,7 @@ namespace alpenglow::transport {
 GuideScatter::GuideScatter(const StageSet& s, const VertexLobes& v, const LobeSelection& selection)
     : VertexStage(s, v), selection_(selection), guide_(s.guide), paths_(s.paths), media_(s.media) {}
 
-/// Its ray goes out into the scene like any other, lights are sampled for it, and it adds to what its point brings.
+/// Whether the lobe's ray is an ordinary one, samples lights, and adds to the light of its point.
 bool GuideScatter::mayGuide(const LobeVertex& l) const {
     return l.followed && l.chosen > 0 && l.lights && !l.delta && !l.elsewhere && !l.ownsTarget && l.below < 0 && !(l.base > 0) &&
            l.indirect > 0 && !l.fade.fades() && !l.rays->gathersPhotons;

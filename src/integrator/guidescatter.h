@@ -1,5 +1,5 @@
-// Guide, point by point: which lobe of a point the guide helps, and the rays that it sends. Reads Requests::lobes behind
-// LobeSelection; writes LobeVertex::guide and rays.
+// Caustic guide, point by point: selects the lobe of a point that gets a guide ray, and sends the ray. Reads Requests::lobes
+// after LobeSelection; writes LobeVertex::guide and rays.
 #pragma once
 #include "integrator/guiderays.h"
 #include "integrator/vertexlobes.h"
@@ -16,7 +16,7 @@ public:
     void run(Sched&);
 
 private:
-    /// The lobe of a point that gives back most and whose own ray could be guided; -1: none.
+    /// The lobe of a point with the largest contribution among those that can be guided; -1: none.
     int guidedLobe(size_t point) const;
     bool mayGuide(const LobeVertex&) const;
     struct Sent {

@@ -6,8 +6,8 @@
 namespace alpenglow::transport {
 
 namespace {
-constexpr size_t kBatchPoints = 256;  ///< hits of a group that are shaded without waiting for more
-constexpr size_t kWaitingHits = 4096; ///< of all groups, at most: their memory stays in the cache of a core
+constexpr size_t kBatchPoints = 256;  ///< a group with so many hits is shaded without waiting for more
+constexpr size_t kWaitingHits = 4096; ///< for all groups, at most: their memory fits into the cache of a core
 } // namespace
 
 HitQueues::HitQueues(const StageSet& s) : Stage(s.context), waitingKernels_(s.waitingKernels) {}
@@ -25,7 +25,7 @@ void HitQueues::add(const Sched::Task& task, const accel::Hit& hit, Sched& sched
         if (q.waits) q.room = size_t(waitingKernels_.roomFor(k, primitive ? nullptr : b.surfaceV.kernel.get(), sched));
         groups_.push_back(g);
     } else if (q.waits && q.hits.size() >= q.room) {
-        // Of a kernel that waits no more points are shaded than its frames have room for: the others are followed again, later.
+        // A waiting kernel shades no more points than its frames have memory for; the other rays are traced again later.
         --context_.raysOf(r.type());
         sched.spawn(task);
         return;

@@ -1,5 +1,5 @@
-// Hits wait by group (one program, one list of lights) until there are enough to fill the lanes of its kernel. Their rays and
-// targets wait with them.
+// Queues of hits by group (same program, same list of lights) until there are enough to fill the lanes of the group's kernel.
+// Rays and targets are queued with them.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -12,16 +12,16 @@ class WaitingKernels;
 class HitQueues final : Stage {
 public:
     explicit HitQueues(const StageSet&);
-    /// A hit to the queue of its group. Those of rays that take primitives as they are have groups behind the others. Of a kernel
-    /// that waits no more points are taken than its frames have room for: the others are followed again, later.
+    /// Queues a hit. Rays with "hitmode" "primitive" have groups of their own, after the others. For a waiting kernel no more
+    /// points are accepted than its frames have memory for; the other rays are traced again later.
     void add(const Sched::Task&, const accel::Hit&, Sched&);
-    /// Moves the hits of a group to a batch.
+    /// Moves the hits of a group into a batch.
     void take(size_t group, BatchContext&);
     void clear();
-    /// Groups that are to be shaded now; `all`: those that have any hits.
+    /// Groups to shade now; `all`: every group that has hits.
     std::vector<size_t> ready(bool all) const;
     bool empty() const { return groups_.empty(); }
-    bool full() const;      ///< more hits wait than stay in the cache of a core
+    bool full() const;      ///< more hits are queued than fit into the cache of a core
     size_t longest() const; ///< the group with the most hits
 
 private:
@@ -29,12 +29,12 @@ private:
         std::vector<accel::Hit> hits;
         std::vector<PathRay> rays;
         std::vector<TargetId> targets;
-        bool waits = false; ///< its kernel waits for rays; then
+        bool waits = false; ///< its kernel waits for rays; if so,
         size_t room = 0;    ///< so many of its points may be shaded now
     };
-    std::vector<Queue> queues_;  ///< by SurfaceBinding::group, then for rays that take primitives as they are
-    std::vector<size_t> groups_; ///< that have hits
-    size_t waiting_ = 0;         ///< hits
+    std::vector<Queue> queues_;  ///< by SurfaceBinding::group, then those for "hitmode" "primitive"
+    std::vector<size_t> groups_; ///< groups that have hits
+    size_t waiting_ = 0;         ///< number of queued hits
     WaitingKernels& waitingKernels_;
 };
 

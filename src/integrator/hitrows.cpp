@@ -1,4 +1,4 @@
-// Rays of small scenes, from queues to the search in rows (accel/directblock.h), 16 at a time.
+// Small scenes: searches queued rays in rows of 16 (accel/directblock.h).
 #include "accel/directblock.h"
 #include "integrator/gridrays.h"
 #include "integrator/intersector.h"
@@ -10,12 +10,12 @@ namespace alpenglow::transport {
 
 static_assert(accel::DirectRays::kSize == kBlock);
 
-/// What cast() writes. False: some ray needs more than rows hold.
+/// Row version of cast(). Returns false if a ray needs more than rows hold.
 bool Intersector::castRows(std::span<const Sched::Task> slice) {
     if (!inRows_) return false;
     if (grids_ && std::any_of(slice.begin(), slice.end(), [](const Sched::Task& t) { return beginsAtGrid(t.payload); }))
         return false;
-    constexpr int kWords = 16; // from PathRay::origin to media
+    constexpr int kWords = 16; // PathRay::origin to media
     hits.resize(slice.size());
     uint64_t of[4] = {}; // by RayType
     alignas(64) RayBlock rays;
@@ -51,7 +51,7 @@ bool Intersector::blockInRows(std::span<const ShadowRay> asked, std::span<Color>
     if (!inRows_) return false;
     const auto plain = [&](const ShadowRay& s) { return !s.kind->set.only && world_.accel_->takesRows(s.kind->set.sides); };
     if (!std::all_of(asked.begin(), asked.end(), plain)) return false;
-    constexpr int kWords = 16; // from ShadowRay::origin on; dir and distance are behind it
+    constexpr int kWords = 16; // from ShadowRay::origin; dir and distance follow
     static_assert(offsetof(ShadowRay, dir) == 12 && offsetof(ShadowRay, distance) == 24);
     alignas(64) Row rows[kWords];
     accel::DirectRays block;
@@ -77,7 +77,7 @@ bool Intersector::blockInRows(std::span<const ShadowRay> asked, std::span<Color>
             out[first + size_t(i)] = met[i] ? Color(0) : Color(1);
             counters_.hits += met[i];
         }
-        if (context_.stop && *context_.stop) break; // the result is void
+        if (context_.stop && *context_.stop) break; // the result is undefined
     }
     counters_.tests += asked.size();
     return true;

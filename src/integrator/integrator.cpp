@@ -1,4 +1,4 @@
-// A world that kernels help to build, and the pipeline that follows its rays.
+// Builds a world with the integrator's kernels, and traces rays by a pipeline.
 #include "integrator/integrator.h"
 #include "integrator/gridshading.h"
 #include "integrator/kernelevaluator.h"

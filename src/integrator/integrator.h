@@ -1,5 +1,6 @@
-// The light transport engine: one frame made ready (World), and what arrives along camera rays (Integrator). Under "hidden" and
-// "raytrace" shaders keep their classic meaning; under "path" their lobes get all light (docs/design/light-transport.md).
+// The light transport engine: a frame prepared for rendering (World), and the light along camera rays (Integrator). Under
+// "hidden" and "raytrace" shaders keep their classic RenderMan semantics; under "path" all light reaches their lobes
+// (docs/design/light-transport.md).
 #pragma once
 #include "base/diagnostics.h"
 #include "geometry/plane.h"
@@ -12,20 +13,20 @@
 
 namespace alpenglow::transport {
 
-/// World::build() with kernels that run as the integrator runs them.
+/// World::build() with an Evaluator that runs kernels as the integrator does.
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame>, const Settings&, Diagnostics&);
 
 class Integrator {
 public:
     explicit Integrator(std::shared_ptr<const World>, Diagnostics&);
     ~Integrator();
-    /// Follows all rays to the end. Results do not depend on which rays share a call. False when `stop` was set meanwhile: then
-    /// the results are void. One Integrator per thread.
+    /// Traces all rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; the results
+    /// are then undefined. Use one Integrator per thread.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
-    /// Camera rays that stay within all of these half-spaces are known to meet nothing, and to bring nothing: they need not be
-    /// traced. Under hidden, as a rule; false says nothing.
+    /// Whether camera rays within all of these half-spaces are known to hit nothing and to be black, so that they need not be
+    /// traced. Conservative: false means unknown. True mainly under hidden.
     bool seesNothing(std::span<const geometry::Plane>) const;
-    /// Whether a ray of the last trace() came to the bound of a procedural that is not made yet: its results are void (unmade.h).
+    /// Whether a ray of the last trace() reached the bound of a deferred procedural; its results are then undefined (unmade.h).
     bool unfinished() const;
     const Counters& counters() const;
 

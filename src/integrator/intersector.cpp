@@ -1,5 +1,5 @@
-// Stages meet and settle: a slice of rays meets surfaces; hits wait by group (same program and lights) until enough of them are
-// there to fill the lanes of its kernel; then their points are worked out, emitters among them shine, and the kernel runs.
+// Stages intersection and surface interaction: rays of a slice are intersected; hits are queued by group (same program and
+// lights) until they fill the lanes of its kernel; then their points are computed, emission is added, and the kernel runs.
 #include "integrator/intersector.h"
 #include "integrator/context.h"
 #include "integrator/gridrays.h"
@@ -17,11 +17,11 @@ void Intersector::clip(accel::Ray& ray) const {
         double height = dot(normal, Vec3d(ray.org) - point), climb = dot(normal, Vec3d(ray.dir)), t = -height / climb;
         if (climb > 0) ray.tfar = std::min(ray.tfar, float(std::max(t, 0.0)));
         else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
-        else if (height > 0) ray.tfar = 0; // along the plane, on its cut side
+        else if (height > 0) ray.tfar = 0; // parallel to the plane, on the clipped side
     }
 }
 
-/// A ray as the tree follows it: within the clipping planes, meeting what it may meet.
+/// A ray for the acceleration structure: within the clipping planes, with its visibility mask.
 accel::Ray Intersector::rayOf(const PathRay& r) const {
     accel::Ray ray;
     ray.org = r.origin;
@@ -49,8 +49,8 @@ bool Intersector::meet(const accel::Ray& ray, accel::Hit& hit) {
     return hit.valid();
 }
 
-/// Calls f(first, count) for parts of n rays that take little time even where a ray meets a hundred thousand shapes. Who stops
-/// throws the rest away, whatever it is.
+/// Calls f(first, count) for parts of n rays that take little time even if a ray hits a hundred thousand shapes, and checks
+/// `stop` between them; after a stop the results are discarded.
 template <class F> static void inParts(size_t n, const StopFlag* stop, F f) {
     constexpr size_t kPart = 512;
     for (size_t at = 0; at < n && !(stop && *stop); at += kPart) f(at, std::min(kPart, n - at));

@@ -1,5 +1,4 @@
-// Hemispheres that are interpolated (world/records.h): calls that read records, and in passes that find them the rays of new
-// ones.
+// Irradiance caching (world/records.h): calls that interpolate records, and in the pass that makes records, the rays of new ones.
 #include "integrator/irradiancerecords.h"
 #include "integrator/context.h"
 #include "integrator/intersector.h"
@@ -22,11 +21,11 @@ IrradianceRecords::IrradianceRecords(const StageSet& s)
 
 namespace {
 
-constexpr float kPixels = 20; ///< "maxpixeldist" where it is not given
+constexpr float kPixels = 20; ///< default of "maxpixeldist"
 
 uint64_t mixed(uint64_t h, float v) { return render::mix64(h ^ std::bit_cast<uint32_t>(v)); }
 
-/// A whole hemisphere by the cosine: records hold nothing else.
+/// Whether the cone is the whole hemisphere: records hold no other kind.
 bool wholeHemisphere(float cone) { return std::fabs(cone - float(kPi / 2)) < 1e-4f; }
 
 } // namespace
@@ -54,15 +53,16 @@ std::optional<Color> IrradianceRecords::recorded(const BatchContext& c, const Si
     n.fade = {std::max(0.f, number(fade.strength, 0)), reach, number(fade.mode, 0) != 0};
     record.call = mixed(mixed(render::mix64(site.call + uint64_t(b.group)), reach), n.fade.strength);
     record.call = mixed(record.call, float(n.fade.polynomial));
-    // Of the same rays, to the same surfaces, and behind them the same sky.
-    record.call = render::mix64(record.call ^ reinterpret_cast<uintptr_t>(kind->set.only)); // of the world, for all threads
+    // The same rays, the same surfaces, and behind them the same sky.
+    // Owned by the world, equal for all threads
+    record.call = render::mix64(record.call ^ reinterpret_cast<uintptr_t>(kind->set.only));
     record.call = mixed(mixed(record.call, float(kind->set.sides)), float(kind->set.mode));
     record.call = mixed(record.call, float(kind->type));
     if (!s.occlusion && s.trace->map) {
         n.tint = s.trace->tint < 0 ? Color(1) : triple(s.trace->tint);
         for (int k = 0; k < 3; ++k) record.call = mixed(record.call, n.tint[k]);
     }
-    // Where an exact call's rays would go too deep it brings nothing, and so do records.
+    // Where the depth limit leaves an exact call without light, records give none either.
     const PathRay& from = *p.ray;
     const bool diffuse = kind->type == RayType::Diffuse;
     const int most = diffuse ? b.maxDiffuse : b.maxSpecular;
@@ -94,10 +94,10 @@ std::optional<Color> IrradianceRecords::recorded(const BatchContext& c, const Si
     n.blocks = s.occlusion != nullptr;
     sendRecord(c, point, call, occurrence, n);
     ++counters_.records;
-    return Color(0); // the picture of such a pass is not looked at
+    return Color(0); // the picture of this pass is discarded
 }
 
-/// One ray a cell: rings of equal weight about the normal, each cut into turns.
+/// Sends one ray for each cell: rings of equal weight around the normal, each divided in azimuth.
 void IrradianceRecords::sendRecord(const BatchContext& c, int point, uint32_t call, uint32_t occurrence, Recording& n) {
     const ShadePoint& p = c.points[size_t(point)];
     const PathRay& from = *p.ray;
@@ -124,7 +124,7 @@ void IrradianceRecords::sendRecord(const BatchContext& c, int point, uint32_t ca
         ray.media = media_.towards(c, point, w);
         ray.parted = ray.passed = false;
         ray.extra = -1;
-        ray.lobePdf = -1; // no light is sampled for it: all that shines counts
+        ray.lobePdf = -1; // no light is sampled for it: emission counts in full
         ray.lobeBinding = -1;
         ray.footprint = from.footprint.after(length(p.P - from.origin));
         ray.footprint.spread = std::max(ray.footprint.spread, .5f / std::sqrt(float(n.rings * n.turns)));
@@ -135,7 +135,7 @@ void IrradianceRecords::sendRecord(const BatchContext& c, int point, uint32_t ca
     recordings_.push_back(std::move(n));
 }
 
-/// An occlusion()'s are shadow rays, whose ends tell how far away things are; what others bring is known when they are followed.
+/// occlusion() uses shadow rays, whose ends give the distances; results of other rays are known after tracing.
 void IrradianceRecords::follow(Sched& sched) {
     for (; recordsSent_ < recordings_.size(); ++recordsSent_) {
         Recording& n = recordings_[recordsSent_];

@@ -1,4 +1,5 @@
-// Records of hemispheres (world/records.h): read where a call asks, found by rays of their own where they are missing.
+// Irradiance caching (world/records.h): calls interpolate records; in the pass that makes records, rays of their own compute
+// them.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -17,12 +18,12 @@ struct StageSet;
 class IrradianceRecords final : Stage {
 public:
     explicit IrradianceRecords(const StageSet&);
-    /// What records say of the hemisphere that a call asks for at a point of a batch. Nothing: it is to be found exactly. In a
-    /// pass that finds records one may be begun there; then it is anything. `kind`: of the call's rays.
+    /// The interpolated value of a hemisphere call at a point of a batch. Without a value the hemisphere must be sampled. In the
+    /// pass that makes records a new record may start here; the value is then arbitrary. `kind`: of the call's rays.
     std::optional<Color> recorded(const BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                   const RayKind* kind, uint32_t occurrence);
-    void follow(Sched&);     ///< sends the rays of those that were begun
-    void keep(const Sched&); ///< once all rays are followed
+    void follow(Sched&);     ///< sends the rays of new records
+    void keep(const Sched&); ///< stores the records after all rays are traced
     void forget();
 
 private:

@@ -1,4 +1,4 @@
-// What generated code calls back while a kernel runs: services and requests find their stage through KernelCall::user.
+// Callbacks of generated code: services and requests find their stage through KernelCall::user.
 #include "base/memory.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/vertex.h"
@@ -8,11 +8,11 @@ namespace alpenglow::transport {
 
 namespace {
 
-// The callbacks of generated code: C functions that find their stage through KernelCall::user.
+// Callbacks of generated code: C functions that find their stage through KernelCall::user.
 BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
 
-/// Exceptions cannot pass generated code: what fails in a callback is kept, the kernel is made to end its loops, and who ran it
-/// throws again (BatchContext::ran). Nothing more is done for it meanwhile.
+/// Exceptions cannot pass through generated code: an exception in a callback is stored, the kernel is told to leave its loops,
+/// and the caller of the kernel rethrows (BatchContext::ran). Until then callbacks do nothing.
 constexpr StopFlag kEnd{1};
 void failed(rsl::KernelCall* call) noexcept {
     BatchContext& c = contextOf(call);
@@ -20,8 +20,8 @@ void failed(rsl::KernelCall* call) noexcept {
     call->stop = &kEnd;
 }
 
-/// Room for another request of a kernel that does not wait. Throws LimitReached where there is none: Pipeline::trace() then
-/// begins anew with fewer points at a time.
+/// Reserves memory for another request of a kernel that does not wait. Throws LimitReached if there is too little;
+/// Pipeline::trace() then repeats the call with fewer points at a time.
 void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64_t mask) {
     const size_t held = c.arena.size() * sizeof(float) + c.emits.size() * sizeof(EmitRecord) + c.emitted * sizeof(LobeVertex);
     c.emitted += size_t(std::popcount(mask));
@@ -42,7 +42,7 @@ void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64
     throw LimitReached();
 }
 
-/// What only the loop knows: the row of the light's index is replaced by the distance; two more rows stand behind the arguments.
+/// Values that only the loop has: replaces the row of the light's index by the distance, and appends two rows to the arguments.
 void takeReach(const BatchContext& c, const SiteInfo& s, int first, float* arguments, int lanes) {
     const size_t have = std::min(size_t(lanes), c.lightReach.size()), width = size_t(lanes);
     float* more = arguments + size_t(rowsOfArguments(s)) * width;

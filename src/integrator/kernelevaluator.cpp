@@ -20,7 +20,7 @@ public:
         BatchContext c;
         c.bound = &k;
         c.binding = of;
-        c.points.swap(points); // lent
+        c.points.swap(points); // swapped back below
         c.batch = std::make_shared<shading::Batch>();
         c.batch->assign(k.kernel, *k.plan, c.points, {&view, 1}, {}, pipeline_.world());
         pipeline_.stages().inputs.bind(c.batch->call(), c);

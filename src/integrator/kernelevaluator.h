@@ -1,11 +1,11 @@
-// The kernels that a world needs while nobody follows rays, run by a pipeline.
+// Runs the kernels that a world needs outside of rendering, in a pipeline.
 #pragma once
 #include "world/evaluator.h"
 #include "world/world.h"
 
 namespace alpenglow::transport {
 
-/// A MakeEvaluator. The world must outlive it.
+/// A MakeEvaluator. The world must outlive the result.
 std::unique_ptr<Evaluator> makeKernelEvaluator(const WorldImpl&, Diagnostics&, const StopFlag* stop);
 
 } // namespace alpenglow::transport

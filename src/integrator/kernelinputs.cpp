@@ -7,7 +7,7 @@ namespace alpenglow::transport {
 
 KernelInputs::KernelInputs(const StageSet& s) : Stage(s.context), answers(world_, diagnostics_, &s.lightKernels) {}
 
-/// The parameters of a binding's surface as kernels of a plan read them.
+/// The parameters of a binding's surface in the order of a plan.
 const shading::ParameterRows* KernelInputs::parametersOf(int binding, const shading::BatchPlan& plan) {
     parameters_.resize(world_.bindings_.size());
     auto& known = parameters_[size_t(binding)];
@@ -18,7 +18,7 @@ const shading::ParameterRows* KernelInputs::parametersOf(int binding, const shad
     return known[0].get();
 }
 
-/// The instances of a batch's points, which are few: views_ and viewOf_.
+/// Collects the distinct instances of a batch's points: views and viewOf.
 void KernelInputs::viewsOf(const BatchContext& c) {
     views.clear();
     viewOf.clear();
@@ -36,7 +36,7 @@ void KernelInputs::viewsOf(const BatchContext& c) {
     for (int b : c.bindings) slotOf_[size_t(b)] = -1;
 }
 
-/// The inputs of a batch from its points.
+/// Fills the inputs of a batch from its points.
 void KernelInputs::fill(BatchContext& c) {
     viewsOf(c);
     if (!c.batch) c.batch = std::make_shared<shading::Batch>();

@@ -1,4 +1,4 @@
-// Inputs of kernels from points, parameters by binding, and what kernels call back while they run.
+// Inputs of kernels from points, parameters by binding, and the callbacks of running kernels.
 #pragma once
 #include "answers/answers.h"
 #include "integrator/batchcontext.h"
@@ -9,8 +9,8 @@ namespace alpenglow::transport {
 
 struct StageSet;
 
-/// Whether a call only notes what it asks for: trace() and transmission() always do, the shadeops of lobes only where the
-/// integrator estimates them.
+/// Whether a call only records a request: trace() and transmission() always do; lobe shadeops only if the integrator estimates
+/// them (`path`).
 inline bool isRequest(SiteKind k, bool path) {
     return k == SiteKind::Trace || k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Subsurface ||
            k == SiteKind::Gather || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
@@ -19,9 +19,9 @@ inline bool isRequest(SiteKind k, bool path) {
 class KernelInputs final : Stage {
 public:
     explicit KernelInputs(const StageSet&);
-    void fill(BatchContext&);                   ///< the inputs of a batch from its points
-    void bind(rsl::KernelCall&, BatchContext&); ///< what the kernel calls back
-    void viewsOf(const BatchContext&);          ///< the instances of a batch's points, which are few: views, viewOf
+    void fill(BatchContext&);                   ///< fills the inputs of a batch from its points
+    void bind(rsl::KernelCall&, BatchContext&); ///< sets the callbacks of the kernel
+    void viewsOf(const BatchContext&);          ///< the distinct instances of a batch's points, to views and viewOf
     const WorldImpl& world() const { return world_; }
     Diagnostics& diagnostics() const { return diagnostics_; }
     bool beginsAnew() const { return context_.beginsAnew; }
@@ -32,9 +32,9 @@ public:
 
 private:
     const shading::ParameterRows* parametersOf(int binding, const shading::BatchPlan&);
-    /// By binding, the last two that were asked for: of the kernels for one binding and for several.
+    /// By binding: the last two in use, for kernels of one binding and of several.
     std::vector<std::array<std::unique_ptr<const shading::ParameterRows>, 2>> parameters_;
-    std::vector<int> slotOf_; ///< by binding: its place in views, else -1
+    std::vector<int> slotOf_; ///< by binding: index in views, or -1
 };
 
 } // namespace alpenglow::transport

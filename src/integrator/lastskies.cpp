@@ -1,5 +1,5 @@
-// Stage skies: where a path ends by its depth lamps are sampled still, and a sky that is not sampled as a light must count as
-// well. The ray that would have found it is sent as a shadow ray, which brings nothing but the sky.
+// Stage LastSkies: at the depth limit of a path lamps are still sampled; a sky that is not sampled as a light must count as well.
+// The ray that would have reached it becomes a shadow ray with the light of the sky alone.
 #include "integrator/lastskies.h"
 #include "integrator/accumulator.h"
 #include "integrator/lightkernels.h"
@@ -23,14 +23,14 @@ void LastSkies::run() {
     for (size_t point = 0; point < c_->points.size(); ++point)
         for (int i : lobesOf(point)) {
             const LobeVertex& l = requests_.lobes[size_t(i)];
-            // As lamps are: those lobes that sample lights.
+            // The same lobes as for lamps: those that sample lights.
             if (l.last && l.lights && !l.elsewhere && !l.delta) scatter_.sent.push_back({int(point), i, 1, 1, true, Vec3(), {}});
         }
     if (scatter_.sent.empty()) return;
     scatter_.draw(0);
     for (const int number : world_.skies_) {
         const BoundLight& light = world_.lights_[size_t(number)];
-        if (!light.sky && light.kind != LightKind::Ambient) lastSky(number); // ambient() asks for ambient light
+        if (!light.sky && light.kind != LightKind::Ambient) lastSky(number); // ambient() handles ambient light
     }
 }
 
@@ -68,12 +68,12 @@ void LastSkies::lastSky(int number) {
             accumulator_.notFinite(&ray, "Cl", light.instance.get());
             continue;
         }
-        float scale = 1; // light of lights counts in full, whatever is scaled of surfaces
+        float scale = 1; // direct light counts in full; only light of surfaces is scaled
         if (light.kind == LightKind::Environment && !l.rays->fromTrace) scale *= value[k].kept(l.rays->type);
         const Color weight = l.weight * (s.value.colour / s.value.pdf) * scale;
         ShadowRay shadow{q[k].Ps,  s.w,          l.maxDistance, (l.ownsTarget ? weight : weight * ray.weight) * value[k].Cl,
                          l.target, q[k].shutter, &ray};
-        shadow.kind = l.rays; // what such a ray would have met
+        shadow.kind = l.rays; // visibility as for the replaced ray
         shadow.media = media_.towards(*c_, s.point, s.w);
         shadow.share = shareOf(l);
         shadow.path = paths_.atLobe(l, c_->points[size_t(s.point)], ray, s.w);

@@ -1,4 +1,4 @@
-// Where a path ends by its depth: skies that only rays would find, as shadow rays.
+// Where a path ends by its depth limit: shadow rays to the skies that only rays of lobes would reach.
 #pragma once
 #include "integrator/scatterrays.h"
 

@@ -1,4 +1,4 @@
-// Lights: their kernels run in batches for the points they light.
+// Runs light kernels in batches for the points that they light.
 #include "integrator/lightkernels.h"
 #include "integrator/accumulator.h"
 #include "integrator/atmosphere.h"
@@ -30,12 +30,12 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
     if (s.kind == SiteKind::Transmission) {
         std::vector<ShadowRay> rays;
         if (s.rays->samples >= 0 && s.rays->cone >= 0 && row(s.rays->cone) > 0)
-            occlusion_.samplesOf(std::max(1.f, row(s.rays->samples)), p.shape, s, c); // says when there are too many
+            occlusion_.samplesOf(std::max(1.f, row(s.rays->samples)), p.shape, s, c); // reports too many samples
         shadows_.transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
         const auto point3 = [&](size_t arg) { return Vec3(row(s.rows[arg]), row(s.rows[arg] + 1), row(s.rows[arg] + 2)); };
         const Vec3 from = point3(0), to = point3(1);
         media_.shadowsInMedia(rays, from, to, p.Ps, p.lit, c.lit ? c.lit->binding(point) : nullptr);
-        // The lit point as shaders give it, perhaps moved off its surface.
+        // The lit point as the shader passes it, possibly moved off its surface.
         if (std::min(length(from - p.Ps), length(to - p.Ps)) <= 0.01f * length(to - from)) {
             c.ownShadows.resize(c.points.size());
             c.ownShadows[size_t(point)] = 1;
@@ -56,14 +56,14 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
         occlusion_.hemispheres.resize(had);
         return value;
     }
-    if (s.kind != SiteKind::Trace || !p.ray || !world_.accel_) return value; // lights that are measured see nothing
+    if (s.kind != SiteKind::Trace || !p.ray || !world_.accel_) return value; // lights being measured see no geometry
     return nested_.trace(c, s, point, row, occurrence);
 }
 
-/// A gather in a light's kernel.
+/// Answers a gather() in a light's kernel.
 void LightKernels::gather(BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
     const int lanes = c.requestLanes;
-    if (!world_.accel_ || !c.points[size_t(first)].ray) { // lights that are measured see nothing: one ray that meets nothing
+    if (!world_.accel_ || !c.points[size_t(first)].ray) { // lights being measured see no geometry: one ray without a hit
         GatherRows& g = c.gathers[{s.gather->number, first}];
         g.width = s.gather->width;
         g.counts.assign(size_t(lanes), 1);
@@ -90,7 +90,7 @@ void LightKernels::runWaiting(BatchContext& context) {
     BatchContext* c = &context;
     const BoundKernel& bound = *c->bound;
     const auto& k = *bound.kernel;
-    // A light that decides on traced light: its few requests are answered in place, strip by strip.
+    // A light that branches on traced light: its few requests are answered in place, strip by strip.
     std::vector<uint32_t> asked(bound.sites.size() * size_t(c->batch->size()));
     for (int first = 0; first < c->batch->size(); first += k.lanes()) {
         void* h = k.start(&c->batch->call(), first);
@@ -124,7 +124,7 @@ void LightKernels::runWaiting(BatchContext& context) {
 void LightKernels::addPairs(BatchContext& context, std::vector<ShadePoint>& queries, std::span<LightValue> out) {
     BatchContext* c = &context;
     const BoundKernel& bound = *c->bound;
-    // Affine requests of the light itself: shadows that it asks for. Counted by site and point: no random number depends on the
+    // Affine requests of the light itself: its shadows. Counted by call site and point, so that no random number depends on the
     // batch.
     std::vector<uint32_t> asked(c->emits.empty() ? 0 : bound.sites.size() * queries.size());
     for (const EmitRecord& e : c->emits) {
@@ -153,7 +153,7 @@ void LightKernels::evaluateLight(const BoundLight& light, std::vector<ShadePoint
     c->lit = call.lit;
     c->light = &light;
     c->ownShadows.clear();
-    c->points.swap(queries); // lent; given back below
+    c->points.swap(queries); // swapped back below
     std::vector<shading::InstanceView> views;
     std::vector<uint32_t> viewOf;
     for (size_t i = 0; i < call.of.size(); ++i) {
@@ -201,7 +201,7 @@ void LightKernels::evaluateLight(const BoundLight& light, std::vector<ShadePoint
     }
     addPairs(*c, queries, out);
     for (size_t i = 0; i < c->ownShadows.size(); ++i) out[i].ownShadow = c->ownShadows[i] != 0;
-    for (size_t i = 0; i < queries.size(); ++i) // the kernel divided by the squared distance: radiance does not
+    for (size_t i = 0; i < queries.size(); ++i) // the kernel divided by the squared distance; radiance does not
         if (const float scale = (call.of.empty() ? light : *call.of[i]).intensityScale; scale > 0)
             out[i].Cl *= dot(out[i].L, out[i].L) * scale;
     atmosphere_.hazeOfEmitters(light, queries, out, call.inMedium);

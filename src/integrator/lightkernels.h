@@ -1,5 +1,5 @@
-// Light samples: lights' kernels, in batches for the points that they light. Area lights: at points on the emitter. A kernel that
-// asks for rays is answered in place, to the end (nestedtrace.h).
+// Runs light shaders in batches for the points that they light; area lights at points on the emitter. If the kernel waits for
+// rays, they are traced to the end at once (nestedtrace.h).
 #pragma once
 #include "answers/answers.h"
 #include "integrator/batchcontext.h"
@@ -22,22 +22,22 @@ struct StageSet;
 class LightKernels final : Stage, public Tracer {
 public:
     explicit LightKernels(const StageSet&);
-    /// Light arriving at queries from one light; for area lights `samples[i]` is the point on the emitter.
+    /// Light from one light at the queries; for area lights `samples[i]` is the point on the emitter.
     void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue> out,
                        const LightCall& = {}) override;
     void shadowLight(const KernelRun&, const BoundLight&, int first, uint32_t draw, std::span<const ShadePoint>,
                      std::span<const int> laneOf, std::span<LightValue>) override;
-    /// What a light said of its shadow; nonsense is reported once and left out.
+    /// Applies the shadow parameters that a light sets; reports invalid values once and ignores them.
     void takeShadowSays(LightValue&, const BoundLight&, float radius, float samples);
-    /// Probability that a light is among those that are sampled at a point of the binding at `at`, after so many bounces.
+    /// Probability that a light is among those sampled at a point `at` of the binding, after `bounces` bounces.
     float chanceOf(int light, int binding, const Vec3& at, int bounces) const;
     const WorldImpl& world() const { return world_; }
 
 private:
-    void runWaiting(BatchContext&); ///< a kernel that waits for rays, strip by strip
-    /// Adds what a light's kernel asks for beside its Cl: shadows. The queries are not in the batch.
+    void runWaiting(BatchContext&); ///< runs a kernel that waits for rays, strip by strip
+    /// Adds the requests of a light's kernel other than Cl: shadows. The queries are not in the batch.
     void addPairs(BatchContext&, std::vector<ShadePoint>& queries, std::span<LightValue>);
-    /// What a transmission() or trace() of a light's kernel gives at a point that it lights, followed to the end at once.
+    /// Result of a transmission() or trace() of a light's kernel at a point that it lights; the ray is traced to the end at once.
     shading::TargetValue followRay(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                    uint32_t occurrence, TraceSums* sums = nullptr);
     void gather(BatchContext&, const SiteInfo&, int first, std::span<uint32_t> asked);

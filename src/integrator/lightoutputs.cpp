@@ -1,7 +1,7 @@
-// Outputs that displays ask for and that light reaches. Ci is shaded as if nobody asked: each such output has a kernel of its
-// own, run at the camera's points alone. Where that asks for the very light that Ci asks for, it has a part of what the lobe of
-// Ci finds: the ratio of the two weights. The parts of Ci that a shader gives away so add up to Ci in every sample. The rest is
-// followed by itself.
+// Output variables that receive light. Ci is shaded as if there were none: each such output has a kernel of its own, which runs
+// at camera points only. Where it makes the same request as Ci, it receives a part of the light of Ci's lobe, by the ratio of the
+// two weights. So the parts of Ci that a shader writes to outputs add up to Ci in every sample. All other requests are followed
+// separately.
 #include "integrator/lightoutputs.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
@@ -26,11 +26,10 @@ LightOutputs::LightOutputs(const StageSet& s)
 
 namespace {
 
-/// An output that is more than this much of Ci has rays of its own: those of Ci are too rarely sent where so little of it depends
-/// on them.
+/// An output with a larger ratio to Ci gets rays of its own: those of Ci are sent too rarely where Ci depends little on them.
 constexpr float kMostShare = 16;
 
-/// Whether two pairs ask for the same thing.
+/// Whether two pairs make the same request.
 bool sameArguments(const BatchContext& a, const EmitRecord& ra, int laneA, const BatchContext& b, const EmitRecord& rb,
                    int laneB) {
     size_t rows = 0;
@@ -57,7 +56,7 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::asides(const BatchConte
     for (size_t i = 0; i < c.points.size(); ++i)
         if (c.rays[i].counts) of.push_back(i);
     if (of.empty()) return all;
-    if (c.displaced && of.size() < c.points.size()) { // what the displacement wrote is known by the number of the point
+    if (c.displaced && of.size() < c.points.size()) { // displacement results are found by point index
         of.clear();
         for (size_t i = 0; i < c.points.size(); ++i) of.push_back(i);
     }
@@ -73,8 +72,8 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::asides(const BatchConte
         run->rays.reserve(of.size());
         for (size_t k = 0; k < of.size(); ++k) {
             PathRay& ray = run->rays.emplace_back(c.rays[of[k]]);
-            ray.path = 0;   // Ci's light is told apart, not that of outputs
-            ray.extra = -1; // that of the batch, which may be gone before what waits here
+            ray.path = 0;   // light paths classify the light of Ci only
+            ray.extra = -1; // belongs to the batch, which may be gone before the strips that wait here
             run->bindings.push_back(c.bindings[of[k]]);
             const size_t outputs = world_.lightOutputs_.size();
             run->targets.push_back(ray.counts ? accumulator_.lightTargets[size_t(ray.sample->path) * outputs + size_t(o.number)]
@@ -113,7 +112,7 @@ std::vector<AskedAside> LightOutputs::shareLight(const BatchContext& c, std::spa
     if (runs.empty()) return rest;
     std::vector<std::vector<const AskedLobe*>> lobesOf(c.points.size());
     for (const AskedLobe& a : asked) lobesOf[size_t(requests_.lobes[size_t(a.lobe)].point)].push_back(&a);
-    std::vector<int> pointOf; // of the batch: that of a point of a run
+    std::vector<int> pointOf; // by point of a run: index in the batch
     for (size_t i = 0; i < c.points.size(); ++i)
         if (runs[0]->points.size() == c.points.size() || c.rays[i].counts) pointOf.push_back(int(i));
     for (const auto& run : runs) {
@@ -129,7 +128,7 @@ std::vector<AskedAside> LightOutputs::shareLight(const BatchContext& c, std::spa
                     ++counters_.nonFinite;
                     continue;
                 }
-                if (world_.lightOutputs_[size_t(run->aside->number)].size == 1) { // throughput of a number is the luminance
+                if (world_.lightOutputs_[size_t(run->aside->number)].size == 1) { // a scalar uses the luminance of the throughput
                     const Color& through = run->rays[size_t(point)].weight;
                     for (int k = 0; k < 3; ++k) weight[k] *= through[k] > 0 ? luminance(through) / through[k] : 0;
                 }
@@ -164,7 +163,7 @@ void LightOutputs::followAsides(std::span<const AskedAside> rest, std::span<std:
             waitingKernels_.start(run, sched);
             continue;
         }
-        std::map<std::pair<int, int>, uint32_t> occurrence; // by site and point
+        std::map<std::pair<int, int>, uint32_t> occurrence; // by call site and point
         for (; next < rest.size() && rest[next].run == &c; ++next) {
             const AskedAside& a = rest[next];
             const EmitRecord& e = c.emits[size_t(a.record)];

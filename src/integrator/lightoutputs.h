@@ -1,5 +1,5 @@
-// Outputs that displays ask for and that light reaches: kernels of their own at the camera's points, whose pairs share the lobes
-// of Ci where they ask for the same light (lightoutputs.cpp).
+// Output variables that receive light: separate kernels at camera points, whose pairs share the lobes of Ci if they request the
+// same light (lightoutputs.cpp).
 #pragma once
 #include "integrator/requests.h"
 
@@ -11,7 +11,7 @@ class KernelInputs;
 class VertexLight;
 class WaitingKernels;
 
-/// A pair of an output that shares no lobe of Ci, or not in all components.
+/// A pair of an output that shares no lobe with Ci, or not in all components.
 struct AskedAside {
     BatchContext* run;
     int record, lane;
@@ -21,14 +21,14 @@ struct AskedAside {
 class LightOutputs final : Stage {
 public:
     explicit LightOutputs(const StageSet&);
-    /// For the camera's points of a batch that is filled: runs for the outputs that light reaches.
+    /// Batches that run the light outputs for the camera points of a filled batch.
     std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&);
-    /// Gives the lobes of a batch their shares; what is left is returned. The asides have run.
+    /// Assigns outputs to the lobes of a batch and returns the pairs that share none. The output batches must have run.
     std::vector<AskedAside> shareLight(const BatchContext&, std::span<const AskedLobe>,
                                        std::span<const std::shared_ptr<BatchContext>>, Sched&);
-    /// What shares nothing, and the outputs whose kernels wait for rays.
+    /// Follows pairs that share no lobe, and outputs whose kernels wait for rays.
     void followAsides(std::span<const AskedAside>, std::span<std::shared_ptr<BatchContext>>, Sched&);
-    /// Adds the outputs of points that are done.
+    /// Adds the outputs of completed points.
     void finishAside(BatchContext&, int first, int lanes, Sched&);
 
 private:

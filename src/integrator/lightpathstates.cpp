@@ -1,5 +1,4 @@
-// Events of light paths: what a path has met from the camera on, for the outputs that show some of the light
-// (scene/lightpaths.h).
+// Events of light paths, from the camera on, for the light path outputs (scene/lightpaths.h).
 #include "integrator/lightpathstates.h"
 #include "integrator/context.h"
 #include "integrator/stageset.h"
@@ -7,7 +6,7 @@
 namespace alpenglow::transport {
 
 namespace {
-/// What names the light in expressions beside its handle: Attribute "light" "group", else the parameter "__group" of its shader.
+/// Name of a light in expressions, besides its handle: Attribute "light" "group", else parameter "__group" of its shader.
 std::string groupOf(const BoundLight& l) {
     if (l.source && l.source->attributes)
         if (const scene::Param* p = l.source->attributes->value("light:group"); p && !p->strings.empty()) return p->strings[0];
@@ -16,8 +15,7 @@ std::string groupOf(const BoundLight& l) {
     return i == l.instance->parameters.strings.end() ? std::string() : i->second;
 }
 
-/// Whether w leaves a surface on the side that the ray comes from. The sides of w are those of the shading normal, about which
-/// lobes lie.
+/// Whether w leaves a surface on the side of the ray. The sides of w are those of the shading normal, around which lobes lie.
 bool reflects(const PathRay& ray, const ShadePoint& p, const Vec3& w) {
     const float side = dot(w, p.N) * (dot(p.N, p.surface.n) < 0 ? -1.f : 1.f);
     return (dot(ray.dir, p.surface.n) < 0) == (side > 0);
@@ -47,14 +45,14 @@ LightPathStates::LightPathStates(const StageSet& s) : Stage(s.context) {
 }
 
 uint16_t LightPathStates::atLobe(const LobeVertex& l, const ShadePoint& p, const PathRay& ray, const Vec3& w) const {
-    // What a kernel that waits asks for is its own business: only what it makes of it is light of the path.
+    // Results of a waiting kernel's requests are inputs of the kernel; only its output is light of the path.
     return l.ownsTarget ? 0 : atLobe(*l.kind, *l.rays, l.delta, p, ray, w);
 }
 
 uint16_t LightPathStates::atLobe(const LobeKind& kind, const RayKind& rays, bool delta, const ShadePoint& p, const PathRay& ray,
                                  const Vec3& w) const {
     if (ray.path == 0) return 0;
-    if (p.surface.n == Vec3(0)) return next(ray.path, volume); // a medium: there are no sides
+    if (p.surface.n == Vec3(0)) return next(ray.path, volume); // a medium has no sides
     using scene::PathScattering;
     const PathScattering how = delta                           ? PathScattering::Singular
                                : rays.type == RayType::Diffuse ? PathScattering::Diffuse

@@ -1,4 +1,4 @@
-// Outputs by light path (scene/lightpaths.h): PathRay::path from event to event. All keep 0, which is a path that nobody follows.
+// Light path outputs (scene/lightpaths.h): PathRay::path from event to event. State 0 stays 0 and denotes an unclassified path.
 #pragma once
 #include "integrator/context.h"
 #include "integrator/vertex.h"
@@ -10,20 +10,21 @@ struct StageSet;
 class LightPathStates final : Stage {
 public:
     explicit LightPathStates(const StageSet&);
-    /// Behind one more event.
+    /// The state after one more event.
     uint16_t next(uint16_t path, int32_t symbol) const { return path ? automaton->next(path, symbol) : 0; }
-    /// Scattered by a loop over lights, or by ambient(), under that label, towards w.
+    /// State after scattering by a loop over lights, or by ambient(), with this label, toward w.
     uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w, int label) const;
-    uint16_t atLobe(const LobeVertex&, const ShadePoint&, const PathRay&, const Vec3& w) const; ///< scattered towards w, unit
+    /// After scattering toward w, unit
+    uint16_t atLobe(const LobeVertex&, const ShadePoint&, const PathRay&, const Vec3& w) const;
     uint16_t atLobe(const LobeKind&, const RayKind&, bool delta, const ShadePoint&, const PathRay&, const Vec3& w) const;
     uint16_t atLight(uint16_t path, const BoundLight& l) const {
         return path ? automaton->next(path, lights[size_t(&l - world_.lights_.data())]) : 0;
     }
-    /// Photons are known by where they rest: as if a mirror had sent them there from a light without a label.
+    /// Photons count as reflected by a mirror, coming from a light without a label.
     uint16_t atPhotons(uint16_t path) const { return next(next(path, mirror), loopLight); }
 
-    const scene::LightPaths* automaton = nullptr; ///< Settings::lightPaths, under path; null: nobody asks
-    std::vector<int32_t> lights;                  ///< symbols by light
+    const scene::LightPaths* automaton = nullptr; ///< Settings::lightPaths, under path; null: no such outputs
+    std::vector<int32_t> lights;                  ///< symbols, by light
     // Symbols of events without labels.
     int32_t straight = 0, volume = 0, object = 0, map = 0, loopLight = 0, mirror = 0;
     int loopLabel = -1, ambientLabel = -1;

@@ -32,7 +32,7 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
             return false;
         if (world.accel_->hasSolids() &&
             !world.accel_->keeps(world.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter))
-            return false; // what a solid leaves of a lamp
+            return false; // the part of a lamp outside of its CSG solid
         p.shape = s.shape;
         p.P = meetsAt(p.surface);
         p.N = p.surface.n;

@@ -1,23 +1,23 @@
-// A sample of a light for a shaded point: where on the light it lies, and the point that the light's kernel runs at.
+// A light sample for a shaded point: its position on the light, and the point at which the light's kernel runs.
 #pragma once
 #include "integrator/rays.h"
 
 namespace alpenglow::transport {
 
-/// The random numbers of a sample.
+/// The random numbers of a light sample.
 struct LightNumbers {
     Vec2 pair;
-    float choose = 0; ///< of emitters that choose among shapes
+    float choose = 0; ///< selects a shape of the emitter
 };
-/// Whether a light takes LightNumbers::pair. `path`: under that hider, where cones are sampled.
+/// Whether a light uses LightNumbers::pair. `path`: under the hider path, which samples cones.
 inline bool takesPair(const BoundLight& l, bool path) { return l.kind == LightKind::Area || l.sky || (l.cone && path); }
 inline bool takesChoice(const BoundLight& l) { return l.kind == LightKind::Area && l.emitter->chooses(); }
 
-/// Copies what the light's kernel reads of the lit point (Ps, Ns, I, E, du, dv, time) to a query of the light. Current space.
+/// Copies the inputs of the light's kernel from the lit point (Ps, Ns, I, E, du, dv, time) to a query. Current space.
 void tellLit(ShadePoint& query, const ShadePoint& lit);
-/// The origin of a light's shader space, current space: P of a light without geometry.
+/// The origin of the light's shader space in current space: P of a light without geometry. shutter: 0 to 1.
 Vec3 originOfLight(const ShaderInstance&, float shutter);
-/// The point of the light, for a query that tellLit() has filled. False: this draw brings nothing.
+/// Samples the point on the light for a query filled by tellLit(). Returns false if the sample carries no light.
 bool placeLightSample(const WorldImpl&, const BoundLight&, const LightNumbers&, bool path, ShadePoint& query, Emitter::Sample&);
 
 } // namespace alpenglow::transport

@@ -1,5 +1,5 @@
-// Stage light: every light for every point with lobes that want it, a kernel call a light. Of many lights some are chosen at each
-// point (manylights.cpp), and those of one program share a call.
+// Stage LightSampling: samples each light for each point with lobes that need it, one kernel call a light. In scenes with many
+// lights each point chooses some, and lights of one program share a call.
 #include "integrator/lightsampling.h"
 #include "integrator/connection.h"
 #include "integrator/kernelinputs.h"
@@ -20,14 +20,14 @@ LightSampling::LightSampling(const StageSet& s, const VertexLobes& v, Connection
       litSurfaces_(s.litSurfaces), media_(s.media), shadows_(s.shadows) {}
 
 namespace {
-/// Queries of lights that share a call are answered some at a time: those of all points of a batch do not fit into a core's
-/// cache.
+/// Queries of lights that share a call are answered in portions: those of all points of a batch do not fit into the cache of a
+/// core.
 constexpr size_t kQueriesAtOnce = 512;
-constexpr int kSamplesAtOnce = 16; ///< of a light at a point: what a call asks for at all points does not fit into memory
+constexpr int kSamplesAtOnce = 16; ///< of a light at a point, at once: limits the memory of a batch
 } // namespace
 
 ShadePoint& LightQueries::add(int of, const BoundLight& l, float c, LightDraw which) {
-    if (count == at.size()) at.emplace_back(); // else written again, not made anew
+    if (count == at.size()) at.emplace_back(); // else overwritten
     point.push_back(of);
     light.push_back(&l);
     chance.push_back(c);
@@ -57,21 +57,21 @@ void LightQueries::clear() {
     drawn.clear();
 }
 
-/// Whether a lobe asks this light for samples. trace() without "samplelights" knows emitters only; it knows none that are
-/// illuminance's.
+/// Whether a lobe samples this light. trace() without "samplelights" samples emitters only; it samples none that illuminance
+/// loops handle.
 bool LightSampling::samples(const LobeVertex& l, const BoundLight& light) const {
-    if (!light.importance && (l.trace || rules_.emissionCounts)) return false; // rays alone find it
+    if (!light.importance && (l.trace || rules_.emissionCounts)) return false; // only rays find it
     if (photonScatter_.leftToPhotons(l, light)) return false;
     return l.lights && !l.elsewhere && !l.delta && (light.kind == LightKind::Area || light.sky || l.deltaLights) &&
            (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
 }
 
-/// Of each light, where the lobe sends as many rays.
+/// Samples of each light that a lobe takes: as many as its rays.
 int LightSampling::lightSamples(const LobeVertex& l) const {
     return l.trace && (l.ownsTarget || !rules_.pickOne) ? l.samples : 1;
 }
 
-/// Asks the lights of wanted_, of which all have the kernel `shared`, or there is one.
+/// Queries the lights of wanted_: a single light, or several with the kernel `shared`.
 void LightSampling::askWanted(const BoundKernel* shared, Sched& sched) {
     queries.clear();
     placeWanted();
@@ -80,7 +80,7 @@ void LightSampling::askWanted(const BoundKernel* shared, Sched& sched) {
     if (shadows_.queue.size() > kShadowsAtOnce) shadows_.flush(sched);
 }
 
-/// The samples of a light at all points that want it; with `shared` the last are left in wanted_.
+/// Samples a light at all points that need it; with `shared` the last portion is left in wanted_.
 void LightSampling::lightOf(const BoundLight& light, std::span<const std::pair<int, float>> chosen, const BoundKernel* shared,
                             Sched& sched) {
     for (int first = 0, most = 1; first < most; first += kSamplesAtOnce) {
@@ -89,8 +89,8 @@ void LightSampling::lightOf(const BoundLight& light, std::span<const std::pair<i
     }
 }
 
-/// Fills chosenAt_: of each light that points ask for these points, or, where all ask for all, of the first entry. True: by
-/// light.
+/// Fills chosenAt_: by light, the points that chose it; or, if every point samples every light, the first entry only. Returns
+/// true in the first case.
 bool LightSampling::chooseLights(const WorldImpl::LightList& list, const std::vector<int>& on, std::vector<int>& touched) {
     const bool many = rules_.pickOne && !(world_.chooserOf(list).empty() && list.deeper.empty());
     touched.clear();
@@ -124,13 +124,13 @@ bool LightSampling::chooseLights(const WorldImpl::LightList& list, const std::ve
 }
 
 void LightSampling::run(Sched& sched) {
-    const SurfaceBinding& binding = world_.bindings_[size_t(c_->bindings[0])]; // the batch shares its list
+    const SurfaceBinding& binding = world_.bindings_[size_t(c_->bindings[0])]; // the list is the same for the whole batch
     const WorldImpl::LightList& list = world_.lightLists_[size_t(binding.lightList)];
     const std::vector<int>& on = world_.sampledOf(list);
-    std::vector<int>& touched = chosen_; // places in the list, of lights that some point asks for
+    std::vector<int>& touched = chosen_; // indices in the list of lights that some point samples
     const bool many = chooseLights(list, on, touched);
-    // Lights of one program that share a kernel call come together (WorldImpl::lightGroups_), the others one by one.
-    std::vector<std::vector<int>>& grouped = ofGroup_; // places in the list
+    // Lights of one program that share a kernel call are consecutive (WorldImpl::lightGroups_); the others are separate.
+    std::vector<std::vector<int>>& grouped = ofGroup_; // indices in the list
     grouped.resize(world_.lightGroups_.size());
     for (const int k : touched) {
         const auto& at = chosenAt_[many ? size_t(k) : 0];
@@ -154,8 +154,8 @@ void LightSampling::run(Sched& sched) {
     if (!many) chosenAt_[0].clear();
 }
 
-/// Notes the points of a light that ask for it, and the numbers that its points are made of: of kSamplesAtOnce samples from
-/// `first` on. How many there are in all, at most.
+/// Appends the points that sample a light, and draws the random numbers of kSamplesAtOnce samples from `first` on. Returns the
+/// largest number of samples at a point.
 int LightSampling::want(const BoundLight& light, std::span<const std::pair<int, float>> chosen, int first) {
     int most = 0;
     if (wanted_.empty()) numbers_.clear();
@@ -177,7 +177,7 @@ int LightSampling::want(const BoundLight& light, std::span<const std::pair<int, 
     return most;
 }
 
-/// Makes queries of what is wanted.
+/// Makes queries of the entries of wanted_.
 void LightSampling::placeWanted() {
     numbers_.draw();
     size_t number = 0;
@@ -199,7 +199,7 @@ void LightSampling::placeWanted() {
     wanted_.clear();
 }
 
-/// The point of the light; false: this draw brings nothing. `number`: the next of numbers_.
+/// Chooses the point on the light; returns false if the sample carries no light. `number`: next index in numbers_.
 bool LightSampling::place(ShadePoint& p, Emitter::Sample& s, const BoundLight& light, size_t& number) const {
     LightNumbers u;
     if (takesPair(light, rules_.pickOne)) u.pair = numbers_.pair(number++);
@@ -207,7 +207,7 @@ bool LightSampling::place(ShadePoint& p, Emitter::Sample& s, const BoundLight& l
     return placeLightSample(world_, light, u, rules_.pickOne, p, s);
 }
 
-/// Makes of the query that was added last one for each width that lobes of its point see the emitter with.
+/// Splits the last query by the widths with which lobes of its point see the emitter.
 void LightSampling::queriesByWidth(size_t point, const BoundLight& light) {
     LightQueries& q = queries;
     const size_t first = q.count - 1;
@@ -228,7 +228,7 @@ void LightSampling::queriesByWidth(size_t point, const BoundLight& light) {
     }
 }
 
-/// Runs the kernel of the queries' lights, which are one, or of the group that `shared` is of.
+/// Runs the kernel of the queries' light, or of the group with kernel `shared`.
 void LightSampling::askLights(const BoundKernel* shared) {
     LightQueries& q = queries;
     if (q.count == 0) return;
@@ -269,7 +269,7 @@ void LightSampling::askLights(const BoundKernel* shared) {
         Answers::chooseSent(light, u, values.data() + k * width, q.value[k]);
     }
     for (size_t k = 0; k < q.count && light.channels; ++k)
-        if (k == 0 || q.point[k] != q.point[k - 1]) // of several widths the first
+        if (k == 0 || q.point[k] != q.point[k - 1]) // for several widths, the first
             inputs_.answers.keepChannels(*c_, light, q.point[k], values.data() + k * width);
 }
 

@@ -1,5 +1,6 @@
-// Light samples: points on lights for the points of the batch, and what the lights' kernels send from there, a kernel call a
-// light. Of many lights some are chosen at each point (world/lightchooser.h), and those of one program share a call.
+// Light sampling: points on lights for the points of the batch, and the radiance from the lights' kernels, one kernel call a
+// light. In scenes with many lights each point chooses some at random (world/lightchooser.h), and lights with the same program
+// share a call.
 #pragma once
 #include "integrator/vertexlobes.h"
 
@@ -13,17 +14,17 @@ class MediaStacks;
 class PhotonScatter;
 class ShadowRays;
 
-/// Sample `nth` of `of` that a point takes of a light. Lobes that ask for fewer have the first ones.
+/// Sample `nth` of `of` samples that a point takes of a light. Lobes that request fewer use the first ones.
 struct LightDraw {
     int nth = 0, of = 1;
 };
-/// What lights are asked for at points of the batch, one kernel call; row by row a query.
+/// Queries to lights for points of the batch, answered by one kernel call; parallel arrays.
 struct LightQueries {
-    std::vector<ShadePoint> at; ///< the light's point; the first `count` are used
-    std::vector<int> point;     ///< of the batch
+    std::vector<ShadePoint> at; ///< point on the light; the first `count` are in use
+    std::vector<int> point;     ///< index in the batch
     std::vector<const BoundLight*> light;
-    std::vector<float> chance; ///< that the light is sampled there
-    std::vector<float> spread; ///< of the lobes that it is for; < 0: for all of its point
+    std::vector<float> chance; ///< probability of sampling the light there
+    std::vector<float> spread; ///< spread of the lobes that it serves; < 0: all lobes of the point
     std::vector<LightDraw> draw;
     std::vector<Emitter::Sample> drawn;
     std::vector<LightValue> value;
@@ -37,11 +38,11 @@ class LightSampling final : VertexStage {
 public:
     LightSampling(const StageSet&, const VertexLobes&, Connection&, PhotonScatter&);
     void run(Sched&);
-    /// Whether a lobe asks this light for samples. trace() knows emitters only, and not those that are illuminance's.
+    /// Whether a lobe samples this light. trace() samples emitters only, and none that illuminance loops handle.
     bool samples(const LobeVertex&, const BoundLight&) const;
-    int lightSamples(const LobeVertex&) const; ///< of each light, where the lobe sends as many rays
+    int lightSamples(const LobeVertex&) const; ///< samples of each light that a lobe takes: as many as its rays
 
-    LightQueries queries; ///< that Connection reads
+    LightQueries queries; ///< read by Connection
 
 private:
     bool chooseLights(const WorldImpl::LightList&, const std::vector<int>& on, std::vector<int>& touched);
@@ -58,10 +59,10 @@ private:
         float chance;
         LightDraw draw;
     };
-    std::vector<Wanted> wanted_; ///< points that ask for a light, and the chance that it was chosen there
-    std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by light of the list, points and chances
-    std::vector<int> chosen_;                                  ///< places in the list that have some
-    std::vector<std::vector<int>> ofGroup_;                    ///< many lights: by group, places in the list
+    std::vector<Wanted> wanted_; ///< points that sample a light, and the probability of choosing it there
+    std::vector<std::vector<std::pair<int, float>>> chosenAt_; ///< many lights: by index in the list, points and probabilities
+    std::vector<int> chosen_;                                  ///< indices in the list that were chosen
+    std::vector<std::vector<int>> ofGroup_;                    ///< many lights: by group, indices in the list
     render::NumberRows numbers_;
     Connection& connection_;
     PhotonScatter& photonScatter_;

@@ -1,4 +1,4 @@
-// What lights that ask are told about the surfaces that they light: outputs, displacement.
+// Values of lit surfaces that light shaders query: outputs, displacement.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -11,12 +11,12 @@ struct StageSet;
 class LitSurfaces final : Stage {
 public:
     explicit LitSurfaces(const StageSet&);
-    /// For queries of a light; `of`, by query, numbers in `values`. It must outlive the result.
+    /// For the queries of a light; `of`, by query: index in `values`. This object must outlive the result.
     LitSurface litBy(std::span<const int> of) const;
-    /// What outputs of the surface are now, for lights that ask; of a kernel that waits they stay as they were at the call.
+    /// Records current output values of a surface for lights that query them; for a waiting kernel, the values at the call.
     void tellOutputs(LitValues&, const BatchContext&, size_t point) const;
 
-    std::vector<LitValues> values; ///< of what runs now; only where lights ask for outputs of surfaces
+    std::vector<LitValues> values; ///< for the current batch; filled only if lights query surfaces
 };
 
 } // namespace alpenglow::transport

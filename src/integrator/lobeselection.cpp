@@ -1,4 +1,4 @@
-// Stage choose: how much a lobe gives back, the energy rule, and the chance of its ray (docs/design/light-transport.md).
+// Stage LobeSelection: albedo of each lobe, the energy rule, and the probability of its ray (docs/design/light-transport.md).
 #include "integrator/lobeselection.h"
 #include "integrator/accumulator.h"
 #include "integrator/medium.h"
@@ -15,15 +15,15 @@ LobeSelection::LobeSelection(const StageSet& s, const VertexLobes& v, PhotonScat
       mediumFlights_(s.mediumFlights), photons_(s.photons), transparency_(s.transparency), vertexLight_(s.vertexLight) {}
 
 namespace {
-/// A lobe whose rays are to bring nothing of surfaces still brings the light of lights: it is followed with this part of its
-/// chance.
+/// Indirect light of a lobe may be scaled to 0, but its ray still carries emission: the lobe keeps at least this fraction of its
+/// probability.
 constexpr float kLeastScale = 1 / 32.f;
 } // namespace
 
 void LobeSelection::choose() {
     indirectScale.assign(c_->points.size(), 1.f);
     passes.assign(c_->points.size(), 1.f);
-    for (const int point : requests_.apartAt) // indirectdiffuse() brings what surfaces send
+    for (const int point : requests_.apartAt) // indirectdiffuse() adds the light of surfaces
         for (const int i : lobesOf(size_t(point)))
             if (LobeVertex& l = requests_.lobes[size_t(i)]; l.lobeOfShader && l.rays == &kDiffuseKind && !l.ownsTarget)
                 l.indirect = 0;
@@ -31,11 +31,11 @@ void LobeSelection::choose() {
         if (begin_[point] != begin_[point + 1]) choosePoint(point);
 }
 
-/// A lobe whose ray would go too deep is not followed; light samples then count in full.
+/// Lobes beyond the depth limit are not followed; light samples then count in full.
 bool LobeSelection::tooDeep(const LobeVertex& l, const PathRay& from, const SurfaceBinding& b) const {
     const bool diffuse = l.rays->type == RayType::Diffuse;
     if (from.scattered >= limits::kPathDepth) return true;
-    const int scattered = from.scattered + c_->between; // inside of media ways are as long as they are
+    const int scattered = from.scattered + c_->between; // scattering in media does not count as depth
     if (from.bounces + 1 - scattered > world_.maxDepth_) return true;
     if (const PhotonTrace* t = photons_.photonTrace(); t && t->job->caustics) return !photonScatter_.depthsBehind(l, b);
     return (b.maxDiffuse >= 0 && from.diffuseBounces + diffuse - scattered > b.maxDiffuse) ||
@@ -46,9 +46,9 @@ void LobeSelection::choosePoint(size_t point) {
     const PathRay& from = c_->rays[point];
     const SurfaceBinding& b = world_.bindings_[size_t(c_->bindings[point])];
     const Color clear = c_->clear.empty() ? Color(0) : c_->clear[point];
-    // Under path one ray goes on from a vertex: along one of the lobes, or behind the surface where that lets light through.
-    // Those two may have quite different colours: what the way here has left of each decides, else a channel could grow without
-    // end. A camera ray goes on besides.
+    // Under path one ray continues from a vertex: along a lobe, or behind a transparent surface. These may have very different
+    // colours, so the choice weights them by the throughput of the path; otherwise a channel could grow without bound. A camera
+    // ray also continues in addition.
     const Color on = c_->clear.empty() ? Color(0) : transparency_.goesOn(*c_, int(point));
     const bool competes = rules_.pickOne && from.bounces > 0 && maxComponent(on) > 0;
     const Color left = absolute(from.weight);
@@ -56,7 +56,7 @@ void LobeSelection::choosePoint(size_t point) {
     const auto list = lobesOf(point);
     const float narrowest = photons_.narrowBelow(from);
     Color sum(0), seen(0);
-    bool cut = false; // by the depth of the render, not by a depth that a primitive asks for
+    bool cut = false; // by the render's depth limit, not an attribute's
     for (int i : list) {
         LobeVertex& l = requests_.lobes[size_t(i)];
         const Color weight = absolute(l.weight);
@@ -74,7 +74,7 @@ void LobeSelection::choosePoint(size_t point) {
         const bool noIndirect =
             l.rays->type == RayType::Diffuse && !world_.settings_.indirect && !photonScatter_.sampledByPaths(l);
         const bool deep = l.below < 0 && tooDeep(l, from, b);               // walks end in light
-        const bool ended = from.guided() && !PhotonScatter::mirrorsPath(l); // the guide's rays go on by mirrors alone
+        const bool ended = from.guided() && !PhotonScatter::mirrorsPath(l); // guide rays continue by mirrors only
         const bool stays = l.directOnly || deep || (l.below < 0 && noIndirect) || ended;
         l.last = deep && !l.directOnly && !noIndirect && !ended && l.chosen > 0;
         if (ended) l.lights = false;
@@ -87,7 +87,7 @@ void LobeSelection::choosePoint(size_t point) {
     const bool most = sum.x + clear.x > 1 || sum.y + clear.y > 1 || sum.z + clear.z > 1;
     const float scale = indirectScale[point] = most ? energyScale(point, sum, clear) : 1;
     const float behind = competes ? worth(on) : 0;
-    if (list.size() == 1 && behind == 0) { // what most vertices are
+    if (list.size() == 1 && behind == 0) { // the most frequent case
         LobeVertex& l = requests_.lobes[size_t(list[0])];
         l.chosen = l.ownsTarget || !rules_.pickOne ? l.followed : l.chosen > 0;
         return;
@@ -106,12 +106,13 @@ void LobeSelection::choosePoint(size_t point) {
     passes[point] = behind > 0 && total > behind ? float(behind / total) : 1;
 }
 
-/// What is reflected and what comes through is at most what arrives.
+/// Reflected plus transmitted light must not exceed incident light.
 float LobeSelection::energyScale(size_t point, const Color& reflected, const Color& clear) {
     float scale = 1;
-    for (int k = 0; k < 3 && !world_.settings_.unbiased && !c_->aside; ++k) // what an output adds up is nobody's energy
+    for (int k = 0; k < 3 && !world_.settings_.unbiased && !c_->aside; ++k) // sums of outputs need not conserve energy
         if (reflected[k] + clear[k] > 1 && reflected[k] > 0) scale = std::min(scale, (1 - clear[k]) / reflected[k]);
-    const bool more = maxComponent(reflected) > 1; // by itself: else a highlight on what is clear, say, which is common
+    // Reflectance alone; a highlight on a clear surface is common and not reported as such
+    const bool more = maxComponent(reflected) > 1;
     const SurfaceBinding& b = world_.bindings_[size_t(c_->bindings[point])];
     if (scale < 0.999f) vertexLight_.tellScaled(b, more);
     return scale;

@@ -1,5 +1,5 @@
-// Select: how much each lobe gives back, the energy rule, the chance that its ray is followed; in media, lights that its rays may
-// pass. Reads Requests::lobes; writes LobeVertex::albedo, delta, chosen, followed, last, beside.
+// Lobe selection: albedo of each lobe, the energy rule, the probability of following its ray; light-directed phase sampling in
+// media. Reads Requests::lobes; writes LobeVertex::albedo, delta, chosen, followed, last, beside.
 #pragma once
 #include "integrator/vertexlobes.h"
 
@@ -18,20 +18,20 @@ class LobeSelection final : VertexStage {
 public:
     LobeSelection(const StageSet&, const VertexLobes&, PhotonScatter&);
     void choose();
-    void measureAlbedos(); ///< of lobes that AOVs show and that have no closed form
-    void besideLights();   ///< finds lights beside rays of lobes (beside.cpp)
-    /// The factor of indirect light with which no more leaves than arrives.
+    void measureAlbedos(); ///< estimates albedos without a closed form, for AOVs
+    void besideLights();   ///< selects lights for light-directed sampling (beside.cpp)
+    /// Factor for indirect light by the energy rule: reflected plus transmitted light must not exceed the incident light.
     float energyScale(size_t point, const Color& reflected, const Color& clear);
 
-    std::vector<float> indirectScale; ///< by point: of the rays of lighting shadeops
-    std::vector<float> passes;        ///< by point: the chance that its ray goes on behind it
+    std::vector<float> indirectScale; ///< by point: factor for the rays of lighting shadeops
+    std::vector<float> passes;        ///< by point: probability that the ray continues behind the surface
 
 private:
     void choosePoint(size_t point);
     bool tooDeep(const LobeVertex&, const PathRay&, const SurfaceBinding&) const;
-    bool albedoIsMeasured(const LobeVertex&) const; ///< once `delta` is known
+    bool albedoIsMeasured(const LobeVertex&) const; ///< once `delta` is set
     void besideLight(size_t point);
-    std::vector<int> aimed_; ///< lobes with a light beside their rays
+    std::vector<int> aimed_; ///< lobes that sample toward a light
     render::NumberRows numbers_;
     PhotonScatter& photonScatter_;
     Accumulator& accumulator_;

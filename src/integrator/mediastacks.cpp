@@ -1,6 +1,5 @@
-// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that goes on behind a surface, to the side that its N
-// points away from, is in the Interior of the primitive; on the other side in its Exterior. A surface with neither bounds
-// nothing.
+// Interior and Exterior (RISpec 3.2): which volume a ray is in. A ray that continues on the side that N points away from is in
+// the Interior of the primitive; on the other side it is in the Exterior. A surface with neither bounds no volume.
 #include "integrator/mediastacks.h"
 #include "integrator/atmosphere.h"
 #include "integrator/context.h"
@@ -52,7 +51,7 @@ void MediaStacks::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const
     if (world_.media_.empty() || !s) return;
     const auto isHere = [&](const Vec3& x) { return length(x - at) <= geometry::roundingError(x) + 4 * s->pError; };
     for (ShadowRay& r : rays) {
-        if (!isHere(a) && isHere(b) && r.distance < 1e30f) { // what is here is known, what is there is not
+        if (!isHere(a) && isHere(b) && r.distance < 1e30f) { // media are known here, not at the other end
             r.origin += r.dir * r.distance;
             r.dir = -r.dir;
         } else if (!isHere(a)) {
@@ -60,7 +59,7 @@ void MediaStacks::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const
         }
         if (r.ray && binding) r.media = beyond(*binding, r.ray->media, s->n, r.ray->dir, r.dir);
         else if (r.ray && (dot(r.ray->dir, s->n) < 0) == (dot(r.dir, s->n) > 0))
-            r.media = r.ray->media; // a light's: back to where it came from
+            r.media = r.ray->media; // of a light: back along the ray that arrived
     }
 }
 

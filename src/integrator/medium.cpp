@@ -1,4 +1,4 @@
-// Media that scatter: what becomes of rays on their way through them.
+// Homogeneous scattering media: events of rays along their segments.
 #include "integrator/medium.h"
 #include "base/exact.h"
 #include "integrator/accumulator.h"
@@ -27,19 +27,19 @@ MediumFlights::MediumFlights(const StageSet& s)
 
 namespace {
 
-/// Mean free paths of what is scattered (similarity: (1 - g) of it turns aside) from which hardly any path comes out again.
+/// Distance to the surface, in reduced mean free paths (similarity: by 1 - g), from which almost no path returns.
 constexpr double kDeepInside = 300;
-constexpr float kThin = 2; ///< mean free paths of ways that are FreeFlight::thin
-/// As often a path is scattered so deep inside for certain; at twice the depth half as often.
+constexpr float kThin = 2; ///< length of a FreeFlight::thin segment, mean free paths
+/// So deep inside a path scatters at least so often; at twice the depth half as often.
 constexpr double kScatteredForCertain = 64;
-constexpr int kLeaksSaid = 16; ///< ways out of a medium that has no end there: rounding at an edge makes a few
+constexpr int kLeaksSaid = 16; ///< rays that leave a medium without a boundary; rounding at edges causes a few
 
 /// (1 - exp(-x)) / x.
 double meanLeft(double x) { return x < 1e-5 ? 1 - 0.5 * x : (1 - exact::exp(-x)) / x; }
 
-/// The chance that a path of that weight is scattered again. In what absorbs nothing nothing ends it but the way out, which is
-/// too far deep inside: a path is then scattered k times with a chance in proportion to 1 / k, as light that comes back or meets
-/// a lamp after k times falls by k^-1.5, so that both their number and the variance stay bounded.
+/// Probability of scattering again for a path of this weight. Without absorption only the way out ends a path, which is too far
+/// from deep inside: there a path survives its k-th scattering with probability in proportion to 1 / k. Light that returns or
+/// hits a lamp after k events falls by k^-1.5, so both the number of events and the variance stay bounded.
 double chanceDeepInside(const Homogeneous& h, const Color& weight, float toSurface, int scattered) {
     const Color sigma = h.extinction(), left = absolute(weight);
     double least = INFINITY;
@@ -57,7 +57,7 @@ void MediumFlights::addOpacity(const PathRay& r, const Color& c) {
     accumulator_.results[size_t(r.sample->path)]->opacity += r.weight * c;
 }
 
-/// Light that the medium itself sends along the way.
+/// Adds emission of the medium along the segment.
 void MediumFlights::glow(const Flight& f, const Homogeneous& h, Sched& sched) {
     if (!(maxComponent(h.emission) > 0)) return;
     Color c;
@@ -80,13 +80,13 @@ bool MediumFlights::leaks(const Flight& f) {
     return true;
 }
 
-/// What happens on a way through a medium up to a surface; a point on it where light is scattered, if it is.
+/// Samples the events on a segment up to a surface; returns the scattering point, if any.
 std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t flight, Vec2 u, Sched& sched) {
     const PathRay& ray = *f.ray;
     const Homogeneous& h = *world_.media_[size_t(ray.medium())].homogeneous;
     const Color before = ray.weight, left = h.left(f.length);
     glow(f, h, sched);
-    const bool both = ray.counts; // what the camera sees, opacity and depth stay exact
+    const bool both = ray.counts; // keeps opacity and depth of camera rays exact
     if (both) addOpacity(ray, Color(1) - left);
     Color part(std::fabs(before.x), std::fabs(before.y), std::fabs(before.z));
     const float sum = part.x + part.y + part.z;
@@ -128,7 +128,7 @@ std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t fl
     return c;
 }
 
-/// Goes on behind a surface that bounds nothing here.
+/// Continues behind a surface that bounds no volume here.
 void MediumFlights::pass(Flight& f, Sched& sched) {
     const PathRay& ray = *f.ray;
     const ShadePoint& p = *f.point;
@@ -171,7 +171,7 @@ void MediumFlights::happen(std::span<Flight> flights, Sched& sched) {
         return medium >= 0 && w.media_[size_t(medium)].homogeneous;
     };
     numbers_.clear();
-    for (const Flight& f : flights) // others than those of its lobe
+    for (const Flight& f : flights) // other lights than those that its lobe sampled
         if (crosses(f)) numbers_.askPair(store_.random(*f.ray).numbers(), childVertex(f.ray->vertex, kFlight, 6), kFlight, 0);
     numbers_.draw();
     std::vector<Crossing>& crossings = crossings_;
@@ -188,7 +188,7 @@ void MediumFlights::happen(std::span<Flight> flights, Sched& sched) {
     }
     const auto before = [](const Crossing& a, const Crossing& b) { return a.way.medium < b.way.medium; };
     if (!std::is_sorted(crossings.begin(), crossings.end(), before)) std::stable_sort(crossings.begin(), crossings.end(), before);
-    for (size_t first = 0, end; first < crossings.size(); first = end) { // of one medium, whose lights are one list
+    for (size_t first = 0, end; first < crossings.size(); first = end) { // of one medium, so with one list of lights
         for (end = first; end < crossings.size() && crossings[end].way.medium == crossings[first].way.medium;) ++end;
         const auto of = std::span<const Crossing>(crossings).subspan(first, end - first);
         if (rules_.lightsAtRequests) nearLights(flights, of, sched);
@@ -207,7 +207,7 @@ Vec3 MediumFlights::besideLight(const Medium& m, const PathRay& r, const Vec3& f
     for (size_t k = 0; k < on.size() && chooser.empty(); ++k) chosen.emplace_back(int(k), 1.f);
     if (!chooser.empty()) chooser.choose(from, store_.random(r).one(vertex, kChooseLight, 0), chosen);
     const Color sigma = m.homogeneous->extinction();
-    const double reach = 12 / (double(sigma.x) + sigma.y + sigma.z); // four mean free paths: beyond them little is left
+    const double reach = 12 / (double(sigma.x) + sigma.y + sigma.z); // four mean free paths: beyond them little light is left
     std::vector<std::pair<Vec3, float>> near;
     for (const auto& [k, chance] : chosen) {
         const int light = on[size_t(k)];
@@ -224,14 +224,14 @@ Vec3 MediumFlights::besideLight(const Medium& m, const PathRay& r, const Vec3& f
     return direction;
 }
 
-/// Points where light is scattered gather it as surfaces do, by the lobe of the medium.
+/// Points of scattering gather light like surfaces, by the phase function.
 void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
     auto c = batches_.take();
     const Medium& m = world_.media_[size_t(crossings[0].way.medium)];
     c->bound = &m.kernel;
     c->binding = &world_.bindings_[size_t(m.binding)];
     c->between = true;
-    c->points.clear(); // those of the batch before
+    c->points.clear(); // points of the previous batch
     lights_.clear();
     for (const Crossing& x : crossings) {
         if (!x.stops) continue;
@@ -257,11 +257,11 @@ void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing>
         lights_.push_back(besideLight(m, r, r.origin + r.dir * x.way.t));
     }
     if (!c->rays.empty()) gather(*c, m, sched);
-    shadows_.flush(sched); // they know its rays
+    shadows_.flush(sched); // before their rays are freed
     batches_.giveBack(std::move(c));
 }
 
-/// Light at points in a medium. lights_: by point, besideLight().
+/// Gathers light at points in a medium. lights_: by point, besideLight().
 void MediumFlights::gather(BatchContext& c, const Medium& m, Sched& sched) {
     static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
     if (blocks_.needsPoints(*c.binding)) placePoints(c, m);
@@ -292,7 +292,7 @@ void MediumFlights::placePoints(BatchContext& c, const Medium& m) const {
         ShadePoint& p = c.points[i];
         p.shape = m.shape;
         p.P = p.surface.P = r.origin + r.dir * c.flown[i].t;
-        p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: there are no sides
+        p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: no sides
         p.I = p.P - r.begin();
         p.E = r.origin;
         p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();

@@ -1,4 +1,4 @@
-// Ways through media that scatter (world/bound.h, Homogeneous), in closed form.
+// Segments through homogeneous scattering media (world/bound.h, Homogeneous), in closed form.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/beside.h"
@@ -7,21 +7,21 @@
 
 namespace alpenglow::transport {
 
-/// Where a light with a place is seen from a way: points on it are chosen evenly by the angle under which that place sees them
-/// (Kulla and Fajardo, Importance Sampling Techniques for Path Tracing in Participating Media, 2012), which is about how much of
-/// its light comes to them.
+/// Equiangular sampling: chooses points on a segment uniformly in the angle at which a light sees them (Kulla and Fajardo,
+/// Importance Sampling Techniques for Path Tracing in Participating Media, 2012). The density is about proportional to the light
+/// that arrives.
 class Equiangular {
 public:
-    /// Nothing where the light has no place that is known, or so far away that all of the way has about the same of its light.
+    /// Without a value if the light has no known position, or is so far away that it lights the segment almost uniformly.
     static std::optional<Equiangular> of(const FreeFlight&, const BoundLight&, MediumSampling);
     static bool sees(const FreeFlight& f, const BoundLight& l, MediumSampling how) { return Equiangular().look(f, l, how); }
-    float at(float u) const;       ///< a point for a number of [0, 1), as a length of the way
-    double density(float t) const; ///< a unit of length
+    float at(float u) const;       ///< a point for a number in [0, 1), as a distance along the segment
+    double density(float t) const; ///< per unit of length
 
 private:
-    /// All but the angles. False: there is none.
+    /// Sets all but the angles. Returns false if equiangular sampling does not apply.
     bool look(const FreeFlight&, const BoundLight&, MediumSampling);
-    double length_ = 0, nearest_ = 0, away_ = 0, from_ = 0, to_ = 0; ///< angles at the light
+    double length_ = 0, nearest_ = 0, away_ = 0, from_ = 0, to_ = 0; ///< angles are at the light
 };
 
 class Accumulator;
@@ -41,27 +41,28 @@ class ShadowRays;
 struct StageSet;
 class VertexLight;
 
-/// The event of media that absorb and scatter, under path. On each way a distance is drawn in proportion to what is left of the
-/// light (of the three channels one, by what the path has left of it; all three make its density). What comes as far as its
-/// surface goes on, the others meet lights there, by Gather, and are scattered. Of a ray from the camera both is followed.
-/// Where lights with a place are near, more points are chosen by Equiangular; the power heuristic weighs both. What is scattered
-/// there goes also toward such a light, as rays that pass it bring the more the nearer they come (Georgiev et al., Joint
-/// Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
+/// Absorption and scattering in media, under path. Each segment samples a distance in proportion to transmittance: one of the
+/// three channels is chosen by path throughput, and the density is the mixture of all three. Rays that reach their surface
+/// continue; the others gather light at the sampled point and scatter. Camera rays follow both branches.
+///
+///  Near lights with a position, more points are chosen by Equiangular and weighted by the power heuristic. Rays scattered there
+///  are also sampled toward such a light, because rays receive more single scattering the closer they pass it (Georgiev et al.,
+///  Joint Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
 class MediumFlights final : Stage, public FlightEvent {
 public:
     explicit MediumFlights(const StageSet&);
     void happen(std::span<Flight>, Sched&) override;
-    /// Nothing: MediaStacks::dim() has taken it.
+    /// Does nothing: MediaStacks::dim() applies the transmittance.
     void dim(std::span<const ShadowRay>, std::span<Color>) override {}
-    /// The part that a point chosen by distance has in the light of one with a place; the rest comes from other points.
+    /// MIS weight of distance sampling for light from one light with a position; equiangular sampling has the rest.
     float shareOfDistance(const FreeFlight&, const BoundLight&) const;
 
-    /// The direction of a light with a place that rays from a point in a medium may pass; 0 where none is near. Of several one,
-    /// all with the same chance: a density for any of them is right. `away`: how far it is.
+    /// Unit direction from a point in a medium to a near light with a position, for light-directed sampling; 0 if there is none.
+    /// Among several lights one is chosen uniformly, which is unbiased. `away`: its distance.
     Vec3 besideLight(const Medium&, const PathRay&, const Vec3& from, float* away = nullptr) const;
-    /// The same for rays that leave a point of a surface, of lobes that give back most from there.
+    /// The same for a surface point within a medium; the result has the share of samples.
     Beside besideSurface(const KernelRun&, size_t point) const;
-    /// Whether rays of surfaces pass lights in some medium, by what the render is.
+    /// Whether the settings and the world use light-directed sampling at surfaces.
     bool surfacesAim() const;
 
 private:
@@ -70,21 +71,21 @@ private:
         FreeFlight way;
         Color weight;
         bool stops = false;
-    }; ///< weight: of the ray where it begins
-    bool leaks(const Flight&); ///< what ends nowhere is said
+    }; ///< weight: of the ray at the start of the segment
+    bool leaks(const Flight&); ///< whether the ray left the scene inside a medium; warns once
     std::optional<Crossing> cross(Flight&, size_t flight, Vec2 random, Sched&);
     void pass(Flight&, Sched&);
     void scatter(std::span<Flight>, std::span<const Crossing>, Sched&);
     void gather(BatchContext&, const Medium&, Sched&);
     void placePoints(BatchContext&, const Medium&) const;
     void nearLights(std::span<Flight>, std::span<const Crossing>, Sched&);
-    void addOpacity(const PathRay&, const Color&); ///< to the sample of a camera ray
+    void addOpacity(const PathRay&, const Color&); ///< adds to the sample of a camera ray
     void glow(const Flight&, const Homogeneous&, Sched&);
     class NearLight;
     std::vector<Crossing> crossings_;
     render::NumberRows numbers_;
     std::vector<Vec3> lights_;
-    int leaks_ = 0; ///< rays that left the scene inside of such a medium
+    int leaks_ = 0; ///< rays that left the scene inside of a scattering medium
     Accumulator& accumulator_;
     Atmosphere& atmosphere_;
     BatchPool& batches_;

@@ -15,11 +15,11 @@ namespace {
 using geometry::Shape;
 
 constexpr int kMostSteps = 32767;       ///< of a lattice along a parameter
-constexpr size_t kPieces = 1 << 18;     ///< primitives whose lengths are kept, at most
-constexpr float kNarrowest = 0.25f;     ///< of an edge that the eye looks along: the part of its length that counts
+constexpr size_t kPieces = 1 << 18;     ///< primitives whose lengths are cached, at most
+constexpr float kNarrowest = 0.25f;     ///< smallest foreshortening of an edge: fraction of its length that counts
 constexpr float kSmallestSmooth = 1.5f; ///< pixels: facets with shorter edges have one colour
 
-/// The number of steps that cover so many edges, squared: a power of 2^(1/4), rounded.
+/// Number of steps for a squared number of edges: a power of 2^(1/4), rounded.
 uint16_t stepsFor(float square) {
     if (!(square > 1)) return 1;
     const double x = std::min(double(square), double(kMostSteps) * kMostSteps), fourth = x * x * 1.4142135623730951;
@@ -28,7 +28,7 @@ uint16_t stepsFor(float square) {
     return uint16_t(std::min(kParts[quarters & 3] * double(1 << (quarters >> 2)) + 0.5, double(kMostSteps)));
 }
 
-/// The shape whose triangles or parameters rays meet, as the shutter opens.
+/// The shape whose triangles or parameters define lattices, at shutter open.
 const Shape* baseOf(const Shape& s) {
     const geometry::Placed* placed = s.placed();
     if (!placed) return &s;
@@ -74,11 +74,11 @@ Micropolygons::Lattice Micropolygons::latticeOf(uint32_t shape) const {
         l.paired = base.diced();
         if (s.placed()) l.place = s.placed()->fromGeometry(0);
     } else if (base.kind() == "Blobby") {
-        l.kind = Kind::Single; // its hits are places on the sides of boxes
+        l.kind = Kind::Single; // its hits are points on faces of boxes
     } else {
         l.kind = base.exactPrims() == 1 ? Kind::Surface : Kind::Pieces;
         const geometry::Bounds b = s.bounds();
-        constexpr float kLarge = 64; // pixels: then it has more hits than the table has places
+        constexpr float kLarge = 64; // pixels; a larger shape has more hits than the table has entries
         l.large = length(b.hi - b.lo) > kLarge * camera_.pixelAt((b.lo + b.hi) * 0.5f);
     }
     return l;
@@ -100,7 +100,7 @@ float Micropolygons::Seen::edges(const Four (&s)[3]) const {
     return std::max(std::max(e[0], e[1]), std::max(e[2], e[3]));
 }
 
-/// Of two triangles of a diced surface that are the halves of a quad: their micropolygon, shaded in its middle.
+/// For two triangles of a diced surface that are halves of a quad: their common micropolygon, shaded at its centre.
 bool Micropolygons::pair(const geometry::TriMesh& mesh, MicropolygonShare& s) const {
     const uint32_t even = s.key.prim & ~1u;
     if (even + 1 >= mesh.triangles()) return false;
@@ -117,8 +117,8 @@ bool Micropolygons::pair(const geometry::TriMesh& mesh, MicropolygonShare& s) co
 
 namespace {
 
-/// A triangle as its lattice has it: from the corner that lies opposite the longest edge, so that cells of the halves of a
-/// rectangle are rectangles. b1 and b2 are weights of the next corner and of the one after it.
+/// A triangle as its lattice sees it: from the corner opposite to the longest edge, so that the cells of the two halves of a
+/// rectangle are rectangles. b1 and b2 are the weights of the next corner and of the one after it.
 struct Turned {
     int first = 0; ///< that corner
     Vec3 e1, e2;   ///< edges from there
@@ -133,7 +133,7 @@ struct Turned {
         b1 = std::clamp(weights[second], 0., 1.);
         b2 = std::clamp(weights[third], 0., 1.);
     }
-    /// Puts a place of the lattice into the triangle's own weights.
+    /// Converts a lattice position to the triangle's own weights.
     void put(double x, double y, MicropolygonShare& s) const {
         const double turned[3] = {1 - x - y, x, y};
         s.b1 = turned[(4 - first) % 3];
@@ -143,7 +143,7 @@ struct Turned {
 
 } // namespace
 
-/// Up to a shift.
+/// The corners, up to a translation.
 Micropolygons::Triangle Micropolygons::triangleOf(const Lattice& l, uint32_t prim) const {
     const uint32_t* index = &l.mesh->index[3 * size_t(prim)];
     Triangle c;
@@ -199,11 +199,11 @@ void Micropolygons::place(MicropolygonShare& s) const {
     }
     const Turned t(triangleOf(l, s.key.prim).p, 0, 0);
     const double x = double(s.key.at[0]) / n1, y = double(s.key.at[1]) / n2;
-    if (s.key.corner) { // of a cell that the edge cuts: onto the edge
+    if (s.key.corner) { // of a cell that the edge cuts: moved onto the edge
         const double sum = std::max(x + y, 1.);
         return t.put(x / sum, y / sum, s);
     }
-    // The middle of the cell; of one that the edge cuts, the middle of what is there.
+    // The centre of the cell; for a cell that the edge cuts, the centre of the part inside.
     const double left = 1 - x - y, part = std::min(0.5, std::max(left, 0.) / (1. / n1 + 1. / n2) * (2 / 3.));
     t.put(x + part / n1, y + part / n2, s);
 }
@@ -211,7 +211,7 @@ void Micropolygons::place(MicropolygonShare& s) const {
 Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s) {
     const Turned t(triangleOf(l, s.key.prim).p, s.b1, s.b2);
     const bool whole = s.key.steps[0] == 1 && s.key.steps[1] == 1 && !s.key.corner;
-    const bool quad = whole && (s.b1 == 0.5 || s.b2 == 0.5); // of pair(): the other half lies opposite its own corner
+    const bool quad = whole && (s.b1 == 0.5 || s.b2 == 0.5); // from pair(): the other half lies opposite its own corner
     const int first = !quad ? t.first : s.b1 == 0 ? 1 : s.b2 == 0 ? 2 : 0;
     if (corners_.shape != s.key.shape || corners_.prim != s.key.prim) {
         corners_.shape = s.key.shape, corners_.prim = s.key.prim;
@@ -221,7 +221,7 @@ Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s)
         world_.shapes_[s.key.shape]->points(refs, geometry::kNeedUV);
     }
     const geometry::SurfacePoint& from = corners_.at[first];
-    float u[2], v[2]; // along an edge of the cell each
+    float u[2], v[2]; // along one edge of the cell each
     for (int k = 0; k < 2; ++k) {
         const geometry::SurfacePoint& to = corners_.at[(first + 1 + k) % 3];
         u[k] = (to.u - from.u) / float(s.key.steps[k]);
@@ -249,8 +249,7 @@ Vec2 Micropolygons::stepsOf(const MicropolygonShare& s, const Vec2& footprint) {
     const Lattice& l = *lattices_[s.key.shape];
     const Vec2 cell = spanOf(l, s);
     if (!(cell.x > 0 && cell.y > 0)) return {0, 0};
-    // Cells of surfaces that are seen under a flat angle, and triangles smaller than a pixel, are not all shaded: those that are
-    // stand for the others, too.
+    // Cells at grazing angles and triangles smaller than a pixel are not all shaded: those that are represent their neighbours.
     const auto over = [&](float step, float seen) {
         const float most = l.kind == Kind::Triangles ? INFINITY : 1; // all of the surface
         return std::max(step, std::min({seen, 2 * (seen - step), most}));
@@ -258,7 +257,7 @@ Vec2 Micropolygons::stepsOf(const MicropolygonShare& s, const Vec2& footprint) {
     return {over(cell.x, footprint.x), over(cell.y, footprint.y)};
 }
 
-/// s: with its steps; b1 and b2 are the hit's, within 0 and 1.
+/// s: with its steps; b1 and b2 are those of the hit, in [0, 1].
 template <class Take> void Micropolygons::ofParameters(const Lattice& l, MicropolygonShare s, Take take) const {
     const int nu = s.key.steps[0], nv = s.key.steps[1];
     const uint16_t i = cellOf(s.b1, nu), j = cellOf(s.b2, nv);
@@ -312,7 +311,7 @@ void Micropolygons::ofSurfaces(const Lattice& l, std::span<const accel::Hit> hit
         MicropolygonShare s{{hits[i].shape, hits[i].prim, {}, {}, false}, hits[i].b1, hits[i].b2, 1};
         const Seen seen(camera_, P[i], l.edge);
         float u = 0, v = 0;
-        if (tabled(hits[i])) { // the greatest of the corners about it: a pole has none along u
+        if (tabled(hits[i])) { // the largest of the surrounding corners: at a pole the length along u is 0
             constexpr int n = Partials::kCells;
             const Partials::Cell& cell = partialsOf(hits[i].shape).cells[cellOf(s.b2, n)][cellOf(s.b1, n)];
             u = seen.edges(cell.u), v = seen.edges(cell.v);
@@ -330,7 +329,7 @@ void Micropolygons::ofSurfaces(const Lattice& l, std::span<const accel::Hit> hit
     }
 }
 
-/// About how long a primitive of many is along its parameters, camera space.
+/// Approximate length of one of many small primitives along its parameters, camera space.
 Micropolygons::Lengths Micropolygons::lengthsOf(uint32_t shape, uint32_t prim) {
     if (pieces_.size() > kPieces) pieces_.clear();
     const auto [at, fresh] = pieces_.try_emplace(uint64_t(shape) << 32 | prim);

@@ -27,7 +27,7 @@ const StageSet& NestedTrace::begin() {
     if (!inner_) {
         inner_ = std::make_unique<Pipeline>(context_.frame, diagnostics_);
         for (FlightEvent* e : flights_.events)
-            if (e != &mediumFlights_) inner_->stages().flights.happens(*e); // it has one of its own
+            if (e != &mediumFlights_) inner_->stages().flights.happens(*e); // it has its own
         inner_->stages().context.raysAtOnce = std::min(context_.raysAtOnce, int(Sched::kStripRays));
     }
     const StageSet& s = inner_->stages();
@@ -63,7 +63,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
     const StageSet& in = begin();
     Sched& sched = inner_->scheduler();
     const TargetId target = sched.newRoot();
-    // request() reads rows of lanes: this is one lane.
+    // request() reads rows of lanes; this is a single lane.
     std::vector<float> rows;
     for (int r = 0; r < rowsOfArguments(s); ++r) rows.push_back(row(r));
     in.requests.request(c, s, point, rows.data(), 1, 0, Color(1), target, true, occurrence);
@@ -108,20 +108,20 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
         r.weight = f / float(l.samples);
         r.vertex = vertex;
         r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));
-        r.bounces = int16_t(onlyDistance ? world_.maxDepth_ : from.bounces + 1); // nothing goes on behind a distance
+        r.bounces = int16_t(onlyDistance ? world_.maxDepth_ : from.bounces + 1); // a distance query ends at the first hit
         ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
         r.origin = l.bias >= 0 ? start + w * l.bias
                    : leaves    ? geometry::offsetOrigin(*p.lit, w, 0)
                                : start + w * geometry::roundingError(start);
-        r.parted = r.passed = false, r.trail = 0, r.path = 0; // what it brings is the light's
-        if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // nobody knows
+        r.parted = r.passed = false, r.trail = 0, r.path = 0; // its light belongs to the light's kernel
+        if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // the media there are unknown
         r.dir = w;
         r.maxDistance = l.maxDistance;
         r.kind = l.rays;
         RayExtra extra;
         if (l.trace && l.trace->map) extra.environment = l.tint * in.requests.mapTowards(*l.trace, w, from.footprint.spread);
         r.extra = in.store.newExtra(extra);
-        r.lobePdf = -1, r.lobeBinding = -1; // no light was sampled: all that shines counts
+        r.lobePdf = -1, r.lobeBinding = -1; // no light was sampled: emission counts in full
         r.first = true, r.counts = false;
         r.footprint.spread = std::max(from.footprint.spread, spread * 0.5f);
         sched.spawn(r.bounces + r.layers, target, r);
@@ -130,7 +130,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
     sched.run();
     in.litSurfaces.values.clear();
     in.shadows.queue.clear();
-    // The chance is not in the rays' weights: what they meet goes on as if they were certain.
+    // The probability is not in the weights of the rays: at their hits they continue as if it were 1.
     shading::TargetValue value = sched.value(target);
     value.radiance = value.radiance / chance;
     return value;

@@ -1,5 +1,5 @@
-// Rays of lights' kernels that wait for what comes back: followed to the end at once, by a pipeline of their own. The lights that
-// these rays meet may trace as well, one bounce deeper.
+// Traces the rays of light kernels that wait for results: to the end at once, by a pipeline of its own. Lights that these rays
+// reach may trace as well, one bounce deeper.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -17,12 +17,12 @@ class NestedTrace final : Stage {
 public:
     explicit NestedTrace(const StageSet&);
     ~NestedTrace();
-    /// What a trace() gives at a point that the light lights.
+    /// Result of a trace() at a lit point.
     shading::TargetValue trace(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                uint32_t occurrence);
-    /// What rays of a gather bring, which go to their rows.
+    /// Traces gather() rays and writes the results to their rows.
     void gather(std::span<GatherSent>);
-    void forget(); ///< the pipeline, and what waits in it
+    void forget(); ///< drops the pipeline and its pending work
 
 private:
     const StageSet& begin();

@@ -1,5 +1,5 @@
-// occlusion(): how much of a hemisphere, or of a cone, is open. Its rays are shadow rays: surfaces on the way take their share of
-// what one brings, and no shader runs but where an opacity is not known beforehand.
+// occlusion(): the unoccluded fraction of a hemisphere or cone. Its rays are shadow rays: surfaces attenuate them, and shaders
+// run only where opacity is not known in advance.
 #include "integrator/occlusioncalls.h"
 #include "base/direction.h"
 #include "base/exact.h"
@@ -25,14 +25,14 @@ OcclusionCalls::OcclusionCalls(const StageSet& s)
 
 namespace {
 
-/// Rays that differ by less than this say the same.
+/// Rays whose results differ by less are considered equal.
 constexpr float kAgree = 1e-3f;
 
 /// The directions of a call.
 struct Directions {
     Basis about;
     bool uniform = false;
-    float cap = 1, sine2 = 1; ///< 1 - cos of the half angle; its sine, squared
+    float cap = 1, sine2 = 1; ///< 1 - cos of the half angle; its squared sine
     Directions(const Vec3& axis, float half, bool evenly) : about(axis), uniform(evenly) {
         const double a = std::clamp(double(half), 0.0, evenly ? kPi : kPi / 2);
         const float s = float(exact::sin(0.5 * a)), s2 = float(exact::sin(a));
@@ -90,7 +90,7 @@ TurnedAway::Tally* OcclusionCalls::tallyOf(const BatchContext& c, const SiteInfo
             {at.file >= 0 && at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column},
             s.kind == SiteKind::Trace ? "indirectdiffuse" : s.site->op, *p.shape);
     }
-    // The middle of a micropolygon at the rim of a surface may lie behind it: what is seen along says nothing.
+    // The centre of a micropolygon at the silhouette may lie behind it: the viewing direction proves nothing there.
     const bool rim = p.ray && p.ray->sample && p.ray->sample->grid && p.ray->sample->grid->micropolygon;
     const float towards = dot(normal, p.I), least = rim ? 0.5f * length(normal) * length(p.I) : 0;
     if (std::fabs(towards) > least) TurnedAway::Tally::set(towards > 0 ? t->away : t->facing);
@@ -101,7 +101,7 @@ void OcclusionCalls::noteTurnedAway(const BatchContext& c, const SiteInfo& s, in
     const ShadePoint& p = c.points[size_t(point)];
     if (!p.shape || !p.ray || !p.ray->camera() || c.light || photons_.photonTrace()) return;
     TurnedAway::Tally& t = *tallyOf(c, s, p, normal);
-    if (!(dot(normal, p.I) > 0) || t.facing || t.open) return; // of what is silent already, no more rays
+    if (!(dot(normal, p.I) > 0) || t.facing || t.open) return; // already decided: no more rays
     accel::Ray ray;
     ray.org = surfaces_.leave(c, size_t(point), normal);
     ray.dir = normal;
@@ -150,7 +150,8 @@ void OcclusionCalls::hemisphereRays(const BatchContext& c, const SiteInfo& s, co
     const bool here = surface && length(from - at) <= geometry::roundingError(from) + 4 * surface->pError;
     const size_t begin = out.size();
     const int few = fewer(o, f, count, c);
-    const bool once = few == count && o.axis < 0 && half > 0 && p.ray; // a pair for each, and nothing runs in between
+    // A pair of numbers for each, with no other draws in between
+    const bool once = few == count && o.axis < 0 && half > 0 && p.ray;
     if (once) {
         numbers_.clear();
         const Random of = store_.random(*p.ray);
@@ -169,7 +170,7 @@ void OcclusionCalls::hemisphereRays(const BatchContext& c, const SiteInfo& s, co
         };
         do ray.dir = directions.at(pair());
         while (o.axis >= 0 && !(dot(ray.dir, towards) > 0) && dot(towards, towards) > 0 && ++tries < kDrawTries);
-        if (tries == kDrawTries) ray.contribution = Color(0); // none is there, nearly
+        if (tries == kDrawTries) ray.contribution = Color(0); // almost no direction is usable
         else ray.contribution = weight * h.share;
         ray.origin = bias >= 0 ? from + ray.dir * bias
                      : here    ? geometry::offsetOrigin(*surface, ray.dir, length(at - surface->P) + length(from - at))
@@ -183,20 +184,20 @@ void OcclusionCalls::hemisphereRays(const BatchContext& c, const SiteInfo& s, co
     }
 }
 
-/// How many rays are sent before the others of so many: all where the call does not ask for fewer.
+/// Number of rays to send before the rest: all, unless the call allows fewer.
 int OcclusionCalls::fewer(const OcclusionSite& o, const std::function<float(int)>& f, int count, const BatchContext& c) const {
     const bool given = o.least >= 0 && f(o.least) >= 1;
     if (c.light || !world_.media_.empty() || (o.adaptive >= 0 ? !(f(o.adaptive) > 0) : !given)) return count;
     return std::clamp(given ? int(std::min(f(o.least), 4096.f)) : count / 4, 1, count);
 }
 
-/// Follows the rays behind `begin`, which are the first of a call's. Whether they say all the same: then the others are left
-/// out, which is a bias. What they bring is settled either way.
+/// Traces the rays after `begin`, the first of a call. Returns whether they all agree; the rest is then skipped, which is biased.
+/// Their results are added in both cases.
 bool OcclusionCalls::agree(std::vector<ShadowRay>& rays, size_t begin, HemisphereRays& of, const Color& weight) {
     const std::span<ShadowRay> first = std::span(rays).subspan(begin);
     std::vector<Color> left(first.size());
     const size_t number = size_t(&of - hemispheres.data());
-    shadows_.transmittances(first, left); // what runs on the way may ask for hemispheres of its own, behind this one
+    shadows_.transmittances(first, left); // shaders on the way may append hemispheres of their own
     const auto [least, most] =
         std::minmax_element(left.begin(), left.end(), [](const Color& a, const Color& b) { return mean(a) < mean(b); });
     const bool same = mean(*most) - mean(*least) < kAgree;

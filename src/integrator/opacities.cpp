@@ -35,7 +35,7 @@ void Opacities::opacities(std::span<const OpacityQuery> met, std::span<Color> ou
         p.ray = &r;
         p.shape = world_.shapes_[m.hit.shape].get();
         p.surface = world_.accel_->point(m.hit);
-        p.P = p.surface.displaced && !b.moveS ? p.surface.displacedP : p.surface.P; // a shader that moves P does it here, too
+        p.P = p.surface.displaced && !b.moveS ? p.surface.displacedP : p.surface.P; // a shader that moves P moves it here, too
         p.N = p.surface.N;
         p.I = p.P - r.origin;
         p.E = r.origin;
@@ -61,8 +61,8 @@ void Opacities::opacities(std::span<const OpacityQuery> met, std::span<Color> ou
     }
 }
 
-/// One batch a surface. The order inside a batch does not matter: a kernel's lanes know nothing of each other. `take` is told the
-/// number and the opacity of what was met.
+/// Evaluates one batch a surface. The order inside a batch does not matter, because lanes of a kernel are independent. `take`
+/// receives the index and the opacity of each hit.
 void Opacities::takeOpacities(std::span<const OpacityQuery> met, const std::function<void(size_t, const Color&)>& take) {
     std::vector<size_t> order(met.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = i;

@@ -1,4 +1,5 @@
-// Oi where shadow rays and gathers meet surfaces whose shaders must say it: the kernel that gives Oi alone, a batch a surface.
+// Oi where shadow rays and gather() rays hit surfaces with opacity from a shader: runs the opacity-only kernel, one batch a
+// surface.
 #pragma once
 #include "integrator/context.h"
 
@@ -12,9 +13,9 @@ struct StageSet;
 class Opacities final : Stage {
 public:
     explicit Opacities(const StageSet&);
-    /// At hits of one binding, 0 to 1.
+    /// Opacity at hits of one binding, 0 to 1.
     void opacities(std::span<const OpacityQuery>, std::span<Color> out);
-    /// At any hits. `take` is told the number and the opacity of what was met.
+    /// At any hits. `take` receives the index and the opacity of each.
     void takeOpacities(std::span<const OpacityQuery> met, const std::function<void(size_t, const Color&)>& take);
 
 private:

@@ -1,4 +1,4 @@
-// Surfaces that scatter photons by a model that an attribute names, and what rays gather of maps at surfaces.
+// Surfaces with a photon shading model (Attribute "photon" "shadingmodel"), and photon map lookups at surfaces.
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
 #include "integrator/emission.h"
@@ -31,9 +31,9 @@ PhotonStage::PhotonStage(const StageSet& s)
 
 namespace {
 
-constexpr uint32_t kModelSite = 0xfff00; ///< no shader has so many call sites
+constexpr uint32_t kModelSite = 0xfff00; ///< larger than any call site of a shader
 
-/// Fresnel's reflectance of unpolarised light; `index`: of where it comes from over that of where it goes.
+/// Fresnel reflectance for unpolarised light; `index`: index of refraction on the incident side over that on the other side.
 float reflectance(float cosine, float index, Vec3 in, Vec3 n, Vec3& refracted) {
     const float k = 1 - index * index * (1 - cosine * cosine);
     if (!(k > 0)) return 1;
@@ -43,7 +43,7 @@ float reflectance(float cosine, float index, Vec3 in, Vec3 n, Vec3& refracted) {
     return (s * s + p * p) / 2;
 }
 
-/// Of the caustics of path, where Attribute "photon" "shadingmodel" does not count.
+/// For caustics under path, where Attribute "photon" "shadingmodel" is ignored.
 void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
     d.reportOnce(
         "causticwaits:" + b.surface->name,
@@ -92,7 +92,7 @@ void PhotonStage::takeModels(BatchContext& c, bool all) {
         const Vec3 mirrored = normalize(in - N * (2 * dot(in, N)));
         if (model == PhotonModel::Matte) add(*diffuse, N, Cs, kDiffuseKind);
         if (model == PhotonModel::Chrome) add(*mirror, mirrored, Cs, kSpecularKind);
-        if (model == PhotonModel::Plastic) { // the shader of that name
+        if (model == PhotonModel::Plastic) { // as in the shader of that name
             add(*diffuse, N, Cs * .5f, kDiffuseKind);
             add(*specular, N, Color(.5f), kSpecularKind, kSpecularExponent / .1f);
         }
@@ -170,7 +170,7 @@ void PhotonStage::takeGlobalMaps(BatchContext& c, Sched& sched) {
     c.keepFirst(kept);
 }
 
-/// The volumes in which a photon begins; null: none.
+/// The volumes at the origin of a photon; null: none.
 const shading::Media* PhotonStage::aboutLight(const EmissionPlan::Light& l, const EmissionStart& s) {
     const bool placed = l.light->photons || l.light->kind == LightKind::Point || l.light->kind == LightKind::Area;
     if (world_.media_.empty() || !placed) return nullptr;

@@ -71,7 +71,7 @@ const Counters& PhotonEmission::Thread::counters() const { return impl_->pipelin
 
 namespace {
 
-/// What the surfaces of a frame call their maps: name, and whether it holds caustics.
+/// The photon maps that the surfaces of a frame name: name, and whether it holds caustics.
 std::set<std::pair<std::string, bool>> namedBySurfaces(const WorldImpl& w) {
     std::set<std::pair<std::string, bool>> names;
     for (const SurfaceBinding& b : w.bindings_) {
@@ -128,9 +128,9 @@ bool savePhotonMap(const World& world, const std::string& name, std::span<const 
 
 bool mayHaveCaustics(const World& world) {
     const auto& w = static_cast<const WorldImpl&>(world);
-    if (hasUnmade(world)) return false; // worlds change while rays are followed
+    if (hasUnmade(world)) return false; // the world may be replaced while rays are traced
     const auto bakes = [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; };
-    for (const SurfaceBinding& b : w.bindings_) // the samples that measure the picture's brightness would be baked, too
+    for (const SurfaceBinding& b : w.bindings_) // samples that measure the brightness of the picture would be baked, too
         if (b.surfaceS && std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(), bakes)) return false;
     return std::any_of(w.bindings_.begin(), w.bindings_.end(), [](const SurfaceBinding& b) {
         return b.surfaceS && !b.surfaceS.kernel->facts().suspends &&
@@ -141,7 +141,7 @@ bool mayHaveCaustics(const World& world) {
 
 GuideFigures guideCaustics(const World& world, std::span<const StoredPhoton> stored, double emitted, float brightness) {
     constexpr size_t kFewest = 64;
-    constexpr double kLeast = 1e-5; ///< of all light
+    constexpr double kLeast = 1e-5; ///< fraction of all light
     const auto& w = static_cast<const WorldImpl&>(world);
     std::vector<GuidePhoton> photons;
     double power = 0;

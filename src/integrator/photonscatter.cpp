@@ -1,11 +1,10 @@
-// What becomes of photons at a vertex: they come to rest where light is spread, and go on along a lobe. And what rays of a camera
-// gather of them there.
+// Photons at vertices: stored at lobes that are not deltas, continued along a lobe; and density estimation for paths.
 //
-// A photon that goes on along a lobe has the power that the other way round light would have: from a light to the eye and back
-// again must be the same. A lobe gives the radiance K that leaves along one way for radiance 1 from another; a photon's power is
-// K times the cosine of the way on over that of the way here, both with the normal of the geometry, over the density of the draw
-// (Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders takes energy for
-// radiance, without the factor for the change of solid angle: the way round has its inverse.
+// A photon continues along a lobe with the power that makes transport adjoint: light must be the same along a path in both
+// directions. Let K be the radiance that the lobe scatters from one direction into the other; the photon's power is K times the
+// cosine of the outgoing over that of the incoming direction, both with the geometric normal, over the sampling density (Veach,
+// "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders conserves radiance without the
+// factor for the change of solid angle; the adjoint has its inverse.
 #include "integrator/photonscatter.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
@@ -31,7 +30,7 @@ PhotonScatter::PhotonScatter(const StageSet& s, const VertexLobes& v, LobeSelect
       transparency_(s.transparency) {}
 
 namespace {
-/// Kinds whose value has the cosine of the light's direction with their axis as a factor.
+/// Lobes whose value includes the cosine between the light's direction and their axis.
 bool hasCosine(const LobeKind& k) { return k.name == "diffuse" || (k.distribution && k.name != "hair"); }
 
 float least(float x) { return std::max(std::fabs(x), 1e-4f); }
@@ -43,7 +42,7 @@ float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const Lobe
     const bool through = (dot(from, n) > 0) != (dot(to, n) > 0);
     if (delta) {
         if (!through) return ways;
-        // Refraction about the shading normal, where the two ways and that lie in a plane.
+        // Refraction about the shading normal, if it lies in one plane with the two directions.
         const Vec3 across = cross(from, to);
         const float si = sine(from, N), so = sine(to, N);
         if (!(si > 1e-5f) || std::fabs(dot(across, N)) > 1e-3f * length(across) + 1e-6f) return ways;
@@ -55,27 +54,26 @@ float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const Lobe
         float index = 1;
         if (through && kind.name == "glass-ggx") {
             const float eta = std::max(rows.row(place, kRowEta), 1e-3f);
-            index = dot(axis, from) < 0 ? eta : 1 / eta; // of where it came from over where it goes
+            index = dot(axis, from) < 0 ? eta : 1 / eta; // index on the side it came from over the other
         }
         return index * index * least(dot(from, axis)) / least(dot(to, axis)) * ways;
     }
     return ways;
 }
 
-/// Light of all around comes to a lobe's point as it comes to the point: so photons may be gathered for it.
-// On surfaces alone.
+/// Whether a lobe receives light from all directions of its point, so that photons can be gathered for it. Surfaces only.
 bool PhotonScatter::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow && !c_->between && seesAll(l); }
 bool PhotonScatter::mirrors(const LobeVertex& l) const {
     return (l.delta || l.narrow) && l.below < 0 && !l.ownsTarget && seesAll(l);
 }
-/// By what both a photon and a path know of it: the roughness, and that the lobe is the same seen along any of its ways. So are
-/// those of facets, and highlights about the mirrored direction; what is thrown about another direction, as by refraction, is
-/// not: there are ways that only one of both finds. Shaders that move P are not asked twice (lookBack()).
+/// Decided by what both a photon and a path know: the roughness, and that the lobe is the same from either of its directions.
+/// This holds for microfacets and for highlights around the mirror direction. A highlight around another direction, as by
+/// refraction, has paths that only one of both finds. Shaders that move P are excluded, as they cannot run twice (lookBack()).
 bool PhotonScatter::isNarrow(const LobeVertex& l, float below, const Vec3& in) const {
     const LobeColumns& rows = requests_.rows;
     if (l.delta || l.below >= 0 || c_->between || !(rows.spread(l.place) < below)) return false;
     if (c_->binding->moveS || c_->bound->kernel->facts().suspends) return false;
-    constexpr float kSame = 1e-3f; // of directions
+    constexpr float kSame = 1e-3f; // between unit directions
     if (l.kind->name == "slphong") {
         const bool has = rows.row(l.place, kRowHasHorizon) != 0;
         const Vec3 n = has ? rows.triple(l.place, kRowHorizon) : normalize(c_->points[size_t(l.point)].N);
@@ -85,7 +83,7 @@ bool PhotonScatter::isNarrow(const LobeVertex& l, float below, const Vec3& in) c
     if (!facets && l.kind->name != "specular" && l.kind->name != "phong") return false;
     return length(rows.triple(l.place, kRowWo) + in) < kSame;
 }
-/// What photons bring is not to be sampled: the light comes by way of this lobe to a point where they are gathered.
+/// Whether photons carry this light, so that it must not be sampled: it arrives via this lobe at a point that gathers photons.
 bool PhotonScatter::leftToPhotons(const LobeVertex& l, const BoundLight& light) const {
     return l.narrow && (rayOf(l).trail & shading::kTrailSpread) && !photons_.photonTrace() && mirrors(l) &&
            world_.photons_->lightsOfPasses[size_t(&light - world_.lights_.data())];
@@ -122,9 +120,9 @@ void PhotonScatter::restPhotons() {
                 spread = true;
                 given += l.weight * l.albedo;
             }
-            // Paths that walk below a surface gather where they come out; in maps photons rest where they come out.
+            // Paths that walk below a surface gather at their exit; photons of maps are stored at their exit.
             spread |= l.below >= 0 && t.job->caustics;
-            if (t.job->caustics && !mirrors(l)) l.followed = false; // its chance is not another's
+            if (t.job->caustics && !mirrors(l)) l.followed = false; // its probability is not given to another lobe
         }
         const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
         const Color power = t.power[size_t(from.sample->path)] * from.weight * leftOfPhoton(*c_, point) * float(t.job->scale);
@@ -146,9 +144,9 @@ void PhotonScatter::restPhotons() {
     }
 }
 
-/// The way on of a photon, and by how much its power changes beside the lobe's own weight. A photon that comes along the normal
-/// says nothing of the index of refraction: its shader sees it come from slightly aside (PhotonStage::tilt), and its way on is
-/// put right here.
+/// Outgoing direction of a photon, and the factor of its power beyond the lobe's weight. A photon along the normal reveals no
+/// index of refraction: its shader sees it from a slightly tilted direction (PhotonStage::tilt), and the outgoing direction is
+/// corrected here.
 float PhotonScatter::photonWay(const LobeVertex& l, Vec3& w) const {
     const ShadePoint& p = c_->points[size_t(l.point)];
     const PathRay& from = rayOf(l);
@@ -164,7 +162,7 @@ float PhotonScatter::photonWay(const LobeVertex& l, Vec3& w) const {
     return factor;
 }
 
-/// Whether the light from which a photon has just come is on for a lobe that samples lights.
+/// Whether a lobe that samples lights is lit by the light from which a photon has just arrived.
 bool PhotonScatter::lit(const LobeVertex& l) const {
     const PathRay& ray = rayOf(l);
     if (ray.bounces > 0 || !l.lights || l.elsewhere || l.delta) return true;
@@ -172,13 +170,13 @@ bool PhotonScatter::lit(const LobeVertex& l) const {
         photons_.photonTrace()->from[size_t(ray.sample->path)].light);
 }
 
-/// A path samples the light from which a photon has come here, however deep it is.
+/// Whether a path samples the light from which a photon arrives here, at any depth.
 bool PhotonScatter::sampledByPaths(const LobeVertex& l) const {
     return photons_.photonTrace() && rayOf(l).bounces == 0 && l.narrow && l.lights && !l.elsewhere;
 }
 
-/// A path comes the other way, and the depths of the surfaces that it meets count from its end: each leaves so many lobes to
-/// those that a photon meets behind it.
+/// A path runs in reverse, and the depth limits of its surfaces count from its end: each leaves some bounces to the vertices that
+/// a photon meets after it.
 std::optional<PhotonDepths> PhotonScatter::depthsBehind(const LobeVertex& l, const SurfaceBinding& b) const {
     const PhotonDepths before = PhotonDepths::of(rayOf(l));
     if (sampledByPaths(l)) return before;
@@ -192,10 +190,10 @@ std::optional<PhotonDepths> PhotonScatter::depthsBehind(const LobeVertex& l, con
     return d;
 }
 
-/// The batch as paths see it that come from where photons go: what its shader asks for there is added to Requests::lobes.
+/// The batch as seen by paths from where the photons go; requests of its shader are appended to Requests::lobes.
 std::shared_ptr<BatchContext> PhotonScatter::shadeBack(std::span<LobeRay* const> turned, Sched& sched) {
     auto c = batches_.take();
-    c->extrasOf = nullptr; // those of the rays are the batch's
+    c->extrasOf = nullptr; // the extras of the rays belong to the batch
     c->binding = c_->binding;
     c->bound = c_->bound;
     c->displaced = c_->displaced;
@@ -204,7 +202,7 @@ std::shared_ptr<BatchContext> PhotonScatter::shadeBack(std::span<LobeRay* const>
     c->targets = c_->targets;
     c->bindings = c_->bindings;
     for (size_t i = 0; i < c->points.size(); ++i) c->points[i].ray = &c->rays[i];
-    for (const LobeRay* s : turned) { // seen from what the photon meets next: shaders may ask how far away that is
+    for (const LobeRay* s : turned) { // seen from the photon's next hit: shaders may query its distance
         const PathRay& from = c_->rays[size_t(s->point)];
         accel::Ray way;
         way.org = origin(requests_.lobes[size_t(s->lobe)], s->w);
@@ -230,10 +228,10 @@ std::shared_ptr<BatchContext> PhotonScatter::shadeBack(std::span<LobeRay* const>
     return c;
 }
 
-/// Paths meet the lobes of narrow highlights and rough glass from the other side, and what their shaders say may depend on that:
-/// the reflectance of Fresnel, the direction of what is refracted, which call it is. So a photon that such a lobe sends on
-/// carries what all narrow lobes of its point give back when the shader is asked from where the photon goes; those as the photon
-/// has met them only draw the way, and the density is that of all.
+/// Paths reach narrow highlights and rough glass from the other side, and their shaders' results may depend on that side: Fresnel
+/// reflectance, the direction of refraction, which call is made. So a photon that such a lobe sends on carries the value of all
+/// narrow lobes of its point, with the shader run from where the photon goes; the lobes as the photon found them only sample the
+/// direction, with the density of all of them.
 void PhotonScatter::lookBack(Sched& sched) {
     std::vector<LobeRay*> turned;
     for (LobeRay& s : scatter_.sent)
@@ -257,7 +255,7 @@ void PhotonScatter::lookBack(Sched& sched) {
         const LobeVertex& l = requests_.lobes[size_t(i)];
         return l.narrow && l.followed && l.chosen > 0;
     };
-    for (LobeRay* s : turned) { // one of a point
+    for (LobeRay* s : turned) { // of one point
         s->goes = !seen[size_t(s->point)].empty();
         for (int k : seen[size_t(s->point)]) rows.ask(requests_.lobes[size_t(k)].place, -c_->rays[size_t(s->point)].dir);
         for (int i : lobesOf(size_t(s->point)))
@@ -314,11 +312,11 @@ void PhotonScatter::takePhotons(Sched& sched) {
     }
 }
 
-/// What a lobe gives back of near_.
+/// Light of near_ that a lobe reflects.
 Color PhotonScatter::givenBack(const LobeVertex& l) {
     LobeColumns& rows = requests_.rows;
     Color sum(0);
-    if (l.kind->name == "diffuse") { // what most are
+    if (l.kind->name == "diffuse") { // the most frequent case
         const Vec3 axis = rows.triple(l.place, kRowAxis);
         for (const Near& photon : near_) sum += photon.light * std::max(dot(axis, photon.from), 0.f);
         return sum * float(1 / kPi);

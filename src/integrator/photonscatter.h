@@ -1,4 +1,4 @@
-// Photons at vertices: where they rest, along which lobes they go on and with which power, and what paths gather of them.
+// Photons at vertices: storing them, continuing along lobes with the adjoint power, and density estimation for paths.
 #pragma once
 #include "integrator/photonjob.h"
 #include "integrator/scatterrays.h"
@@ -16,19 +16,20 @@ class Transparency;
 class PhotonScatter final : VertexStage {
 public:
     PhotonScatter(const StageSet&, const VertexLobes&, LobeSelection&, ScatterRays&);
-    /// `below`: PhotonStage::narrowBelow(); in: the direction from which the lobe's point was seen, unit.
+    /// Whether photons treat a lobe as a mirror. `below`: PhotonStage::narrowBelow(); in: unit direction of the ray that hit the
+    /// point.
     bool isNarrow(const LobeVertex&, float below, const Vec3& in) const;
     uint8_t trailBehind(const LobeVertex&) const; ///< PathRay::trail
-    /// Whether a guided path goes on along a lobe: a single direction whose light adds to that of its point.
+    /// Whether a guided path continues along a lobe: a delta lobe that adds to the light of its point.
     static bool mirrorsPath(const LobeVertex& l) { return l.delta && l.below < 0 && !l.ownsTarget; }
     bool leftToPhotons(const LobeVertex&, const BoundLight&) const;
     bool sampledByPaths(const LobeVertex&) const;
-    /// Of a photon that goes on along a lobe; nothing: the surfaces' depths end its way.
+    /// For a photon that continues along a lobe; without a value the depth limits of the surfaces end it.
     std::optional<PhotonDepths> depthsBehind(const LobeVertex&, const SurfaceBinding&) const;
     void restPhotons();
     void lookBack(Sched&); ///< LobeRay::back
     float photonWay(const LobeVertex&, Vec3& w) const;
-    /// Gives lobes what they send on of the photons about their points.
+    /// Adds the light of nearby photons to lobes.
     void takePhotons(Sched&);
 
 private:
@@ -42,7 +43,7 @@ private:
         Vec3 from;
         Color light; ///< radiance times steradians
     };
-    std::vector<Near> near_; ///< photons about a point
+    std::vector<Near> near_; ///< photons near a point
     LobeSelection& selection_;
     ScatterRays& scatter_;
     Accumulator& accumulator_;

@@ -1,4 +1,4 @@
-// Photons among the rays: what surfaces do to them, where they rest, and which light their maps bring to others.
+// Photons in the pipeline: interaction with surfaces, storage, and light from photon maps.
 #pragma once
 #include "integrator/context.h"
 #include "integrator/photonjob.h"
@@ -19,27 +19,27 @@ class VertexLight;
 class PhotonStage final : Stage {
 public:
     explicit PhotonStage(const StageSet&);
-    /// Not null: photons are followed, not what a camera sees.
+    /// Not null: the pipeline traces photons instead of camera rays.
     PhotonTrace* photonTrace() const { return photonTrace_.get(); }
-    PhotonTrace& begin(); ///< from now on photons are followed
-    /// The photons of a ray's sample; null: none.
+    PhotonTrace& begin(); ///< switches the pipeline to photons
+    /// The photons of the pass that a ray's sample uses; null: none.
     const photons::PhotonGrid* passOf(const PathRay& r) const {
         return r.sample && !photonTrace_ ? world_.photons_->pass(r.sample->sample) : nullptr;
     }
-    /// Whether light of this emitter that a ray has met is among the photons of its sample.
+    /// Whether light of this emitter, which a ray hit, is already in the photons of its sample.
     bool bringsPhotons(const PathRay& r, int light) const {
         return (r.trail & shading::kTrailMirrored) && passOf(r) && world_.photons_->lightsOfPasses[size_t(light)];
     }
-    /// Lobes of a ray whose spread is below count as mirrors: radians. 0: none do.
+    /// Lobes with a smaller spread, in radians, count as mirrors for this ray. 0: none do.
     float narrowBelow(const PathRay&) const;
-    /// The volumes in which a photon begins; null: none.
+    /// The volumes at the origin of a photon; null: none.
     const shading::Media* aboutLight(const EmissionPlan::Light&, const struct EmissionStart&);
-    void tilt(BatchContext&); ///< ways along the normal, by kLeastTilt
-    /// Of rays that gather photons, those whose surface has a map: they get what that says, and leave the batch.
+    void tilt(BatchContext&); ///< tilts photons along the normal by kLeastTilt
+    /// Rays that gather photons receive the value of the surface's photon map, if it has one, and leave the batch.
     void takeGlobalMaps(BatchContext&, Sched&);
-    /// Photons at points whose surfaces scatter them by a model, or whose kernel waits for rays.
+    /// Photons at surfaces with a photon shading model, or whose kernel waits for rays.
     void photonsByModel(BatchContext&, Sched&);
-    /// Lobes of the models of a batch's points in the place of those that its kernel asked for; `all`: of every point.
+    /// Replaces the lobes that the kernel requested by those of the photon shading models; `all`: for every point.
     void takeModels(BatchContext&, bool all);
 
 private:

@@ -1,4 +1,4 @@
-// The pipeline of a thread: its stages, calls of trace(), and the way from slices of rays to shaded points.
+// The pipeline of a thread: its stages, trace() calls, and the way from slices of rays to shaded points.
 #include "integrator/pipeline.h"
 #include "base/memory.h"
 #include "integrator/accumulator.h"
@@ -43,7 +43,7 @@
 
 namespace alpenglow::transport {
 
-/// The stages, which know each other by `set`. Each is made after those that it asks for something when it is made.
+/// The stages, connected by `set`. Each is made after the stages that its constructor uses.
 struct Pipeline::Parts {
     Parts(std::shared_ptr<const WorldImpl>, Diagnostics&);
     Context context;
@@ -105,7 +105,7 @@ Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
 
 Pipeline::Pipeline(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : parts_(std::make_unique<Parts>(std::move(w), d)) {}
 
-Pipeline::~Pipeline() { // strips of a frame that was given up need their kernels
+Pipeline::~Pipeline() { // strips of an abandoned frame need their kernels
     parts_->nested.forget();
     sched_.reset();
 }
@@ -135,7 +135,7 @@ bool Pipeline::withinRoom(const std::function<bool()>& run, const std::function<
         undo();
         c.raysAtOnce = std::max(1, c.raysAtOnce / 8);
         parts_->nested.forget();
-        sched_.reset(); // strips that wait give back what is forgotten then
+        sched_.reset(); // suspended strips return memory that is freed next
         forget();
     }
 }
@@ -160,7 +160,8 @@ void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     r.setStart(c.start);
     r.media = w.eye_.count && !c.grid ? &w.eye_ : nullptr;
     if (c.grid && c.grid->micropolygon) {
-        const auto half = [&](int shift) { return int(c.grid->micropolygon >> shift & 0x3fffffff) - (1 << 29); }; // as of pixels
+        // Sign-extends, as for pixels
+        const auto half = [&](int shift) { return int(c.grid->micropolygon >> shift & 0x3fffffff) - (1 << 29); };
         sample.numbers = render::SampleNumbers(render::Sampler(parts_->context.seed, half(0), half(32)), c.sample);
     }
     if (w.fades_) sample.level = parts_->store.levelOf(c);
@@ -233,7 +234,7 @@ bool Pipeline::traceAll(std::span<const CameraRay> rays, std::span<SampleResult>
     return done;
 }
 
-/// What has arrived at the targets of camera samples.
+/// Copies the light at the targets of camera samples to the results.
 void Pipeline::takeResults(std::span<SampleResult> out, std::span<const TargetId> roots) {
     const WorldImpl& w = world();
     const Accumulator& sums = parts_->accumulator;
@@ -275,7 +276,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     p.flights.fly(missed, sched);
     p.emitted.misses(missed, sched);
     for (const Sched::Task* t : missed) p.store.freeExtra(t->payload);
-    // While kernels wait for rays nothing is held back: depth before breadth keeps their frames few.
+    // While kernels wait for rays no hits are held back: depth first keeps the number of frames small.
     const bool all = sched.frameBytes() > 0 || p.context.raysAtOnce < Context::kSlice;
     for (size_t g : p.queues.ready(all)) shadeHits(g, sched);
     while (p.queues.full()) settle(sched);
@@ -289,7 +290,7 @@ bool Pipeline::settle(Sched& sched) {
 
 void Pipeline::followStrips(Sched& sched) { parts_->waitingKernels.follow(sched); }
 
-/// What the hits of a group become: points, light of emitters among them, then what their kernel makes of them.
+/// Processes the hits of a group: computes points, adds emission, runs the kernel.
 void Pipeline::shadeHits(size_t group, Sched& sched) {
     Parts& p = *parts_;
     const WorldImpl& w = world();

@@ -1,4 +1,4 @@
-// Rays and light between the stages: shadow rays, and what reaches a target.
+// Rays and light between stages: shadow rays, contributions to targets.
 #pragma once
 #include "base/exactsum.h"
 #include "shading/scheduler.h"
@@ -15,11 +15,11 @@ using shading::Sched;
 using shading::ShadePoint;
 using shading::TargetId;
 
-/// Rays that most vertices send.
+/// Kinds of the rays that most vertices send.
 inline constexpr RayKind kDiffuseKind{RayType::Diffuse, false, {}, 0}, kSpecularKind{RayType::Specular, false, {}, 0};
 inline constexpr RayKind kShadowKind{RayType::Transmission, false, {}, 0};
 
-/// A visibility question: adds contribution * transmittance to the target.
+/// A visibility query: adds contribution * transmittance to the target.
 struct ShadowRay {
     Vec3 origin, dir;
     float distance;
@@ -27,68 +27,68 @@ struct ShadowRay {
     TargetId target;
     float time;
     const PathRay* ray = nullptr;
-    bool areaLight = false;                ///< of a trace() that asks how much area lights give
-    const RayKind* kind = &kShadowKind;    ///< whose visibility counts
-    const shading::Media* media = nullptr; ///< where it begins
+    bool areaLight = false;                ///< of a trace() that returns "arealight" sums
+    const RayKind* kind = &kShadowKind;    ///< whose visibility attributes apply
+    const shading::Media* media = nullptr; ///< at its origin
     int32_t share = -1;                    ///< RayExtra::share
-    int32_t more = -1;                     ///< ShadowRays::more: what else goes the same way; -1: nothing
-    uint16_t path = 0;                     ///< PathRay::path behind its vertex
-    int32_t light = 0;                     ///< and the event at its other end (LightPathStates)
+    int32_t more = -1;                     ///< ShadowRays::more: further light along this ray; -1: none
+    uint16_t path = 0;                     ///< PathRay::path after its vertex
+    int32_t light = 0;                     ///< symbol of the light at its other end (LightPathStates)
     int32_t hemisphere =
         -1; ///< OcclusionCalls::hemispheres: of an occlusion(), which takes the mean of the channels; -1: another
 };
 
-/// Directions that a call has no use for (beyond the plane of "axis") are drawn again so often; then the ray is left out.
+/// Directions that a call cannot use (beyond the plane of "axis") are redrawn so often; then the ray is dropped.
 inline constexpr int kDrawTries = 64;
 
-/// Where light that reaches a target comes from: with the ray that brings it, what a path was at its end.
+/// The last event of a light path, seen from the camera.
 enum class LightEvent : uint8_t {
-    Surface, ///< what a shader gives by itself (Ci)
-    Output,  ///< the same of an output
+    Surface, ///< Ci of a shader, without requests
+    Output,  ///< an output of a shader, without requests
     Sampled, ///< a light, sampled at a vertex
-    Met,     ///< an emitter that the ray met
-    Sky,     ///< a sky, or ambient light, behind everything
+    Met,     ///< an emitter that a ray hit
+    Sky,     ///< a sky, or ambient light
     Map,     ///< the environment map of a trace()
-    Photons  ///< photons, which came from lights by way of mirrors and glass
+    Photons  ///< photons, i.e. light via mirrors and glass
 };
 struct Deposit {
     TargetId target = shading::kNoTarget;
     Color light;
     LightEvent event = LightEvent::Surface;
-    const PathRay* path = nullptr;      ///< that brings it, up to its last vertex; may be null
+    const PathRay* path = nullptr;      ///< the ray up to its last vertex; may be null
     int32_t share = -1;                 ///< Accumulator::shares
-    const ShaderInstance* of = nullptr; ///< that made it; null: not known
-    uint16_t end = 0;                   ///< PathRay::path behind the light: which outputs by light path have it; 0: none
+    const ShaderInstance* of = nullptr; ///< shader that made the light; null: unknown
+    uint16_t end = 0;                   ///< PathRay::path after the light event: selects the light path outputs; 0: none
 };
 
 /// An occlusion() whose rays are among the shadow rays.
 struct HemisphereRays {
     const TraceSite* site = nullptr;
-    float share = 1;    ///< of one of its rays
-    shading::Fade fade; ///< how much a surface blocks that a ray meets far away
-    float spread = 0;   ///< of the rays, for the map
+    float share = 1;    ///< weight of one of its rays
+    shading::Fade fade; ///< attenuates occlusion by distant surfaces
+    float spread = 0;   ///< of the rays, for the environment map
     TurnedAway::Tally* tally = nullptr;
-    /// Notes that a ray came through.
+    /// Counts an unoccluded ray.
     void open(const Color& transmitted) const {
         if (tally && transmitted != Color(0)) TurnedAway::Tally::set(tally->open);
     }
 };
 
-/// The way from a to b for a shadow ray; where an end is `at`, a shaded point of the surface `s` (null: none), that surface does
-/// not block.
+/// The segment from a to b for a shadow ray. If an end is `at`, a shaded point on the surface `s` (may be null), that surface
+/// does not occlude the ray.
 struct Way {
     Vec3 origin, dir;
     float distance = 0;
 };
 Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 
-/// Rows of floats of all arguments of a call.
+/// Number of float rows of all arguments of a call.
 int rowsOfArguments(const SiteInfo&);
 
-/// A point of a disk of this radius about `centre`, which is seen along w (unit): LightValue::shadowRadius.
+/// A point on a disk with this centre and radius that faces direction w (unit): LightValue::shadowRadius.
 Vec3 onShadowDisk(const Vec3& centre, const Vec3& w, float radius, Vec2 random);
 
-/// Light beside that of a ShadowRay, and the next of the same.
+/// Further light along a ShadowRay, and the next one along it.
 struct MoreLight {
     Color contribution;
     TargetId target;
@@ -98,7 +98,7 @@ struct MoreLight {
     int32_t more;
 };
 
-/// What a trace() that asks for it is told beside its result. Sums are exact: order does not matter.
+/// Additional results of a trace(). Sums are exact, so their order does not matter.
 struct TraceSums {
     enum Part { Blocked, Open, Environment, UnshadowedEnvironment, AreaLight, UnshadowedAreaLight, Count }; // Open: directions
     ExactSum sum[Count][3];
@@ -109,7 +109,7 @@ struct TraceSums {
     Color value(Part p) const { return {sum[p][0].toFloat(), sum[p][1].toFloat(), sum[p][2].toFloat()}; }
 };
 
-/// A surface that a shadow ray met, whose opacity its shader must tell.
+/// A surface hit by a shadow ray whose opacity is computed by a shader.
 struct OpacityQuery {
     int binding;
     accel::Hit hit;
@@ -117,14 +117,14 @@ struct OpacityQuery {
     const BoundKernel* kernel;
 };
 
-/// A part of what is added to a target that an output has as well, and the next one of the same light.
+/// The part of a contribution that an output also receives, and the next output for the same light.
 struct Share {
     TargetId target;
     Color ratio;
     int32_t next;
 };
 
-/// Shadow rays that are followed together, about: what many samples of many points ask for does not fit into memory at once.
+/// Shadow rays traced together, about. Many samples at many points would not fit into memory at once.
 inline constexpr size_t kShadowsAtOnce = size_t(1) << 16;
 
 inline float mean(const Color& c) { return (c.x + c.y + c.z) / 3; }

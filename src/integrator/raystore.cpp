@@ -1,4 +1,4 @@
-// What kind of ray a call asks for, where that is known only when it runs.
+// The kind of ray that a call requests, if it is known only at run time; storage of shared ray data.
 #include "integrator/raystore.h"
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -16,7 +16,7 @@ RayStore::RayStore(const StageSet& s) : Stage(s.context) {
 using shading::RaySet;
 
 const uint8_t* RayStore::shapesOf(int32_t subset, int32_t exclude, const scene::Attributes* from) {
-    // What the shape of the point says counts where the call names no subset.
+    // If the call names no subset, the attribute of the calling shape applies.
     const auto [known, fresh] = subsetsKnown_.try_emplace({subset, exclude, from}, nullptr);
     if (!fresh) return known->second;
     std::string wanted = rsl::internedString(subset);
@@ -48,7 +48,7 @@ float RayStore::levelOf(const CameraRay& c) const {
     return Random(render::SampleNumbers(render::Sampler(context_.seed, c.px, c.py), c.sample)).one(0, kLevel, 0);
 }
 
-/// What a ray meets counts less far away, where its call says so.
+/// Attenuates a ray by distance if its call requests it ("falloff").
 void RayStore::fade(PathRay& r, float way) {
     RayExtra& x = extras_[size_t(r.extra)];
     if (!x.fade.fades()) return;
@@ -57,7 +57,7 @@ void RayStore::fade(PathRay& r, float way) {
     r.weight *= x.kept;
 }
 
-/// From here on what a ray brings is of surfaces: the light of emitters is in its target.
+/// From here on rays carry light of surfaces only: emission is in their targets.
 void RayStore::keepIndirect(BatchContext& c) {
     if (std::exchange(c.indirectKept, true)) return;
     for (PathRay& r : c.rays) {

@@ -1,5 +1,5 @@
-// What rays share or rarely have: camera samples, kinds of rays, sets of shapes, and what only some rays carry (RayExtra).
-// Reads PathRay. Costs nothing a ray without extras; a kind is found by hash where it is not the last one.
+// Data that rays share or rarely have: camera samples, kinds of rays, sets of shapes, and RayExtra. Reads PathRay. Costs nothing
+// for rays without extras; a kind is looked up by hash unless it is the last one used.
 #pragma once
 #include "answers/random.h"
 #include "integrator/context.h"
@@ -15,36 +15,37 @@ struct StageSet;
 class RayStore final : Stage {
 public:
     explicit RayStore(const StageSet&);
-    /// The one that stays, of a kind that is made.
+    /// The permanent copy of a kind of ray.
     const RayKind* kindOf(const RayKind&);
     /// The random numbers of a ray's camera sample.
     Random random(const PathRay& r) const { return Random(r.sample ? r.sample->numbers : noSample.numbers); }
-    /// Between levels of detail: what a camera ray meets on its whole way, 0 to 1.
+    /// Random number that selects the level of detail for all rays of a camera sample, 0 to 1.
     float levelOf(const CameraRay&) const;
 
-    /// For one call. f: a row of its arguments; from: the shape whose shader calls, or null, whose Attribute "grouping"
-    /// "tracesubset" holds where no subset is given. Also gives the type and the label of the rays.
+    /// The set of shapes for the rays of one call. f: a row of its arguments; from: the shape that calls, or null; its Attribute
+    /// "grouping" "tracesubset" applies if the call gives no subset. Also returns type and label of the rays.
     shading::RaySet raySetOf(const SiteInfo&, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type,
                              int32_t& label);
 
     const RayExtra& extraOf(const PathRay& r) const { return r.extra < 0 ? noExtra_ : extras_[size_t(r.extra)]; }
-    /// The same, of a ray that has one.
+    /// The extras of a ray that has some.
     RayExtra& ownExtra(const PathRay& r) { return extras_[size_t(r.extra)]; }
-    /// For PathRay::extra of one ray, which has it alone: freeExtra() when its points are shaded. -1 where there is nothing in
-    /// it.
+    /// Stores extras for one ray, as PathRay::extra; free them with freeExtra() after its hit is shaded. Returns -1 for default
+    /// values.
     int32_t newExtra(const RayExtra&);
     void freeExtras(BatchContext&);
     void freeExtra(const PathRay& r) {
         if (r.extra >= 0) freeExtras_.push_back(r.extra);
     }
     void forgetExtras();
-    /// What a ray meets counts less far away, where its call says so. way: from its origin to what it met.
+    /// Attenuates a ray by the "falloff" of its call. way: distance from its origin to its hit.
     void fade(PathRay&, float way);
-    /// From here on what rays bring is of surfaces: the light of emitters is in their targets.
+    /// From here on rays of the batch carry light of surfaces only: emission has been added to their targets. Applies
+    /// RayExtra::indirect.
     void keepIndirect(BatchContext&);
 
-    std::vector<PathSample> samples; ///< of the call of trace()
-    PathSample noSample;             ///< of rays without one
+    std::vector<PathSample> samples; ///< of the current trace()
+    PathSample noSample;             ///< for rays without a sample
 
 private:
     const uint8_t* shapesOf(int32_t subset, int32_t exclude, const scene::Attributes* from);

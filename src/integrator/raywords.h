@@ -1,4 +1,4 @@
-// Tasks and rays as words: which row of a RayBlock is which member of PathRay.
+// Tasks and rays as words: maps members of PathRay to rows of a RayBlock.
 #pragma once
 #include "integrator/rays.h"
 #include "lanes/blocks.h"
@@ -9,7 +9,7 @@ namespace alpenglow::transport {
 inline constexpr int kRayWords = int(sizeof(PathRay) / 4), kTaskWords = RayBlock::kWords;
 static_assert(sizeof(Sched::Task) == 4 * kTaskWords && sizeof(RayBlock) == kTaskWords * sizeof(Row));
 
-/// The row that a member of a task begins.
+/// The row where a member of a task begins.
 constexpr size_t rowAt(size_t offset) { return offset / 4 * sizeof(Row); }
 #define ALPENGLOW_TASK_ROW(row, member) static_assert(offsetof(RayBlock, row) == rowAt(offsetof(Sched::Task, member)))
 #define ALPENGLOW_RAY_ROW(row, member)                                                                                           \
@@ -40,7 +40,7 @@ static_assert(offsetof(PathRay, diffuseBounces) == offsetof(PathRay, bounces) + 
 #undef ALPENGLOW_TASK_ROW
 #undef ALPENGLOW_RAY_ROW
 
-/// Of RayBlock::flags.
+/// Parts of RayBlock::flags.
 inline constexpr uint32_t kAskedBits = 0xffff, kFirstBit = 1u << 16;
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// Records of hemispheres (world/records.h) while their rays are under way.
+// Irradiance records (world/records.h) while their rays are in flight.
 #pragma once
 #include "integrator/rays.h"
 
@@ -14,9 +14,9 @@ struct Recording {
     const RayKind* kind = nullptr;
     const TraceSite* site = nullptr;
     bool blocks = false;           ///< of an occlusion()
-    std::vector<PathRay> rays;     ///< not yet sent
-    std::vector<TargetId> targets; ///< by ray, once sent
-    std::vector<Color> seen;       ///< and what came of it
+    std::vector<PathRay> rays;     ///< to be sent
+    std::vector<TargetId> targets; ///< by ray, after sending
+    std::vector<Color> seen;       ///< result, by ray
     std::vector<float> ways;
 };
 

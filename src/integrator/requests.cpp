@@ -1,4 +1,4 @@
-// Requests of kernels: what a call asks for at a point (docs/design/rsl.md). What becomes of lobes is in gather.h.
+// Interprets the requests of kernels at points (docs/design/rsl.md). gather.h processes the lobes.
 #include "integrator/requests.h"
 #include "base/direction.h"
 #include "integrator/accumulator.h"
@@ -30,7 +30,7 @@ Requests::Requests(const StageSet& s)
       shadows_(s.shadows), subsurface_(s.subsurface) {}
 
 namespace {
-/// Parameters of the distributions of bsdf(), as given or as they are when not (3Delight manual, 6.4.5.2).
+/// Parameters of the distributions of bsdf(), given or default (3Delight manual, 6.4.5.2).
 template <class Row> DistributionParams distributionOf(const SiteInfo& s, const LobeKind& kind, const Row& f) {
     const TraceSite& t = *s.trace;
     DistributionParams m;
@@ -47,17 +47,17 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
     return m;
 }
 
-/// Whether a trace() has no direction, as that of refract() at total reflection: no ray goes there, nothing comes from there.
+/// Whether a trace() has no direction, as from refract() at total reflection: it sends no ray and returns no light.
 template <class Row> bool pointsNowhere(const SiteInfo& s, const Row& f) {
     if (s.kind != SiteKind::Trace || s.trace->hemisphere) return false;
     const int row = s.rows[1];
     return f(row) == 0 && f(row + 1) == 0 && f(row + 2) == 0;
 }
 
-/// What lights may ask about a point that asks for light.
+/// Values of a point that lights may query.
 template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& s, int point, const Row& f) {
     LitValues told;
-    told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray: none
+    told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray has none
     told.displaced = c.displaced;
     told.point = point;
     for (const SiteInfo::Output& o : s.outputs) {
@@ -68,7 +68,7 @@ template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& 
 }
 } // namespace
 
-/// Questions that shadow rays answer.
+/// Requests that shadow rays answer.
 void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& f,
                               const Color& weight, TargetId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[size_t(point)];
@@ -83,7 +83,7 @@ void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, con
     }
     if (s.kind == SiteKind::Transmission) {
         if (s.rays->samples >= 0 && s.rays->cone >= 0 && f(s.rays->cone) > 0)
-            occlusion_.samplesOf(std::max(1.f, f(s.rays->samples)), p.shape, s, c); // says when there are too many
+            occlusion_.samplesOf(std::max(1.f, f(s.rays->samples)), p.shape, s, c); // reports too many samples
         shadows_.transmissionRays(s, p, p.P, &p.surface, f, weight, target, site, occurrence, shadows_.queue);
         const auto v = [&](int arg) {
             return Vec3(f(s.rows[size_t(arg)]), f(s.rows[size_t(arg)] + 1), f(s.rows[size_t(arg)] + 2));
@@ -105,7 +105,7 @@ void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, con
             shadows_.queue[k].media = media_.towards(c, point, shadows_.queue[k].dir);
     }
     if (owns || !p.ray) return;
-    for (size_t k = had; k < shadows_.queue.size(); ++k) { // what it weighs is the shader's own
+    for (size_t k = had; k < shadows_.queue.size(); ++k) { // the weight is the shader's own
         shadows_.queue[k].share = store_.extraOf(*p.ray).share;
         shadows_.queue[k].path = p.ray->path;
         shadows_.queue[k].light = paths_.object;
@@ -116,10 +116,10 @@ void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, con
     }
 }
 
-/// Which surfaces rays of a trace() meet.
+/// Which surfaces the rays of a trace() hit.
 template <class Row> const RayKind* Requests::raysOfTrace(const SiteInfo& s, const Row& f, const ShadePoint& p) {
     const bool lights = s.rowLights >= 0 && f(s.rowLights) != 0, indirectOnly = s.trace->apart;
-    if (s.rays->fixed && !(world_.traceSubsets_ && s.rays->subsetText.empty())) // what most calls are, many times a sample
+    if (s.rays->fixed && !(world_.traceSubsets_ && s.rays->subsetText.empty())) // the most frequent case, many times a sample
         return store_.kindOf(
             {s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_.globalMaps_, lights, indirectOnly});
     RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_.globalMaps_, lights, indirectOnly};
@@ -127,7 +127,7 @@ template <class Row> const RayKind* Requests::raysOfTrace(const SiteInfo& s, con
     return store_.kindOf(kind);
 }
 
-/// The lobe that a call asks for; null: none, or a distribution that there is not.
+/// The lobe that a call requests; null: none, or an unknown distribution.
 template <class Row> const LobeKind* Requests::lobeOf(const BatchContext& c, const SiteInfo& s, const Row& f) {
     if (!s.trace || s.trace->distribution < 0) return s.lobe;
     const auto id = std::bit_cast<int32_t>(f(s.trace->distribution));
@@ -149,7 +149,7 @@ template <class Row> const LobeKind* Requests::lobeOf(const BatchContext& c, con
     return known->second = nullptr;
 }
 
-/// What a trace() says of its lobe and its rays; false: its weight is 0, and nothing is sent.
+/// Reads lobe and rays of a trace(); returns false if its weight is 0, so that no ray is sent.
 template <class Row>
 bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Row& f, LobeVertex& l,
                           LobeParams& params) {
@@ -165,7 +165,7 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
     l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);
     if (s.trace->weight >= 0) l.importance = std::max(0.f, maxComponent(vector(s.trace->weight, Color(1))));
     if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
-    // From a point that is not the surface's no light is sampled: rays that meet an emitter count in full.
+    // From a point off the surface no light is sampled: emission counts in full.
     if (const Vec3 from = vector(s.rows[0], Vec3()), away = from - p.P;
         !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
         l.elsewhere = true;
@@ -174,7 +174,7 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
     l.deltaLights = s.allLights;
     l.lobeOfShader = false;
     l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
-    if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: none
+    if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: no limit
     if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)
         l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
     const float samples = s.trace->hemisphere ? number(s.rays->samples, 0) : std::max(1.f, number(s.rays->samples, 1));
@@ -222,7 +222,7 @@ void Requests::request(BatchContext& c, const SiteInfo& s, int point, const floa
     case SiteKind::Diffuse:
         params.axis = directionOr(v(0), p.surface.n);
         l.rays = &kDiffuseKind;
-        if (s.trace && s.trace->apart) l.indirect = 0; // indirectdiffuse() brings what surfaces send
+        if (s.trace && s.trace->apart) l.indirect = 0; // indirectdiffuse() adds the light of surfaces
         break;
     case SiteKind::Specular:
     case SiteKind::Phong:
@@ -279,7 +279,7 @@ void Requests::requestPairs(BatchContext& c, std::vector<AskedLobe>* asked, Sche
             if (world_.bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
             const float* args = pair + size_t(3) * e.lanes;
             if (photons_.photonTrace() && (s.kind == SiteKind::LightVisibility || asksShadows(s.kind)))
-                continue; // nobody asks what photons see
+                continue; // light seen by photons is discarded
             if (s.kind == SiteKind::LightVisibility) {
                 const size_t had = shadows_.queue.size();
                 lightVisibility(c, s, point, args, e.lanes, lane, weight * c.rays[point].weight, c.targets[point]);

@@ -1,5 +1,4 @@
-// Requests: what calls of a kernel ask for at points (docs/light.md): lobes, which are gathered here until light is found over
-// them, and shadow rays.
+// Interprets the requests of kernels (docs/light.md): collects lobes for the stages of gather.h, and makes shadow rays.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -21,31 +20,32 @@ class ShadowRays;
 struct StageSet;
 class SubsurfaceWalks;
 
-/// A lobe of a batch, and the pair that it came from.
+/// A lobe of a batch, and the pair that requested it.
 struct AskedLobe {
     int lobe, record, lane;
 };
 
-/// Questions that shadow rays answer: their weights hold the ray's throughput.
+/// Requests answered by shadow rays: their weights include the throughput of the ray.
 inline bool asksShadows(SiteKind k) { return k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Ambient; }
 
 class Requests final : Stage {
 public:
     explicit Requests(const StageSet&);
-    /// What the pairs of a kernel that did not wait ask for. `asked`: gets the lobes; may be null. lobesToo false: all but lobes.
+    /// Interprets the pairs of a kernel that did not wait. `asked`: receives the lobes; may be null. lobesToo false: all but
+    /// lobes.
     void requestPairs(BatchContext&, std::vector<AskedLobe>* asked, Sched&, bool lobesToo = true);
-    /// One call. `in`: rows of its arguments. owns: LobeVertex::ownsTarget.
+    /// Interprets one call. `in`: argument rows. owns: LobeVertex::ownsTarget.
     void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
                  bool owns, uint32_t occurrence);
-    /// `in`: rows of the call's arguments, and behind them two: ShadowReach::radius and the vertex of its random numbers.
+    /// `in`: argument rows, followed by two rows: ShadowReach::radius and the vertex for random numbers.
     void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId);
-    /// The environment map of a trace() in direction w (unit, current space).
+    /// Radiance of the environment map of a trace() in direction w (unit, current space).
     Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
     void clear();
 
-    std::vector<LobeVertex> lobes; ///< that were asked for
+    std::vector<LobeVertex> lobes; ///< requested so far
     LobeColumns rows;              ///< of `lobes`
-    std::vector<int> apartAt;      ///< points of the batch that ask for indirect light beside direct light (rsl::kPairApart)
+    std::vector<int> apartAt; ///< points of the batch that request indirect light separate from direct light (rsl::kPairApart)
 
 private:
     void requestShadows(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, const Color& weight,
@@ -54,7 +54,7 @@ private:
     template <class Row> const RayKind* raysOfTrace(const SiteInfo&, const Row&, const ShadePoint&);
     template <class Row>
     bool askOfTrace(const BatchContext&, const SiteInfo&, const ShadePoint&, const Row&, LobeVertex&, LobeParams&);
-    std::map<std::pair<const rsl::ir::Site*, int32_t>, const LobeKind*> lobesNamed_; ///< of names that calls have made
+    std::map<std::pair<const rsl::ir::Site*, int32_t>, const LobeKind*> lobesNamed_; ///< by names that calls computed
     std::vector<uint32_t> occurrence_;
     Accumulator& accumulator_;
     AmbientLight& ambient_;

@@ -30,8 +30,8 @@ RowShading::RowShading(const StageSet& s)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
 }
 
-/// Whether a kernel calls back for nothing but requests, which are looked at when it has run, and lookups in pictures, which need
-/// no point.
+/// Whether a kernel's only callbacks are requests, which are interpreted after it has run, and texture lookups, which need no
+/// point.
 static bool needsNoPoints(const BoundKernel& k) {
     const auto& facts = k.kernel->facts();
     return !facts.suspends && !facts.lightLoops && k.plan->readsSurfaceRows() &&
@@ -51,7 +51,7 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     if (!flights_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() || !accumulator_.traceSums.empty() ||
         !blocks_.takesRays(c))
         return false;
-    // A ray that fades with distance, or whose call asks for distance and normal of the hit, needs the point that it met.
+    // Rays with "falloff", or whose call requests distance and normal of the hit, need the point.
     for (const PathRay& r : c.rays)
         if ((r.extra >= 0 && store_.extraOf(r).fade.fades()) || (r.first && !(r.counts && sched.plain()))) return false;
     c.points.clear();
@@ -81,7 +81,7 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     return true;
 }
 
-/// The kernel over the hits.
+/// Runs the kernel over the hits.
 void RowShading::run(BatchContext& c) {
     surfaces_.placeSurfaces(c);
     const size_t n = c.hits.size();
@@ -116,7 +116,7 @@ void RowShading::run(BatchContext& c) {
     c.ran();
 }
 
-/// What the kernel asks for besides lobes: shadows, and light that is everywhere.
+/// Interprets requests other than lobes: shadows and ambient light.
 void RowShading::requestOthers(BatchContext& c, Sched& sched) {
     const auto other = [&](const EmitRecord& e) {
         const SiteKind k = c.bound->sites[size_t(e.site)].kind;
@@ -138,7 +138,7 @@ void RowShading::count(const BatchContext& c) {
     of.lanesRun += (n + lanes - 1) / lanes * lanes;
 }
 
-/// What opaque surfaces give by themselves, and what camera rays show of them: SurfaceShading::finish().
+/// Row version of SurfaceShading::finish() for opaque surfaces: their own light, and outputs of camera rays.
 void RowShading::finish(BatchContext& c, Sched& sched) {
     const shading::Batch& b = *c.batch;
     const int ci = b.plan().Ci;

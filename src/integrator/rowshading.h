@@ -1,5 +1,5 @@
-// Batches of groups whose kernel only requests light and reads no more than where rays met surfaces (shading::SurfaceRows): from
-// hits to the rows of the kernel and of the blocks (blockvertices.h), with no structure a point.
+// Groups whose kernel only requests light and reads no more than the surface position (shading::SurfaceRows): goes from hits to
+// the rows of the kernel and of the blocks (blockvertices.h) without a structure for each point.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -26,10 +26,10 @@ class Transparency;
 class RowShading final : Stage {
 public:
     explicit RowShading(const StageSet&);
-    /// Whether hits of a group may be shaded so: SurfaceBinding::group, or one of those behind them.
+    /// Whether hits of a group can be shaded this way. group: SurfaceBinding::group, or one for "hitmode" "primitive".
     bool takes(size_t group) const { return group < takes_.size() && takes_[group]; }
-    /// Shades the hits of a batch, and sends what goes on. False: only their rays and hits are as they were, and they must be
-    /// shaded by points.
+    /// Shades the hits of a batch and sends the next rays. Returns false if they must be shaded by points; only rays and hits are
+    /// then valid.
     bool shade(BatchContext&, Sched&);
 
 private:

@@ -1,5 +1,4 @@
-// Stage scatter: rays of lobes. Where one ray goes on from a vertex (Rules::pickOne) one of its lobes is followed; elsewhere all
-// are.
+// Stage ScatterRays: rays of lobes. With Rules::pickOne one lobe of a vertex is followed, else all.
 #include "integrator/scatterrays.h"
 #include "integrator/accumulator.h"
 #include "integrator/connection.h"
@@ -35,7 +34,7 @@ void ScatterRays::run(Sched& sched) {
         if (begin_[point] != begin_[point + 1]) pick(point, picks(point) ? numbers_.one(number++) : 0);
     int turns = 0;
     for (const LobeRay& s : sent) turns = std::max(turns, s.count);
-    for (int turn = 0; turn < turns; ++turn) { // of each lobe a ray
+    for (int turn = 0; turn < turns; ++turn) { // one ray for each lobe
         draw(turn);
         if (photons_.photonTrace()) photonScatter_.lookBack(sched);
         throwDice(turn);
@@ -44,17 +43,17 @@ void ScatterRays::run(Sched& sched) {
     }
 }
 
-/// Whether chance decides what goes on from a point.
+/// Whether the continuation of a point is chosen at random.
 bool ScatterRays::picks(size_t point) const {
     const int lobes = begin_[point + 1] - begin_[point];
     return rules_.pickOne && lobes > 0 && (lobes > 1 || selection_.passes[point] < 1);
 }
 
-/// `number`: what decides, where picks().
+/// `number`: the random number, if picks().
 void ScatterRays::pick(size_t point, float number) {
     const auto list = lobesOf(point);
-    const bool mayPass = selection_.passes[point] < 1; // then lobes have the rest of the chance
-    if (list.size() == 1 && !mayPass) {                // what most vertices are
+    const bool mayPass = selection_.passes[point] < 1; // lobes have the remaining probability
+    if (list.size() == 1 && !mayPass) {                // the most frequent case
         const LobeVertex& l = requests_.lobes[size_t(list[0])];
         if (!(l.chosen > 0) || !l.followed) return;
         const bool one = rules_.pickOne && !l.ownsTarget;
@@ -81,7 +80,7 @@ void ScatterRays::pick(size_t point, float number) {
     if (mayPass) c_->passes[point] = taken ? 0 : selection_.passes[point];
 }
 
-/// Directions of the rays of one turn, and what their lobes give back from there.
+/// Samples directions for the rays of one iteration and evaluates their lobes.
 void ScatterRays::draw(int turn) {
     LobeColumns& rows = requests_.rows;
     numbers_.clear();
@@ -147,7 +146,7 @@ void ScatterRays::drawAgain(int turn) {
     }
 }
 
-/// What the rays of a turn are known by, and the numbers that decide whether they go on.
+/// Sets the random number keys of the rays of one iteration and draws their roulette numbers.
 void ScatterRays::throwDice(int turn) {
     numbers_.clear();
     for (LobeRay& s : sent) {
@@ -166,12 +165,12 @@ void ScatterRays::throwDice(int turn) {
             s.dice = numbers_.one(number++);
 }
 
-/// A ray that is to bring nothing but the light of emitters, and goes past the balls about all of them, brings none.
+/// A ray that carries emission only is useless if it misses the bounding spheres of all emitters.
 bool ScatterRays::meetsEmitter(const LobeVertex& l, const Vec3& w) const {
     if (!l.lights) return false;
     const Vec3& from = l.elsewhere ? l.from : c_->points[size_t(l.point)].P;
     const float error = 1e-3f * (1 + length(from)) + std::fabs(l.bias);
-    if (world_.lights_.size() > 64) return true; // to send the ray costs less than to look at all of them
+    if (world_.lights_.size() > 64) return true; // sending the ray costs less than testing all of them
     for (const BoundLight& light : world_.lights_) {
         if (light.kind != LightKind::Area || !light.emitter || light.emitter->empty()) continue;
         const Vec3 to = light.centre - from;
@@ -193,7 +192,7 @@ float ScatterRays::roulette(const LobeVertex& l, const LobeRay& s, uint16_t& ask
     } else if (world_.settings_.localRoulette) {
         q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
     } else if (from.bounces + 1 > 3) {
-        // A light that traces sends rays at every vertex: the tree of them ends by the throughput itself.
+        // A light that traces sends rays at every vertex: throughput ends this tree of rays.
         const Color left(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z));
         q = world_.lightTraces_ > 0 ? rouletteLocal(from.bounces + 1, left, dice()) : rouletteOfPath(weight, dice);
     }
@@ -206,7 +205,7 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     const PathRay& from = c_->rays[size_t(s.point)];
     Vec3 w = s.w;
     const PhotonTrace* photon = photons_.photonTrace();
-    if (photon && p.shape->oneSided() && !(dot(w, meetsNormal(p.surface)) > 0)) return; // nobody sees it from there
+    if (photon && p.shape->oneSided() && !(dot(w, meetsNormal(p.surface)) > 0)) return; // invisible from there
     if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
     const float pdf = s.value.pdf;
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
@@ -242,7 +241,7 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     r.scattered = int16_t(from.scattered + c_->between);
     ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
     r.origin = origin(l, w);
-    if (l.base > 0) { // somewhere on the footprint
+    if (l.base > 0) { // anywhere in the footprint
         const Vec2 at = store_.random(from).pair(s.vertex, kSampleBase, 0);
         r.origin += (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * l.base;
     }
@@ -266,7 +265,7 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
         if (TraceSums* of = accumulator_.sumsOf(l.target)) of->add(TraceSums::Open, w * mean(extra.part));
     }
     r.extra = store_.newExtra(extra);
-    // Whether its lobe samples lights: then an emitter that it meets counts with the weight of both.
+    // If its lobe samples lights, emission that it hits is weighted by MIS.
     const bool sampled = l.lights && !l.elsewhere && !l.delta;
     r.lobePdf = sampled && rules_.lightsAtRequests ? (rules_.pickOne || l.ownsTarget ? pdf * l.chosen : pdf) : -1;
     if (guide_.on() && PhotonScatter::mirrorsPath(l)) r.lobePdf = guide_.pdfBehindMirror(from);
@@ -277,7 +276,7 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     r.counts = false;
     r.first = l.ownsTarget;
     counters_.depthMax = std::max(counters_.depthMax, bounces);
-    ++counters_.depthSum; // over camera rays: the mean number of bounces
+    ++counters_.depthSum; // over camera rays: mean number of bounces
 }
 
 } // namespace alpenglow::transport

@@ -1,4 +1,4 @@
-// Scatter: directions of the lobes whose rays are followed, roulette, the next rays.
+// Scattering: samples the selected lobes, plays roulette, makes the next rays.
 #pragma once
 #include "integrator/vertexlobes.h"
 #include "lobes/lobe.h"
@@ -15,9 +15,9 @@ class PhotonScatter;
 class PhotonStage;
 class SubsurfaceWalks;
 
-/// A lobe whose rays are sent: `count` of them, each with `scale` times its weight. `goes`, `w`: the ray of this turn.
-/// `vertex`: of that ray; `dice`: the number of its roulette; `drawn`: beside a light.
-/// `back`, of photons along narrow lobes: what the other way gives back, over the density, in the place of weight and value.
+/// A lobe whose rays are sent: `count` rays, each with `scale` times its weight. `goes`, `w`: the ray of this iteration;
+/// `vertex`: its random number key; `dice`: its roulette number; `drawn`: sampled toward a light. `back`, for photons along
+/// narrow lobes: value of the reverse path over the density, which replaces weight and value.
 struct LobeRay {
     int point, lobe, count;
     float scale;
@@ -28,15 +28,15 @@ struct LobeRay {
     float dice = 0;
     Color back{0};
     bool drawn = false;
-    bool again = false; ///< its draw brings nothing, and another is made
-    bool idle = false;  ///< its ray brings no light: it tells what is in the way
+    bool again = false; ///< the sample is useless and is redrawn
+    bool idle = false;  ///< its ray carries no light and only reports what it hits
 };
 
 class ScatterRays final : VertexStage {
 public:
     ScatterRays(const StageSet&, const VertexLobes&, LobeSelection&, Connection&, PhotonScatter&);
     void run(Sched&);
-    void draw(int turn); ///< directions of the rays of one turn, and what their lobes give back from there
+    void draw(int turn); ///< samples directions for one iteration and evaluates the lobes there
 
     std::vector<LobeRay> sent;
 
@@ -47,7 +47,7 @@ private:
     void throwDice(int turn);
     void sendRay(const LobeRay&, Sched&);
     bool meetsEmitter(const LobeVertex&, const Vec3& w) const;
-    /// The chance with which the ray goes on; 0: it does not.
+    /// Survival probability of the ray; 0: it is not sent.
     float roulette(const LobeVertex&, const LobeRay&, uint16_t& asked, const Color& weight) const;
     render::NumberRows numbers_;
     LobeSelection& selection_;

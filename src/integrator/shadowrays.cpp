@@ -1,5 +1,5 @@
-// Shadow rays: what lies on the way takes the share that its shader's Oi says. Where Oi is Os or a constant that was known when
-// the world was built no shader runs; elsewhere the kernel that gives Oi alone runs for all rays that met it, wave by wave.
+// Shadow rays: surfaces attenuate by Oi. If Oi is Os or a constant known when the world was built, no shader runs; otherwise the
+// opacity-only kernel runs for all rays that hit it, wave by wave.
 #include "integrator/shadowrays.h"
 #include "base/exact.h"
 #include "integrator/accumulator.h"
@@ -36,7 +36,7 @@ accel::Ray shadowRay(const ShadowRay& s) {
     if (s.ray && s.ray->sample) r.level = s.ray->sample->level;
     return r;
 }
-/// Whether a ray may meet something in a box: false only where it passes beside it.
+/// Whether a ray may hit something in a box; false only if it misses the box.
 bool passes(const geometry::Bounds& b, const ShadowRay& r) {
     const float error = geometry::roundingError(b.lo) + geometry::roundingError(b.hi) + geometry::roundingError(r.origin);
     double from = 0, to = r.distance;
@@ -71,11 +71,11 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
 
 bool ShadowRays::meetsOpaqueAlone(const ShadowRay& r) const {
     if (r.hemisphere >= 0 && occlusion_.hemispheres[size_t(r.hemisphere)].fade.fades())
-        return false; // it matters how far away they are
+        return false; // the distance of the surfaces matters
     return !world_.mediaOverrule_ && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
 }
 
-/// 0 for rays that a surface blocks which needs no shader for that, 1 for the others.
+/// Sets 0 for rays that hit a surface known to be opaque, and 1 for the others.
 void ShadowRays::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Color> out) {
     rays_.clear();
     std::vector<size_t> of;
@@ -92,10 +92,10 @@ void ShadowRays::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Colo
         if (blocked_[k]) out[of[k]] = Color(0);
 }
 
-/// The same where all surfaces are such ones.
+/// The same in scenes where all surfaces are opaque.
 void ShadowRays::blockedByAll(std::span<const ShadowRay> rays, std::span<Color> out) {
     if (intersector_.blockInRows(rays, out)) return;
-    constexpr size_t kAtOnce = 512; // they stay in a core's cache
+    constexpr size_t kAtOnce = 512; // fits into the cache of a core
     blocked_.resize(std::min(rays.size(), kAtOnce));
     for (size_t first = 0; first < rays.size(); first += kAtOnce) {
         const size_t n = std::min(kAtOnce, rays.size() - first);
@@ -112,7 +112,7 @@ void ShadowRays::transmittances(std::span<const ShadowRay> rays, std::span<Color
     for (FlightEvent* e : flights_.events) e->dim(rays, out);
 }
 
-/// What surfaces and media leave of rays: surface by surface, for all rays of a wave before the shaders run that say Oi there.
+/// Transmittance of surfaces and media: surface by surface, for all rays of a wave before their opacity shaders run.
 class ShadowRays::Passing {
 public:
     Passing(ShadowRays& stage, std::span<const ShadowRay> rays, std::span<Color> out)
@@ -146,15 +146,15 @@ private:
     std::span<const ShadowRay> rays_;
     std::span<Color> out_;
     const bool counts_, fading_;
-    bool few_ = false;                ///< ways_ and hits_ have the numbers of WorldImpl::byOpacity_.few
-    std::vector<Color> taken_;        ///< what surfaces far away block in part
-    std::vector<uint16_t> straights_; ///< ShadowRays::straights_: what runs on the way may send rays, too
+    bool few_ = false;                ///< ways_ and hits_ use the numbers of WorldImpl::byOpacity_.few
+    std::vector<Color> taken_;        ///< occlusion by distant surfaces that count in part
+    std::vector<uint16_t> straights_; ///< ShadowRays::straights_; a member of its own because shaders on the way may send rays
     std::vector<MediumPart> parts_;
     std::vector<Going> now_, next_;
-    std::vector<accel::Ray> ways_, nextWays_; ///< of now_, next_
-    std::vector<accel::Hit> hits_;            ///< of now_
+    std::vector<accel::Ray> ways_, nextWays_; ///< by now_, next_
+    std::vector<accel::Hit> hits_;            ///< by now_
     std::vector<OpacityQuery> met_;
-    std::vector<size_t> asks_; ///< of met_: places in next_
+    std::vector<size_t> asks_; ///< of met_: indices in next_
 };
 
 void ShadowRays::Passing::takes(size_t i, const Color& opacity, double distance) {
@@ -164,7 +164,7 @@ void ShadowRays::Passing::takes(size_t i, const Color& opacity, double distance)
     out_[i] *= Color(1) - opacity;
 }
 
-/// Rays that no opaque surface blocks by itself.
+/// Starts the rays that opaque surfaces do not block.
 void ShadowRays::Passing::begin() {
     stage_.blockedByOpaque(rays_, out_);
     few_ = world_.byOpacity_.few && std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.meetsOpaqueAlone(r); });
@@ -182,13 +182,13 @@ void ShadowRays::Passing::begin() {
     }
 }
 
-/// To the end of its way, past no surface any more.
+/// The ray reaches its end without another surface.
 void ShadowRays::Passing::leaves(const Going& g) {
     const ShadowRay& r = rays_[g.index];
     if (g.medium() >= 0 && r.distance < 1e30f) parts_.push_back({g.medium(), g.index, g.begin, r.origin + r.dir * r.distance});
 }
 
-/// Through the boundary of a medium. Whether a medium of higher priority makes it nothing.
+/// Crosses the boundary of a medium. Returns whether a medium of higher priority overrides it.
 bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel::Hit& h, const Vec3& dir) {
     geometry::SurfacePoint at;
     world_.accel_->point(h, at, 0);
@@ -200,7 +200,7 @@ bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel:
     return !overruled;
 }
 
-/// What each ray meets next.
+/// Finds the next hit of each ray.
 void ShadowRays::Passing::meet() {
     hits_.resize(now_.size());
     if (few_) stage_.intersector_.meetFew(ways_, hits_);
@@ -217,7 +217,7 @@ void ShadowRays::Passing::meet() {
     }
 }
 
-/// Past a surface, or to where its shader must say Oi.
+/// Passes a surface, or queues the hit for its opacity shader.
 void ShadowRays::Passing::pass(const Going& from, const accel::Ray& behind, const accel::Hit& h) {
     Color& t = out_[from.index];
     if (from.layers >= limits::kShadowLayers) {
@@ -259,7 +259,7 @@ void ShadowRays::Passing::run() {
         }
         next_.resize(kept), nextWays_.resize(kept);
         now_.swap(next_), ways_.swap(nextWays_);
-        if (stop && *stop) break; // the result is void
+        if (stop && *stop) break; // the result is undefined
     }
     for (size_t i = 0; i < taken_.size(); ++i)
         if (fades(rays_[i])) out_[i] = Color(1) - taken_[i];
@@ -293,17 +293,16 @@ void ShadowRays::transmissionRays(const SiteInfo& s, const ShadePoint& p, const 
     ray.ray = p.ray;
     RayKind kind = kShadowKind;
     kind.set = store_.raySetOf(s, f, p.shape, kind.type, kind.label);
-    // Surfaces are seen from the shaded point, at whichever end of the way it is.
+    // Sides are seen from the shaded point, at whichever end of the ray it is.
     if (!r.saysSides && length(b - at) < length(a - at)) kind.set.sides = accel::Sides::Back;
     ray.kind = store_.kindOf(kind);
     const float bias = number(r.bias, -1), far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)),
                 cone = number(r.cone, 0);
-    const int count =
-        cone > 0 && p.ray ? int(std::clamp(number(r.samples, 1), 1.f, 4096.f)) : 1; // rays all alike need not be sent twice
+    const int count = cone > 0 && p.ray ? int(std::clamp(number(r.samples, 1), 1.f, 4096.f)) : 1; // identical rays are sent once
     ray.contribution = weight / float(count);
     for (int k = 0; k < count; ++k) {
         Vec3 end = b;
-        if (cone > 0 && p.ray && length(b - a) > 0) { // evenly in a cone about the way; as far as b
+        if (cone > 0 && p.ray && length(b - a) > 0) { // uniform in a cone around the direction, to the distance of b
             const float half = float(exact::sin(0.5 * std::min(cone, float(kPi)))), cap = 2 * half * half;
             end = a + Basis((b - a) / length(b - a))
                               .toWorld(sampleCone(cap, store_.random(*p.ray)
@@ -335,7 +334,7 @@ void ShadowRays::flush(Sched& s) {
             accumulator_.deposit(s, {target, light, LightEvent::Sampled, r.ray, share, nullptr, paths_.next(path, r.light)});
             if (TraceSums* sums = areaLight ? accumulator_.sumsOf(target) : nullptr) sums->add(TraceSums::AreaLight, light);
         };
-        if (r.hemisphere >= 0) { // only these, and nothing else goes their way
+        if (r.hemisphere >= 0) { // these alone; no other light shares their rays
             if (transmitted_[i] == Color(0) && isFinite(r.contribution)) continue;
             accumulator_.deposit(s, {r.target, occlusion_.openLight(r, transmitted_[i], accumulator_.sumsOf(r.target)),
                                      LightEvent::Sampled, r.ray, r.share, nullptr, paths_.next(r.path, r.light)});

@@ -1,5 +1,5 @@
-// Shadow rays: what is left of the light along each, 0 to 1, and where it is added. Reads `queue` and what goes with it; deposits
-// light. Opaque surfaces are looked for first, by any hit; others only where a ray passes their box.
+// Shadow rays: computes the transmittance along each, 0 to 1, and adds the light to its target. Reads `queue` and related arrays.
+// Tests opaque surfaces first, by any hit; others only if the ray passes their bounding box.
 #pragma once
 #include "integrator/context.h"
 
@@ -19,29 +19,29 @@ struct StageSet;
 class ShadowRays final : Stage {
 public:
     explicit ShadowRays(const StageSet&);
-    /// What is left of light along each ray. ShadowRay::ray: for the random numbers and footprint of shaders on the way.
+    /// Transmittance along each ray. ShadowRay::ray: random numbers and footprint for shaders on the way.
     void transmittances(std::span<const ShadowRay>, std::span<Color> out);
     Color transmittance(const ShadowRay&);
-    /// The rays of a transmission() from a to b, for `out`: as many as it asks for, each with its share of `weight`.
+    /// Makes the rays of a transmission() from a to b, for `out`: as many as requested, each with its share of `weight`.
     void transmissionRays(const SiteInfo&, const ShadePoint&, const Vec3& at, const geometry::SurfacePoint*,
                           const std::function<float(int)>& row, const Color& weight, TargetId, uint32_t site, uint32_t occurrence,
                           std::vector<ShadowRay>& out);
-    /// Follows the queue, deposits what arrives, and empties it.
+    /// Traces the queue, adds the light, and empties the queue.
     void flush(Sched&);
     void clear();
 
     std::vector<ShadowRay> queue;
-    std::vector<MoreLight> more;  ///< of the queue: what else goes the same way
-    std::vector<Deposit> settled; ///< of calls that no ray is sent for any more; taken with the queue
+    std::vector<MoreLight> more;  ///< further light along rays of the queue
+    std::vector<Deposit> settled; ///< contributions that need no ray, added with the queue
 
 private:
     class Passing;
-    void passSurfaces(std::span<const ShadowRay>, std::span<Color> out); ///< what surfaces and media leave
-    /// Whether surfaces that block all light are looked for first and by themselves, the others only where a ray may meet them.
+    void passSurfaces(std::span<const ShadowRay>, std::span<Color> out); ///< transmittance of surfaces and media
+    /// Whether opaque surfaces are tested first and separately, and others only where a ray may hit them.
     bool meetsOpaqueAlone(const ShadowRay&) const;
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
     void blockedByAll(std::span<const ShadowRay>, std::span<Color> out);
-    std::vector<uint16_t> straights_; ///< by ray, surfaces that it went straight through; where somebody asks
+    std::vector<uint16_t> straights_; ///< by ray: surfaces passed straight through; filled only for light path outputs
     std::vector<Color> transmitted_;
     std::vector<accel::Ray> rays_;
     std::vector<uint8_t> blocked_;

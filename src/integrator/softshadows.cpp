@@ -1,5 +1,5 @@
-// Traced shadows of loops over lights. A light that stands at a point may say a radius (__shadowradius): then the disk about its
-// point that faces what it lights casts its shadows, while attenuation, cone and cosine stay those of the point.
+// Traced shadows of light loops. A point light may have a radius (__shadowradius): shadows are then cast by the disk around its
+// position that faces the lit point, while attenuation, cone and cosine stay those of the point.
 #include "base/direction.h"
 #include "integrator/lightkernels.h"
 #include "integrator/mediastacks.h"

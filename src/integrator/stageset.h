@@ -1,4 +1,4 @@
-// The stages of one thread by name. A stage takes from here what it calls, when it is made; it keeps nothing else.
+// The stages of one thread by name. The constructor of a stage takes from here the references to the stages that it calls.
 #pragma once
 
 namespace alpenglow::transport {

@@ -1,4 +1,4 @@
-// What a strip does while it waits.
+// Suspended strips of waiting kernels.
 #include "integrator/strips.h"
 #include "integrator/accumulator.h"
 #include "integrator/gatherrows.h"
@@ -89,14 +89,14 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
     return false;
 }
 
-/// Finds what the rays of a gather meet. Those whose hits must be shaded are what the strip waits for.
+/// Intersects the rays of a gather(). The strip waits for the hits that must be shaded.
 void KernelStrip::askGather() {
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     const std::span<uint32_t> occurrences(m_.occurrences.data() + size_t(site_) * 64, 64);
     uint64_t mask = 0;
     for (int lane : m_.laneOf) {
         mask |= uint64_t(1) << lane;
-        // The statement begins anew with its first handful of rays.
+        // The statement starts again with its first rays.
         if (m_.in[size_t(site.rows[4]) * size_t(lanes_) + size_t(lane)] < 0.5f) ++occurrences[size_t(lane)];
     }
     gather_ = &stages_.gathers.cast(*c_, site, first_, mask, lanes_, m_.in.data(), occurrences, asked_, sent_);
@@ -123,7 +123,7 @@ void KernelStrip::ask(Sched& s) {
             stages_.requests.lightVisibility(*c_, site, point, m_.in.data(), lanes_, lane, Color(1), m_.ids[k]);
             continue;
         }
-        if (c_->rays[size_t(point)].quiet && (site.lobe || site.kind == SiteKind::Ambient)) continue; // nobody hears of light
+        if (c_->rays[size_t(point)].quiet && (site.lobe || site.kind == SiteKind::Ambient)) continue; // its light is discarded
         const size_t had = stages_.requests.lobes.size();
         if (stages_.shadows.queue.size() > kShadowsAtOnce) stages_.shadows.flush(s);
         stages_.requests.request(*c_, site, point, m_.in.data(), lanes_, lane, Color(1), m_.ids[k], true, occurrence);

@@ -1,6 +1,5 @@
-// subsurface(): what a call says of what lies below, and the walks that follow light there until it comes out. Light enters at a
-// surface as if it came evenly from all sides and leaves evenly to all sides, so that what comes in at the end of a walk is what
-// diffuse() finds there; in between nothing is left out.
+// subsurface(): walks below surfaces until light exits. Light enters a surface uniformly from all directions and leaves
+// uniformly, so the light at the end of a walk is what diffuse() finds there; the walk itself is exact.
 #include "integrator/subsurface.h"
 #include "base/exact.h"
 #include "integrator/accumulator.h"
@@ -32,7 +31,7 @@ Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> aske
 
 namespace {
 
-/// By Henyey and Greenstein, about a direction.
+/// Samples the Henyey-Greenstein phase function around a direction.
 Vec3 scattered(const Vec3& dir, float g, const Vec2& u) {
     const double a = std::fabs(double(g)), q = 1 - a + 2 * a * u.x, r = (1 - a) / q;
     const double h = std::clamp(2 * r * r * (1 - u.x) * (1 + a * u.x), 0.0, 2.0); // 1 - cos
@@ -62,7 +61,8 @@ void Walks::run(Sched& sched) {
     }
 }
 
-/// At the shaded point, or at the call's. A point beside the surface is put onto it, along the normal; one within stays there.
+/// The entry at the shaded point, or at the call's point. A point off the surface is moved onto it along the normal; a point
+/// inside stays.
 std::optional<Walks::Entry> Walks::entry(int asked) const {
     const WalkAsked& a = asked_[size_t(asked)];
     const Below& b = below_[size_t(a.below)];
@@ -70,7 +70,7 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
     const bool turned = dot(p.surface.n, c_.rays[size_t(a.point)].dir) > 0;
     const Vec3 side = turned ? -p.surface.n : p.surface.n;
     if (!b.elsewhere) {
-        const float cosine = dot(b.normal, side); // of one that rounding has turned nothing changes
+        const float cosine = dot(b.normal, side); // a normal reversed by rounding has no effect
         return Entry{b.normal == Vec3() || std::fabs(cosine) > 1 - 1e-6f ? side
                      : cosine < 0                                        ? -b.normal
                                                                          : b.normal,
@@ -94,27 +94,27 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
         at.at -= at.out * beside;
         return at;
     }
-    if (leaves) at.out = -at.out; // on the surface, by a normal that points inward
+    if (leaves) at.out = -at.out; // on the surface, with a normal that points inward
     at.at = s.displaced ? s.displacedP : s.P;
     at.surface = s;
     if (s.displaced) at.surface->P = s.displacedP, at.surface->n = s.displacedN;
     return at;
 }
 
-/// Into the surface, as light comes through its boundary that is even outside.
+/// Starts a walk: samples a direction of uniform light refracted into the surface.
 void Walks::start(int asked) {
     const WalkAsked& a = asked_[size_t(asked)];
     const Below& b = below_[size_t(a.below)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const PathRay& ray = c_.rays[size_t(a.point)];
     const std::optional<Entry> entered = entry(asked);
-    if (!entered) return; // there is nothing below
+    if (!entered) return; // there is no interior
     Walker w{asked, {}, {}, a.weight, a.weight, a.vertex};
-    const Vec3 outside = sampleCosine(store_.random(ray).pair(a.vertex, kFlight, 0)); // a way out, about the normal
+    const Vec3 outside = sampleCosine(store_.random(ray).pair(a.vertex, kFlight, 0)); // a direction outside, around the normal
     const double n = b.index, sine2 = (1 - double(outside.z) * outside.z) / (n * n);
-    if (!(sine2 < 1)) return; // all of it is reflected
+    if (!(sine2 < 1)) return; // total reflection
     const double cosine = std::sqrt(1 - sine2);
-    const double through = 1 - fresnelInside(cosine, n); // over its mean, by the flux
+    const double through = 1 - fresnelInside(cosine, n); // relative to its mean over the flux
     const double mean = (1 - subsurface_.halfSpaces.of(b.index).first()) * n * n;
     w.weight = w.begin = a.weight * float(b.index == 1 ? 1 : through / mean);
     w.dir = Basis(-entered->out).toWorld({float(outside.x / n), float(outside.y / n), float(cosine)});
@@ -122,14 +122,13 @@ void Walks::start(int asked) {
     w.at = entered->at;
     if (const auto& on = entered->surface) {
         const Vec3 side = dot(on->n, entered->out) < 0 ? -on->n : on->n;
-        if (const float away = dot(w.dir, side); away > 0)
-            w.dir -= side * (2 * away); // about a tilted normal: it goes in all the same
+        if (const float away = dot(w.dir, side); away > 0) w.dir -= side * (2 * away); // a tilted normal: enters all the same
         w.at = geometry::offsetOrigin(*on, w.dir, b.elsewhere ? 0 : length(p.P - p.surface.P));
     }
     walkers_.push_back(w);
 }
 
-/// How far a walker goes before it scatters: by one channel of what it has left.
+/// Samples the distance to the next scattering by one channel of the walker's weight.
 double Walks::distance(const Walker& w) const {
     const Below& b = below_[size_t(asked_[size_t(w.asked)].below)];
     const Vec2 u = store_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]).pair(w.vertex, kFlight, 1);
@@ -144,7 +143,7 @@ double Walks::distance(const Walker& w) const {
     return sigma > 0 ? -exact::log(1 - std::min(double(u.y), 1 - 0x1p-24)) / sigma : INFINITY;
 }
 
-/// What is left of its weight behind a way, over the density with which it has come so far.
+/// Updates a walker's weight after a distance: transmittance over the density of all channels.
 void Walks::weigh(Walker& w, double way, bool scatters) const {
     const Below& b = below_[size_t(asked_[size_t(w.asked)].below)];
     const Color part = absolute(w.weight);
@@ -170,7 +169,7 @@ accel::Ray Walks::rayOf(const Walker& w, double length) const {
     return r;
 }
 
-/// One event of each walker.
+/// Advances each walker by one event.
 void Walks::step() {
     const WorldImpl& world = world_;
     std::vector<accel::Ray> rays;
@@ -185,7 +184,7 @@ void Walks::step() {
     for (size_t i = 0; i < walkers_.size(); ++i) {
         Walker& w = walkers_[i];
         const int group = below_[size_t(asked_[size_t(w.asked)].below)].group;
-        for (int k = 0; hits[i].valid() && !belongs(hits[i].shape, group); ++k) { // what else stands there
+        for (int k = 0; hits[i].valid() && !belongs(hits[i].shape, group); ++k) { // skips unrelated geometry
             world.goOn(rays[i], hits[i]);
             if (k >= limits::kShadowLayers || !intersector_.meet(rays[i], hits[i])) hits[i] = {};
         }
@@ -198,7 +197,7 @@ void Walks::step() {
 }
 
 bool Walks::scatter(Walker& w, double way) {
-    if (!(way < 1e30)) return false; // out of an inside that has no end there
+    if (!(way < 1e30)) return false; // leaves an interior without a boundary
     const Below& b = below_[size_t(asked_[size_t(w.asked)].below)];
     weigh(w, way, true);
     const Color left = absolute(w.weight), begin = absolute(w.begin);
@@ -215,7 +214,7 @@ bool Walks::scatter(Walker& w, double way) {
     return true;
 }
 
-/// At the boundary: true where it is reflected, or has come into another part of the same inside.
+/// At the boundary: returns true if the walker is reflected, or enters another part of the same interior.
 bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
     const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(w.asked)];
@@ -225,10 +224,10 @@ bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
     weigh(w, hit.distance, false);
     if (!(maxComponent(absolute(w.weight)) > 0) || !isFinite(w.weight)) return false;
     const ShadePoint& p = c_.points[size_t(a.point)];
-    const bool turned = dot(p.surface.n, c_.rays[size_t(a.point)].dir) > 0; // seen from behind: so is the rest
+    const bool turned = dot(p.surface.n, c_.rays[size_t(a.point)].dir) > 0; // seen from behind, as is everything else
     const Vec3 out = turned ? -n : n;
     const double cosine = dot(w.dir, out);
-    if (cosine < 0) { // another primitive of the group begins in this one
+    if (cosine < 0) { // another primitive of the group begins inside this one
         ++w.inside;
         w.at = geometry::offsetOrigin(at, w.dir);
         return true;
@@ -258,7 +257,7 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
         r.weight = x.weight;
         r.vertex = childVertex(x.vertex, kFlight, 4);
         r.counts = r.first = false;
-        r.dir = -x.out; // as if it had come from outside
+        r.dir = -x.out; // as if it came from outside
         if (photons_.photonTrace()) r.trail = shading::kTrailSpread;
         r.footprint = from.footprint.after(length(c_.points[size_t(a.point)].P - from.origin));
         if (r.camera()) r.setStart(0);
@@ -289,7 +288,7 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
     }
 }
 
-/// What light brings where walks came out, as diffuse() has it.
+/// Gathers light at the exits as diffuse() does.
 void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     static const LobeKind* const kind = findLobe("diffuse");
     const WorldImpl& world = world_;
@@ -322,7 +321,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     batches_.giveBack(std::move(c));
 }
 
-/// Where no rays are sent a sky is one light that faces the surface, as in light loops.
+/// If no rays are sent, a sky is one light that faces the surface, as in light loops.
 void Walks::skies(const BatchContext& c, Sched& sched) {
     if (rules_.pickOne || !rules_.lightsAtRequests) return;
     const WorldImpl& world = world_;

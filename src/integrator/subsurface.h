@@ -1,4 +1,4 @@
-// Light that walks below surfaces: subsurface().
+// Random walks below surfaces: subsurface().
 #pragma once
 #include "integrator/subsurfacewalks.h"
 
@@ -17,7 +17,7 @@ class Requests;
 class ShadowRays;
 class VertexLight;
 
-/// The walks that a batch has asked for, and where they come out: points that gather light as diffuse() does.
+/// The walks that a batch has requested, and their exits: points that gather light as diffuse() does.
 class Walks final : Stage {
 public:
     Walks(const StageSet&, BatchContext&, std::span<const WalkAsked>, std::span<const Below>);
@@ -37,12 +37,12 @@ private:
         uint32_t vertex;
         uint32_t shape;
         geometry::SurfacePoint point;
-        Vec3 out; ///< unit normal of the surface, away from its inside
+        Vec3 out; ///< unit surface normal, away from the inside
     };
-    /// Where light enters, and the outward normal about which it does.
+    /// Where light enters, and the outward normal there.
     struct Entry {
         Vec3 out, at;
-        std::optional<geometry::SurfacePoint> surface; ///< that `at` is on; none: a point within
+        std::optional<geometry::SurfacePoint> surface; ///< surface at `at`; none: a point inside
     };
     std::optional<Entry> entry(int asked) const;
     void start(int asked);
@@ -52,13 +52,13 @@ private:
     void probe(int asked);
     void weigh(Walker&, double way, bool scatters) const;
     double distance(const Walker&) const;
-    /// Points of a batch where light is to be found that enters there.
+    /// Turns the exits into points of a batch that gathers irradiance.
     void settleAt(BatchContext&, std::span<const Exit>);
     void gatherAt(std::span<const Exit>, Sched&);
-    /// Takes the exits where surfaces say themselves what enters.
+    /// Handles exits on surfaces whose shaders return the entering light themselves.
     void askSurfaces(Sched&);
-    /// What the shader of the surface, the same for all, says of that light; moves to the front the exits of which it says
-    /// nothing.
+    /// Runs the shader of one surface at the exits; moves the exits to the front that it does not handle, and returns their
+    /// number.
     size_t askAt(std::span<Exit>, Sched&);
     void askLights(BatchContext&, std::span<const Exit>, Sched&);
     void skies(const BatchContext&, Sched&);

@@ -1,4 +1,4 @@
-// What calls of subsurface() say, and what Attribute "subsurface" says of shapes.
+// Reads parameters of subsurface() calls, and Attribute "subsurface" of shapes.
 #include "integrator/subsurfacewalks.h"
 #include "integrator/context.h"
 #include "integrator/occlusioncalls.h"
@@ -10,7 +10,7 @@ namespace alpenglow::transport {
 
 SubsurfaceWalks::SubsurfaceWalks(const StageSet& s) : Stage(s.context), set_(s), occlusion_(s.occlusion) {}
 
-static constexpr int kSamplesElsewhere = 16; ///< of a call under hidden and raytrace
+static constexpr int kSamplesElsewhere = 16; ///< samples of a call under hidden and raytrace
 
 int SubsurfaceWalks::groupNamed(const std::string& name) {
     return groups_.try_emplace(name, int(groups_.size()) + 1).first->second;
@@ -35,13 +35,13 @@ void SubsurfaceWalks::request(BatchContext& c, const SiteInfo& s, const ShadePoi
     const float many = of.samples > 0 ? float(of.samples) : rules_.pickOne ? 1 : float(kSamplesElsewhere);
     const float samples = site.samples < 0 ? many : f(site.samples);
     l.samples = occlusion_.samplesOf(std::max(1.f, samples), p.shape, s, c); // not a number: 1
-    l.rays = &kSpecularKind; // of one, that walks: --no-indirect leaves what lights bring by it
+    l.rays = &kSpecularKind; // of a single walk: with --no-indirect the light of lights still counts
     l.lights = l.deltaLights = false;
     l.below = int32_t(below.size());
     const auto triple = [&](int row) { return row < 0 ? Vec3() : Vec3(f(row), f(row + 1), f(row + 2)); };
     b.normal = normalizeOr(triple(site.normal), Vec3());
     b.from = triple(site.point);
-    // The facet of a displaced surface, and the point that its shader makes, may lie a micropolygon apart.
+    // For a displaced surface, the facet and the shader's point may differ by a micropolygon.
     const float apart = p.surface.displaced ? length(p.surface.dPdu) * p.du + length(p.surface.dPdv) * p.dv : 0;
     const float away = length(b.from - p.P);
     b.elsewhere = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;

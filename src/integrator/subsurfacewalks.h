@@ -1,4 +1,4 @@
-// subsurface(): what calls say of what lies below, and the walks that batches have asked for (subsurface.h follows them).
+// subsurface(): parameters of the material from calls and attributes, and the requested walks (subsurface.h follows them).
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -14,12 +14,12 @@ struct StageSet;
 class SubsurfaceWalks final : Stage {
 public:
     explicit SubsurfaceWalks(const StageSet&);
-    /// The lobe of a subsurface(): its rays walk below the surface.
+    /// Makes the lobe of a subsurface() call: its rays walk below the surface.
     void request(BatchContext&, const SiteInfo&, const ShadePoint&, const std::function<float(int)>& row, LobeVertex&);
-    /// Follows the walks that a batch has asked for.
+    /// Follows the walks that a batch has requested.
     void walk(BatchContext&, Sched&);
     void clear();
-    /// What Attribute "subsurface" says of a shape. Shapes with the same group bound one inside: those of a name, or of the same
+    /// Attribute "subsurface" of a shape. Shapes of the same group bound one inside: shapes that give the same name, or share
     /// attributes.
     struct OfShape : SubsurfaceValues {
         using SubsurfaceValues::SubsurfaceValues;
@@ -27,8 +27,8 @@ public:
     };
     const OfShape& ofShape(const scene::Attributes&);
 
-    std::vector<Below> below;     ///< of Requests::lobes
-    std::vector<WalkAsked> walks; ///< that the lobes of a batch have asked for; taken where these are done
+    std::vector<Below> below;     ///< for Requests::lobes
+    std::vector<WalkAsked> walks; ///< requested by the lobes of a batch; removed when these are done
     HalfSpaces halfSpaces;
 
 private:

@@ -8,9 +8,9 @@ namespace alpenglow::transport {
 
 SurfacePoints::SurfacePoints(const StageSet& s) : Stage(s.context), store_(s.store) {}
 
-/// The surface at each hit of a batch, as far as its kernel reads it. to: where that of hit i is written.
+/// Computes the surface at each hit of a batch as far as its kernel reads it. to: destination for hit i.
 template <class To> void SurfacePoints::placeSurfaces(const BatchContext& c, To to) {
-    std::vector<geometry::HitRef>& run = run_; // of one shape
+    std::vector<geometry::HitRef>& run = run_; // hits of one shape
     for (size_t i = 0; i < c.hits.size();) {
         const uint32_t shape = c.hits[i].shape;
         run.clear();
@@ -25,10 +25,10 @@ void SurfacePoints::placeSurfaces(BatchContext& c) {
     placeSurfaces(c, [&](size_t i) { return &c.surfaces[i]; });
 }
 
-/// Fills a context with the points of its hits.
+/// Fills a batch with the points of its hits.
 void SurfacePoints::placePoints(BatchContext& c) {
     const size_t n = c.hits.size();
-    c.points.resize(n); // pointers into points and rays stay good
+    c.points.resize(n); // pointers into points and rays stay valid
     c.depths.clear();
     for (size_t i = 0; world_.shadesAtOpen_ && world_.moves_ && i < n; ++i)
         c.depths.push_back(c.rays[i].origin.z + c.rays[i].dir.z * float(c.hits[i].distance));
@@ -36,7 +36,7 @@ void SurfacePoints::placePoints(BatchContext& c) {
     for (size_t i = 0; i < n; ++i) completePoint(c, i);
 }
 
-/// A point whose surface is known. It may hold another point's numbers: all of it is written.
+/// Completes a point whose surface is known. It may hold values of another point: all are overwritten.
 void SurfacePoints::completePoint(BatchContext& c, size_t i) {
     const PathRay& r = c.rays[i];
     ShadePoint& p = c.points[i];
@@ -47,7 +47,7 @@ void SurfacePoints::completePoint(BatchContext& c, size_t i) {
     p.shape = world_.shapes_[c.hits[i].shape].get();
     p.P = p.surface.P;
     p.N = p.surface.N;
-    p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind what they passed through
+    p.I = p.P - r.begin(); // RISpec: P - E, though rays start at the near plane, or behind surfaces that they passed
     p.E = r.camera() ? Vec3(0, 0, 0) : r.begin();
     p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();
     world_.tellTime(p);

@@ -1,5 +1,5 @@
-// Running a surface's kernel over a batch of points: to its end, or strip by strip where it waits for rays (strips.h); then what
-// it asked for.
+// Runs a surface's kernel over a batch of points, to its end or strip by strip if it waits for rays (strips.h); then interprets
+// its requests.
 #include "integrator/surfaceshading.h"
 #include "base/direction.h"
 #include "integrator/accumulator.h"
@@ -33,7 +33,7 @@ SurfaceShading::SurfaceShading(const StageSet& s)
       lightOutputs_(s.lightOutputs), paths_(s.paths), photons_(s.photons), store_(s.store), requests_(s.requests),
       shadows_(s.shadows), transparency_(s.transparency), vertexLight_(s.vertexLight), waitingKernels_(s.waitingKernels) {}
 
-/// What a call whose ray has met a point is told besides light.
+/// Writes results other than light to the call whose ray hit the point.
 void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacity, Sched& sched) {
     const PathRay& ray = c.rays[size_t(i)];
     const TargetId target = c.targets[size_t(i)];
@@ -45,7 +45,7 @@ void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacit
         if (const auto asks = gathers_.gathered.find(target); asks != gathers_.gathered.end())
             gathers_.tellGather(c, i, *asks->second);
     const RayExtra& extra = store_.extraOf(ray);
-    if (extra.fade.fades() && maxComponent(extra.environment) > 0) { // what does not block shows the sky
+    if (extra.fade.fades() && maxComponent(extra.environment) > 0) { // the sky shows through partial blocking
         const Color light = extra.whole * extra.environment * opacity * (1 - extra.kept);
         accumulator_.deposit(sched, {target, light, LightEvent::Map, &ray, extra.share});
         if (TraceSums* sums = accumulator_.sumsOf(target)) sums->add(TraceSums::Environment, light);
@@ -62,7 +62,7 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
     shading::Batch& b = *c.batch;
     int ci = b.plan().Ci, oi = b.plan().Oi;
     cameraOutputs_.begin(c);
-    bool suspended = b.kernel().facts().suspends; // then nobody has asked for the atmosphere yet
+    bool suspended = b.kernel().facts().suspends; // then the atmosphere has not run yet
     const bool media = !world_.media_.empty();
     if (suspended) atmosphere_.hazeOfBatch(c, first, lanes, media || paths_.automaton);
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
@@ -75,12 +75,12 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
         }
         tellAsker(c, i, opacity, sched);
         Color shown = color;
-        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // shade() has scaled pairs
+        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // shade() has scaled the pairs
             shown = c.haze[size_t(i)].shown;
             opacity = c.haze[size_t(i)].opacity;
         }
         if (!isFinite(opacity)) accumulator_.notFinite(&ray, "Oi", binding.surface.get());
-        const bool hazed = !c.haze.empty() && c.haze[size_t(i)].on; // then what it gives and what the volume adds are told apart
+        const bool hazed = !c.haze.empty() && c.haze[size_t(i)].on; // then light of the surface and of the volume are separated
         if (isFinite(shown))
             accumulator_.deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share,
                                          binding.surface.get(), hazed ? uint16_t(0) : paths_.next(ray.path, paths_.object)});
@@ -133,7 +133,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     if (c->displaced) c->batch->tell(*c->displaced->batch);
     if (!gathers_.gathered.empty()) gathers_.takeSent(*c);
     auto aside = lightOutputs_.asides(*c, sched);
-    if (c->binding->moveS) displacement_.moveToFacets(*c); // the kernel moves P itself: it begins with the surface as it was
+    if (c->binding->moveS) displacement_.moveToFacets(*c); // the kernel moves P itself: it starts with the undisplaced surface
     const int n = int(c->points.size());
     counters_.points += uint64_t(n);
     ++counters_.batches;
@@ -148,7 +148,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     kernel.run(&c->batch->call());
     c->ran();
 
-    // Atmospheres scale what the kernel asks for.
+    // Atmospheres scale the requests of the kernel.
     const bool media = !world_.media_.empty();
     const bool hazy = !photons_.photonTrace() && (media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) {
                                                       return world_.bindings_[size_t(b)].atmosphere.shader != nullptr;
@@ -168,7 +168,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
             return finish(*c, 0, n, sched);
         }
     }
-    std::vector<AskedLobe> asked; // only where outputs share lobes
+    std::vector<AskedLobe> asked; // only if outputs share lobes
     requests_.requestPairs(*c, aside.empty() ? nullptr : &asked, sched);
     if (photons_.photonTrace()) photons_.takeModels(*c, false);
     if (world_.settings_.hider == Hider::Path) transparency_.tellClear(*c);

@@ -1,5 +1,5 @@
-// Shade: the surface's kernel over a batch of points, its atmosphere, and what becomes of it: pairs become requests, what the
-// surface gives by itself is deposited, rays go on behind what is not opaque. A kernel that waits for rays goes on in strips.
+// Surface shading: runs the surface kernel over a batch of points and the atmosphere, interprets the pairs as requests, adds the
+// surface's own light, and continues rays behind transparent surfaces. Kernels that wait for rays continue in strips.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -28,13 +28,14 @@ class WaitingKernels;
 class SurfaceShading final : Stage {
 public:
     explicit SurfaceShading(const StageSet&);
-    /// Where all of a batch are surfaces that show nothing its rays go on, and no kernel runs. False: it is to be shaded.
+    /// If all surfaces of a batch are invisible, continues its rays without running a kernel. Returns false if the batch must be
+    /// shaded.
     bool vanish(BatchContext&, Sched&);
-    /// Shades a batch whose points, binding and kernel are known.
+    /// Shades a batch whose points, binding and kernel are set.
     void shade(const std::shared_ptr<BatchContext>&, Sched&);
-    /// Once the kernel has run at some points. `asked`: by lane, the rays that a waiting kernel has asked for there.
+    /// Completes points whose kernel has run. `asked`: by lane, rays that a waiting kernel has requested.
     void finish(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
-    /// What a call whose ray has met a point is told besides light.
+    /// Writes results other than light (distance, normal, outputs) to the call whose ray hit the point.
     void tellAsker(const BatchContext&, int point, const Color& opacity, Sched&);
 
 private:

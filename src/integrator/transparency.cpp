@@ -22,7 +22,7 @@ bool isOpaque(const shading::Batch& b) {
 }
 
 Color Transparency::leftBehind(const BatchContext& c, int i) const {
-    // An atmosphere goes on behind what is not opaque, as if nothing were there. A medium ends, and another begins.
+    // An atmosphere continues behind a transparent surface, as if it were absent. A medium ends there, and another one begins.
     if (world_.media_.empty() || c.haze.empty() || !c.haze[size_t(i)].on) return Color(1);
     const PathRay& ray = c.rays[size_t(i)];
     const SurfaceBinding& binding = world_.bindings_[size_t(c.bindings[size_t(i)])];
@@ -44,15 +44,15 @@ Color Transparency::clearAt(const BatchContext& c, int i) const {
     return clear;
 }
 
-/// What comes through at each point, which decides which ray goes on.
+/// Sets the transparency at each point, for the choice of the continuation.
 void Transparency::tellClear(BatchContext& c) {
     c.clear.resize(c.points.size());
     for (size_t i = 0; i < c.points.size(); ++i) c.clear[i] = clearAt(c, int(i));
     c.passes.assign(c.points.size(), 1.f);
 }
 
-/// A surface with Sides 1 is not there for who comes from behind. Photons go the other way: what comes from the front is there
-/// and goes straight on as well, for those who look from behind; what comes from behind is there alone.
+/// A surface with Sides 1 is invisible from behind. Photons travel in reverse: those from the front are scattered, and also pass
+/// straight on for viewers behind; those from behind are scattered only.
 Color Transparency::goesOn(const BatchContext& c, int i) const {
     const ShadePoint& p = c.points[size_t(i)];
     if (photons_.photonTrace() && p.shape->oneSided() && dot(c.rays[size_t(i)].dir, meetsNormal(p.surface)) < 0)
@@ -69,12 +69,12 @@ void Transparency::passThrough(const SurfaceBinding& b, const PathRay& ray, Targ
     r.weight = (had.fade.fades() || had.indirect != 1 ? had.whole : ray.weight) * t;
     float chosen = 1;
     const Settings& set = world_.settings_;
-    // What a camera ray shows behind a surface is always followed, so that opacity, depth and AOVs are exact.
+    // Camera rays always continue behind surfaces, so that opacity, depth and AOVs are exact.
     if (rules_.roulette && ray.bounces > 0) {
         const int depth = ray.bounces + ray.layers + 1;
         auto dice = [&] { return store_.random(ray).one(ray.vertex, kPassThrough, 0); };
         float q = 1;
-        if (asked > 0) { // one more of what the kernel has asked for
+        if (asked > 0) { // one more of the rays that the kernel requested
             r.asked = uint16_t(std::min<uint32_t>(std::max<uint32_t>(ray.asked, asked + 1), 0xffff));
             q = std::min(rouletteWaiting(ray.bounces, ray.asked, asked, 1), maxComponent(transparency));
             if (q < 1 && dice() >= q) q = 0;

@@ -1,4 +1,4 @@
-// Transparency: what comes through at shaded points, 0 to 1, and the rays that go on behind them.
+// Transparency: weight of light from behind shaded points, 0 to 1, and the rays that continue there.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -12,20 +12,21 @@ class PhotonStage;
 class RayStore;
 struct StageSet;
 
-/// Whether nothing goes on behind any point of a batch that has run.
+/// Whether all points of a batch that has run are opaque.
 bool isOpaque(const shading::Batch&);
 
 class Transparency final : Stage {
 public:
     explicit Transparency(const StageSet&);
-    /// BatchContext::clear and passes: what comes through at each point, which decides which ray goes on.
+    /// Sets BatchContext::clear and passes from the transparency at each point, for choosing between lobes and continuation.
     void tellClear(BatchContext&);
-    /// The share of the light from behind a shaded point that comes through.
+    /// Transparency of a shaded point, including the volume before it.
     Color clearAt(const BatchContext&, int point) const;
-    /// Of a ray, what goes on behind its point: clearAt(), of some photons more.
+    /// Weight of a continuing ray: clearAt(); larger for photons at one-sided surfaces.
     Color goesOn(const BatchContext&, int point) const;
-    Color leftBehind(const BatchContext&, int point) const; ///< of it, by what the volume before the point takes
-    /// Goes on behind a point. `chance`: with which it was chosen to; `asked`: rays that a waiting kernel has asked for there.
+    Color leftBehind(const BatchContext&, int point) const; ///< transmittance of the volume before the point
+    /// Continues a ray behind a point. `chance`: probability of this choice; `asked`: rays that a waiting kernel has requested
+    /// there.
     void passThrough(const SurfaceBinding&, const PathRay&, TargetId, const ShadePoint&, const Color& transparency, float chance,
                      uint32_t asked, Sched&);
 

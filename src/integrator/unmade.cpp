@@ -5,7 +5,7 @@
 
 namespace alpenglow::transport {
 namespace {
-/// Null: a world of somebody else's making, which has no procedurals.
+/// Null for other implementations of World (tests), which have no procedurals.
 const WorldImpl* inside(const World& w) { return dynamic_cast<const WorldImpl*>(&w); }
 } // namespace
 

@@ -1,21 +1,22 @@
-// Procedurals whose content is made once a ray comes to their bound (scene/unmade.h): what a world knows of them.
+// Deferred procedurals, which are expanded when a ray reaches their bound (scene/unmade.h): interface of a world.
 #pragma once
 #include "world/world.h"
 #include <vector>
 
 namespace alpenglow::transport {
 
-/// How many bounds on its way a ray asks for, at most (1 before this call). Before anything is traced.
+/// Sets how many bounds along its way a ray records, at most (initially 1). Call before tracing.
 void askForProcedurals(const World&, int most);
-/// Numbers of those that rays came to: what such rays brought is void, and to be traced again in a world that has their content.
+/// Numbers of the procedurals that rays reached. Results of these rays are undefined; trace them again in a world that has the
+/// contents.
 std::vector<int> procedurals(const World&);
-/// Whether some are left that are not made.
+/// Whether deferred procedurals are left.
 bool hasUnmade(const World&);
-/// Whether work is to be done on this world that needs all of its shapes: baking, photon maps, light that is interpolated.
+/// Whether the world needs all of its shapes: for baking, photon maps, irradiance caching.
 bool needsAllShapes(const World&);
-/// Takes over from the world before it what shaders have said once and for all. Nobody traces meanwhile.
+/// Takes over constant results of shaders from the previous world. Call while no thread traces.
 void takeOver(const World&, const World& before);
-/// Whether shaders have printed what is not written yet.
+/// Whether shaders have printed output that is not yet written.
 bool hasPrints(const World&);
 
 } // namespace alpenglow::transport

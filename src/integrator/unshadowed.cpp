@@ -1,5 +1,5 @@
-// What a trace() would find along a ray if nothing but area lights were there: "unshadowedarealight" of rays for which no light
-// is sampled, and "unshadowedenvironment", which area lights still block.
+// Light along a ray of trace() if only area lights existed: "unshadowedarealight" for rays without light samples, and
+// "unshadowedenvironment", which area lights still occlude.
 #include "integrator/connection.h"
 #include "integrator/intersector.h"
 #include "integrator/lightkernels.h"
@@ -23,7 +23,7 @@ void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& thr
     accel::Hit hit;
     while (intersector_.meet(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
     if (!hit.valid()) return sums.add(TraceSums::UnshadowedEnvironment, through * environment);
-    // Lobes that sample lights know by their samples what area lights would give.
+    // Lobes that sample lights estimate area lights by these samples.
     const auto isOn = [&](int light) {
         const BoundLight& b = world_.lights_[size_t(light)];
         return b.kind == LightKind::Area && !b.mean && b.strategy != LightStrategy::Illuminance;

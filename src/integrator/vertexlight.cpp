@@ -15,7 +15,7 @@ VertexLight::VertexLight(const StageSet& s)
 
 void VertexLight::gather(BatchContext& c, Sched& sched) {
     if (!ambient_.asked.empty()) ambient_.gather(c);
-    std::unique_ptr<Gather> g = std::move(gather_); // taken, so that one inside of this has its own
+    std::unique_ptr<Gather> g = std::move(gather_); // moved out, so that a nested call makes its own
     if (!g) g = std::make_unique<Gather>(set_);
     g->run(c, sched);
     requests_.apartAt.clear();

@@ -1,4 +1,4 @@
-// Light over the lobes that a batch asks for (Requests::lobes): Gather does it, stage by stage (gather.h), then walks go below.
+// Light over the lobes that a batch requests (Requests::lobes): runs the stages of Gather (gather.h), then the subsurface walks.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -16,15 +16,15 @@ class VertexLight final : Stage {
 public:
     explicit VertexLight(const StageSet&);
     ~VertexLight();
-    /// Gathers light over the lobes, all of points of this batch, and takes them. Shadow rays are left in their queue.
+    /// Transports light over the lobes, all of points of this batch, and removes them. Leaves shadow rays in their queue.
     void gather(BatchContext&, Sched&);
-    /// Says once of a shader that its indirect light is scaled down. more: it reflects more than it receives by itself.
+    /// Warns once per shader that its indirect light is scaled down. more: its reflectance alone exceeds 1.
     void tellScaled(const SurfaceBinding&, bool more);
 
 private:
     const StageSet& set_;
-    std::unique_ptr<Gather> gather_; ///< its memory is used again
-    /// Shaders that were named because they reflect more than they receive; with what comes through.
+    std::unique_ptr<Gather> gather_; ///< reused for its memory
+    /// Shaders already reported: reflectance over 1; reflectance plus transparency over 1.
     std::set<const void*> tamed_, tamedClear_;
     AmbientLight& ambient_;
     Requests& requests_;

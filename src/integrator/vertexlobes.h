@@ -1,4 +1,4 @@
-// The lobes of a batch by point, and what all stages over them ask (gather.h).
+// The lobes of a batch by point, and functions that the stages of gather.h share.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/raystore.h"
@@ -13,13 +13,13 @@ class VertexLobes {
 public:
     void begin(BatchContext&, std::span<const LobeVertex>);
     BatchContext* batch = nullptr;
-    std::vector<int> first, order; ///< of point p the lobes order[first[p]] to order[first[p + 1]], as they were asked for
+    std::vector<int> first, order; ///< lobes of point p in request order: order[first[p]] to order[first[p + 1]], exclusive
 
 private:
     std::vector<int> next_;
 };
 
-/// A stage over them.
+/// Base of the stages over them.
 class VertexStage : protected Stage {
 protected:
     VertexStage(const StageSet& s, const VertexLobes& v)
@@ -29,10 +29,10 @@ protected:
         return std::span<const int>(order_).subspan(size_t(begin_[point]), size_t(begin_[point + 1] - begin_[point]));
     }
     const PathRay& rayOf(const LobeVertex& l) const { return c_->rays[size_t(l.point)]; }
-    /// The key of a point's light samples: affine lobes of a vertex share them, each suspended request has its own.
+    /// Random number key of a point's light samples: affine lobes of a vertex share it, each suspended request has its own.
     uint32_t lightVertex(size_t point) const;
-    Vec3 origin(const LobeVertex&, const Vec3& w) const; ///< where a ray of a lobe in direction w starts
-    /// A waiting kernel's result goes to the target of its own that has no shares; what it makes of it has those of its ray.
+    Vec3 origin(const LobeVertex&, const Vec3& w) const; ///< origin of a lobe's ray in direction w
+    /// Results of a waiting kernel go to a target of its own without shares; the kernel's value then has those of its ray.
     int32_t shareOf(const LobeVertex& l) const {
         return l.ownsTarget ? -1 : l.share >= 0 ? l.share : store_.extraOf(rayOf(l)).share;
     }

@@ -1,4 +1,4 @@
-// Kernels that wait: strips are started, ask together, and go on when their rays are back.
+// Kernels that wait for rays: starts strips, makes their requests together, resumes them.
 #include "integrator/waitingkernels.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
@@ -40,7 +40,7 @@ void WaitingKernels::start(const std::shared_ptr<BatchContext>& c, Sched& sched)
 }
 
 void WaitingKernels::follow(Sched& sched) {
-    // Strips of a batch stand together: it started them, and they go on in that order.
+    // Strips of a batch are consecutive: it started them, and they resume in that order.
     std::vector<KernelStrip*> strips;
     strips.swap(waiting);
     for (size_t first = 0, end; first < strips.size(); first = end) {
@@ -74,7 +74,7 @@ int WaitingKernels::roomFor(const rsl::CompiledKernel& k, const rsl::CompiledKer
     size_t frame = 0;
     for (const rsl::CompiledKernel* one : {&k, other})
         if (const auto known = frameOf_.find(one); known != frameOf_.end()) frame = std::max(frame, known->second);
-    if (frame == 0) return k.lanes(); // the first strip tells
+    if (frame == 0) return k.lanes(); // unknown before the first strip
     const size_t most = sched.frameLimit() / 4, left = most - std::min(most, sched.frameBytes());
     return int(std::clamp<size_t>(left / frame, 1, size_t(limits::kSliceRays))) * k.lanes();
 }

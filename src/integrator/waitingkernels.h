@@ -1,4 +1,5 @@
-// Kernels that wait: strips are started, ask together, and go on when their rays are back (strips.h).
+// Kernels that wait for rays: starts their strips, makes their requests together, and resumes them when the rays are done
+// (strips.h).
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
@@ -21,29 +22,30 @@ public:
     explicit WaitingKernels(const StageSet&);
     /// Starts the strips of a kernel that waits for rays.
     void start(const std::shared_ptr<BatchContext>&, Sched&);
-    /// Follows what strips have asked for since the last call: those of a batch together.
+    /// Processes the requests of strips since the last call, those of a batch together.
     void follow(Sched&);
-    /// Points of a waiting kernel that may be shaded now, so that its frames stay within a quarter of the limit; at least one
-    /// strip. `other`: the same shader for points of several surfaces, or null; which of the two runs is not known yet.
+    /// Number of points of a waiting kernel that may be shaded now, so that its frames stay within a quarter of the limit; at
+    /// least one strip. `other`: the same shader for points of several surfaces, or null; which of the two will run is not yet
+    /// known.
     int roomFor(const rsl::CompiledKernel&, const rsl::CompiledKernel* other, const Sched&) const;
 
-    // What strips call.
+    // Called by strips.
     Accumulator& accumulator;
     GatherCalls& gathers;
     Requests& requests;
     ShadowRays& shadows;
     SurfaceShading& shading;
-    /// What a strip keeps, and its batch once it is done: used again.
+    /// Returns a finished strip's memory and batch to their pools.
     StripMemory takeMemory();
     void giveBack(StripMemory, std::shared_ptr<BatchContext>);
-    std::vector<KernelStrip*> waiting; ///< whose requests nobody has followed yet
+    std::vector<KernelStrip*> waiting; ///< with unprocessed requests
     void sawDepth(int bounces) { counters_.depthMax = std::max(counters_.depthMax, bounces); }
 
 private:
-    std::vector<StripMemory> memory_; ///< of strips that are done
+    std::vector<StripMemory> memory_; ///< of finished strips
     BatchPool& batches_;
     BlockVertices& blocks_;
-    std::unordered_map<const rsl::CompiledKernel*, size_t> frameOf_; ///< bytes of a strip's frame, of kernels that were started
+    std::unordered_map<const rsl::CompiledKernel*, size_t> frameOf_; ///< bytes of a strip's frame, by kernel
     VertexLight& vertexLight_;
 };
 

@@ -257,6 +257,26 @@ TEST_F(Gltf, TakesNoHarmFromAnyBytes) {
     EXPECT_GT(readable, 0);
 }
 
+// What the user names may be a link; what the file names must lie below its folder, wherever links lead.
+TEST_F(Gltf, ReadsOnlyBelowItsFolder) {
+    namespace fs = std::filesystem;
+    fs::create_directory(dir / "in");
+    std::ofstream(dir / "out.gltf") << square("{}").text();
+    std::ofstream(dir / "data.bin") << std::string(12, 'x');
+    fs::create_symlink(dir / "out.gltf", dir / "in/link.gltf");
+    Diagnostics d;
+    EXPECT_TRUE(readForeignModel((dir / "in/link.gltf").string(), d));
+    fs::create_symlink(dir / "data.bin", dir / "in/data.bin");
+    for (const std::string uri : {"../data.bin", "data.bin"}) {
+        EXPECT_FALSE(read(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":")" + uri + R"("}]})", "in/m.gltf"))
+            << uri;
+        EXPECT_EQ(errors, 1);
+    }
+    fs::remove(dir / "in/data.bin");
+    fs::copy(dir / "data.bin", dir / "in/data.bin");
+    EXPECT_TRUE(read(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"data.bin"}]})", "in/m.gltf")) << said;
+}
+
 TEST_F(Gltf, AMissingModuleIsAnErrorThatSaysSo) {
     setenv("ALPENGLOW_GLTF", "/nowhere/none.so", 1);
     EXPECT_FALSE(read(square("{}").text()));

@@ -3,15 +3,19 @@
 #include "assimpread.h"
 #include "models/modelfile.h"
 #include <algorithm>
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <stdexcept>
 
 namespace alpenglow::models {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -23,8 +27,37 @@ Matrix turned(const aiMatrix4x4& a) {
     return m;
 }
 
+/// Opens what lies in the folder of the model or below, links followed, and only to read it.
+class FolderFiles : public Assimp::DefaultIOSystem {
+public:
+    explicit FolderFiles(const std::string& model) {
+        std::error_code e;
+        const fs::path parent = fs::path(model).parent_path();
+        folder_ = fs::canonical(parent.empty() ? fs::path(".") : parent, e);
+        model_ = fs::canonical(model, e); // it may be a link: the user named it
+    }
+    bool Exists(const char* file) const override { return inside(file) && DefaultIOSystem::Exists(file); }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        return std::string_view(mode).find_first_of("wa+") == std::string_view::npos && inside(file)
+                   ? DefaultIOSystem::Open(file, mode)
+                   : nullptr;
+    }
+    bool DeleteFile(const std::string&) override { return false; }
+    bool CreateDirectory(const std::string&) override { return false; }
+
+private:
+    bool inside(const char* name) const {
+        std::error_code e;
+        const fs::path file = fs::canonical(name, e);
+        const bool below = std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first == folder_.end();
+        return !e && (below || file == model_);
+    }
+    fs::path folder_, model_;
+};
+
 void readAny(const std::string& path, Model& out) {
     Assimp::Importer importer;
+    importer.SetIOHandler(new FolderFiles(path)); // the importer's from now on
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, 0);
     importer.SetPropertyInteger(AI_CONFIG_PP_LBW_MAX_WEIGHTS, 8);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);

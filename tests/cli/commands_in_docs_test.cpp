@@ -32,8 +32,8 @@ TEST_F(CommandsInDocs, AreCommandsAndOptionsThatThereAre) {
     std::vector<fs::path> pages{root / "README.md", root / "CONTRIBUTING.md", root / "SECURITY.md"};
     for (const auto& e : fs::directory_iterator(root / "docs"))
         if (e.path().extension() == ".md") pages.push_back(e.path());
-    const std::set<std::string> commands{"render", "view",  "eval", "shade",  "compile", "info", "probe",
-                                         "ptc",    "merge", "diff", "maketx", "lsp",     "help", "rib"};
+    const std::set<std::string> commands{"render", "view", "eval",   "shade", "compile", "info", "probe", "ptc",
+                                         "merge",  "diff", "maketx", "lsp",   "help",    "rib",  "from"};
     std::map<std::string, std::string> help;
     int lines = 0, options = 0;
     for (const fs::path& page : pages)

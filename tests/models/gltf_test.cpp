@@ -223,6 +223,25 @@ TEST_F(Gltf, FaultsAreErrorsEach) {
     }
 }
 
+// Two triangles that draco_encoder (1.5.5, 14 bits) has packed.
+TEST_F(Gltf, UnpacksDraco) {
+    const std::string packed = "RFJBQ08CAgEBAAAABAIAAgAAAR//AREB/wAAAQAJAwAAAgEBAQAPAwEQLwEwAwAoggDA/w8ABAD/PwAAAPz/ACAAAAAAAP8/"
+                               "AAAAAAAAAAAAAAAAAAAAAABADg==";
+    const auto m = read(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0,"extensions":{"KHR_draco_mesh_compression":
+        {"bufferView":0,"attributes":{"POSITION":0}}}}]}],"accessors":[{"componentType":5123,"count":6,"type":"SCALAR"},
+        {"componentType":5126,"count":4,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":91}],
+        "buffers":[{"byteLength":91,"uri":"data:application/octet-stream;base64,)" +
+                        packed + R"("}]})");
+    if (said.find("compressed by Draco, without") != said.npos) GTEST_SKIP() << "built without Draco";
+    ASSERT_TRUE(m) << said;
+    EXPECT_EQ(said, "");
+    const Part& p = m->meshes.at(0).parts.at(0);
+    EXPECT_EQ(p.vertices(), 4u);
+    EXPECT_NEAR(area(p), 1 + .5 * std::sqrt(.25 + 1 + 4), 1e-3); // the second: |(0, 1, .5) x (-2, 1, 0)| / 2
+}
+
 // A file whose bytes were changed at random is read, or it is an error; this process goes on.
 TEST_F(Gltf, TakesNoHarmFromAnyBytes) {
     const std::string whole = square(R"({"pbrMetallicRoughness":{"metallicFactor":0}})").binary();
@@ -236,6 +255,26 @@ TEST_F(Gltf, TakesNoHarmFromAnyBytes) {
         EXPECT_TRUE(m || errors > 0);
     }
     EXPECT_GT(readable, 0);
+}
+
+// What the user names may be a link; what the file names must lie below its folder, wherever links lead.
+TEST_F(Gltf, ReadsOnlyBelowItsFolder) {
+    namespace fs = std::filesystem;
+    fs::create_directory(dir / "in");
+    std::ofstream(dir / "out.gltf") << square("{}").text();
+    std::ofstream(dir / "data.bin") << std::string(12, 'x');
+    fs::create_symlink(dir / "out.gltf", dir / "in/link.gltf");
+    Diagnostics d;
+    EXPECT_TRUE(readForeignModel((dir / "in/link.gltf").string(), d));
+    fs::create_symlink(dir / "data.bin", dir / "in/data.bin");
+    for (const std::string uri : {"../data.bin", "data.bin"}) {
+        EXPECT_FALSE(read(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":")" + uri + R"("}]})", "in/m.gltf"))
+            << uri;
+        EXPECT_EQ(errors, 1);
+    }
+    fs::remove(dir / "in/data.bin");
+    fs::copy(dir / "data.bin", dir / "in/data.bin");
+    EXPECT_TRUE(read(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"data.bin"}]})", "in/m.gltf")) << said;
 }
 
 TEST_F(Gltf, AMissingModuleIsAnErrorThatSaysSo) {

@@ -3,15 +3,19 @@
 #include "assimpread.h"
 #include "models/modelfile.h"
 #include <algorithm>
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <stdexcept>
 
 namespace alpenglow::models {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -23,8 +27,37 @@ Matrix turned(const aiMatrix4x4& a) {
     return m;
 }
 
+/// Opens what lies in the folder of the model or below, links followed, and only to read it.
+class FolderFiles : public Assimp::DefaultIOSystem {
+public:
+    explicit FolderFiles(const std::string& model) {
+        std::error_code e;
+        const fs::path parent = fs::path(model).parent_path();
+        folder_ = fs::canonical(parent.empty() ? fs::path(".") : parent, e);
+        model_ = fs::canonical(model, e); // it may be a link: the user named it
+    }
+    bool Exists(const char* file) const override { return inside(file) && DefaultIOSystem::Exists(file); }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        return std::string_view(mode).find_first_of("wa+") == std::string_view::npos && inside(file)
+                   ? DefaultIOSystem::Open(file, mode)
+                   : nullptr;
+    }
+    bool DeleteFile(const std::string&) override { return false; }
+    bool CreateDirectory(const std::string&) override { return false; }
+
+private:
+    bool inside(const char* name) const {
+        std::error_code e;
+        const fs::path file = fs::canonical(name, e);
+        const bool below = std::mismatch(folder_.begin(), folder_.end(), file.begin(), file.end()).first == folder_.end();
+        return !e && (below || file == model_);
+    }
+    fs::path folder_, model_;
+};
+
 void readAny(const std::string& path, Model& out) {
     Assimp::Importer importer;
+    importer.SetIOHandler(new FolderFiles(path)); // the importer's from now on
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, 0);
     importer.SetPropertyInteger(AI_CONFIG_PP_LBW_MAX_WEIGHTS, 8);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -98,8 +131,13 @@ void AssimpReader::cameras() {
         to.far = double(c.mClipPlaneFar);
         const double aspect = to.aspect > 0 ? to.aspect : 16.0 / 9, half = double(c.mHorizontalFOV) / 2;
         to.perspective = !(c.mOrthographicWidth > 0);
-        if (to.perspective) to.yfov = 2 * std::atan(std::tan(half) / aspect);
-        else to.halfHeight = double(c.mOrthographicWidth) / aspect;
+        if (to.perspective && half < .01) { // assimp 5.2 reads none of Collada's and leaves its default, taken for degrees
+            warn("the field of view of camera \"" + to.name + "\" cannot be read; 46 degrees are taken");
+        } else if (to.perspective) {
+            to.yfov = 2 * std::atan(std::tan(half) / aspect);
+        } else {
+            to.halfHeight = double(c.mOrthographicWidth) / aspect;
+        }
         below(c.mName, c.mPosition, c.mLookAt, c.mUp).camera = int(i);
     }
 }

@@ -107,7 +107,8 @@ void AssimpReader::material(const aiMaterial& m, Material& to) {
         std::fill(to.baseColor, to.baseColor + 3, 1.0); // black under a map is what exporters leave there
     number(m, AI_MATKEY_METALLIC_FACTOR, &to.metalness);
     double shininess = 0;
-    if (!number(m, AI_MATKEY_ROUGHNESS_FACTOR, &to.roughness) && number(m, AI_MATKEY_SHININESS, &shininess) && shininess > 0)
+    number(m, AI_MATKEY_SHININESS, &shininess);
+    if (!number(m, AI_MATKEY_ROUGHNESS_FACTOR, &to.roughness) && shininess > 0)
         to.roughness = std::sqrt(std::sqrt(2 / (shininess + 2))); // Blinn's exponent as GGX's width, alpha = sqrt(2 / (n + 2))
     double shine[3] = {1, 1, 1};
     if (color(m, AI_MATKEY_COLOR_SPECULAR, shine) && std::max({shine[0], shine[1], shine[2]}) == 0) to.specular = 0;
@@ -121,7 +122,7 @@ void AssimpReader::material(const aiMaterial& m, Material& to) {
     if (number(m, AI_MATKEY_OPACITY, &to.baseColor[3]) && to.baseColor[3] < 1) to.alphaMode = AlphaMode::Blend;
     if (texture(m, aiTextureType_OPACITY).used()) warn("textures of opacity are left out");
     if (texture(m, aiTextureType_HEIGHT).used()) warn("textures of heights are left out");
-    if (to.ior < 1) to.ior = 1.5; // formats without one say 0
+    if (to.ior <= 1) to.ior = 1.5; // formats without one say 0 or 1
 }
 
 void AssimpReader::materials() {

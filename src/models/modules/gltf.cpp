@@ -14,14 +14,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// The folder of a model, and the file, which may be a link: the user named it.
+struct Place {
+    fs::path folder, model;
+};
+
 /// Whether a file lies in the folder of the model or below, links followed.
-bool beside(const std::string& path, void* folder) {
+bool beside(const std::string& path, void* place) {
     std::error_code e;
     const fs::path file = fs::canonical(path, e);
     if (e || !fs::is_regular_file(file, e)) return false;
-    const fs::path& of = *static_cast<const fs::path*>(folder);
-    const auto [end, rest] = std::mismatch(of.begin(), of.end(), file.begin(), file.end());
-    return end == of.end();
+    const Place& of = *static_cast<const Place*>(place);
+    const auto [end, rest] = std::mismatch(of.folder.begin(), of.folder.end(), file.begin(), file.end());
+    return end == of.folder.end() || file == of.model;
 }
 
 /// Pictures stay as they are encoded. Those in buffers are fetched later, when their places have been looked at.
@@ -47,7 +52,8 @@ void copy(const std::vector<double>& from, double* to, size_t n) {
 void read(const std::string& path, Model& out) {
     tinygltf::TinyGLTF loader;
     std::error_code e;
-    fs::path folder = fs::canonical(fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path(), e);
+    const fs::path parent = fs::path(path).parent_path();
+    Place place{fs::canonical(parent.empty() ? fs::path(".") : parent, e), fs::canonical(path, e)};
     tinygltf::FsCallbacks files{};
     files.FileExists = beside;
     files.ExpandFilePath = [](const std::string& p, void*) { return p; }; // no "~" and no variables
@@ -57,7 +63,7 @@ void read(const std::string& path, Model& out) {
         return false;
     };
     files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; };
-    files.user_data = &folder;
+    files.user_data = &place;
     loader.SetFsCallbacks(files);
     loader.SetImageLoader(keepPicture, nullptr);
     const fs::path whole = fs::absolute(path, e);

@@ -138,7 +138,7 @@ void addScenes(CLI::App& c, RenderArguments& a) {
                  "that sees all of it). - or no file: standard input. Each file starts from the default state; options of a file "
                  "without a world apply to all later files")
         ->type_name("FILE");
-    c.add_option("--time", a.modelTime, "Seconds of its animation at which a model (.glb, .fbx, ...) is shown")
+    c.add_option("--model-time", a.modelTime, "Seconds of its animation at which a model (.glb, .fbx, ...) is shown")
         ->type_name("SECONDS");
 }
 

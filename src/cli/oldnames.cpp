@@ -84,7 +84,7 @@ constexpr OldFlag kMaketxFlags[] = {
     {"-resize", 1, "txmake", Use::Dropped, kSize},
     {"-sfilterwidth", 1, "txmake", Use::Accepted, "--width $1"},
     {"-short", 0, "txmake", Use::Dropped, kNumbers},
-    {"-skymap", 1, "tdlmake", Use::Answered, "the light shader of a sky is in docs/lighting.md"},
+    {"-skymap", 1, "tdlmake", Use::Answered, "the light shader of a sky is in docs/light.md"},
     {"-t", 1, "txmake", Use::Dropped, "all processors are used"},
     {"-tfilterwidth", 1, "txmake", Use::Noted, "--width S T has both widths"},
     {"-twofish", 0, "tdlmake", Use::Answered, "make six pictures of it first, then --envcube"},

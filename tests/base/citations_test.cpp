@@ -21,7 +21,8 @@ namespace {
 const fs::path kRoot = ALPENGLOW_SOURCE_DIR;
 
 /// Folders whose texts are read. What stands in CHANGES.md and bench/RESULTS.md is history.
-constexpr const char* kFolders[] = {"src", "tests", "include", "shaders", "examples", "bench", "docs", "scripts", "cmake"};
+constexpr const char* kFolders[] = {"src",   "tests", "include", "shaders", "examples",
+                                    "bench", "docs",  "scripts", "cmake",   "editors"};
 constexpr const char* kDocuments[] = {"README.md", "CONTRIBUTING.md", "SECURITY.md"};
 constexpr const char* kUnread[] = {"bench/RESULTS.md", "tests/base/citations_test.cpp", "tests/fuzz/corpus"};
 

@@ -120,11 +120,11 @@ TEST_F(Help, BashCompletesCommandsOptionsAndValues) {
 TEST_F(Help, OtherShells) {
     const std::string zsh = run("help --completion zsh"), fish = run("help --completion fish");
     EXPECT_TRUE(zsh.starts_with("#compdef alpenglow\n"));
-    EXPECT_NE(zsh.find("'--hider=[hidden, raytrace, path or photon, instead of the scene'\\''s Hider]:NAME:(hidden raytrace path "
+    EXPECT_NE(zsh.find("'--hider=[Override the scene'\\''s Hider]:NAME:(hidden raytrace path "
                        "photon)'"),
               zsh.npos);
     EXPECT_NE(fish.find("complete -c alpenglow -n '__alpenglow_uses render' -l hider -x -a 'hidden raytrace path photon' -d "
-                        "'hidden, raytrace, path or photon, instead of the scene\\'s Hider'"),
+                        "'Override the scene\\'s Hider'"),
               fish.npos);
     for (const auto& [shell, script] : {std::pair{"zsh -n", zsh}, std::pair{"fish --no-execute", fish}}) {
         write("script", script);

@@ -58,7 +58,7 @@ TEST(OldLights, ThePointOfALight) {
                 settings);
         EXPECT_NEAR(s.one(kView).x, pixie ? 1 : 46, 1e-4);
         EXPECT_EQ(s.diagnostics.warnings(), pixie ? 0 : 1) << s.messages();
-        EXPECT_EQ(s.messages().find("P is its own place") != std::string::npos, !pixie) << s.messages();
+        EXPECT_EQ(s.messages().find("P is the position of the light") != std::string::npos, !pixie) << s.messages();
     }
 }
 

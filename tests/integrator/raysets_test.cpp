@@ -179,7 +179,7 @@ TEST(RaySets, EnvironmentWithEveryParameter) {
                          "lobeparameters", {1, 1}, "environmentmap", "", "environmentspace", "world", "environmenttint", color(2),
                          "exponent", 20, "samplearealights", 1, "transmission", a, "hitnormal", n, "environmentcontribution", b,
                          "unshadowedenvironment", c, "arealightcontribution", d, "unshadowedarealight", e, "samples", 4)
-            + environment("raytrace", up, "bsdf", "cosine", "samplecone", .2);
+            + environment("raytrace", up, "bsdf", "cosine", "samplecone", .2, "samplelights", 1);
         Ci += 0 * (a + b + c + d + e + color(n)); Oi = 1; })");
     for (const Hider h : {Hider::Hidden, Hider::Path}) {
         Scene s(world("Surface \"envevery\" " + std::string(kFloor) + pane(1, "Color .25 .5 .75")), withShaders(h));

@@ -281,12 +281,12 @@ TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
                 "1, \"refractionindex\", 1, \"scale\", 1, \"groupname\", \"s1\", \"unitlength\", 1, \"anisotropy\", .5); }\n");
     Scene every(world(kAbove + "Surface \"everyword\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(every.one(kView).x));
-    EXPECT_NE(every.messages().find("no type \"s1\""), std::string::npos) << every.messages();
+    EXPECT_NE(every.messages().find("unknown type \"s1\""), std::string::npos) << every.messages();
     writeShader("odd", "surface odd() { Oi = 1; Ci = subsurface(P, N, \"model\", \"mirror\", \"irradiance\", color(1)) + "
                        "subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
     Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(s.one(kView).x));
-    for (const char* word : {"no model \"mirror\"", "name a point cloud by \"filename\""})
+    for (const char* word : {"unknown model \"mirror\"", "name a point cloud by \"filename\""})
         EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
     for (const char* bad : {"\"color sc\" [0 0 0]", "\"color sc\" [-1 -1 -1]", "\"sc_\" 0", "\"ior\" 0", "\"ior\" 1e9",
                             "\"color sc\" [1e30 1e30 1e30] \"color ab\" [1e30 1e30 1e30]"}) {

@@ -364,8 +364,8 @@ class Procedurals(InFolder):
 
         self.assertEqual(lines_of(draw), ['Procedural2 "DelayedReadArchive2" "SimpleBound" "string filename" ["a.rib"] '
                                           '"float[6] bound" [-1 1 -1 1 -1 1]',
-                                          'Procedural "DelayedReadArchive" ["a.rib"] -1 1 -1 1 -1 1',
-                                          'Procedural "RunProgram" ["prog" "data"] -1 1 -1 1 -1 1'])
+                                          'Procedural "DelayedReadArchive" ["a.rib"] [-1 1 -1 1 -1 1]',
+                                          'Procedural "RunProgram" ["prog" "data"] [-1 1 -1 1 -1 1]'])
 
 
 class Archives(InFolder):

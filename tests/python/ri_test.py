@@ -133,7 +133,7 @@ class Ri(InFolder):
         RiReadArchive("part.rib")
         RiEnd()
         text = pathlib.Path("p.rib").read_text()
-        for line in ("Sphere 2 -2 2 360", 'Procedural "DelayedReadArchive" ["part.rib"] -2 2 -2 2 -2 2', "#1 of two",
+        for line in ("Sphere 2 -2 2 360", 'Procedural "DelayedReadArchive" ["part.rib"] [-2 2 -2 2 -2 2]', "#1 of two",
                      'ReadArchive "part.rib"'):
             self.assertIn(line, text)
 
@@ -150,7 +150,7 @@ class Ri(InFolder):
         RiEnd_quietly()
 
     def test_every_function_of_the_specification(self):
-        """RISpec 3.2, appendix G: the functions of the C binding."""
+        """The functions of the C binding of RISpec 3.2."""
         names = """ArchiveRecord AreaLightSource Atmosphere Attribute AttributeBegin AttributeEnd Basis Begin Blobby Bound Clipping
             Color ColorSamples ConcatTransform Cone Context CoordinateSystem CoordSysTransform CropWindow Curves Cylinder Declare
             DepthOfField Detail DetailRange Disk Displacement Display End ErrorHandler Exposure Exterior Format FrameAspectRatio

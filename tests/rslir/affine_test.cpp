@@ -47,7 +47,7 @@ TEST(Affine, PrincipledMaterials) {
         SCOPED_TRACE(name);
         const std::string text = shipped(name);
         if (text.find("surface " + name.substr(name.find('/') + 1)) == std::string::npos) continue; // a pattern
-        const Compiled c = compile(text, pathOptions());
+        const Compiled c = compile(text, pathOptions(), true, ALPENGLOW_SOURCE_DIR "/shaders/" + name + ".sl");
         ASSERT_NE(c.kernel, nullptr);
         EXPECT_TRUE(c.kernel->facts.affine) << c.kernel->facts.whyNot;
         EXPECT_FALSE(c.kernel->facts.suspends);

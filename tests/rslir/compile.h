@@ -30,11 +30,12 @@ struct Compiled {
     std::string text() const { return ir::print(*kernel); }
 };
 
-/// Null kernel after an error; the messages say which.
-inline Compiled compile(const std::string& source, const KernelOptions& options = {}, bool optimise = true) {
+/// Null kernel after an error; the messages say which. Included files are looked for in the folder of `file`.
+inline Compiled compile(const std::string& source, const KernelOptions& options = {}, bool optimise = true,
+                        const std::string& file = "test.sl") {
     Compiled c;
     Diagnostics d;
-    c.program = compileText(source, "test.sl", {}, d);
+    c.program = compileText(source, file, {}, d);
     if (c.program && !c.program->shaders.empty()) {
         c.kernel = buildKernel(*c.program, *c.program->shaders.back(), options, d);
         if (c.kernel) {

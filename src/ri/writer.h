@@ -26,7 +26,7 @@ class RibEncoder;
 class RibWriter {
 public:
     RibWriter(std::unique_ptr<ByteSink>, RibFormat = {});
-    /// What was not finished is handed on, and nobody is told of failures.
+    /// Passes unfinished output on without reporting failures; finish() reports them.
     ~RibWriter();
     /// call: of requestTable(), its arguments as matchArguments() leaves them. The place is not written.
     void write(const Call& call);

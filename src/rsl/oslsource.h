@@ -12,7 +12,7 @@ namespace alpenglow::rsl {
 /// The source of an OSL shader, NAME.osl, also where its compiled form (.oso) is named. Nothing: there is none.
 std::optional<std::string> findOsl(const std::string& name, const std::vector<std::string>& directories);
 
-/// The shaders of an OSL file; `text` becomes their RSL, which is this program's, so only errors in it are said. Null after one.
+/// The shaders of an OSL file, translated to RSL in `text`. Warnings about that RSL are dropped; null after an error.
 std::unique_ptr<Program> compileOsl(const std::string& path, const FrontOptions&, Diagnostics&, std::string& text);
 
 } // namespace alpenglow::rsl

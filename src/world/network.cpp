@@ -72,7 +72,7 @@ static InstanceRef expression(WorldImpl& world, const scene::ShaderCall& call, D
     return i;
 }
 
-/// A pattern; null, which is said once, where there is no shader of that name.
+/// The instance of a pattern; null, reported once, if there is no shader of that name.
 static InstanceRef pattern(WorldImpl& world, const scene::ShaderCall& call, Diagnostics& d) {
     if (call.name == "PxrSeExpr") return expression(world, call, d);
     Diagnostics said;

@@ -14,8 +14,8 @@ bool takesOutputs(const ShaderInstance&);
 /// (parameter NAME_x takes output OUTPUT_x). A warning, once, where there is no such parameter.
 void connect(ShaderInstance&, const scene::Connection&, Diagnostics&);
 
-/// Adds to the co-shaders of an instance the patterns that it takes outputs of, with those that they take outputs of. A pattern
-/// that there is no shader of is said once.
+/// Adds to the co-shaders of an instance the patterns that it takes outputs of, with those that they take outputs of. A missing
+/// shader is reported once.
 void addPatterns(WorldImpl&, const ShaderInstance&, const std::map<std::string, scene::ShaderRef>& coshaders,
                  std::vector<std::pair<std::string, scene::ShaderRef>>& to, Diagnostics&);
 

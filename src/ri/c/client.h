@@ -15,7 +15,7 @@ struct Client {
     const char* by;    ///< " called by a library" or "", for messages
     /// That of this thread, else that of the process; null when there is none.
     static Client* current();
-    /// RiBegin, RiContext, RiEnd: who all threads talk to that make no content of a procedural. Null: nobody. It outlives that.
+    /// RiBegin, RiContext, RiEnd: the client of all threads that do not expand a procedural; null: none. Must outlive its use.
     static void setOfProcess(Client*);
 };
 
@@ -108,7 +108,7 @@ double numberOf(RtFloat);
 int64_t total(const RtInt*, int64_t n);
 /// A new light or object, as a handle.
 RtPointer newHandle(Client&);
-/// What requests call it. Handles that nobody made have names that nobody has.
+/// The name of a handle in requests. Handles that no call returned get names that no light or object has.
 std::string handleName(const Client&, RtPointer);
 
 } // namespace alpenglow::ri

@@ -11,10 +11,10 @@ void noteError(const Diagnostic&);
 /// To be called where the program's thread leaves the library: the program's own handler gets what was kept; RiErrorAbort ends
 /// the program after an error.
 void deliverErrors();
-/// How RiErrorPrint prints what this library reports; nothing is printed, and nothing is said of calls that nobody wants, until
-/// it is set.
+/// Sets how RiErrorPrint prints the messages of this library. Until then nothing is printed, not even for calls outside
+/// RiBegin and RiEnd.
 void setErrorPrinter(std::function<void(const Diagnostic&)>);
-/// A call that nobody wants: RIE_NOTSTARTED.
+/// Reports RIE_NOTSTARTED for a call outside RiBegin and RiEnd.
 void noteNotStarted(const char* function);
 
 } // namespace alpenglow::ri

@@ -1,5 +1,5 @@
-// Requests of later renderers (PRMan 13 on, Aqsis; those of RIS are in ris.cpp): recognised so that the rest of their files
-// renders. What has a meaning here is done; the others are said once each.
+// Requests of later renderers (PRMan 13 on, Aqsis; those of RIS are in ris.cpp): recognised so that the rest of their
+// files renders. Requests with an equivalent here take effect; each of the others is reported once.
 #include "ri/interpreter.h"
 #include <fmt/format.h>
 

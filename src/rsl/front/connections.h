@@ -10,7 +10,7 @@ namespace alpenglow::rsl {
 struct Connected {
     std::string handle;  ///< of the co-shader
     std::string output;  ///< its parameter
-    bool member = false; ///< of a struct: where the co-shader lacks the output nothing is said of it
+    bool member = false; ///< of a struct: no warning if the co-shader lacks the output
 
     /// Of a parameter, or of one element of it; element -1: it is no array.
     static std::string key(std::string_view parameter, int element = -1);

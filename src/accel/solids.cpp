@@ -13,7 +13,7 @@ std::unique_ptr<Solids> Solids::of(const std::vector<geometry::ShapeRef>& shapes
     all->partOf_.assign(shapes.size(), kNone);
     std::map<std::pair<int, uint32_t>, uint32_t> node; // by instance and block
     for (uint32_t s = 0; s < shapes.size(); ++s) {
-        const std::vector<scene::SolidStep> path = scene::solidPath(shapes[s]->attributes());
+        const std::vector<scene::SolidStep>& path = scene::solidPath(shapes[s]->attributes());
         if (path.size() < 2 || path.back().operation != SolidOperation::Part) continue; // a single part is no solid
         uint32_t parent = kNone, root = kNone;
         for (const scene::SolidStep& step : path) {

@@ -68,8 +68,10 @@ Diagnostics::Diagnostics(Handler h) : handler_(std::move(h)) {}
 
 void Diagnostics::report(Diagnostic d) {
     std::lock_guard lock(mutex_);
-    if (d.severity >= Severity::Error) ++errors_;
-    if (d.severity == Severity::Warning) ++warnings_;
+    d.ignored |= ignores_ && (d.severity == Severity::Warning || d.severity == Severity::Error);
+    if (d.ignored) ++ignored_;
+    else if (d.severity >= Severity::Error) ++errors_;
+    else if (d.severity == Severity::Warning) ++warnings_;
     if (handler_) handler_(d);
     all_.push_back(std::move(d));
 }
@@ -94,6 +96,14 @@ int Diagnostics::errors() const {
 int Diagnostics::warnings() const {
     std::lock_guard lock(mutex_);
     return warnings_;
+}
+void Diagnostics::ignore(bool on) {
+    std::lock_guard lock(mutex_);
+    ignores_ = on;
+}
+int Diagnostics::ignored() const {
+    std::lock_guard lock(mutex_);
+    return ignored_;
 }
 std::vector<Diagnostic> Diagnostics::all() const {
     std::lock_guard lock(mutex_);

@@ -68,8 +68,9 @@ struct Diagnostic {
     int length = 0;         ///< bytes of the line that the message is about, from the column on; 0 = unknown
     std::vector<std::string> notes{}; ///< candidates and why they were rejected, one per line
     std::vector<FixIt> fixes{};
-    bool always = false; ///< a note that is shown without -v
-    std::string once{};  ///< key of Diagnostics::reportOnce(), which sets it; empty: report()
+    bool always = false;  ///< a note that is shown without -v
+    bool ignored = false; ///< ErrorHandler "ignore" was in effect: shown with -v only, and not counted. Diagnostics sets it
+    std::string once{};   ///< key of Diagnostics::reportOnce(), which sets it; empty: report()
 };
 
 /// "file:line:column: error: message [id]", then the line, a caret and its range, then "  note: ..." and "  hint: ...", as far as
@@ -86,8 +87,11 @@ public:
     void report(Severity s, Rie code, SourcePlace place, std::string message, std::string hint = {});
     /// Reports only the first diagnostic with this key ("unknown things are reported once each").
     void reportOnce(const std::string& key, Diagnostic d);
-    int errors() const; ///< Error and Severe
+    int errors() const; ///< Error and Severe, without ignored ones
     int warnings() const;
+    /// From now on warnings and errors are ignored (RiErrorIgnore; RISpec 3.2, 7.2), or no more. Severe ones never are.
+    void ignore(bool on);
+    int ignored() const; ///< warnings and errors that were
     std::vector<Diagnostic> all() const;
     void setHandler(Handler h);
 
@@ -96,7 +100,8 @@ private:
     Handler handler_;
     std::vector<Diagnostic> all_;
     std::set<std::string> seen_;
-    int errors_ = 0, warnings_ = 0;
+    int errors_ = 0, warnings_ = 0, ignored_ = 0;
+    bool ignores_ = false;
 };
 
 /// The candidate nearest to word by edit distance, or "" if none is near enough for a hint.

@@ -4,10 +4,10 @@
 
 namespace alpenglow::limits {
 
-inline constexpr int kArchiveDepth = 64;
+inline constexpr int kArchiveDepth = 4096;      ///< archives and procedurals that are open at once
 inline constexpr int kArchiveReads = 1'000'000; ///< ReadArchive and similar requests executed by one reader
 inline constexpr int kUnknownNames = 256;       ///< distinct unknown requests of one file, each reported once
-inline constexpr int kStackDepth = 4096;        ///< attribute, transform, motion stacks
+inline constexpr int kStackDepth = 4096;        ///< blocks of one kind that are open at once, times of a motion block
 inline constexpr size_t kStringBytes = 16u << 20;
 inline constexpr size_t kTokenBytes = 64u << 10;
 inline constexpr size_t kGzipRatio = 1000;             ///< decompressed : compressed, beyond the first MiB

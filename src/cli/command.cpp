@@ -82,6 +82,7 @@ Diagnostics::Handler printer(Severity least) {
     bool terminal = isatty(STDERR_FILENO) != 0;
     return [least, terminal, lines = limits::kSourceLines, repeats = std::make_shared<Repeats>()](Diagnostic d) mutable {
         if (d.severity < least && !(d.always && least <= Severity::Warning)) return;
+        if (d.ignored && least > Severity::Info) return;
         if (d.severity == Severity::Warning && least == Severity::Warning && !repeats->shows(d)) return;
         // Who reports when the scene has been read has its places, and no more its text.
         if (d.sourceLine.empty() && lines > 0 && !(d.sourceLine = lineOf(d.place)).empty()) --lines;

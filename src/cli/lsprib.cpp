@@ -1,4 +1,5 @@
 // Scenes in the language server: what the RIB reader says of them, and what the tables of requests, options and shaders know.
+#include "base/knownoptions.h"
 #include "base/limits.h"
 #include "cli/languageserver.h"
 #include "cli/optionmanual.h"
@@ -8,7 +9,6 @@
 #include "rsl/front/inspect.h"
 #include "rsl/front/preprocessor.h"
 #include "rsl/shadersearch.h"
-#include "scene/knownoptions.h"
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -121,11 +121,11 @@ std::vector<std::pair<std::string, std::string>> parametersOf(const std::string&
     return list;
 }
 
-std::span<const scene::OptionDescription> tableOf(const std::string& request) {
-    if (request == "Option") return scene::knownOptions();
-    if (request == "Attribute") return scene::knownAttributes();
-    if (request == "Hider") return scene::knownHiderParameters();
-    if (request == "Display") return scene::knownDisplayParameters();
+std::span<const known::OptionDescription> tableOf(const std::string& request) {
+    if (request == "Option") return known::knownOptions();
+    if (request == "Attribute") return known::knownAttributes();
+    if (request == "Hider") return known::knownHiderParameters();
+    if (request == "Display") return known::knownDisplayParameters();
     return {};
 }
 
@@ -175,13 +175,13 @@ Json LanguageServer::ribCompletion(const Document& d, size_t at) {
         for (const auto& [name, text] : parametersOf(a.strings[0], shaderFolders(d), options_)) offer(name, kProperty, text);
     } else if (a.request == "Option" || a.request == "Attribute") {
         const auto table = tableOf(a.request);
-        for (const std::string& name : scene::knownNames(table, a.strings.empty() ? "" : a.strings[0])) {
-            const auto* known = a.strings.empty() ? nullptr : scene::findKnown(table, a.strings[0] + ":" + name);
-            const std::string type = known && !known->type.empty() ? std::string(known->type) + " " : "";
-            offer(type + name, a.strings.empty() ? kValue : kProperty, known ? std::string(known->doc) : "");
+        for (const std::string& name : known::knownNames(table, a.strings.empty() ? "" : a.strings[0])) {
+            const auto* entry = a.strings.empty() ? nullptr : known::findKnown(table, a.strings[0] + ":" + name);
+            const std::string type = entry && !entry->type.empty() ? std::string(entry->type) + " " : "";
+            offer(type + name, a.strings.empty() ? kValue : kProperty, entry ? std::string(entry->doc) : "");
         }
     } else if (a.request == "Hider" && a.strings.empty()) {
-        for (const auto& h : scene::knownHiders()) offer(std::string(h.name), kValue, std::string(h.doc));
+        for (const auto& h : known::knownHiders()) offer(std::string(h.name), kValue, std::string(h.doc));
     } else if (a.request == "Display" && a.strings.size() == 1) {
         for (const std::string& name : topicNames(Topic::Displays)) offer(name, kValue, "");
     } else if ((a.request == "Hider" && !a.strings.empty()) || (a.request == "Display" && a.strings.size() > 2)) {

@@ -1,6 +1,8 @@
 #include "cli/manpage.h"
 #include "base/version.h"
 #include "cli/command.h"
+#include "cli/foreignvariables.h"
+#include "cli/rcfile.h"
 #include <algorithm>
 #include <sstream>
 
@@ -124,6 +126,8 @@ std::string programPage(const ProgramText& p) {
     }
     s += optionSections(p.options) + statusSection() + roffSection("ENVIRONMENT");
     for (const VariableText& v : environmentVariables()) s += roffEntry(roffBold(v.name), v.help);
+    for (const ForeignVariable& v : foreignVariables()) s += roffEntry(roffBold(std::string(v.name)), textOf(v));
+    s += roffSection("FILES") + roffEntry(roffBold("~/.alpenglowrc"), kRcFilesText);
     return s + seeAlsoSection(pages);
 }
 
@@ -145,6 +149,7 @@ const std::vector<VariableText>& environmentVariables() {
     static const std::vector<VariableText> all = {
         {"ALPENGLOW_CACHE", "Folder of the compiled shaders; off keeps none. When not set, $XDG_CACHE_HOME/alpenglow or "
                             "~/.cache/alpenglow."},
+        {"ALPENGLOW_RC", "File to read instead of .alpenglowrc in its three places; off reads none."},
         {"ALPENGLOW_SHADERS", "Folders of shaders, separated by :, searched before the shaders that ship with the program."},
         {"ALPENGLOW_JIT", "File to load as the shader compiler's module, instead of libalpenglow_jit.so."},
         {"ALPENGLOW_GLTF", "File to load as the module for glTF, instead of libalpenglow_gltf.so."},

@@ -1,35 +1,39 @@
 #include "cli/optionmanual.h"
+#include "base/knownoptions.h"
+#include "cli/foreignvariables.h"
 #include "cli/oldflags.h"
 #include "cli/oldnames.h"
+#include "cli/rcfile.h"
 #include "display/driver.h"
 #include "ri/requests/manual.h"
-#include "scene/knownoptions.h"
 #include <fmt/format.h>
 
 namespace alpenglow::cli {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-using scene::Effect;
-using scene::OptionDescription;
+using known::Effect;
+using known::OptionDescription;
 
 std::span<const OptionDescription> tableOf(Topic t) {
     switch (t) {
     case Topic::Options:
-        return scene::knownOptions();
+        return known::knownOptions();
     case Topic::Attributes:
-        return scene::knownAttributes();
+        return known::knownAttributes();
     case Topic::Hiders:
-        return scene::knownHiderParameters();
+        return known::knownHiderParameters();
     case Topic::Displays:
-        return scene::knownDisplayParameters();
+        return known::knownDisplayParameters();
     case Topic::Requests:
         break;
     }
     return {};
 }
 
-const char* effectName(Effect e) { return e == Effect::Used ? "used" : e == Effect::Asked ? "for shaders" : "ignored"; }
+const char* effectName(Effect e) {
+    return e == Effect::Used ? "used" : e == Effect::Asked ? "for shaders" : e == Effect::Told ? "told" : "ignored";
+}
 
 std::string_view lastPart(std::string_view name) { return name.substr(name.find(':') + 1); }
 
@@ -62,8 +66,10 @@ std::string typeText(const OptionDescription& d) { return d.type.empty() ? "numb
 std::string standardText(const OptionDescription& d) { return d.standard.empty() ? "none" : std::string(d.standard); }
 
 std::string oneText(Topic t, const OptionDescription& d) {
-    if (d.effect == Effect::Ignored)
-        return fmt::format("{}\n    A name of other renderers; it has no effect here ({}).\n", d.name, d.doc);
+    if (d.effect == Effect::Ignored) return fmt::format("{}\n    Accepted, no effect. A name of {}.\n", d.name, d.doc);
+    if (d.effect == Effect::Told)
+        return fmt::format("{}  ({})\n    {}\n    Only {} reads it; nothing sets it by this name.\n", d.name, typeText(d), d.doc,
+                           t == Topic::Options ? "option()" : "attribute()");
     return fmt::format("{}  ({})\n    {}\n    Default: {}.{}\n    Example: {}\n", d.name, typeText(d), d.doc, standardText(d),
                        d.effect == Effect::Asked ? " It changes nothing by itself; shaders and RIB's If can ask for it." : "",
                        example(t, d));
@@ -71,7 +77,7 @@ std::string oneText(Topic t, const OptionDescription& d) {
 
 OrderedJson oneJson(Topic t, const OptionDescription& d) {
     OrderedJson j{{"name", d.name}, {"type", d.type}, {"effect", effectName(d.effect)}, {"default", d.standard}, {"doc", d.doc}};
-    if (d.effect != Effect::Ignored) j["example"] = example(t, d);
+    if (d.settable()) j["example"] = example(t, d);
     return j;
 }
 
@@ -94,7 +100,7 @@ OrderedJson requestJson(const ri::Request& r) {
 std::string headText(Topic t, const std::string& name) {
     std::string out;
     if (t == Topic::Hiders)
-        for (const auto& h : scene::knownHiders())
+        for (const auto& h : known::knownHiders())
             if (name.empty() || h.name == name) out += fmt::format("{}\n    {}\n", h.name, h.doc);
     if (t == Topic::Displays)
         for (const auto* d : display::drivers())
@@ -123,8 +129,15 @@ std::string pageTable(Topic t, Effect effect) {
     return out;
 }
 
+std::string pageTold(Topic t) {
+    std::string out = "| name | type | what it tells |\n|---|---|---|\n";
+    for (const OptionDescription& d : tableOf(t))
+        if (d.effect == Effect::Told) out += fmt::format("| {} | {} | {} |\n", d.name, typeText(d), cell(d.doc));
+    return out;
+}
+
 std::string pageIgnored(Topic t) {
-    std::string out = "| name | of |\n|---|---|\n";
+    std::string out = "| name | whose, and why nothing is done |\n|---|---|\n";
     for (const OptionDescription& d : tableOf(t))
         if (d.effect == Effect::Ignored) out += fmt::format("| {} | {} |\n", d.name, cell(d.doc));
     return out;
@@ -140,25 +153,52 @@ std::string optionsPage() {
         "`PixelSamples`, `Exposure` ...) are in [rib.md](rib.md).\n\n"
         "Shaders read every one of these by `option(\"trace:maxdepth\", x)` and `attribute(\"identifier:name\", s)`, and so do "
         "RIB's `IfBegin`\n"
-        "and `ElseIf`. The category `user` takes any name: `Attribute \"user\" \"float wet\" 1`.\n";
+        "and `ElseIf` (`$trace:maxdepth`, `$Attribute:identifier:name`). Where nothing is set they get the default, if it is a "
+        "value.\n\n"
+        "The category `user` takes any name of any type, arrays too: `Attribute \"user\" \"float wet\" 1`, `Option \"user\" "
+        "\"color[2] tones\"\n"
+        "[1 0 0 0 0 1]`. All kinds of shaders read it (`attribute(\"user:wet\", x)`; a light has the attributes of its request), "
+        "into a\n"
+        "variable of as many numbers or strings; a single number also goes into a color, a point or a matrix, as the language "
+        "converts it.\n"
+        "Points and matrices are the numbers of the file: `transform(\"object\", \"current\", p)` says where they are.\n";
     out += "\n## Options\n\n`Option \"category\" \"type name\" value`, before `WorldBegin`.\n\n" +
            pageTable(Topic::Options, Effect::Used);
+    out += "\n`option()` tells of the frame, too:\n\n" + pageTold(Topic::Options);
     out += "\n## Attributes\n\n`Attribute \"category\" \"type name\" value`, up to the end of the block.\n\n" +
            pageTable(Topic::Attributes, Effect::Used);
     out += "\nThese decide nothing by themselves. Shaders ask for them, and get the default where nothing is set.\n\n" +
            pageTable(Topic::Attributes, Effect::Asked);
+    out += "\n`attribute()` tells of the graphics state and of the point, too:\n\n" + pageTold(Topic::Attributes);
     out += "\n## Hiders\n\n`Hider \"name\" \"type parameter\" value`; `--hider` overrides it.\n\n| hider | what it does "
            "|\n|---|---|\n";
-    for (const auto& h : scene::knownHiders()) out += fmt::format("| {} | {} |\n", h.name, cell(h.doc));
+    for (const auto& h : known::knownHiders()) out += fmt::format("| {} | {} |\n", h.name, cell(h.doc));
     out += "\n" + pageTable(Topic::Hiders, Effect::Used);
     out += "\n## Displays\n\n`Display \"file\" \"type\" \"mode\" \"type parameter\" value`. The mode names what is written: "
            "`rgba`, `rgb`, `a`, `z`, or\n"
            "variables of shaders, separated by commas (`\"rgba,N,color specular\"`).\n\n| type | what it writes |\n|---|---|\n";
     for (const auto* d : display::drivers()) out += fmt::format("| {} | {} |\n", namesOf(*d), cell(d->doc));
     out += "\n" + pageTable(Topic::Displays, Effect::Used);
-    out += "\n## Names of other renderers\n\nAccepted without a message, and without an effect. Options:\n\n" +
+    out += "\n## Names of other renderers\n\nAccepted, no effect: `-v` notes each. Shaders and RIB's If read what is set. "
+           "Options:\n\n" +
            pageIgnored(Topic::Options);
-    out += "\nAttributes:\n\n" + pageIgnored(Topic::Attributes) + "\nParameters of hiders:\n\n" + pageIgnored(Topic::Hiders);
+    out += "\nAttributes:\n\n" + pageIgnored(Topic::Attributes) + "\nParameters of hiders:\n\n" + pageIgnored(Topic::Hiders) +
+           "\nParameters of displays:\n\n" + pageIgnored(Topic::Displays);
+    out += "\n## Defaults of a user: .alpenglowrc\n\n" + std::string(kRcFilesText) +
+           "\nlibalpenglow, the Python module and other commands read none.\n\n"
+           "    # ~/.alpenglowrc\n"
+           "    --threads 12\n"
+           "    Option \"searchpath\" \"string texture\" [\"~/maps:&\"]\n"
+           "    Hider \"path\"\n";
+    out += "\n## Environment variables\n\nThose of other renderers name folders, separated by `:`. Alpenglow looks there last of "
+           "all, "
+           "behind the\n"
+           "paths of the scene, `--searchpath`, the scene's own folder and the shipped shaders: a picture whose files are found "
+           "without\n"
+           "them is the same with them. `-v` and `--stats` tell which are in effect. `man alpenglow` lists those of Alpenglow "
+           "itself.\n"
+           "In `Option \"searchpath\"`, `$NAME`, `${NAME}` and `~` are taken from the environment.\n\n" +
+           foreignVariablesPage();
     out += "\n## Command lines of other renderers\n\n`alpenglow render` takes these flags of prman, renderdl and aqsis. $1, $2 "
            "are their values, which may\n"
            "also stand behind a colon or an equals sign (`-t:4`). `-v` notes what became of each.\n\n" +
@@ -195,7 +235,7 @@ std::string topicText(Topic t, const std::string& name) {
 OrderedJson topicJson(Topic t, const std::string& name) {
     OrderedJson all = OrderedJson::array();
     if (t == Topic::Hiders)
-        for (const auto& h : scene::knownHiders())
+        for (const auto& h : known::knownHiders())
             if (name.empty() || h.name == name) all.push_back({{"hider", h.name}, {"doc", h.doc}});
     if (t == Topic::Displays)
         for (const auto* d : display::drivers())
@@ -217,9 +257,9 @@ std::vector<std::string> topicNames(Topic t) {
         names.emplace_back(lastPart(d.name));
     }
     if (t == Topic::Options || t == Topic::Attributes)
-        for (std::string& c : scene::knownNames(tableOf(t), "")) names.push_back(std::move(c));
+        for (std::string& c : known::knownNames(tableOf(t), "")) names.push_back(std::move(c));
     if (t == Topic::Hiders)
-        for (const auto& h : scene::knownHiders()) names.emplace_back(h.name);
+        for (const auto& h : known::knownHiders()) names.emplace_back(h.name);
     if (t == Topic::Displays)
         for (const auto* d : display::drivers()) names.insert(names.end(), d->names.begin(), d->names.end());
     if (t == Topic::Requests) names = ri::requestNames();

@@ -8,6 +8,7 @@
 #include "cli/manpage.h"
 #include "cli/oldflags.h"
 #include "cli/oldnames.h"
+#include "cli/rcfile.h"
 #include "cli/version.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -150,6 +151,15 @@ std::string exitStatuses() {
     return s;
 }
 
+/// Options of render that the user has in .alpenglowrc; those of the command line come behind them and have the last word.
+std::vector<std::string> optionsOfRcFiles(const std::vector<std::string>& args) {
+    if (args.empty() || args[0] != "render" || std::find(args.begin(), args.end(), "--no-rc") != args.end()) return {};
+    Diagnostics unsaid, said(printer()); // about the files themselves when their RIB is read
+    const std::vector<std::string> options = rcOptions(rcFiles(unsaid), said);
+    if (!options.empty()) std::fprintf(stderr, "note: .alpenglowrc adds %s\n", printable(joined(options, " ")).c_str());
+    return options;
+}
+
 /// Status 2, with the reason and where to read on.
 int wrongUse(const std::string& why, const std::string& more) {
     std::fprintf(stderr, "alpenglow: %s\n%s tells more.\n", printable(why).c_str(), more.c_str());
@@ -186,6 +196,8 @@ int runProgram(int argc, char** argv) {
     if (!line.error.empty()) return wrongUse(line.error, "alpenglow --help");
     if (!line.text.empty()) return std::fputs(line.text.c_str(), stdout) < 0 ? kOutputFailed : kDone;
     std::vector<std::string>& args = line.arguments;
+    const std::vector<std::string> defaults = optionsOfRcFiles(args);
+    if (!defaults.empty()) args.insert(args.begin() + 1, defaults.begin(), defaults.end());
     const bool own = !args.empty() && args.front() == "render"; // has an option for it
     const MemoryLimit limit(own ? 0 : defaultMemoryLimit(), defaultThreads());
     std::reverse(args.begin(), args.end()); // as the parser takes vectors

@@ -5,6 +5,7 @@
 #include "cli/foreignmodel.h"
 #include "cli/framesatonce.h"
 #include "cli/modelscene.h"
+#include "cli/rcfile.h"
 #include "cli/renderarguments.h"
 #include "cli/version.h"
 #include "models/modelfile.h"
@@ -81,6 +82,8 @@ view::Watchers watchersOf(const RenderArguments& a, Diagnostics& diags, view::Te
 ri::ReaderOptions readerOptions(const RenderArguments& a, const render::RenderSettings& settings) {
     ri::ReaderOptions options;
     options.searchPaths = folders(a.searchPaths);
+    options.lastArchivePaths = a.lastArchivePaths;
+    options.lastProceduralPaths = a.lastProceduralPaths;
     options.allowExec = settings.allowExec;
     options.allowRead = settings.allowRead;
     options.reads = settings.reads;
@@ -115,6 +118,21 @@ void readScenes(const std::vector<std::string>& scenes, const render::RenderSett
     }
 }
 
+/// What the user, or the folder, has in front of every scene; and, as notes, the environment's folders.
+void readDefaults(const RenderArguments& a, ri::RibReader& reader, Diagnostics& diags) {
+    for (const auto& [name, value] : a.settings.environment)
+        diags.report(Severity::Info, Rie::NoError, {}, "$" + name + " names folders that are searched last: " + value);
+    if (a.noRc) return;
+    for (const RcFile& f : rcFiles(diags)) {
+        if (f.rib.find_first_not_of(" \t\r\n") == f.rib.npos) continue;
+        Diagnostic read{Severity::Info, Rie::NoError, {f.path}, "it is read before the scene; --no-rc leaves it out", {}, {}};
+        read.always = true;
+        diags.report(std::move(read));
+        if (a.settings.reads) a.settings.reads->add(f.path);
+        reader.readMemory(f.rib, f.path);
+    }
+}
+
 int renderOnce(const RenderArguments& a, const StopFlag* stop) {
     const Diagnostics::Handler print = printer(a.quiet ? Severity::Error : a.verbose ? Severity::Info : Severity::Warning);
     Diagnostics diags(print);
@@ -145,6 +163,7 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
         ri::RibReader reader(options, renderer, atOnce.said());
         atOnce.setReader(reader);
         renderer.setProcedurals([&reader](const scene::Frame& f, std::span<const int> which) { return reader.make(f, which); });
+        readDefaults(a, reader, atOnce.said());
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         readScenes(a.scenes, settings, options, reader, renderer,
                    [&](const std::string& file) { return modelFolder.scene(file, a.modelTime, atOnce.said()); });
@@ -154,6 +173,14 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
                              "the limit is " + memorySizeText(settings.memoryLimit) + "; --memory-limit sets another");
     }
     renderer.settle();
+    atOnce.said().ignore(false); // what follows is the program's, not the scene's
+    if (const int n = diags.ignored(); n > 0) {
+        Diagnostic said{Severity::Info, Rie::NoError, {}, {}, {}, {}};
+        said.message = "ErrorHandler \"ignore\": " + std::to_string(n) +
+                       (n == 1 ? " error or warning was" : " errors and warnings were") + " not printed; -v prints all";
+        said.always = true;
+        diags.report(std::move(said));
+    }
     const auto& outcome = renderer.outcome();
     bool interrupted = outcome.interrupted || *stop;
     const bool missing = tellMissingFrames(a.frameList, seen, outcome.rendered > 0, diags);

@@ -15,10 +15,11 @@ namespace alpenglow::cli {
 struct RenderArguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
+    std::vector<std::string> lastArchivePaths, lastProceduralPaths; ///< of the environment, behind all others
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
     std::string gamma, preview;
     std::vector<std::pair<std::string, int>> tev; ///< hosts and ports
-    bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false;
+    bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false, noRc = false;
     std::vector<int> frameList;
     double modelTime = 0; ///< seconds of the animation of a model
     int framesAtOnce = 1; ///< 1 to limits::kFramesAtOnce

@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "base/memory.h"
 #include "cli/command.h"
+#include "cli/foreignvariables.h"
 #include "cli/ranges.h"
 #include "cli/renderarguments.h"
 #include "display/imageio.h"
@@ -124,6 +125,12 @@ void checkSettings(RenderArguments& a, const CLI::App& app) {
     s.texturePaths = s.shaderPaths = folders(a.searchPaths);
     for (std::string& e : environmentShaders()) s.shaderPaths.push_back(std::move(e));
     s.shippedShaders = shippedShaders();
+    EnvironmentFolders environment = environmentFolders();
+    s.lastShaderPaths = environment.of(SearchedFor::Shaders);
+    s.lastTexturePaths = environment.of(SearchedFor::Textures);
+    a.lastArchivePaths = environment.of(SearchedFor::Archives);
+    a.lastProceduralPaths = environment.of(SearchedFor::Procedurals);
+    s.environment = std::move(environment.used);
 }
 
 /// Without a name RIB comes from standard input, as other renderers have it.
@@ -290,6 +297,7 @@ void addInput(CLI::App& c, RenderArguments& a) {
         ->type_name("'REQUESTS'")
         ->allow_extra_args(false)
         ->group("Input");
+    c.add_flag("--no-rc", a.noRc, "Read no .alpenglowrc (docs/options.md)")->group("Input");
     c.add_flag("--allow-exec", s.allowExec, "Allow the scene to run programs and load plug-ins")->group("Input");
     c.add_flag("--allow-read", s.allowRead,
                "Allow the scene to read maps and archives anywhere, not only below its own folders and --searchpath")

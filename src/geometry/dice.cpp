@@ -9,6 +9,7 @@
 #include "geometry/polygon_mesh.h"
 #include "geometry/seams.h"
 #include "scene/scene.h"
+#include "scene/shadingrate.h"
 #include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>
@@ -61,7 +62,7 @@ DiceCamera diceCamera(const DiceOptions& o, const scene::Attributes& a, bool dis
 }
 
 double diceEdge(const scene::Attributes& a) {
-    double r = a.shadingRate;
+    double r = scene::shadedArea(a);
     return std::isfinite(r) ? std::sqrt(std::clamp(r, 0.01, 1e4)) : 1;
 }
 

@@ -1,5 +1,6 @@
 #include "geometry/dicecost.h"
 #include "scene/scene.h"
+#include "scene/shadingrate.h"
 #include <algorithm>
 #include <ctime>
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ void noteCosts(const std::vector<ShapeRef>& shapes, const std::vector<DiceCost>&
     const Shape& s = *shapes[size_t(dearest - costs.begin())];
     Diagnostic note{Severity::Info, Rie::NoError, s.place(), {}, {}, {}};
     note.message = fmt::format("{}: dicing it took {:.1f} s and {} MB, for {} facets at ShadingRate {:g}{}", s.kind(),
-                               dearest->seconds, dearest->bytes >> 20, s.mesh().triangles(), s.attributes().shadingRate,
+                               dearest->seconds, dearest->bytes >> 20, s.mesh().triangles(), scene::shadedArea(s.attributes()),
                                others == 0   ? ""
                                : others == 1 ? "; another primitive was expensive as well"
                                              : fmt::format("; {} other primitives were expensive as well", others));

@@ -66,6 +66,12 @@ scene::AttributesRef instanceAttributes(const scene::Primitive& p, const scene::
         out->detailSpace = in.detailSpace * instance.toWorld.first();
     }
     take(out->trimCurve, in.trimCurve, was.trimCurve);
+    if (in.solid != was.solid) {
+        out->solid = in.solid;
+        out->solidChildren = in.solidChildren;
+    }
+    take(out->part, in.part, was.part);
+    take(out->level, in.level, was.level);
     for (const auto& [key, value] : in.values)
         if (!same(&value, was.value(key))) out->values[key] = value;
     for (const auto& [name, shader] : in.coshaders) {

@@ -88,7 +88,7 @@ Unseen::Unseen(const Shape& s, const DiceOptions& opt) {
     constexpr double kFacets = 4; // margin: about so many facets between omitted and visible parts
     const scene::Attributes& a = s.attributes();
     // Light comes from all of an emitter, and a solid's boundary separates inside from outside.
-    if (!opt.picture || !opt.keys.empty() || a.areaLight >= 0 || a.value(scene::kSolidAttribute)) return;
+    if (!opt.picture || !opt.keys.empty() || a.areaLight >= 0 || !a.solid.empty()) return;
     reach_ = isDisplaced(s, opt) ? displacementReach(s, opt) : 0;
     if (!(reach_ >= 0)) return;
     sides_ = opt.picture;

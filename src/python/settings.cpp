@@ -70,6 +70,8 @@ cli::RenderArguments renderArguments(std::vector<std::string> flags) {
 ri::ReaderOptions readerOptions(const cli::RenderArguments& a, bool defers) {
     ri::ReaderOptions o;
     o.searchPaths = cli::folders(a.searchPaths);
+    o.lastArchivePaths = a.lastArchivePaths;
+    o.lastProceduralPaths = a.lastProceduralPaths;
     o.allowExec = a.settings.allowExec;
     o.allowRead = a.settings.allowRead;
     o.reads = a.settings.reads;

@@ -81,6 +81,7 @@ public:
         add(a.detailSpace);
         for (float t : a.detailRange) add(t);
         add(a.values);
+        for (const scene::SolidStep& s : a.solid) bits(uint64_t(s.id) << 32 | uint64_t(s.child) << 2 | uint64_t(s.operation));
         add(a.coshaders);
         add(a.trimCurve);
     }

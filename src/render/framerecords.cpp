@@ -10,7 +10,8 @@ namespace {
 template <class A> void each(A& a, SourcePlace& p) { a(p.file, p.line, p.column); }
 template <class A> void each(A& a, FixIt& f) { a(f.place, f.length, f.text); }
 template <class A> void each(A& a, Diagnostic& d) {
-    a(d.severity, d.code, d.place, d.message, d.hint, d.sourceLine, d.id, d.length, d.notes, d.fixes, d.always, d.once);
+    a(d.severity, d.code, d.place, d.message, d.hint, d.sourceLine, d.id, d.length, d.notes, d.fixes, d.always, d.ignored,
+      d.once);
 }
 template <class A> void each(A& a, RenderStats& s) {
     a(s.width, s.height, s.spp, s.sppLeast, s.sppMost, s.renderSec, s.cpuSec, s.totalRays, s.noise, s.curve, s.threads,

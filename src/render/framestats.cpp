@@ -51,6 +51,7 @@ std::string statsJson(const RenderStats& all, const std::vector<FrameStats>& fra
     j["software"] = s.software;
     j["command"] = s.command;
     j["options"] = pixelOptions(s);
+    if (!s.environment.empty()) j["environment"] = s.environment;
     j["host"] = hostName();
     j["date"] = dateText();
     j["frames"] = OrderedJson::array();

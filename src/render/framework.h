@@ -18,6 +18,7 @@ Hider hiderOf(const scene::Options&, Diagnostics&);
 struct Renderer::FrameWork {
     std::shared_ptr<const scene::Frame> frame;
     FrameStats& told;
+    const int errorsBefore; ///< of the run
     const scene::Options& o;
     Hider hider;
     bool path;
@@ -37,8 +38,8 @@ struct Renderer::FrameWork {
     uint64_t nonFinite = 0; ///< samples that were dropped
 
     FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& stats, Diagnostics& d)
-        : frame(std::move(of)), told(stats), o(frame->options), hider(hiderOf(o, d)), path(hider == Hider::Path), camera(o, d),
-          made(frame) {}
+        : frame(std::move(of)), told(stats), errorsBefore(d.errors()), o(frame->options), hider(hiderOf(o, d)),
+          path(hider == Hider::Path), camera(o, d), made(frame) {}
 };
 
 /// Reports how many procedurals of a frame were deferred, and how many were expanded. Defined in procedurals.cpp.

@@ -67,10 +67,7 @@ public:
                 known->second = a;
             } else if (begin < end) {
                 auto fading = std::make_shared<scene::Attributes>(*a);
-                scene::Param part;
-                part.name = transport::kLevelAttribute;
-                part.numbers = {float(begin), float(end)};
-                fading->values[part.name] = std::move(part);
+                fading->level = {float(begin), float(end)};
                 known->second = std::move(fading);
             }
         }
@@ -119,7 +116,7 @@ std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Fra
             if (after) {
                 other = std::make_shared<scene::Primitive>(*p);
                 auto marked = std::make_shared<scene::Attributes>(*p->attributes); // an instance combines its own with them
-                marked->values[transport::kLevelAttribute] = *after->value(transport::kLevelAttribute);
+                marked->level = after->level;
                 other->attributesBefore = p->attributesInside ? p->attributesBefore : p->attributes;
                 other->attributesInside = true;
                 other->attributes = std::move(marked);

@@ -12,7 +12,7 @@ double detailSize(const std::vector<float>& bound, const Matrix& toWorld, const 
 
 /// The frame without objects that are too small or too large for their DetailRange, also inside object instances; the same frame
 /// if nothing is removed. The size is that of the Detail box times RelativeDetail, infinite without Detail. Objects in a
-/// transition are marked (transport::kLevelAttribute) with the fraction of samples that see them: each sample sees exactly one of
+/// transition are marked (scene::Attributes::level) with the fraction of samples that see them: each sample sees exactly one of
 /// adjacent levels.
 std::shared_ptr<const scene::Frame> drawnLevels(std::shared_ptr<const scene::Frame>, const Camera&);
 

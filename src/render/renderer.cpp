@@ -102,6 +102,8 @@ std::vector<std::string> Renderer::searchPaths(const scene::Options& o, const ch
                 all.push_back(settings_.scenePath + "/" + p);
         }
     all.insert(all.end(), after.begin(), after.end());
+    const std::vector<std::string>& last = shaders ? settings_.lastShaderPaths : settings_.lastTexturePaths;
+    all.insert(all.end(), last.begin(), last.end());
     return all;
 }
 
@@ -211,7 +213,7 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
         const double values[5] = {c.x, c.y, c.z, alpha, 1};
         for (size_t k = 0; k < 5; ++k) sum[weight < 0][k] += values[k] * std::fabs(double(weight));
     }
-    outcome_.interrupted |= job.interrupted;
+    noteInterrupted(job);
     const auto scales = signScales(filter.negativePart().value_or(0), counts, sum[0][4], sum[1][4]);
     const auto mean = [&](size_t k) { return text(scales[0] * sum[0][k] + scales[1] * sum[1][k]); };
     if (print_ && !job.interrupted) print_(mean(0) + " " + mean(1) + " " + mean(2) + " " + mean(3));

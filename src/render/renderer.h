@@ -70,6 +70,10 @@ private:
     bool buildFrame(FrameWork&);
     void makeAll(FrameWork&);
     void makeWhatIsMet(FrameWork&, struct Job&);
+    // abandon.cpp
+    /// True after an error of a frame under ErrorHandler "abort": it is refused.
+    bool abandons(const FrameWork&);
+    void noteInterrupted(const struct Job&); ///< by the user
     transport::Settings engineSettings(const FrameWork&) const;
     std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> imagerOf(FrameWork&);
     void describeFrame(FrameWork&);
@@ -99,7 +103,7 @@ private:
     bool renderSamples(FrameWork&, struct Job&);
     void writeFrameFilm(FrameWork&, Film&, double renderSec);
     bool makeDepths(FrameWork&, struct Job&);
-    void renderGrid(FrameWork&, struct Job&);
+    bool renderGrid(FrameWork&, struct Job&);
     /// Hider "photon": writes the photon maps that the frame names. Defined in renderphotons.cpp.
     void renderPhotons(FrameWork&, int threads);
     /// Makes missing photon maps that shaders read, if lights emit photons.

@@ -79,7 +79,7 @@ void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats
     auto work = std::make_unique<FrameWork>(std::move(frame), told, diagnostics_);
     FrameWork& f = *work;
     if (f.o.hider != "photon" && !planFrame(f)) return;
-    if (!drawsHere(f)) return;
+    if (abandons(f) || !drawsHere(f)) return;
     drawFrame(f);
     if (!inProcess()) return;
     [[maybe_unused]] const FrameWork* kept = work.release(); // the process ends: destruction would copy its pages
@@ -97,7 +97,7 @@ void Renderer::drawFrame(FrameWork& f) {
                                             {}});
     tbb::global_control threads(tbb::global_control::max_allowed_parallelism, size_t(team));
     if (f.o.hider == "photon") return renderPhotons(f, team);
-    if (!buildFrame(f)) return;
+    if (!buildFrame(f) || abandons(f)) return;
     declareBakes(f);
     drawPictures(f, team);
 }
@@ -105,6 +105,7 @@ void Renderer::drawFrame(FrameWork& f) {
 void Renderer::drawPictures(FrameWork& f, int team) {
     double cpu = processCpuSeconds();
     Job job(settings_, f.camera, f.plan, engine_, f.world, team, progress_, diagnostics_);
+    if (f.o.abortsOnError) job.errorsAllowed = f.errorsBefore;
     job.what = f.plan.pictures.front().name;
     if (f.o.frameNumber > 0) job.what += " (frame " + std::to_string(f.o.frameNumber) + ")";
     if (f.o.imager) f.imager = imagerOf(f);
@@ -118,10 +119,10 @@ void Renderer::drawPictures(FrameWork& f, int team) {
         printPixel(job, f.o, f.wanted, f.path);
         ++outcome_.rendered;
     } else if (f.plan.anyDeep() && !makeDepths(f, job)) {
-        ++outcome_.refused;
+        if (!abandons(f)) ++outcome_.refused;
         return;
     } else if (!f.path || f.plan.onlyDeep()) {
-        renderGrid(f, job);
+        if (!renderGrid(f, job)) return;
     } else if (!renderSamples(f, job)) {
         return;
     }
@@ -313,7 +314,8 @@ bool Renderer::renderSamples(FrameWork& f, Job& job) {
     }
     double renderSec = job.elapsed();
     stats_.renderSec += renderSec;
-    outcome_.interrupted |= job.interrupted;
+    noteInterrupted(job);
+    if (abandons(f)) return false;
     if (job.outOfMemory) { // the old picture is better than few samples; a checkpoint can be continued
         if (any) keep(*film, true);
         std::rethrow_exception(job.outOfMemory);
@@ -361,8 +363,8 @@ void Renderer::writeFrameFilm(FrameWork& f, Film& film, double renderSec) {
 bool Renderer::makeDepths(FrameWork& f, Job& job) {
     if (f.path) gridOf(f.o, settings_, &f.nx, &f.ny);
     f.picture.deep = seeDepths(job, f.nx, f.ny, jitterOf(f.o, diagnostics_), settings_.seed, deepShadowError(f.o, diagnostics_));
-    outcome_.interrupted |= job.interrupted;
-    if (job.interrupted)
+    noteInterrupted(job);
+    if (job.interrupted && !job.aborted)
         diagnostics_.report(Severity::Warning, Rie::NoError, {},
                             "interrupted before the deep shadow map was complete; it is not written");
     if (f.picture.deep || job.interrupted) return f.picture.deep != nullptr;
@@ -370,8 +372,8 @@ bool Renderer::makeDepths(FrameWork& f, Job& job) {
     return !f.plan.pictures.empty();
 }
 
-/// Renders under hidden and raytrace.
-void Renderer::renderGrid(FrameWork& f, Job& job) {
+/// Renders under hidden and raytrace. Returns false if an error ended it (abandons()).
+bool Renderer::renderGrid(FrameWork& f, Job& job) {
     DroppedSamples dropped;
     Reconstructions made;
     if (f.plan.onlyDeep()) made = noImages(job);
@@ -384,7 +386,8 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
     stats_.renderSec += job.elapsed();
     stats_.spp = stats_.sppLeast = stats_.sppMost = f.spp;
     stats_.noise = {}; // unknown: neighbouring pixels share samples
-    outcome_.interrupted |= job.interrupted;
+    noteInterrupted(job);
+    if (abandons(f)) return false;
     ++outcome_.rendered;
     if (job.interrupted && writesFiles(settings_))
         diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: unfinished parts of the picture are black");
@@ -400,10 +403,11 @@ void Renderer::renderGrid(FrameWork& f, Job& job) {
         if (!job.interrupted) settings_.watcher->look({pixels, nullptr, nullptr, job.elapsed(), job.rayTotal, true});
         settings_.watcher->finished(nullptr);
     }
-    if (!writesFiles(settings_)) return;
+    if (!writesFiles(settings_)) return true;
     if (settings_.stamp) addStamp(f.picture, settings_, job.elapsed());
     awaitTurn(f);
     writtenPictures(f, writeOutputs(f.plan, f.picture, pixels, f.imager, settings_.allowWrite, diagnostics_));
+    return true;
 }
 
 /// Writes the files of bake() and bake3d(), unless the frame was interrupted.

@@ -81,7 +81,8 @@ bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<
 }
 
 bool Job::pollStop() {
-    if (settings.stop && *settings.stop) {
+    aborted = aborted || (errorsAllowed && diagnostics.errors() > *errorsAllowed);
+    if (aborted || (settings.stop && *settings.stop)) {
         interrupted = true;
         halt = 1;
     }

@@ -40,7 +40,9 @@ struct Job {
     std::string what;                             ///< name of the picture, for the progress line
     double startSeconds = 0;                      ///< clock() at the start of rendering
     StopFlag halt{0};                             ///< polled by tracers
-    bool interrupted = false;                     ///< the user has stopped rendering
+    bool interrupted = false;                     ///< the user, or an error, has stopped rendering
+    bool aborted = false;                         ///< an error has
+    std::optional<int> errorsAllowed;             ///< ErrorHandler "abort": errors of the run beyond which rendering stops
     std::exception_ptr outOfMemory;               ///< set if the samples of a pass did not fit; complete passes remain
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, at the last report
@@ -62,7 +64,7 @@ struct Job {
     bool makeMet();
     /// Traces on a worker and counts its rays. Returns false if stopped; the results are then undefined.
     bool trace(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>);
-    /// Forwards the user's stop to the tracers; returns true if the user has stopped.
+    /// Forwards the user's stop, or that of an error, to the tracers; returns true if there was one.
     bool pollStop();
     transport::Counters counters() const;
     double elapsed() const;

@@ -12,6 +12,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
         diagnostics_.report(Severity::Error, Rie::MissingData, f.o.hiderPlace, why, hint);
     };
     f.world = engine_.build(drawnLevels(f.frame, f.camera), f.settings, diagnostics_);
+    if (abandons(f)) return;
     if (!f.world || !f.world->photons()) {
         outcome_.interrupted |= settings_.stop && *settings_.stop;
         ++outcome_.refused;
@@ -23,6 +24,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
                       "Attribute \"photon\" \"string globalmap\" \"room.photons\"");
     const double cpu = processCpuSeconds();
     Job job(settings_, f.camera, f.plan, engine_, f.world, threads, progress_, diagnostics_);
+    if (f.o.abortsOnError) job.errorsAllowed = f.errorsBefore;
     PhotonPasses passes(job, f.world, {});
     if (!passes.emission().lights())
         return refuse("Hider \"photon\": no light of the frame emits photons",
@@ -30,9 +32,10 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     std::vector<transport::StoredPhoton> stored;
     uint64_t emitted = 0;
     const bool whole = passes.emit(0, photonsToEmit(f.o, diagnostics_), stored, maps.front(), &emitted);
-    outcome_.interrupted |= job.interrupted;
+    noteInterrupted(job);
     stats_.renderSec += job.elapsed();
     stats_.cpuSec += processCpuSeconds() - cpu;
+    if (abandons(f)) return;
     if (!whole) {
         ++outcome_.refused;
         diagnostics_.report(Severity::Warning, Rie::NoError, {},

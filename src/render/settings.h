@@ -6,6 +6,7 @@
 #include "render/progress.h"
 #include "scene/display.h"
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,9 +47,12 @@ struct RenderSettings {
     std::optional<std::array<int, 2>> pixel;            ///< --pixel: print radiances of this pixel instead of writing pictures
     std::optional<uint32_t> pixelSample;                ///< only this sample of it
     std::vector<std::string> shaderPaths, texturePaths; ///< after the scene's own search paths
-    std::string dialect;                                ///< FrontOptions::dialect of the shaders
-    std::string scenePath;                              ///< folder of the scene: last but one in the search path; "" = none
-    std::string shippedShaders;                         ///< last folder in the search path of shaders
+    /// Searched last of all: folders that the environment names. They find what is nowhere else.
+    std::vector<std::string> lastShaderPaths, lastTexturePaths;
+    std::map<std::string, std::string> environment; ///< the variables that name them, for --stats
+    std::string dialect;                            ///< FrontOptions::dialect of the shaders
+    std::string scenePath;                          ///< folder of the scene: last but one in the search path; "" = none
+    std::string shippedShaders;                     ///< last folder in the search path of shaders
     bool allowExec = false, allowWrite = false, allowRead = false;
     std::shared_ptr<ReadLog> reads; ///< records every shader and map that is read or missing; may be null
     size_t memoryLimit = 0;         ///< memory limit of the process (base/memory.h), for messages; 0 = none

@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "base/folder.h"
 #include "base/limits.h"
+#include "base/ownstack.h"
 #include "base/realpath.h"
 #include "ri/interpreter.h"
 #include "ri/limits.h"
@@ -20,6 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kUnkeptReading = 100; // requests that count as executed when an archive that is not kept is read again
+
+/// Files that are open at once; those that nest deeper are read first and closed, up to a size. A process has about 1000.
+constexpr size_t kOpenFiles = 64, kKeptBytes = size_t(16) << 20;
 
 bool regular(const fs::path& p) {
     std::error_code ec;
@@ -168,6 +172,7 @@ std::string Interpreter::locate(const char* what, const std::string& name, const
     std::string beside = folderOf(place.file);
     folders.push_back(beside.empty() ? "." : beside);
     folders.push_back(".");
+    folders.insert(folders.end(), settings.lastArchivePaths.begin(), settings.lastArchivePaths.end());
     std::string fallback, outside;
     std::vector<std::string> own = settings.searchPaths; // below them everything is read
     own.insert(own.end(), {sceneFolder_.empty() ? "." : sceneFolder_, "."});
@@ -219,7 +224,9 @@ std::optional<ArchiveShelf::Found> Interpreter::locateArchive(const std::string&
 
 void Interpreter::readArchive(const std::string& name, const SourcePlace& place) {
     if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
-        reporter.error(Rie::Limit, place, fmt::format("archives are nested deeper than {}", limits::kArchiveDepth));
+        reporter.once(
+            "ri:archivedepth", Severity::Error, Rie::Limit, place,
+            fmt::format("archives and procedurals are nested deeper than {}: deeper ones are left out", limits::kArchiveDepth));
         return;
     }
     if (++archiveReads_ > limits::kArchiveReads) {
@@ -240,7 +247,7 @@ void Interpreter::readArchive(const std::string& name, const SourcePlace& place)
         file = found->file;
         key = found->key;
     }
-    if (std::find(openArchives_.begin(), openArchives_.end(), key) != openArchives_.end()) {
+    if (openArchives_.contains(key)) {
         reporter.error(Rie::Nesting, place, fmt::format("archive \"{}\" reads itself", name));
         return;
     }
@@ -282,30 +289,45 @@ void Interpreter::readOpened(const std::string& key, const std::string& file, co
             }
             return place;
         }
+        if (openArchives_.size() > kOpenFiles) source = inMemory(std::move(source), kKeptBytes);
         Parser parser(inflating(std::move(source)), file, reporter, settings.comments);
         run(parser);
         return parser.here();
     });
 }
 
+void Interpreter::deeper(const std::function<void()>& body) {
+    // A level takes some 10 kB. The thread may have a small stack; the others have 8 MiB, on which frames are drawn, too.
+    constexpr int kLevelsOfAStack = 128, kFirstLevels = 32;
+    struct Level {
+        int& nested;
+        ~Level() { --nested; }
+    } const level{nested_};
+    if (++nested_ % kLevelsOfAStack == kFirstLevels) onOwnStack(body);
+    else body();
+}
+
 void Interpreter::inPart(const std::string& key, const std::function<SourcePlace()>& body) {
     bool wasReplaying = replaying_;
     if (!archivesRead_.insert(key).second) replaying_ = true;
-    openArchives_.push_back(key);
+    openArchives_.push(key);
     barriers_.push_back(blocks_.size());
     size_t conditions = conditions_.size();
+    const int deepConditions = deepConditions_;
     bool wasMoving = motion_.has_value();
-    const SourcePlace end = body();
+    SourcePlace end;
+    deeper([&] { end = body(); });
     if (motion_.has_value() && !wasMoving) closeOpenEnds(std::max(conditions, conditions_.size()), end);
+    deepConditions_ = deepConditions;
     while (conditions_.size() > conditions) {
-        if (!interrupted()) reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");
+        if (!stopped()) reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd in an archive");
         conditions_.pop_back();
     }
     unwind(barriers_.back(), end, true);
     barriers_.pop_back();
     endInnerOptions();
     tellHeld();
-    openArchives_.pop_back();
+    openArchives_.pop();
     replaying_ = wasReplaying;
 }
 

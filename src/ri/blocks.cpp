@@ -14,6 +14,14 @@ constexpr const char* kBegins[] = {"FrameBegin", "WorldBegin",  "AttributeBegin"
 constexpr const char* kEnds[] = {"FrameEnd", "WorldEnd",  "AttributeEnd", "TransformEnd",
                                  "SolidEnd", "ObjectEnd", "ResourceEnd",  "EditEnd"};
 
+/// Takes what requests set; where things stand in solids stays.
+void takeAll(scene::Attributes& to, const scene::Attributes& from) {
+    scene::Attributes restored = from;
+    restored.solid = std::move(to.solid);
+    restored.solidChildren = to.solidChildren;
+    to = std::move(restored);
+}
+
 /// A block that an End of something smaller must not close.
 bool encloses(BlockKind k) { return k == BlockKind::Frame || k == BlockKind::World || k == BlockKind::Object; }
 
@@ -29,12 +37,15 @@ const Interpreter::Block* Interpreter::innermost(BlockKind kind) const {
 }
 
 bool Interpreter::begin(BlockKind kind, const Call& call) {
-    if (blocks_.size() >= size_t(limits::kStackDepth) && kind != BlockKind::World) { // worlds do not nest
+    int& depth = depth_[size_t(kind)];
+    if ((overflow_ > 0 || depth >= limits::kStackDepth) && kind != BlockKind::World) { // worlds do not nest
         if (overflow_++ == 0)
-            reporter.error(Rie::Limit, call.place,
-                           fmt::format("blocks are nested deeper than {}: deeper ones save nothing", limits::kStackDepth));
+            reporter.error(
+                Rie::Limit, call.place,
+                fmt::format("{} is nested deeper than {}: deeper blocks save nothing", beginName(kind), limits::kStackDepth));
         return false;
     }
+    ++depth;
     Block b;
     b.kind = kind;
     b.place = call.place;
@@ -90,7 +101,7 @@ void Interpreter::end(BlockKind kind, const Call& call) {
     for (size_t& b : barriers_) b = std::min(b, blocks_.size());
 }
 
-/// Closes blocks down to `depth` because the stream is over: an error for each, but where the user stopped it. keepWorld:
+/// Closes blocks down to `depth` because the stream is over: an error for each, but where reading was stopped. keepWorld:
 /// frames and worlds stay open (an archive may open them).
 void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld) {
     while (blocks_.size() > depth) {
@@ -100,7 +111,7 @@ void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld)
                           fmt::format("{} is left open by an archive", beginName(b.kind)));
             return;
         }
-        if (!interrupted())
+        if (!stopped())
             reporter.error(
                 Rie::Nesting, where,
                 fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
@@ -109,9 +120,14 @@ void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld)
     }
 }
 
+void Interpreter::dropBlocks(size_t count) {
+    for (; blocks_.size() > count; blocks_.pop_back())
+        --depth_[size_t(blocks_.back().inner ? BlockKind::Attribute : blocks_.back().kind)];
+}
+
 void Interpreter::pop() {
     Block b = std::move(blocks_.back());
-    blocks_.pop_back();
+    dropBlocks(blocks_.size() - 1);
     shared_ = true;
     switch (b.kind) {
     case BlockKind::Transform:
@@ -221,6 +237,8 @@ void Interpreter::worldEnd(Block& b) {
     objectIndex_.clear();
     sharedArchives_.clear();
     if (!frameWanted()) return ended_.clear(), consumer.passOver(frame->options);
+    if (aborted()) return ended_.clear(), waiting_.clear(), consumer.passOver(frame->options);
+    frame->options.abortsOnError = errorStyle_ == ErrorStyle::Abort;
     risOptions(frame->options);
     if (settings.overrides) settings.overrides(frame->options);
     addHeadlight(*frame);
@@ -248,20 +266,15 @@ ObjectRef Interpreter::beginObject(const std::string& handle) {
 
 /// Goes a block of a solid down in the path that primitives keep.
 void Interpreter::stepInto(scene::SolidOperation operation) {
-    scene::Param& path = attributes().values[scene::kSolidAttribute];
-    path.name = "__path";
-    path.cls = scene::Class::Constant;
-    const float child = path.numbers.empty() ? 0 : path.numbers.back();
-    if (!path.numbers.empty()) path.numbers.pop_back();
-    path.numbers.insert(path.numbers.end(), {float(++solidSerial_ & 0xffffff), float(operation), child, 0});
-    path.arrayLength = int(path.numbers.size());
+    scene::Attributes& a = attributes();
+    a.solid.push_back({++solidSerial_, operation, a.solidChildren});
+    a.solidChildren = 0;
 }
 
 void Interpreter::beginSolid(scene::SolidOperation operation, const Call& call) {
-    const scene::Param* outer = state.attributes->value(scene::kSolidAttribute);
-    const bool inPart =
-        outer && !outer->numbers.empty() && scene::solidPath(*state.attributes).back().operation == scene::SolidOperation::Part;
-    if (inPart) {
+    const std::vector<scene::SolidStep>& outer = state.attributes->solid;
+    const bool inOther = !outer.empty();
+    if (inOther && outer.back().operation == scene::SolidOperation::Part) {
         reporter.error(Rie::BadSolid, call.place, "SolidBegin inside a \"primitive\": what it holds belongs to that part");
         begin(BlockKind::Solid, call);
         return;
@@ -269,10 +282,10 @@ void Interpreter::beginSolid(scene::SolidOperation operation, const Call& call) 
     if (!begin(BlockKind::Solid, call)) return;
     stepInto(operation);
     // The block around it remembers that it has one child more.
-    if (!outer) return;
+    if (!inOther) return;
     GraphicsState& saved = blocks_.back().saved;
     saved.attributes = std::make_shared<scene::Attributes>(*saved.attributes);
-    saved.attributes->values[scene::kSolidAttribute].numbers.back() += 1;
+    ++saved.attributes->solidChildren;
 }
 
 scene::Object* Interpreter::openObject() {
@@ -358,7 +371,7 @@ void Interpreter::resource(const Call& call) {
         values({"visibility", "sides", "cull", "hider", "grouping"});
     }
     if (part("transform")) state.ctm = i->second.ctm;
-    if (all) to = from;
+    if (all) takeAll(to, from);
     if (!part_.empty()) markPart(to);
     // Saved in a world that is over: its lights are gone.
     to.lights.keepBelow(int(lights().size()));

@@ -141,7 +141,7 @@ private:
     ConditionValue variable() {
         std::string name = variableName();
         if (failed_) return num(0);
-        if (auto v = lookup_(name)) return *v;
+        if (auto v = lookup_(name, true)) return *v;
         if (!quiet_)
             reporter_.once("ri:condition:" + name, Severity::Error, Rie::BadToken, place_,
                            fmt::format("condition: ${} is not set", name), "defined($" + name + ")");
@@ -186,7 +186,7 @@ private:
             skip();
             std::string name = variableName();
             if (!take(")")) fail("')' expected");
-            return num(!failed_ && lookup_(name).has_value());
+            return num(!failed_ && lookup_(name, false).has_value());
         }
         if (w == "concat" && take("(")) {
             ConditionValue v{true, 0, {}};

@@ -1,5 +1,5 @@
 #include "ri/declare.h"
-#include "scene/knownoptions.h"
+#include "base/knownoptions.h"
 #include <algorithm>
 #include <charconv>
 #include <limits>
@@ -85,9 +85,9 @@ using KnownTypes = std::map<std::string, std::optional<Declaration>, std::less<>
 
 KnownTypes implementationTypes() {
     KnownTypes t;
-    for (auto table : {scene::knownOptions(), scene::knownAttributes()})
-        for (const scene::OptionDescription& d : table)
-            if (!d.type.empty() || d.effect != scene::Effect::Ignored) t[std::string(d.name)] = parseDeclaration(d.type);
+    for (auto table : {known::knownOptions(), known::knownAttributes()})
+        for (const known::OptionDescription& d : table)
+            if (!d.type.empty() || d.settable()) t[std::string(d.name)] = parseDeclaration(d.type);
     return t;
 }
 

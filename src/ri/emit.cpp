@@ -100,8 +100,8 @@ bool holdsNothing(const scene::Primitive& p) {
 
 /// The attributes of a primitive that is made now: in a solid, but in none of its parts, it is a part of its own.
 scene::AttributesRef Interpreter::solidPart(const Call& call) {
-    const scene::Param* path = state.attributes->value(scene::kSolidAttribute);
-    if (!path || scene::solidPath(*state.attributes).back().operation == scene::SolidOperation::Part) return snapshot();
+    const std::vector<scene::SolidStep>& path = state.attributes->solid;
+    if (path.empty() || path.back().operation == scene::SolidOperation::Part) return snapshot();
     reporter.once("ri:solidpart", Severity::Warning, Rie::BadSolid, call.place,
                   fmt::format("{} stands in a solid outside of SolidBegin \"primitive\": it counts as a part of its own",
                               call.request->name));
@@ -111,7 +111,7 @@ scene::AttributesRef Interpreter::solidPart(const Call& call) {
     scene::AttributesRef part = snapshot();
     state = outer;
     shared_ = true;
-    attributes().values[scene::kSolidAttribute].numbers.back() += 1;
+    ++attributes().solidChildren;
     return part;
 }
 

@@ -1,5 +1,6 @@
 // Dispatch: recording, conditionals, motion blocks, scopes, then the handler.
 #include "ri/interpreter.h"
+#include "base/knownoptions.h"
 #include "base/limits.h"
 #include "ri/parser.h"
 #include <fmt/format.h>
@@ -14,8 +15,15 @@ Interpreter::Interpreter(ReaderOptions o, scene::FrameConsumer& c, Diagnostics& 
 }
 
 Interpreter::Lasting Interpreter::lasting() const {
-    return {declarations, options,  state,           nRGB,   lights_,      handles_, systems_,
-            resources_,   objects_, inlineArchives_, abort_, errorsBefore_};
+    return {declarations, options,  state,           nRGB,        lights_,       handles_,          systems_,
+            resources_,   objects_, inlineArchives_, errorStyle_, errorsBefore_, errorsOfAllBefore_};
+}
+
+void Interpreter::setErrorStyle(ErrorStyle style) {
+    if ((errorStyle_ == ErrorStyle::Ignore) != (style == ErrorStyle::Ignore)) reporter.ignore(style == ErrorStyle::Ignore);
+    errorStyle_ = style;
+    errorsBefore_ = reporter.errors();
+    errorsOfAllBefore_ = reporter.errorsOfAll();
 }
 
 void Interpreter::nextScene() {
@@ -25,7 +33,7 @@ void Interpreter::nextScene() {
         return;
     }
     restore(base_);
-    errorsBefore_ = abort_ ? reporter.errors() : 0;
+    setErrorStyle(base_.errorStyle);
     archiveReads_ = 0;
     objectCopies_ = replayedCalls_ = 0;
     archivesRead_.clear();
@@ -80,7 +88,9 @@ void Interpreter::readStream(std::unique_ptr<ByteSource> raw, const std::string&
         end = parser.here();
         reporter.lineText = outer;
     }
-    if (aborted()) reporter.report(Severity::Warning, Rie::IllState, end, "ErrorHandler \"abort\": the rest is not read");
+    if (aborted())
+        reporter.report(Severity::Warning, Rie::IllState, end,
+                        "ErrorHandler \"abort\": the rest is not read, nor a picture finished");
     finish(end);
 }
 
@@ -93,7 +103,7 @@ void Interpreter::finish(const SourcePlace& end) {
 
 void Interpreter::execute(const Call& call) {
     if (record(call) || conditional(call)) return;
-    if (!conditions_.empty() && !conditions_.back().active) return;
+    if (passesOver()) return;
     if (settings.executed && !telling_) tell(call);
     else perform(call);
 }
@@ -160,8 +170,11 @@ bool Interpreter::conditional(const Call& call) {
     std::string_view n = call.request->name;
     bool active = conditions_.empty() || conditions_.back().active;
     if (n == "IfBegin") {
-        if (conditions_.size() >= size_t(limits::kStackDepth)) {
-            reporter.error(Rie::Limit, call.place, "IfBegin is nested too deeply");
+        if (deepConditions_ > 0 || conditions_.size() >= size_t(limits::kStackDepth)) {
+            if (deepConditions_++ == 0)
+                reporter.error(
+                    Rie::Limit, call.place,
+                    fmt::format("IfBegin is nested deeper than {}: what is in deeper ones is passed over", limits::kStackDepth));
             return true;
         }
         bool yes = active && evaluate(call);
@@ -169,6 +182,10 @@ bool Interpreter::conditional(const Call& call) {
         return true;
     }
     if (n != "ElseIf" && n != "Else" && n != "IfEnd") return false;
+    if (deepConditions_ > 0) {
+        deepConditions_ -= n == "IfEnd";
+        return true;
+    }
     if (conditions_.empty()) {
         reporter.error(Rie::Nesting, call.place, fmt::format("{} without IfBegin", n));
         return true;
@@ -187,20 +204,33 @@ bool Interpreter::conditional(const Call& call) {
 }
 
 bool Interpreter::evaluate(const Call& call) {
-    auto lookup = [&](const std::string& name) -> std::optional<ConditionValue> {
-        auto from = [](const std::map<std::string, scene::Param>& m, const std::string& key) -> std::optional<ConditionValue> {
-            auto i = m.find(key);
-            if (i == m.end()) return {};
-            const scene::Param& p = i->second;
-            if (!p.strings.empty()) return ConditionValue{true, 0, p.strings[0]};
-            if (!p.numbers.empty()) return ConditionValue{false, double(p.numbers[0]), {}};
-            return {};
-        };
-        if (name.starts_with("Attribute:")) return from(state.attributes->values, name.substr(10));
-        if (name == "Option:Frame" || name == "Frame") return ConditionValue{false, double(options.frameNumber), {}};
-        if (name.starts_with("Option:")) return from(options.values, name.substr(7));
-        if (auto v = from(state.attributes->values, name)) return v;
-        return from(options.values, name);
+    const auto value = [](const auto& numbers, const auto& texts) -> std::optional<ConditionValue> {
+        if (!texts.empty()) return ConditionValue{true, 0, texts[0]};
+        if (!numbers.empty()) return ConditionValue{false, double(numbers[0]), {}};
+        return {};
+    };
+    const auto set = [&](const std::map<std::string, scene::Param>& m, const std::string& key) -> std::optional<ConditionValue> {
+        const auto i = m.find(key);
+        return i == m.end() ? std::nullopt : value(i->second.numbers, i->second.strings);
+    };
+    const auto unset = [&](std::span<const known::OptionDescription> table,
+                           const std::string& key) -> std::optional<ConditionValue> {
+        const known::OptionDescription* d = known::findKnown(table, key);
+        if (!d || d->answer.empty()) return {};
+        const known::PlainValue v =
+            known::plainValue(options.hider == "path" && !d->answerUnderPath.empty() ? d->answerUnderPath : d->answer);
+        return value(v.numbers, v.texts);
+    };
+    const auto lookup = [&](const std::string& name, bool standard) -> std::optional<ConditionValue> {
+        const bool attribute = name.starts_with("Attribute:"), option = name.starts_with("Option:");
+        const std::string key = attribute ? name.substr(10) : option ? name.substr(7) : name;
+        if (key == "Frame" && !attribute) return ConditionValue{false, double(options.frameNumber), {}};
+        std::optional<ConditionValue> v;
+        if (!option) v = set(state.attributes->values, key);
+        if (!v && !attribute) v = set(options.values, key);
+        if (!v && standard && !option) v = unset(known::knownAttributes(), key);
+        if (!v && standard && !attribute) v = unset(known::knownOptions(), key);
+        return v;
     };
     return evaluateCondition(call.text(0), lookup, reporter, call.place);
 }
@@ -211,14 +241,15 @@ void Interpreter::closeOpenEnds(size_t conditions, const SourcePlace& where) {
         recording_.reset();
     }
     if (motion_) {
-        if (!interrupted()) reporter.error(Rie::Nesting, motion_->place, "MotionBegin without MotionEnd");
+        if (!stopped()) reporter.error(Rie::Nesting, motion_->place, "MotionBegin without MotionEnd");
         tellName("MotionEnd", where);
         Call end;
         end.place = where;
         endMotion(end);
     }
+    if (conditions_.size() > conditions) deepConditions_ = 0;
     while (conditions_.size() > conditions) {
-        if (!interrupted()) reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd");
+        if (!stopped()) reporter.error(Rie::Nesting, conditions_.back().place, "IfBegin without IfEnd");
         conditions_.pop_back();
     }
 }

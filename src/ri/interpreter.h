@@ -5,6 +5,7 @@
 #include "ri/call.h"
 #include "ri/declare.h"
 #include "ri/library.h"
+#include "ri/openarchives.h"
 #include "ri/program.h"
 #include "ri/readahead.h"
 #include "ri/reader.h"
@@ -16,6 +17,7 @@
 #include "scene/network.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
+#include <array>
 #include <functional>
 #include <map>
 #include <set>
@@ -25,6 +27,9 @@ namespace alpenglow::ri {
 enum class BlockKind { Frame, World, Attribute, Transform, Solid, Object, Resource, Edit };
 const char* beginName(BlockKind);
 const char* endName(BlockKind);
+
+/// ErrorHandler (RISpec 3.2, 7.2).
+enum class ErrorStyle { Ignore, Print, Abort };
 
 /// What a parameter list is for: decides how strictly its counts are checked and who declares its names.
 enum class Use { Shader, Primitive, Option, Attribute, Hider, Display, Other };
@@ -57,12 +62,15 @@ public:
     /// The end of a stream, or of a program's calls: closes what is open, with an error for each, and draws a world that is open.
     void finish(const SourcePlace& end);
     /// What is executed now is kept for an archive, or passed over by a condition.
-    bool holdsBack() const { return recording_ || (!conditions_.empty() && !conditions_.back().active); }
+    bool holdsBack() const { return recording_ || passesOver(); }
     /// By the user. What is not closed then is no error.
     bool interrupted() const { return settings.stop && *settings.stop; }
     bool stopped() const { return aborted() || interrupted(); }
     /// ErrorHandler "abort" has met an error.
-    bool aborted() const { return abort_ && reporter.errors() > errorsBefore_; }
+    bool aborted() const {
+        return errorStyle_ == ErrorStyle::Abort &&
+               (reporter.errors() > errorsBefore_ || reporter.errorsOfAll() > errorsOfAllBefore_);
+    }
 
     /// RibReader::nextScene().
     void nextScene();
@@ -152,10 +160,8 @@ public:
     bool gatheringMotion() const { return capture_ != nullptr; }
     /// True when MakeTexture and its kin of this frame are wanted.
     bool frameWanted() const;
-    void setAbort(bool on) {
-        abort_ = on;
-        errorsBefore_ = reporter.errors();
-    }
+    /// Holds for what comes, here and while the picture is drawn. Errors before it count for nothing.
+    void setErrorStyle(ErrorStyle style);
     /// Reports once per request that it is read but has no effect.
     void incapable(const Call& call, const std::string& what);
     void sayDouble(const SourcePlace&); ///< once: a declaration says "double"
@@ -191,8 +197,8 @@ private:
         std::map<std::string, GraphicsState> resources;
         std::map<std::string, ObjectRef> objects;
         std::map<std::string, std::shared_ptr<std::vector<Call>>> inlineArchives;
-        bool abort = false;
-        int errorsBefore = 0;
+        ErrorStyle errorStyle = ErrorStyle::Print;
+        int errorsBefore = 0, errorsOfAllBefore = 0;
     };
     Lasting lasting() const;
     void restore(const Lasting&);
@@ -222,6 +228,12 @@ private:
     /// False when an archive that is read again has used up its calls.
     bool mayReplay(const Call& call);
     bool regionOf(const Call& call, std::vector<float>& bound);
+    /// A condition that does not hold, or one too deep to be asked, passes over what is in it.
+    bool passesOver() const { return deepConditions_ > 0 || (!conditions_.empty() && !conditions_.back().active); }
+    /// Drops blocks down to this number without an end: what they saved is saved elsewhere.
+    void dropBlocks(size_t count);
+    /// Does `body`, which may come here again: every so often on a stack of its own.
+    void deeper(const std::function<void()>& body);
     /// Reads what was found: recorded calls, or a stream that messages call `file`. key tells it from other open ones.
     void readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
                     std::unique_ptr<ByteSource> source, const SourcePlace& place);
@@ -319,10 +331,13 @@ private:
     std::vector<scene::Light>& lights() { return frame_ ? frame_->lights : lights_; }
 
     bool shared_ = true; ///< state.attributes is referenced by a snapshot
-    bool abort_ = false;
-    int errorsBefore_ = 0; ///< when ErrorHandler "abort" was read
+    ErrorStyle errorStyle_ = ErrorStyle::Print;
+    int errorsBefore_ = 0, errorsOfAllBefore_ = 0; ///< when ErrorHandler "abort" was read
     std::vector<Block> blocks_;
-    int overflow_ = 0; ///< Begins beyond limits::kStackDepth, whose Ends are ignored
+    std::array<int, 8> depth_{}; ///< open blocks, by BlockKind
+    int overflow_ = 0;           ///< Begins beyond limits::kStackDepth and those in them, whose Ends are ignored
+    int deepConditions_ = 0;     ///< the same of IfBegin
+    int nested_ = 0;             ///< calls of deeper() that have not returned
     std::optional<Motion> motion_;
     std::vector<Condition> conditions_;
     std::optional<Recording> recording_;
@@ -349,7 +364,7 @@ private:
     ReadAhead ahead_;         ///< of the archives that it names
     ArchiveShelf shelf_;      ///< those that were read before
     std::string unscanned_;   ///< the stream, before it reads one
-    std::vector<std::string> openArchives_;
+    OpenArchives openArchives_;
     std::vector<size_t> barriers_; ///< block depth at each open archive's start
     std::optional<InnerOptions> inner_;
     int archiveReads_ = 0;
@@ -376,13 +391,14 @@ private:
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.
 bool fitVariables(scene::Primitive& p, Reporter& reporter);
 
-/// Value of an IfBegin expression, docs/design/ri.md. `lookup` gives a variable's numbers or strings, or nothing.
+/// Value of an IfBegin expression, docs/design/ri.md. `lookup` gives a variable's numbers or strings, or nothing; where it is not
+/// set, with `standard` what then holds (known::OptionDescription::answer).
 struct ConditionValue {
     bool isString = false;
     double number = 0;
     std::string text;
 };
-using ConditionLookup = std::function<std::optional<ConditionValue>(const std::string& name)>;
+using ConditionLookup = std::function<std::optional<ConditionValue>(const std::string& name, bool standard)>;
 /// Unknown variables and syntax errors are reported; they are false.
 bool evaluateCondition(const std::string& text, const ConditionLookup& lookup, Reporter& reporter, const SourcePlace& place);
 

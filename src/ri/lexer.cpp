@@ -14,11 +14,12 @@ bool digit(unsigned char c) { return c >= '0' && c <= '9'; }
 bool startsNumber(unsigned char c) { return digit(c) || c == '-' || c == '+' || c == '.'; }
 /// Bytes that cannot directly follow a number.
 bool sticks(unsigned char c) { return letter(c) || startsNumber(c); }
-constexpr size_t kBuffer = 256u << 10; // comfortably above limits::kTokenBytes: a token always fits
-constexpr size_t kPlainNumber = 64;    // bytes that the fast way through numbers looks at
-constexpr size_t kLineKept = 16 << 10; // bytes of the current line kept for messages
-constexpr size_t kNotFinite = 24;      // bytes that show whether a word stands for no number
-constexpr double kInfinite = 1e38;     // RI_INFINITY
+constexpr size_t kBuffer = 256u << 10;    // comfortably above limits::kTokenBytes: a token always fits
+constexpr size_t kFirstBuffer = 4u << 10; // small archives may be open by the thousand
+constexpr size_t kPlainNumber = 64;       // bytes that the fast way through numbers looks at
+constexpr size_t kLineKept = 16 << 10;    // bytes of the current line kept for messages
+constexpr size_t kNotFinite = 24;         // bytes that show whether a word stands for no number
+constexpr double kInfinite = 1e38;        // RI_INFINITY
 
 /// Bytes at p that C libraries print for what is no number, 0 for others: nan, -inf, Infinity, -nan(ind). `value`: what is taken
 /// for it.
@@ -56,8 +57,9 @@ size_t notFiniteBehindPoint(const char* p, const char* e, double& value) {
 } // namespace
 
 Lexer::Lexer(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Comments comments)
-    : source_(std::move(source)), file_(std::move(file)), reporter_(reporter), comments_(std::move(comments)), buffer_(kBuffer) {
-    static_assert(kBuffer > 2 * limits::kTokenBytes + kLineKept);
+    : source_(std::move(source)), file_(std::move(file)), reporter_(reporter), comments_(std::move(comments)),
+      buffer_(kFirstBuffer) {
+    static_assert(kBuffer % kFirstBuffer == 0 && kBuffer > 2 * limits::kTokenBytes + kLineKept);
     // A UTF-8 mark: its first byte would be a reserved binary code.
     if (at() && peek() == 0xef) {
         while (end_ - pos_ < 3 && more()) {}
@@ -80,6 +82,7 @@ Lexer::~Lexer() = default;
 
 bool Lexer::more() {
     if (ended_) return false;
+    if (end_ == buffer_.size() && end_ < kBuffer) buffer_.resize(8 * end_);
     size_t keep = pos_;
     for (size_t start : {lineStart_, markStart_})
         if (start >= base_ && start - base_ < keep && base_ + pos_ - start <= kLineKept) keep = start - base_;

@@ -39,6 +39,7 @@ std::set<std::string> picturesOfMakeRequests(const std::string& path, const Read
     if (!source || !contains(*inflating(std::move(source)), "Make")) return {};
     ReaderOptions all;
     all.searchPaths = options.searchPaths;
+    all.lastArchivePaths = options.lastArchivePaths;
     all.allowRead = options.allowRead;
     all.stop = options.stop;
     Names names;

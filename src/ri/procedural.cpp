@@ -97,7 +97,7 @@ bool Interpreter::waits(const std::string& kind, const std::vector<std::string>&
     if (motion_ || capture_ || !everywhere_.empty()) return false;
     if (innermost(BlockKind::Object) || innermost(BlockKind::Solid) || innermost(BlockKind::Edit)) return false;
     const scene::Attributes& a = *state.attributes;
-    if (a.areaLight >= 0 || a.value(scene::kSolidAttribute)) return false;
+    if (a.areaLight >= 0 || !a.solid.empty()) return false;
     std::vector<float> bound;
     const double reach = reachOf(a, state.ctm.first());
     for (size_t k = 0; k < 6; k += 2) {
@@ -164,6 +164,7 @@ std::string Interpreter::findForeign(const std::vector<std::string>& names, int 
             }
         folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
         folders.push_back(sceneFolder_.empty() ? "." : sceneFolder_);
+        folders.insert(folders.end(), settings.lastProceduralPaths.begin(), settings.lastProceduralPaths.end());
     }
     for (const std::string& f : folders) {
         for (const std::string& name : names) {
@@ -215,8 +216,9 @@ bool Interpreter::mayMake(const Call& call) {
         return false;
     }
     if (openArchives_.size() >= size_t(limits::kArchiveDepth)) {
-        reporter.once("ri:programdepth", Severity::Error, Rie::Limit, call.place,
-                      fmt::format("procedurals and archives are nested deeper than {}", limits::kArchiveDepth));
+        reporter.once(
+            "ri:archivedepth", Severity::Error, Rie::Limit, call.place,
+            fmt::format("archives and procedurals are nested deeper than {}: deeper ones are left out", limits::kArchiveDepth));
         return false;
     }
     return frameWanted();

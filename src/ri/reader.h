@@ -19,7 +19,9 @@ struct Call;
 struct Value;
 
 struct ReaderOptions {
-    std::vector<std::string> searchPaths;            ///< folders for archives, after those of Option "searchpath" "archive"
+    std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
+    /// Folders for archives, and for programs and libraries of procedurals, behind all others: those that the environment names.
+    std::vector<std::string> lastArchivePaths, lastProceduralPaths;
     bool allowExec = false;                          ///< RunProgram, DynamicLoad, System were asked for by the user
     double programSeconds = limits::kProgramSeconds; ///< that a program may take for one answer
     const StopFlag* stop = nullptr;                  ///< set: the rest is not read; may be null

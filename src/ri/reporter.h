@@ -19,6 +19,10 @@ public:
     void once(const std::string& key, Severity, Rie, const SourcePlace&, std::string message, std::string hint = {});
     /// Errors reported so far, shown or not.
     int errors() const { return errors_; }
+    /// Errors of the whole run that count, from whomever.
+    int errorsOfAll() const { return sink_.errors(); }
+    /// ErrorHandler "ignore" for the whole run.
+    void ignore(bool on) { sink_.ignore(on); }
     /// Says how many messages were left out since the last call, if any.
     void flush(const SourcePlace&);
     /// Text of a line that is still at hand, for the caret; may return "".

@@ -66,7 +66,7 @@ bool Interpreter::mayShare(const std::string& name) const {
         !everywhere_.empty())
         return false;
     if (innermost(BlockKind::Object) || innermost(BlockKind::Solid) || innermost(BlockKind::Edit)) return false;
-    return state.attributes->areaLight < 0 && !state.attributes->value(scene::kSolidAttribute) && !inlineArchives_.count(name);
+    return state.attributes->areaLight < 0 && state.attributes->solid.empty() && !inlineArchives_.count(name);
 }
 
 bool Interpreter::instanceOfArchive(const std::string& name, const Call& call) {

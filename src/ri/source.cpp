@@ -71,7 +71,7 @@ private:
     const StopFlag* stop_; ///< may be null
 };
 
-/// Bytes already taken from a stream, then the rest of it.
+/// Bytes already taken from a stream, then the rest of it; null: there is none.
 class Prefixed : public ByteSource {
 public:
     Prefixed(std::string head, std::unique_ptr<ByteSource> rest) : head_(std::move(head)), rest_(std::move(rest)) {}
@@ -82,8 +82,8 @@ public:
             used_ += n;
             return n;
         }
-        size_t n = rest_->read(out, size);
-        if (n == 0) failure_ = rest_->failure();
+        size_t n = rest_ ? rest_->read(out, size) : 0;
+        if (n == 0 && rest_) failure_ = rest_->failure();
         return n;
     }
 
@@ -187,6 +187,18 @@ std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why
         return nullptr;
     }
     return std::make_unique<File>(fd, true, stop);
+}
+
+std::unique_ptr<ByteSource> inMemory(std::unique_ptr<ByteSource> source, size_t most) {
+    std::string head;
+    char part[4096];
+    while (head.size() < most) {
+        const size_t n = source->read(part, sizeof part);
+        if (n == 0) break;
+        head.append(part, n);
+    }
+    if (head.size() < most && source->failure().empty()) source.reset();
+    return std::make_unique<Prefixed>(std::move(head), std::move(source));
 }
 
 std::unique_ptr<ByteSource> standardInput(const StopFlag* stop) { return std::make_unique<File>(STDIN_FILENO, false, stop); }

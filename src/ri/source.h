@@ -35,6 +35,9 @@ std::unique_ptr<ByteSource> streamSource(std::istream& in);
 /// once; opening a pipe waits for its writer. stop: set: the source is at its end, also where it waits for bytes; may be null.
 std::unique_ptr<ByteSource> fileSource(const std::string& path, std::string* why, bool regular = false,
                                        const StopFlag* stop = nullptr);
+/// What a source has, read at once, up to `most` bytes; the source itself, for what is behind them, is kept only where there is
+/// more.
+std::unique_ptr<ByteSource> inMemory(std::unique_ptr<ByteSource> source, size_t most);
 /// Descriptor 0, unbuffered.
 std::unique_ptr<ByteSource> standardInput(const StopFlag* stop);
 /// Inflates when the stream starts with 1f 8b (concatenated members too), else passes it through.

@@ -1,6 +1,6 @@
-// Names of Option and Attribute, and parameters of Hider and Display, that are in no table (scene/knownoptions.h).
+// Names of Option and Attribute, and parameters of Hider and Display, that are in no table (base/knownoptions.h).
+#include "base/knownoptions.h"
 #include "ri/interpreter.h"
-#include "scene/knownoptions.h"
 #include <fmt/format.h>
 #include <iterator>
 #include <sstream>
@@ -40,23 +40,23 @@ std::string didYouMean(const std::string& word, const std::vector<std::string>& 
 
 bool Interpreter::sayUnknown(bool option, const std::string& category, const scene::Param& p) {
     if (category == "user") return true;
-    const auto table = option ? scene::knownOptions() : scene::knownAttributes();
+    const auto table = option ? known::knownOptions() : known::knownAttributes();
     const char* what = option ? "Option" : "Attribute";
     const std::string key = category + ":" + p.name;
-    const scene::OptionDescription* known = scene::findKnown(table, key);
-    if (known && known->effect != scene::Effect::Ignored) return true;
+    const known::OptionDescription* entry = known::findKnown(table, key);
+    if (entry && entry->settable()) return true;
     const std::string head = fmt::format("{} \"{}\" \"{}\"", what, category, p.name);
-    if (known || otherClasses(option).count(category)) {
+    if (entry || otherClasses(option).count(category)) {
         reporter.once("ri:" + head, Severity::Info, Rie::BadToken, p.place, head + " does nothing here");
         return false;
     }
     std::string hint;
-    const std::vector<std::string> names = scene::knownNames(table, category);
-    if (scene::findKnown(option ? scene::knownAttributes() : scene::knownOptions(), key))
+    const std::vector<std::string> names = known::knownNames(table, category);
+    if (known::findKnown(option ? known::knownAttributes() : known::knownOptions(), key))
         hint = option ? "it is an Attribute" : "it is an Option";
     else if (!names.empty()) hint = didYouMean(p.name, names);
     else {
-        std::vector<std::string> classes = scene::knownNames(table, "");
+        std::vector<std::string> classes = known::knownNames(table, "");
         classes.emplace_back("user");
         hint = didYouMean(category, classes);
     }
@@ -66,17 +66,17 @@ bool Interpreter::sayUnknown(bool option, const std::string& category, const sce
 }
 
 bool Interpreter::sayUnknownParameter(bool hider, const scene::Param& p) {
-    const auto table = hider ? scene::knownHiderParameters() : scene::knownDisplayParameters();
-    const scene::OptionDescription* known = scene::findKnown(table, p.name);
-    if (known && known->effect != scene::Effect::Ignored) return true;
+    const auto table = hider ? known::knownHiderParameters() : known::knownDisplayParameters();
+    const known::OptionDescription* entry = known::findKnown(table, p.name);
+    if (entry && entry->settable()) return true;
     const std::string head = fmt::format("{} parameter \"{}\"", hider ? "Hider" : "Display", p.name);
-    if (known) {
+    if (entry) {
         reporter.once("ri:" + head, Severity::Info, Rie::BadToken, p.place, head + " does nothing here");
         return false;
     }
     std::vector<std::string> names;
-    for (const scene::OptionDescription& d : table)
-        if (d.effect != scene::Effect::Ignored) names.emplace_back(d.name);
+    for (const known::OptionDescription& d : table)
+        if (d.settable()) names.emplace_back(d.name);
     reporter.once("ri:" + head, Severity::Warning, Rie::BadToken, p.place, head + " is not known: it does nothing",
                   didYouMean(p.name, names));
     return false;

@@ -39,8 +39,9 @@ void Interpreter::restore(const Lasting& l) {
     resources_ = l.resources;
     objects_ = l.objects;
     inlineArchives_ = l.inlineArchives;
-    abort_ = l.abort;
+    if (errorStyle_ != l.errorStyle) setErrorStyle(l.errorStyle);
     errorsBefore_ = l.errorsBefore;
+    errorsOfAllBefore_ = l.errorsOfAllBefore;
 }
 
 /// Those that wait from this number on see the names of what they stand in as they are now.
@@ -55,13 +56,7 @@ void Interpreter::nameWaiting(size_t from) {
 }
 
 /// What says of attributes which part they belong to.
-void Interpreter::markPart(scene::Attributes& a) const {
-    scene::Param& p = a.values[scene::kPartAttribute];
-    p.name = scene::kPartAttribute;
-    p.cls = scene::Class::Constant;
-    p.type = scene::Type::String;
-    p.strings = {part_};
-}
+void Interpreter::markPart(scene::Attributes& a) const { a.part = part_; }
 
 /// Content of one that waits, behind what is there.
 void Interpreter::makeWaiting(const Waiting& w, std::vector<PrimitiveRef>& out, const Wanted& wanted) {
@@ -79,9 +74,9 @@ void Interpreter::makeWaiting(const Waiting& w, std::vector<PrimitiveRef>& out, 
     frame_->primitives.clear();
     makeNow(w.kind, w.arguments, w.bound, w.call);
     nameWaiting(first);
-    while (blocks_.size() > blocks) blocks_.pop_back(); // reported when the content ended
+    dropBlocks(blocks); // reported when the content ended
     content.swap(frame_->primitives);
-    putMade(content, out, wanted);
+    deeper([&] { putMade(content, out, wanted); });
 }
 
 void Interpreter::putMade(const std::vector<PrimitiveRef>& from, std::vector<PrimitiveRef>& out, const Wanted& wanted) {
@@ -113,6 +108,7 @@ std::shared_ptr<scene::Frame> Interpreter::makeSome(const scene::Frame& from, co
     const Lasting now = lasting();
     const scene::Transform camera = std::exchange(worldToCamera_, from.options.worldToCamera);
     auto conditions = std::exchange(conditions_, {});
+    const int deepConditions = std::exchange(deepConditions_, 0);
     auto archives = std::exchange(openArchives_, {});
     auto barriers = std::exchange(barriers_, {blocks_.size() + 1});
     const bool replaying = replaying_;
@@ -136,6 +132,7 @@ std::shared_ptr<scene::Frame> Interpreter::makeSome(const scene::Frame& from, co
     barriers_ = std::move(barriers);
     openArchives_ = std::move(archives);
     conditions_ = std::move(conditions);
+    deepConditions_ = deepConditions;
     worldToCamera_ = camera;
     part_.clear();
     partsWithin_ = 0;

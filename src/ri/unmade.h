@@ -11,7 +11,7 @@ struct Interpreter::Waiting {
     std::vector<float> bound; ///< as it was given
     Call call;
     GraphicsState state;
-    std::vector<std::string> archives; ///< that were open
+    OpenArchives archives; ///< that were open
     bool replaying = false;
     std::string part;                     ///< of what is in it: scene::partOf()
     std::shared_ptr<const Lasting> names; ///< declarations, handles and their like, at the end of what it stands in

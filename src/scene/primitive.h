@@ -4,6 +4,8 @@
 #pragma once
 #include "scene/lightset.h"
 #include "scene/param.h"
+#include "scene/solidstep.h"
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -36,6 +38,13 @@ struct Attributes {
     std::map<std::string, ShaderRef> coshaders;
     /// The nine arrays of TrimCurve as params named ncurves, order, knot, min, max, n, u, v, w.
     std::shared_ptr<const ParamList> trimCurve;
+    // State of the renderer, which no request names.
+    std::vector<SolidStep> solid; ///< the blocks of SolidBegin around what is made now, from the outermost (scene/solids.h)
+    int solidChildren = 0;        ///< blocks and parts that the innermost of them has had
+    std::string part;             ///< scene::partOf() (scene/unmade.h)
+    /// Between levels of detail: what is made is there for samples whose own number in [0, 1) is at least the first and below
+    /// the second. Nothing: for all.
+    std::optional<std::array<float, 2>> level;
     const Param* value(const std::string& key) const {
         auto i = values.find(key);
         return i == values.end() ? nullptr : &i->second;

@@ -56,7 +56,8 @@ struct Options {
     int colorSamples = 3;
     std::map<std::string, Param> values; ///< Option "class" "name", keyed "class:name"
     int frameNumber = 0;
-    bool inFrame = false; ///< between FrameBegin and FrameEnd
+    bool inFrame = false;       ///< between FrameBegin and FrameEnd
+    bool abortsOnError = false; ///< ErrorHandler "abort": the first error of the frame ends it without a picture
     Transform worldToCamera;
     /// Named coordinate systems: name -> matrix from that space to camera.
     std::map<std::string, Transform> cameraSpaces;

@@ -10,18 +10,12 @@ namespace alpenglow::scene {
 /// let displacement move points. strings: what it is made from, by name.
 inline constexpr const char* kUnmade = "Procedural";
 
-/// Attribute of what is in such a procedural: one string, the way there through procedurals ("3/1": the second of those in
-/// the fourth). What depends on it does not depend on which others have been made.
-inline constexpr const char* kPartAttribute = "procedural:__part";
-
 inline bool isProcedural(const Primitive& p) { return p.kind == kUnmade && p.ints.size() == 2 && p.numbers.size() == 6; }
 inline bool isUnmade(const Primitive& p) { return isProcedural(p) && p.ints[1] == 0; }
 inline int unmadeNumber(const Primitive& p) { return p.ints[0]; }
 
-/// The way to the procedural that something was made by, or "" for what the scene holds itself.
-inline std::string partOf(const Attributes& a) {
-    const Param* p = a.value(kPartAttribute);
-    return p && !p->strings.empty() ? p->strings[0] : std::string();
-}
+/// The way to the procedural that something was made by ("3/1": the second of those in the fourth), or "" for what the scene
+/// holds itself. What depends on it does not depend on which others have been made.
+inline const std::string& partOf(const Attributes& a) { return a.part; }
 
 } // namespace alpenglow::scene

@@ -1,4 +1,5 @@
 #include "world/information.h"
+#include "base/knownoptions.h"
 #include "base/version.h"
 #include "scene/scene.h"
 #include "world/objectbox.h"
@@ -24,47 +25,12 @@ Information matrixOf(const Matrix& m) {
     return i;
 }
 
-/// Values of attributes that no request has set (docs/options.md).
-std::optional<Information> unset(const std::string& name, bool path) {
-    static const std::map<std::string, float> numbers = {{"GeometricApproximation:motionfactor", 1.f},
-                                                         {"displacementbound:sphere", 0.f},
-                                                         {"trace:bias", -1.f},
-                                                         {"trace:displacements", 0.f},
-                                                         {"trace:samplemotion", 0.f},
-                                                         {"sides:doubleshaded", 0.f},
-                                                         {"visibility:camera", 1.f},
-                                                         {"visibility:trace", 0.f},
-                                                         {"visibility:transmission", 0.f},
-                                                         {"visibility:photon", 0.f},
-                                                         {"photon:estimator", 50.f},
-                                                         {"dice:hair", 0.f},
-                                                         {"dice:rasterorient", 1.f},
-                                                         {"cull:backfacing", 1.f},
-                                                         {"cull:hidden", 1.f},
-                                                         {"derivatives:smooth", 1.f},
-                                                         {"derivatives:centered", 1.f},
-                                                         {"subsurface:scale", 1.f},
-                                                         {"subsurface:refractionindex", 1.3f},
-                                                         {"subsurface:shadingrate", 1.f},
-                                                         {"light:samples", 1.f},
-                                                         {"light:emitphotons", 0.f},
-                                                         {"irradiance:shadingrate", 1.f},
-                                                         {"irradiance:nsamples", 64.f},
-                                                         {"hider:composite", 1.f}};
-    static const std::map<std::string, std::string> texts = {{"displacementbound:coordinatesystem", "current"},
-                                                             {"grouping:membership", ""},
-                                                             {"identifier:name", ""},
-                                                             {"photon:shadingmodel", "matte"},
-                                                             {"photon:causticmap", ""},
-                                                             {"photon:globalmap", ""},
-                                                             {"subsurface:groupname", ""},
-                                                             {"light:samplingstrategy", "illuminance"}};
-    if (name == "visibility:diffuse" || name == "visibility:specular") return number(path ? 1.f : 0.f);
-    if (name == "trace:maxdiffusedepth") return number(path ? 32.f : 1.f);
-    if (name == "trace:maxspeculardepth") return number(path ? 32.f : 2.f);
-    if (const auto n = numbers.find(name); n != numbers.end()) return number(n->second);
-    if (const auto t = texts.find(name); t != texts.end()) return words(t->second);
-    return std::nullopt;
+/// Values of attributes and options that no request has set, from the table.
+std::optional<Information> unset(std::span<const known::OptionDescription> table, const std::string& name, bool path) {
+    const known::OptionDescription* entry = known::findKnown(table, name);
+    if (!entry || entry->answer.empty()) return std::nullopt;
+    known::PlainValue v = known::plainValue(path && !entry->answerUnderPath.empty() ? entry->answerUnderPath : entry->answer);
+    return Information{std::move(v.numbers), v.texts, !v.texts.empty()};
 }
 
 /// Displacement bound by shaders: sizes add up; the displacement shader defines the space.
@@ -126,7 +92,7 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
         const bool emits = a.areaLight >= 0 && size_t(a.areaLight) < w.lights_.size();
         return words((emits ? w.lights_[size_t(a.areaLight)].mean : w.settings().hider != Hider::Path) ? "samples" : "radiance");
     }
-    return unset(name, w.settings().hider == Hider::Path);
+    return unset(known::knownAttributes(), name, w.settings().hider == Hider::Path);
 }
 
 bool ofPoint(const std::string& name) {
@@ -160,7 +126,7 @@ std::optional<Information> optionOf(const WorldImpl& w, const std::string& name)
     else if (name == "Ri:Display" || name == "Display") return words(o.displays.empty() ? "ri.pic" : o.displays[0].name);
     else if (name == "trace:maxdepth") v = {float(w.maxDepth_)};
     else if (const auto i = o.values.find(name); i != o.values.end()) return given(&i->second);
-    else return std::nullopt;
+    else return unset(known::knownOptions(), name, w.settings().hider == Hider::Path);
     return Information{v, {}, false};
 }
 

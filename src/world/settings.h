@@ -11,10 +11,6 @@
 
 namespace alpenglow::transport {
 
-/// Attribute of a primitive that fades between levels of detail: two numbers. It is visible to samples whose own number in [0, 1)
-/// is at least the first and below the second.
-inline constexpr const char* kLevelAttribute = "detail:__level";
-
 enum class Hider { Hidden, Raytrace, Path };
 
 /// Sampling of points on a ray segment in a medium that is lit by lights with positions (tests: all have the same mean).

@@ -1,5 +1,6 @@
 #include "world/surfaces.h"
 #include "rsl/front/leftmembers.h"
+#include "scene/shadingrate.h"
 #include "shading/faceindex.h"
 #include "world/gathersite.h"
 #include "world/photonattributes.h"
@@ -190,11 +191,9 @@ std::string SurfaceBinder::keyOf(const SurfaceBinding& b, const geometry::Shape&
     for (const auto& [first, last] : a.lights.runs()) add(first), add(last);
     add(-1);
     add(a.areaLight);
-    add(a.opacity.x);
-    add(a.opacity.y);
-    add(a.opacity.z);
+    for (const float o : {a.opacity.x, a.opacity.y, a.opacity.z}) add(o);
     add(a.matte);
-    add(a.shadingRate);
+    add(scene::shadedArea(a));
     add(attributeNumber(a, "trace:maxdiffusedepth", -1));
     add(attributeNumber(a, "trace:maxspeculardepth", -1));
     add(attributeNumber(a, "trace:bias", 0));
@@ -250,7 +249,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
     // A light without a kernel (missing shader, or not a light) was reported; its geometry is an ordinary surface.
     b.areaLight = a.areaLight >= 0 && world_.lights_[size_t(a.areaLight)].kernel ? a.areaLight : -1;
     b.matte = a.matte;
-    b.shadingRate = a.shadingRate;
+    b.shadingRate = scene::shadedArea(a);
     b.maxDiffuse = int(attributeNumber(a, "trace:maxdiffusedepth", path_ ? -1 : 1));
     b.maxSpecular = int(attributeNumber(a, "trace:maxspeculardepth", path_ ? -1 : 2));
     b.bias = std::max(0.f, attributeNumber(a, "trace:bias", 0));

@@ -143,8 +143,8 @@ void WorldImpl::findProcedurals() {
 static void findLevels(WorldImpl& w) {
     std::vector<accel::Accel::Levels> levels(w.shapes_.size());
     for (size_t i = 0; i < levels.size(); ++i)
-        if (const scene::Param* p = w.shapes_[i]->attributes().value(kLevelAttribute); p && p->numbers.size() == 2) {
-            levels[i] = {p->numbers[0], p->numbers[1]};
+        if (const auto& level = w.shapes_[i]->attributes().level) {
+            levels[i] = {(*level)[0], (*level)[1]};
             w.fades_ = true;
         }
     if (w.fades_) w.accel_->setLevels(std::move(levels));

@@ -31,8 +31,8 @@ constexpr float kPart = float(SolidOperation::Part), kUnion = float(SolidOperati
 
 scene::Attributes at(std::vector<float> path, int sides = 2) {
     scene::Attributes a;
-    path.push_back(0); // children of the innermost
-    a.values[scene::kSolidAttribute] = param("__path", scene::Class::Constant, scene::Type::Float, std::move(path));
+    for (size_t i = 0; i < path.size(); i += 3)
+        a.solid.push_back({uint32_t(path[i]), SolidOperation(int(path[i + 1])), int(path[i + 2])});
     a.sides = sides;
     return a;
 }

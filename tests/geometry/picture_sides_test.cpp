@@ -232,7 +232,7 @@ TEST(PictureSides, EmittersSolidsAndWhatMovesStayWhole) {
     const Matrix m = translateMatrix(40, 0, 10);
     scene::Attributes emits, solid;
     emits.areaLight = 0;
-    solid.values[scene::kSolidAttribute] = param("path", scene::Class::Constant, scene::Type::Float, {1, 0, 0, 1});
+    solid.solid = {{1, scene::SolidOperation::Part, 0}};
     for (const scene::Attributes& a : {emits, solid}) {
         ShapeRef s = build(patch("bicubic", bentNet()), m, d, a);
         s->dice(o.seen, d);

@@ -72,7 +72,20 @@ struct Scene final : scene::FrameConsumer {
         EXPECT_NE(world, nullptr) << messages();
         EXPECT_EQ(diagnostics.errors(), errors) << messages() << rib;
     }
-    void render(std::shared_ptr<const scene::Frame> f) override { frame = std::move(f); }
+    /// Attribute "user" "float[2] level" is what render/levels.h finds of the levels of detail of a scene.
+    void render(std::shared_ptr<const scene::Frame> f) override {
+        auto own = std::make_shared<scene::Frame>(*f);
+        for (scene::PrimitiveRef& p : own->primitives) {
+            const scene::Param* level = p->attributes ? p->attributes->value("user:level") : nullptr;
+            if (!level || level->numbers.size() != 2) continue;
+            auto attributes = std::make_shared<scene::Attributes>(*p->attributes);
+            attributes->level = {level->numbers[0], level->numbers[1]};
+            auto other = std::make_shared<scene::Primitive>(*p);
+            other->attributes = std::move(attributes);
+            p = std::move(other);
+        }
+        frame = std::move(own);
+    }
     void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}
     std::string messages() const {
         std::string s;

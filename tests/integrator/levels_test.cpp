@@ -10,7 +10,7 @@ using namespace alpenglow::transport::testing;
 namespace {
 
 std::string pane(const std::string& levels, const std::string& colour) {
-    return "AttributeBegin Attribute \"detail\" \"float[2] __level\" [" + levels + "] Surface \"constant\" Color " + colour +
+    return "AttributeBegin Attribute \"user\" \"float[2] level\" [" + levels + "] Surface \"constant\" Color " + colour +
            " Polygon \"P\" [-9 1 -9  -9 1 9  9 1 9  9 1 -9] AttributeEnd\n";
 }
 

@@ -40,7 +40,7 @@ TEST(Emission, OfWhatFades) {
     const std::string light = "LightSource \"pointlight\" 1 \"float intensity\" 3 \"point from\" [1 .5 2]\n";
     const double power = 3 * kPi * 4 * kPi;
     for (const auto& [levels, part] : {std::pair{"0 .3", .3}, std::pair{".3 1", .7}}) {
-        Scene s(world(light + "Attribute \"detail\" \"float[2] __level\" [" + levels + "]\n" + kBall), path());
+        Scene s(world(light + "Attribute \"user\" \"float[2] level\" [" + levels + "]\n" + kBall), path());
         const double n = 40000;
         EXPECT_NEAR(powerOf(emitted(s, uint32_t(n)), 0), part * power, 4.5 * std::sqrt(part * (1 - part) / n) * power) << levels;
     }

@@ -10,6 +10,7 @@ import zlib
 import numpy
 
 sys.dont_write_bytecode = True
+os.environ["ALPENGLOW_RC"] = "off"  # not that of who runs the tests
 PROGRAM = os.environ.get("ALPENGLOW_PROGRAM", "alpenglow")
 SOURCE = os.environ.get("ALPENGLOW_SOURCE", os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 

@@ -84,8 +84,8 @@ TEST(Levels, TransitionsFade) {
         std::vector<std::vector<float>> p;
         const auto out = drawnLevels(f, Camera(f->options, d));
         for (const auto& left : out->primitives) {
-            const scene::Param* level = left->attributes->value(transport::kLevelAttribute);
-            p.push_back(level ? level->numbers : std::vector<float>{});
+            const auto& level = left->attributes->level;
+            p.push_back(level ? std::vector<float>(level->begin(), level->end()) : std::vector<float>{});
         }
         return p;
     };
@@ -96,7 +96,7 @@ TEST(Levels, TransitionsFade) {
     EXPECT_EQ(parts(.05f), (Parts{{0, .75f}, {.75f, 1}})); // 125 between 100 and 200
     EXPECT_EQ(parts(.5f), (Parts{{}}));
     EXPECT_TRUE(d.all().empty());
-    EXPECT_EQ(low->value(transport::kLevelAttribute), nullptr) << "the scene's own attributes stay";
+    EXPECT_FALSE(low->level) << "the scene's own attributes stay";
     // In an instance the mark lies over the attributes of the instance.
     const auto none = std::make_shared<scene::Attributes>();
     auto lit = std::make_shared<scene::Attributes>(*middle);
@@ -108,8 +108,7 @@ TEST(Levels, TransitionsFade) {
     const auto out = drawnLevels(f, Camera(f->options, d));
     const scene::Instance& i = out->instances[0];
     const auto a = geometry::instanceAttributes(*out->objects[size_t(i.object)].primitives.at(0), i);
-    ASSERT_NE(a->value(transport::kLevelAttribute), nullptr);
-    EXPECT_EQ(a->value(transport::kLevelAttribute)->numbers, (std::vector<float>{0, .75f}));
+    EXPECT_EQ(a->level, (std::array{0.f, .75f}));
     EXPECT_EQ(a->color, Color(.5f));
 }
 

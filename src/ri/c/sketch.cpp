@@ -56,7 +56,7 @@ std::string Sketch::note(const Call& call) {
     } else if (call.request->kind == Kind::Structure || call.request->kind == Kind::Archive) {
         for (const auto& [begin, last] : kBlocks) {
             if (name == last) return end(begin);
-            if (name == begin && blocks_.size() < size_t(limits::kStackDepth))
+            if (name == begin && blocks_.size() < std::size(kBlocks) * size_t(limits::kStackDepth))
                 blocks_.push_back({begin, attributes, colorSamples});
         }
         if ((name == "Else" || name == "ElseIf") && open() != "IfBegin") return "there is no IfBegin before it";

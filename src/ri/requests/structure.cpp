@@ -49,7 +49,7 @@ void errorHandler(Interpreter& in, const Call& c) {
     const std::string& h = c.text(0);
     if (h != "ignore" && h != "print" && h != "printonce" && h != "abort")
         in.reporter.error(Rie::BadToken, c.place, fmt::format("ErrorHandler: \"{}\" is not known", h), "ignore, print or abort");
-    in.setAbort(h == "abort"); // "ignore" does not hide messages: who runs the program decides that
+    in.setErrorStyle(h == "abort" ? ErrorStyle::Abort : h == "ignore" ? ErrorStyle::Ignore : ErrorStyle::Print);
 }
 
 } // namespace
@@ -63,7 +63,11 @@ std::vector<Request> structureRequests() {
         {"Declare", "string name; string declaration", Kind::Other, all, false,
          "Declares the class and type of a parameter name.", "\"myparam\" \"varying color\"", declare},
         {"ErrorHandler", "string style", Kind::Other, all, false,
-         "\"abort\" stops reading at the first error; \"ignore\" and \"print\" read on.", "\"print\"", errorHandler},
+         "What an error does, here and while the picture is drawn. \"print\": it is printed, and the rest goes on. \"ignore\": "
+         "errors and warnings are printed with -v only and leave the exit status alone; their number is told. \"abort\": the "
+         "first error is printed and ends the run: no picture is finished, and the exit status is not 0. \"printonce\" is "
+         "\"print\": what recurs is printed once anyway.",
+         "\"print\"", errorHandler},
         {"FrameBegin", "int number", Kind::Structure, kBase, false, "Saves options and attributes and sets the frame number.",
          "1", frameBegin},
         {"FrameEnd", "", Kind::Structure, all, false, "Restores what FrameBegin saved.", "", endBlock<B::Frame>},

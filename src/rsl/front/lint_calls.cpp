@@ -1,4 +1,5 @@
 #include "rsl/front/lint_calls.h"
+#include "base/knownoptions.h"
 #include "base/printable.h"
 #include <algorithm>
 #include <initializer_list>
@@ -27,6 +28,12 @@ struct NamedArgument {
     const char* what;
     Names names;
 };
+
+Names namesOf(std::span<const known::OptionDescription> table) {
+    Names names;
+    for (const known::OptionDescription& d : table) names.emplace_back(d.name);
+    return names;
+}
 
 const std::vector<NamedArgument>& namedArguments() {
     static const Names spaces = {"current", "world", "camera", "object", "shader", "screen", "raster", "NDC", "eye"};
@@ -58,67 +65,8 @@ const std::vector<NamedArgument>& namedArguments() {
         {"vtransform", 1, 3, false, "space", spaces},
         {"ntransform", 0, 2, false, "space", spaces},
         {"ntransform", 1, 3, false, "space", spaces},
-        {"option",
-         0,
-         2,
-         false,
-         "option",
-         {"Ri:Frame", "Ri:Format", "Ri:PixelSamples", "Ri:Shutter", "Ri:Clipping", "Ri:CropWindow", "Ri:FrameAspectRatio",
-          "Ri:PixelVariance", "Ri:ScreenWindow", "Ri:DepthOfField", "Ri:Hider", "Ri:Display", "trace:maxdepth"}},
-        {"attribute",
-         0,
-         2,
-         false,
-         "attribute",
-         {"Ri:ShadingRate",
-          "Ri:Sides",
-          "Ri:Matte",
-          "Ri:Color",
-          "Ri:Opacity",
-          "Ri:Orientation",
-          "Ri:TextureCoordinates",
-          "Ri:DetailRange",
-          "Ri:Transformation",
-          "GeometricApproximation:motionfactor",
-          "displacementbound:sphere",
-          "displacementbound:coordinatesystem",
-          "geometry:backfacing",
-          "geometry:frontfacing",
-          "geometry:geometricnormal",
-          "grouping:membership",
-          "identifier:name",
-          "trace:bias",
-          "trace:displacements",
-          "trace:samplemotion",
-          "trace:maxdiffusedepth",
-          "trace:maxspeculardepth",
-          "sides:doubleshaded",
-          "visibility:camera",
-          "visibility:diffuse",
-          "visibility:specular",
-          "visibility:transmission",
-          "visibility:photon",
-          "photon:estimator",
-          "photon:shadingmodel",
-          "photon:causticmap",
-          "photon:globalmap",
-          "dice:hair",
-          "dice:rasterorient",
-          "cull:backfacing",
-          "cull:hidden",
-          "derivatives:smooth",
-          "derivatives:centered",
-          "subsurface:scale",
-          "subsurface:refractionindex",
-          "subsurface:shadingrate",
-          "subsurface:groupname",
-          "light:samples",
-          "light:emitphotons",
-          "light:samplingstrategy",
-          "light:units",
-          "irradiance:shadingrate",
-          "irradiance:nsamples",
-          "hider:composite"}}};
+        {"option", 0, 2, false, "option", namesOf(known::knownOptions())},
+        {"attribute", 0, 2, false, "attribute", namesOf(known::knownAttributes())}};
     return all;
 }
 

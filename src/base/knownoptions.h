@@ -1,18 +1,20 @@
 // The names of Option, Attribute, Hider and Display parameters that are known here: one table each. The reader takes their types
-// from it, warnings their spelling, `alpenglow info` and docs/options.md their text.
+// from it, attribute(), option() and RIB's If what holds where nothing is set, warnings of scenes and of shaders their spelling,
+// `alpenglow info` and docs/options.md their text.
 #pragma once
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace alpenglow::scene {
+namespace alpenglow::known {
 
 /// What a name does in this program.
 enum class Effect {
     Used,    ///< decides something about the picture or the run
     Asked,   ///< decides nothing by itself: kept for shaders (option(), attribute()) and for RIB's If
-    Ignored, ///< a name of other renderers: accepted without a message, and without an effect
+    Told,    ///< nothing sets it by this name: attribute() or option() tells it of the graphics state or of the point
+    Ignored, ///< a name of other renderers: accepted with a note alone, and without an effect
 };
 
 /// One name of Option "category" "name", of Attribute, or of a parameter of Hider or Display.
@@ -22,7 +24,13 @@ struct OptionDescription {
     std::string_view standard; ///< what holds when nothing is set, for people; "" = nothing
     std::string_view sample;   ///< a value as RIB writes it; "" for ignored names
     Effect effect = Effect::Ignored;
-    std::string_view doc; ///< what it does here, one or two sentences; of ignored names, whose they are
+    std::string_view doc; ///< what it does here, one or two sentences; of ignored names, whose they are, and why nothing is done
+    /// What attribute(), option() and RIB's If give where nothing is set, as RIB writes it; "": they find nothing.
+    std::string_view answer = {};
+    std::string_view answerUnderPath = {}; ///< under Hider "path", if that is something else
+
+    /// Whether a request that sets it changes anything.
+    bool settable() const { return effect == Effect::Used || effect == Effect::Asked; }
 };
 
 /// One hider.
@@ -40,7 +48,13 @@ std::span<const HiderDescription> knownHiders();
 
 /// The entry of that name, or null.
 const OptionDescription* findKnown(std::span<const OptionDescription> table, std::string_view name);
+/// A value as RIB writes it: numbers, or texts in quotes. Of `answer`.
+struct PlainValue {
+    std::vector<float> numbers;
+    std::vector<std::string> texts;
+};
+PlainValue plainValue(std::string_view text);
 /// For hints: the names of a category ("trace" gives "maxdepth", ...), or for "" the categories themselves.
 std::vector<std::string> knownNames(std::span<const OptionDescription> table, std::string_view category);
 
-} // namespace alpenglow::scene
+} // namespace alpenglow::known

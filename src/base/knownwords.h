@@ -1,8 +1,8 @@
 // Words that the tables of options and attributes share.
 #pragma once
-#include "scene/knownoptions.h"
+#include "base/knownoptions.h"
 
-namespace alpenglow::scene {
+namespace alpenglow::known {
 
 using enum Effect;
 
@@ -10,4 +10,4 @@ using enum Effect;
 inline constexpr std::string_view kPrman = "PRMan", kDelight = "3Delight", kAqsis = "Aqsis", kBmrt = "BMRT",
                                   kSeveral = "several renderers";
 
-} // namespace alpenglow::scene
+} // namespace alpenglow::known

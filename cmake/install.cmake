@@ -35,7 +35,7 @@ foreach(folder bash-completion zsh fish)
 endforeach()
 
 # For programs that call the library, plug-ins and libraries of procedurals: <ri.h> and <alpenglow/rslplugin.h>.
-install(FILES ${CMAKE_SOURCE_DIR}/include/ri.h ${CMAKE_SOURCE_DIR}/include/alpenglow/rslplugin.h
+install(FILES ${CMAKE_SOURCE_DIR}/include/ri.h ${CMAKE_SOURCE_DIR}/include/RifPlugin.h ${CMAKE_SOURCE_DIR}/include/alpenglow/rslplugin.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/alpenglow)
 set(config_folder ${CMAKE_INSTALL_DATADIR}/cmake/alpenglow)
 set(include_folder ${CMAKE_INSTALL_INCLUDEDIR})

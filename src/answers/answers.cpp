@@ -20,6 +20,7 @@ void KernelRun::forget() {
     ambient.clear();
     for (LightSheet& sheet : sheets) sheet.made = sheet.refused = false;
     draws.clear();
+    spilled.clear();
     lightChannels.clear();
     lightReach.clear();
     gathers.clear();

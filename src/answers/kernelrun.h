@@ -2,6 +2,7 @@
 #pragma once
 #include "answers/gatherrows.h"
 #include "answers/lightloop.h"
+#include "rsl/spilledarrays.h"
 #include <deque>
 
 namespace alpenglow::transport {
@@ -31,6 +32,7 @@ struct KernelRun {
     std::deque<LightLoop> loops;    ///< Answers::lightLoop()
     std::vector<Color> ambient;     ///< by point: sum of the ambient lights; empty until used
     std::vector<LightSheet> sheets; ///< by light sample; empty until a loop runs
+    rsl::SpilledArrays spilled;     ///< of arrays that have outgrown the kernel's memory
     std::vector<uint32_t> draws;    ///< by call site and point: number of random() calls; empty until used
     std::vector<float>
         lightChannels;      ///< by point, all AOVs: values by outputchannel() of lights, and by atmospheres; empty without any

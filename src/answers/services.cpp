@@ -65,6 +65,7 @@ void Answers::service(KernelRun& c, int site, int first, uint64_t mask, int lane
     default:
         break;
     }
+    if (c.spilled.answer(call.d, first, mask, lanes, in, out, diagnostics_, &c.bound->kernel->files())) return;
     rsl::basicService(
         call.d, mask, lanes, in, out, diagnostics_, [&](int lane, const std::string& text) { print(call, lane, text); },
         &c.bound->kernel->files());

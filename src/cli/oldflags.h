@@ -24,9 +24,9 @@ struct OldFlag {
 
 std::span<const OldFlag> oldFlags();
 
-/// What to use in the place of filters that are C++ libraries.
+/// What to use in the place of filters of a scene that is rendered.
 inline constexpr std::string_view kNoRif =
-    "C++ filters (Rif) are not loaded; `alpenglow rib --replace`, or a program in a pipe, does what they do";
+    "filters (Rif) belong to `alpenglow rib --filter`, which writes to a pipe that `alpenglow render -` reads";
 
 /// A command line with the flags of other renderers replaced.
 struct TranslatedFlags {

@@ -140,7 +140,7 @@ constexpr OldFlag kRibFlags[] = {
     {"-indent", 1, "prman", Use::Accepted, "--indent $1"},
     {"-p", 1, "prman", Use::Dropped, "RIB is read by one thread"},
     {"-progress", 0, "prman, renderdl", Use::Dropped, kSaid},
-    {"-rif", 1, "prman", Use::Answered, kNoRif},
+    {"-rif", 1, "prman", Use::Accepted, "--filter $1"},
     {"-t", 1, "prman, renderdl", Use::Dropped, "RIB is read by one thread"},
     {"-precision", 1, "prman", Use::Dropped, "numbers are written so that they read back as they were"},
 };
@@ -180,6 +180,26 @@ std::span<const OldFlag> toolFlags(std::string_view command) {
     return {};
 }
 
+/// "-rif NAME -rifargs A B -rifend" as "-rif" and one word, in which each is quoted.
+static void joinRifArguments(std::vector<std::string>& args) {
+    const auto quoted = [](const std::string& s) {
+        const char quote = s.find('\'') == s.npos ? '\'' : '"';
+        return quote + s + quote;
+    };
+    for (size_t i = 0; i + 1 < args.size(); ++i) {
+        if (args[i] != "-rif") continue;
+        std::string all = quoted(args[i + 1]);
+        size_t end = i + 2;
+        if (end < args.size() && args[end] == "-rifargs") {
+            for (++end; end < args.size() && args[end] != "-rifend"; ++end) all += " " + quoted(args[end]);
+            end = std::min(end + 1, args.size());
+        }
+        args[i + 1] = all;
+        args.erase(args.begin() + long(i + 2), args.begin() + long(end));
+        ++i;
+    }
+}
+
 void takeCatrib(std::vector<std::string>& args, const OldName* name) {
     const auto at = std::find_if(args.begin(), args.end(), [](const std::string& a) { return a == "-catrib" || a == "-cat"; });
     if (!args.empty() && args[0] == "render" && at != args.end()) {
@@ -190,6 +210,7 @@ void takeCatrib(std::vector<std::string>& args, const OldName* name) {
         if (!output) args.erase(at);
         args[0] = "rib";
     }
+    if (!args.empty() && args[0] == "rib") joinRifArguments(args);
     if (!name || name->name != "catrib" || args.empty() || args[0] != "rib") return;
     const auto has = [&](std::string_view flag) { return std::find(args.begin(), args.end(), flag) != args.end(); };
     const auto set = [](const char* variable) {

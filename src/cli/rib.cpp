@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/jsonreport.h"
 #include "cli/ranges.h"
+#include "cli/ribfilters.h"
 #include "ri/requestfilter.h"
 #include "ri/requeststats.h"
 #include "ri/writer.h"
@@ -20,7 +21,7 @@ namespace alpenglow::cli {
 namespace {
 
 struct RibArguments {
-    std::vector<std::string> files, searchPaths, rib, drop, only, replace;
+    std::vector<std::string> files, searchPaths, rib, drop, only, replace, filters;
     std::string output, frames;
     int indent = 4, columns = 100;
     bool binary = false, ascii = false, format = false, gzip = false, expand = false, validate = false, stats = false,
@@ -134,7 +135,7 @@ nlohmann::ordered_json statsJson(const ri::RequestStats& s) {
 }
 
 struct Outcome {
-    bool read = true, written = true, interrupted = false;
+    bool read = true, written = true, interrupted = false, filtered = true;
 };
 
 Outcome rewrite(const RibArguments& a, ri::FilterRules rules, std::unique_ptr<ri::ByteSink> sink, ri::RequestStats* counts,
@@ -147,7 +148,12 @@ Outcome rewrite(const RibArguments& a, ri::FilterRules rules, std::unique_ptr<ri
     const bool piped = a.writes() && (a.output.empty() || a.output == "-");
     const bool flushes = piped && a.files.size() == 1 && a.files[0] == "-" && !a.gzip;
     Writing last(writer ? &*writer : nullptr, flushes, counts);
-    ri::RequestFilter filter(std::move(rules), last);
+    const auto filters = RibFilters::make(a.filters, last, diags, stop);
+    if (!filters) {
+        done.filtered = false;
+        return done;
+    }
+    ri::RequestFilter filter(std::move(rules), filters->first());
     for (const std::string& f : a.files) {
         const bool all = a.expand || a.validate;
         done.read &= all ? ri::passOnExpanded(f, readerOf(a, stop), filter, diags) : ri::passOn(f, filter, diags, stop);
@@ -180,6 +186,7 @@ int runRib(const RibArguments& a, ri::FilterRules rules, Diagnostics& diags, nlo
     }
     ri::RequestStats counts;
     const Outcome done = rewrite(a, std::move(rules), std::move(sink), a.stats ? &counts : nullptr, diags);
+    if (!done.filtered) return kWrongUse;      // what was there stays, here too
     if (done.interrupted) return kInterrupted; // what was there stays
     if (!done.read) return kNothingRendered;
     if (file && !file->commit(diags)) return kOutputFailed;
@@ -201,6 +208,11 @@ void addRules(CLI::App& c, RibArguments& a) {
     g->add_option("--only", a.only, "Leave out all that do not fit")->type_name("PATTERN")->allow_extra_args(false);
     g->add_option("--replace", a.replace, "Put requests, or nothing, in the place of those that fit")
         ->type_name("PATTERN=REQUESTS")
+        ->allow_extra_args(false);
+    g->add_option("--filter", a.filters,
+                  "A filter that is asked about each request: a library in C++ (RifPlugin.h) with its arguments, FILE.py, "
+                  "FILE.py:FUNCTION or python:MODULE.FUNCTION; several stand one behind the other")
+        ->type_name("'NAME ARGUMENT..'")
         ->allow_extra_args(false);
     c.add_option("--searchpath", a.searchPaths, "Folders for archives, separated by :")
         ->type_name("DIRS")

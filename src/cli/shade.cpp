@@ -11,6 +11,7 @@
 #include "rsl/front/protocol.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
+#include "rsl/spilledarrays.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -84,6 +85,16 @@ struct Context {
     bool print;
     size_t begun = 0; ///< index of the batch's first point
     rsl::PrintLog prints{};
+    rsl::SpilledArrays spilled{};
+    bool answers(int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+        return services->answer(*kernel, site, first, mask, lanes, in, out) ||
+               spilled.answer(kernel->sites()[size_t(site)], first, mask, lanes, in, out, *diagnostics, &kernel->files());
+    }
+    /// After a batch.
+    void flush() {
+        prints.flush();
+        spilled.clear();
+    }
 };
 
 double cpuSeconds() {
@@ -237,7 +248,7 @@ int shade(const ShadeArguments& a) {
     call.service = [](rsl::KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* rowsIn,
                       float* rowsOut) {
         auto& x = *static_cast<Context*>(c->user);
-        if (site < 0 || x.services->answer(*x.kernel, site, first, mask, lanes, rowsIn, rowsOut)) return;
+        if (site < 0 || x.answers(site, first, mask, lanes, rowsIn, rowsOut)) return;
         rsl::basicService(
             x.kernel->sites()[size_t(site)], mask, lanes, rowsIn, rowsOut, *x.diagnostics,
             [&](int lane, const std::string& text) {
@@ -300,7 +311,7 @@ int shade(const ShadeArguments& a) {
         fill(at);
         context.begun = first;
         kernel->run(&call);
-        context.prints.flush();
+        context.flush();
         for (size_t p = 0; p < at.size(); ++p) {
             float* pixel = image.data.data() + (first + p) / samples * channels.size();
             for (size_t o = 0; o < out.size(); ++o) {

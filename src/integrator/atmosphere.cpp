@@ -2,6 +2,7 @@
 // slope Ci), which the compiler proves where it can; the slope scales light that is added later: requests and emission.
 #include "integrator/atmosphere.h"
 #include "integrator/context.h"
+#include "integrator/gathercalls.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/stageset.h"
 #include "world/outputs.h"
@@ -9,7 +10,7 @@
 
 namespace alpenglow::transport {
 
-Atmosphere::Atmosphere(const StageSet& s) : Stage(s.context), inputs_(s.inputs) {}
+Atmosphere::Atmosphere(const StageSet& s) : Stage(s.context), inputs_(s.inputs), gathers_(s.gathers) {}
 
 void Atmosphere::haze(const Medium& medium, const SurfaceBinding& binding, std::vector<ShadePoint>& points, std::span<Haze> out,
                       bool wantSlope, BatchContext* surface, std::span<const int> of) {
@@ -28,6 +29,11 @@ void Atmosphere::haze(const Medium& medium, const SurfaceBinding& binding, std::
         c.points.swap(points); // lent
         std::vector<shading::InstanceView> views(c.points.size(), medium.shader->view());
         c.batch = std::make_shared<shading::Batch>(kernel, *medium.kernel.plan, c.points, views, world_);
+        if (surface && !gathers_.gathered.empty()) {
+            std::vector<TargetId> targets;
+            for (int k : of) targets.push_back(surface->targets[size_t(k)]);
+            gathers_.takeSent(*c.batch, targets, rsl::PairName::To::Volume);
+        }
         inputs_.bind(c.batch->call(), c);
         ++running_;
         kernel->run(&c.batch->call());

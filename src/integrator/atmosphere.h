@@ -6,6 +6,7 @@
 
 namespace alpenglow::transport {
 
+class GatherCalls;
 class KernelInputs;
 struct StageSet;
 
@@ -30,6 +31,7 @@ private:
     int running_ = 0; ///< volume kernels that are running, nested
     void keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of);
     KernelInputs& inputs_;
+    const GatherCalls& gathers_;
 };
 
 } // namespace alpenglow::transport

@@ -1,13 +1,14 @@
 // Displacement at hits: P, N and the displacement outputs that the surface shader reads.
 #include "integrator/displacement.h"
 #include "integrator/context.h"
+#include "integrator/gathercalls.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/stageset.h"
 #include "world/turned.h"
 
 namespace alpenglow::transport {
 
-Displacement::Displacement(const StageSet& s) : Stage(s.context), inputs_(s.inputs) {}
+Displacement::Displacement(const StageSet& s) : Stage(s.context), inputs_(s.inputs), gathers_(s.gathers) {}
 
 std::shared_ptr<BatchContext> Displacement::displace(const BatchContext& c) {
     const BoundKernel& bound = c.binding->displacementS;
@@ -27,6 +28,7 @@ std::shared_ptr<BatchContext> Displacement::displace(const BatchContext& c) {
     const shading::InstanceView view = shader.view();
     d->batch = std::make_shared<shading::Batch>();
     d->batch->assign(bound.kernel, *bound.plan, d->points, {&view, 1}, {}, world_);
+    gathers_.takeSent(*d->batch, c.targets, rsl::PairName::To::Displacement);
     inputs_.bind(d->batch->call(), *d);
     bound.kernel->run(&d->batch->call());
     d->ran();

@@ -5,6 +5,7 @@
 
 namespace alpenglow::transport {
 
+class GatherCalls;
 class KernelInputs;
 struct StageSet;
 
@@ -20,6 +21,7 @@ public:
 
 private:
     KernelInputs& inputs_;
+    const GatherCalls& gathers_;
 };
 
 } // namespace alpenglow::transport

@@ -2,6 +2,7 @@
 #include "integrator/emittedlight.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
+#include "integrator/gathercalls.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/litsurfaces.h"
@@ -18,7 +19,7 @@ namespace alpenglow::transport {
 
 EmittedLight::EmittedLight(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces),
-      media_(s.media), mediumFlights_(s.mediumFlights), photons_(s.photons), store_(s.store) {}
+      media_(s.media), mediumFlights_(s.mediumFlights), photons_(s.photons), store_(s.store), gathers_(s.gathers) {}
 
 void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     for (const Sched::Task* t : tasks) // the environment map of a trace()
@@ -86,7 +87,9 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
     for (size_t first = 0, end; first < met.size(); first = end) {
         q.clear();
         litBy_.clear();
-        for (end = first; end < met.size() && met[end].light == met[first].light; ++end) {
+        const auto sending = [&](size_t i) { return gathers_.sending(met[i].target, rsl::PairName::To::Light); };
+        const GatherSent* const ray = sending(first); // what it sends is for its own hit
+        for (end = first; end < met.size() && met[end].light == met[first].light && sending(end) == ray; ++end) {
             const PathRay& r = *met[end].point->ray;
             q.push_back(*met[end].point);
             ShadePoint& p = q.back();
@@ -102,8 +105,12 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
         std::vector<char> inMedium;
         if (!world_.media_.empty())
             for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->medium() >= 0);
-        lightKernels_.evaluateLight(
-            light, q, value, {.lit = light.asksSurface ? &lit : nullptr, .inMedium = inMedium.empty() ? nullptr : &inMedium});
+        shading::ParameterBlock given;
+        const bool sent = ray && GatherCalls::lightParameters(*ray, *light.instance, given);
+        lightKernels_.evaluateLight(light, q, value,
+                                    {.parameters = sent ? &given : nullptr,
+                                     .lit = light.asksSurface ? &lit : nullptr,
+                                     .inMedium = inMedium.empty() ? nullptr : &inMedium});
         for (size_t i = 0; i < inMedium.size(); ++i) {
             if (!inMedium[i] || !value[i].lit) continue;
             const PathRay& r = *met[first + i].point->ray;

@@ -6,6 +6,7 @@
 namespace alpenglow::transport {
 
 class Accumulator;
+class GatherCalls;
 class LightKernels;
 class LightPathStates;
 class LitSurfaces;
@@ -39,6 +40,7 @@ private:
     MediumFlights& mediumFlights_;
     PhotonStage& photons_;
     RayStore& store_;
+    const GatherCalls& gathers_;
 };
 
 } // namespace alpenglow::transport

@@ -212,9 +212,12 @@ void sendMet(const Asking& a, std::span<GatherMet> met, int begin, int end, int 
             sent.quiet = true;
             sent.asked = uint16_t(std::clamp(turns, int(sent.asked), 0xffff));
         }
-        out.push_back({sent, m.row, a.set.context.world.shapes_[m.hit.shape].get(), &g, sent.quiet, false, {}});
-        for (const GatherSite::Sent& s : g.sent)
-            for (int k = 0; k < s.size; ++k) out.back().values.push_back(a.f(s.row + k));
+        out.push_back({sent, m.row, a.set.context.world.shapes_[m.hit.shape].get(), &g, sent.quiet, false, {}, {}});
+        for (const GatherSite::Sent& s : g.sent) {
+            const int elements = s.lengthRow < 0 ? 1 : int(std::clamp(a.f(s.lengthRow), 0.f, float(s.elements)));
+            for (int k = 0; k < elements * rsl::ir::components(s.kind); ++k) out.back().values.push_back(a.f(s.row + k));
+            out.back().ends.push_back(out.back().values.size());
+        }
     }
 }
 
@@ -318,14 +321,66 @@ GatherRows& GatherCalls::cast(BatchContext& c, const SiteInfo& s, int first, uin
     return g;
 }
 
-void GatherCalls::takeSent(BatchContext& c) const {
-    for (size_t i = 0; i < c.targets.size(); ++i) {
-        const auto asks = gathered.find(c.targets[i]);
-        if (asks == gathered.end()) continue;
-        const float* value = asks->second->values.data();
-        for (const GatherSite::Sent& s : asks->second->site->sent) {
-            c.batch->give(s.parameter, int(i), {value, size_t(s.size)});
-            value += s.size;
+shading::GivenValue GatherSent::value(size_t sent) const {
+    const GatherSite::Sent& s = site->sent[sent];
+    const size_t begin = sent ? ends[sent - 1] : 0;
+    return {s.kind, s.lengthRow >= 0, std::span(values).subspan(begin, ends[sent] - begin)};
+}
+
+void GatherCalls::takeSent(shading::Batch& batch, std::span<const TargetId> targets, rsl::PairName::To to) const {
+    if (gathered.empty()) return;
+    for (size_t i = 0; i < targets.size(); ++i)
+        if (const GatherSent* ray = sending(targets[i], to))
+            for (size_t k = 0; k < ray->site->sent.size(); ++k)
+                if (ray->site->sent[k].to == to) batch.give(ray->site->sent[k].parameter, int(i), ray->value(k));
+}
+
+const GatherSent* GatherCalls::sending(TargetId target, rsl::PairName::To to) const {
+    const auto asks = gathered.find(target);
+    return asks != gathered.end() && asks->second->site->sendsTo(to) ? asks->second : nullptr;
+}
+
+bool GatherCalls::lightParameters(const GatherSent& ray, const ShaderInstance& light, shading::ParameterBlock& all) {
+    bool any = false;
+    for (size_t k = 0; k < ray.site->sent.size(); ++k) {
+        const GatherSite::Sent& s = ray.site->sent[k];
+        if (s.to != rsl::PairName::To::Light) continue;
+        const shading::GivenValue v = ray.value(k);
+        const auto own = std::find_if(light.program->parameters().begin(), light.program->parameters().end(),
+                                      [&](const rsl::ParameterInfo& p) { return p.name == s.parameter; });
+        const auto have = light.parameters.numbers.find(s.parameter);
+        if (own == light.program->parameters().end() || have == light.parameters.numbers.end()) continue;
+        const bool fits = Told::kindOf(own->type.base) == v.kind && (own->type.array != 0 || own->open) == v.array;
+        if (!fits) continue;
+        if (!any) all = light.parameters;
+        any = true;
+        std::vector<float>& to = all.numbers[s.parameter];
+        std::copy_n(v.numbers.begin(), std::min(v.numbers.size(), to.size()), to.begin());
+    }
+    return any;
+}
+
+/// A parameter that is no output is what was sent to it.
+static void tellSent(const GatherSent& ray, const GatherSite::Output& asked, const ShaderInstance* shader, Told& t) {
+    using To = rsl::PairName::To;
+    const To to = asked.of == Of::Surface ? To::Surface : asked.of == Of::Displacement ? To::Displacement : To::Volume;
+    const std::string& name = rsl::internedString(asked.id);
+    for (size_t k = 0; k < ray.site->sent.size(); ++k) {
+        const GatherSite::Sent& s = ray.site->sent[k];
+        if (s.to != to || s.parameter != name || !shader) continue;
+        const shading::GivenValue v = ray.value(k);
+        const bool own = std::any_of(shader->program->parameters().begin(), shader->program->parameters().end(),
+                                     [&](const rsl::ParameterInfo& p) {
+                                         return p.name == name && !p.output && Told::kindOf(p.type.base) == v.kind &&
+                                                (p.type.array != 0 || p.open) == v.array;
+                                     });
+        if (!own) continue;
+        if (v.kind == rsl::ir::Kind::String) {
+            t.texts.resize(std::max(t.texts.size(), v.numbers.size()));
+            for (size_t n = 0; n < v.numbers.size(); ++n) t.texts[n] = rsl::internedString(std::bit_cast<int32_t>(v.numbers[n]));
+        } else {
+            t.numbers.resize(std::max(t.numbers.size(), v.numbers.size()));
+            std::copy(v.numbers.begin(), v.numbers.end(), t.numbers.begin());
         }
     }
 }
@@ -343,7 +398,10 @@ void GatherCalls::tellGather(const BatchContext& c, int point, GatherSent& sent)
         const shading::Batch* run = o.of == Of::Surface                       ? c.batch.get()
                                     : o.of == Of::Displacement && c.displaced ? c.displaced->batch.get()
                                                                               : nullptr;
-        if (const auto t = toldAtHit(inputs_.answers, p, shader, o.id, run, point)) putGathered(sent.row, o, *t);
+        if (auto t = toldAtHit(inputs_.answers, p, shader, o.id, run, point)) {
+            tellSent(sent, o, shader.get(), *t);
+            putGathered(sent.row, o, *t);
+        }
     }
 }
 

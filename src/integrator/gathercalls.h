@@ -16,9 +16,13 @@ struct GatherSent {
     float* row = nullptr; ///< in GatherRows
     const geometry::Shape* met = nullptr;
     const GatherSite* site = nullptr;
-    bool quiet = false;        ///< light and opacity are in the row already
-    bool told = false;         ///< the shaders at the hit have run
-    std::vector<float> values; ///< of GatherSite::sent, concatenated
+    bool quiet = false; ///< light and opacity are in the row already
+    bool told = false;  ///< the shaders at the hit have run
+    /// Values of GatherSite::sent, one behind the other.
+    std::vector<float> values;
+    /// By entry of GatherSite::sent, where its values end.
+    std::vector<size_t> ends;
+    shading::GivenValue value(size_t sent) const;
 };
 
 class GatherCalls final : Stage {
@@ -29,8 +33,13 @@ public:
     /// requested. The batch owns the rows until the strip ends.
     GatherRows& cast(BatchContext&, const SiteInfo&, int first, uint64_t mask, int lanes, const float* in,
                      std::span<const uint32_t> occurrence, std::span<uint32_t> asked, std::vector<GatherSent>& sent);
-    /// Sets shader parameters at points hit by gather() rays to the values that the rays send (category "sent").
-    void takeSent(BatchContext&) const;
+    /// Sets parameters of shaders of that kind at hits of gather() rays to the values that the rays send. `targets`: by point of
+    /// the batch.
+    void takeSent(shading::Batch&, std::span<const TargetId> targets, rsl::PairName::To) const;
+    /// The ray of a gather() that sends something to shaders of that kind; null: none.
+    const GatherSent* sending(TargetId, rsl::PairName::To) const;
+    /// The parameters of a light that the ray meets, with the numbers that it sends; false: it sends none to this light.
+    static bool lightParameters(const GatherSent&, const ShaderInstance& light, shading::ParameterBlock&);
     /// Writes the shader results at a hit to the gather() whose ray found it; `point`: in a batch that has run.
     void tellGather(const BatchContext&, int point, GatherSent&);
 

@@ -131,7 +131,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     if (photons_.photonTrace() && kernel.facts().suspends) return photons_.photonsByModel(*c, sched);
     inputs_.fill(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
-    if (!gathers_.gathered.empty()) gathers_.takeSent(*c);
+    gathers_.takeSent(*c->batch, c->targets, rsl::PairName::To::Surface);
     auto aside = lightOutputs_.asides(*c, sched);
     if (c->binding->moveS) displacement_.moveToFacets(*c); // the kernel moves P itself: it starts with the undisplaced surface
     const int n = int(c->points.size());

@@ -3,6 +3,7 @@
 #include "rsl/front/protocol.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
+#include "rsl/spilledarrays.h"
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -98,6 +99,7 @@ public:
             fill();
             kernel_.run(&call);
             prints_.flush();
+            spilled_.clear();
             take();
         }
         std::erase_if(results_, [](const ShadeOutput& o) { return o.width == 0; });
@@ -108,6 +110,7 @@ private:
     void serve(int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
         if (site < 0 || services_.answer(kernel_, site, first, mask, lanes, in, out)) return;
         const rsl::ir::Site& s = kernel_.sites()[size_t(site)];
+        if (spilled_.answer(s, first, mask, lanes, in, out, diagnostics_, &kernel_.files())) return;
         rsl::basicService(
             s, mask, lanes, in, out, diagnostics_,
             [&](int lane, const std::string& text) {
@@ -220,6 +223,7 @@ private:
     Diagnostics& diagnostics_;
     transport::WithoutScene services_;
     rsl::PrintLog prints_;
+    rsl::SpilledArrays spilled_;
     StopFlag stop_;
     std::vector<Rows> in_, out_;
     std::vector<const float*> inRows_;

@@ -1,5 +1,6 @@
 #include "rsl/evaluate.h"
 #include "rsl/front/protocol.h"
+#include "rsl/spilledarrays.h"
 #include <algorithm>
 #include <bit>
 #include <cstdio>
@@ -46,6 +47,11 @@ struct PointContext {
     Diagnostics* diagnostics;
     int points = 0;
     const AnswerFn* answer = nullptr;
+    SpilledArrays spilled{};
+    bool answers(int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+        if (answer && *answer && (*answer)(*kernel, site, first, mask, lanes, in, out)) return true;
+        return spilled.answer(kernel->sites()[size_t(site)], first, mask, lanes, in, out, *diagnostics, &kernel->files());
+    }
     std::vector<int> draws{}; ///< by site and point: random numbers drawn so far
 };
 
@@ -105,7 +111,7 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     call.service = [](KernelCall* kc, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
         auto& x = *static_cast<PointContext*>(kc->user);
         if (site < 0) return;
-        if (*x.answer && (*x.answer)(*x.kernel, site, first, mask, lanes, in, out)) return;
+        if (x.answers(site, first, mask, lanes, in, out)) return;
         const ir::Site& s = x.kernel->sites()[size_t(site)];
         basicService(
             s, mask, lanes, in, out, *x.diagnostics,

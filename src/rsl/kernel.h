@@ -100,6 +100,13 @@ struct CoShader {
     bool light = false;                ///< a light of the scene: what it sends and its outputs are the renderer's to say
 };
 
+/// A parameter that gather() statements may send texts to, or an array whose length is open: InputName::sent.
+struct SentParameter {
+    std::string name;
+    int room = 1; ///< elements that come at most; of no array 1
+    bool operator==(const SentParameter&) const = default;
+};
+
 struct KernelOptions {
     int lanes = 16;       ///< 4, 8 or 16: the width of the machine's vectors
     int vectors = 0;      ///< vectors in flight (K): the kernel works on lanes*K points at a time; 0 = chosen from the code
@@ -121,8 +128,9 @@ struct KernelOptions {
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
     /// Parameters whose default the kernel computes for each sample (CompiledShader::computedParameters).
     std::vector<std::string> computedParameters;
-    std::vector<std::string> messages; ///< output parameters that lights ask for by surface(), sorted
-    std::vector<CoShader> coShaders;   ///< in the order of their handles
+    std::vector<SentParameter> sentParameters; ///< sorted by name
+    std::vector<std::string> messages;         ///< output parameters that lights ask for by surface(), sorted
+    std::vector<CoShader> coShaders;           ///< in the order of their handles
 };
 
 /// One compiled kernel. Immutable, shared between threads.

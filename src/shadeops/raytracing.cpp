@@ -307,7 +307,7 @@ std::vector<Shadeop> raytracingShadeops() {
         "environment:direction "
         "environment:solidangle (that of one sample: the sum of color times solidangle is the integral of the map). Shaders "
         "run at a hit only "
-        "where a pair asks for what they give; send:surface:x gives parameter x of these surfaces a value.");
+        "where a pair asks for what they give; send:surface:x (displacement, volume, light) gives parameter x a value.");
     gather.examples = {
         {"misses", "4", "float misses = 0; gather(\"illuminance\", P, N, 0.5, 4) { } else misses += 1;", kNothing}};
     std::erase_if(gather.optional, [](const OptionalParameter& p) {

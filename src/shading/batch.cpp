@@ -140,6 +140,8 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
         s.parts = rsl::inputParts(input);
         s.scalar = input.uniform && !mixed;
         s.varying = !input.uniform;
+        s.array = input.array != 0;
+        s.kind = input.kind;
         s.firstRow = rows_;
         s.rows = size_t(s.components) * s.elements * s.parts;
         rows_ += s.rows;
@@ -324,18 +326,6 @@ void Batch::tell(const Batch& displaced) {
                             size_t(call_.n) * sizeof(float));
         }
         pad(s, row);
-    }
-}
-
-void Batch::give(std::string_view parameter, int point, std::span<const float> value) {
-    const size_t stride = size_t(call_.stride);
-    for (const BatchPlan::Source& s : plan_->inputs_) {
-        if (s.from != BatchPlan::From::Parameter || s.scalar || s.name.name != parameter) continue;
-        if (s.elements != 1 || size_t(s.components) != value.size()) return; // a value of another type
-        float* row = storage_.get() + s.firstRow * stride + size_t(point);
-        for (int c = 0; c < s.components; ++c)
-            for (int part = 0; part < s.parts; ++part) row[size_t(c * s.parts + part) * stride] = part ? 0 : value[size_t(c)];
-        return;
     }
 }
 

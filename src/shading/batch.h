@@ -71,6 +71,8 @@ private:
         From from = From::Nothing;
         bool scalar = false;
         bool varying = false; ///< a parameter that primitive variables may override
+        bool array = false;
+        rsl::ir::Kind kind = rsl::ir::Kind::Float; ///< of an element
         int components = 1, parts = 1, elements = 1;
         size_t rows = 0, firstRow = 0; ///< rows of `stride` floats
         size_t firstNumber = 0;        ///< Parameter: index in ParameterRows
@@ -134,6 +136,13 @@ private:
     std::vector<float> numbers_; ///< of all parameters, flattened; missing ones are zero
 };
 
+/// A value for a parameter: as many elements as there are times the components of the kind. Texts are interned.
+struct GivenValue {
+    rsl::ir::Kind kind = rsl::ir::Kind::Float;
+    bool array = false; ///< then its elements replace the first ones of the parameter
+    std::span<const float> numbers;
+};
+
 /// Aligned rows for inputs and outputs of one kernel call. Must outlive the call, including its suspensions.
 class Batch {
 public:
@@ -157,8 +166,9 @@ public:
 
     /// Fills inputs that come from the displacement shader, including derivatives, from its run at the same points.
     void tell(const Batch& displaced);
-    /// Overrides a varying parameter with this number of components at a point; derivatives become 0.
-    void give(std::string_view parameter, int point, std::span<const float> value);
+    /// Overrides a parameter of that type at a point, if it is varying or an input of its own (rsl::InputName::sent); derivatives
+    /// become 0. A parameter of another type is not changed.
+    void give(std::string_view parameter, int point, const GivenValue&);
 
     rsl::KernelCall& call() { return call_; }
     const rsl::CompiledKernel& kernel() const { return *kernel_; }

@@ -131,6 +131,25 @@ void Batch::fillOverridden(const BatchPlan::Source& s, float* row, const Points&
     }
 }
 
+void Batch::give(std::string_view parameter, int point, const GivenValue& v) {
+    using Name = rsl::InputName::Kind;
+    const size_t stride = size_t(call_.stride), elements = v.numbers.size() / size_t(rsl::ir::components(v.kind));
+    bool fits = false;
+    for (const BatchPlan::Source& s : plan_->inputs_) {
+        const bool own = s.name.kind == Name::Parameter && !s.scalar, sent = s.name.kind == Name::Sent && !s.name.length;
+        if ((!own && !sent) || s.name.name != parameter || s.kind != v.kind || s.array != v.array) continue;
+        fits |= sent;
+        float* row = storage_.get() + s.firstRow * stride + size_t(point);
+        const size_t numbers = std::min(elements, size_t(s.elements)) * size_t(s.components);
+        for (size_t c = 0; c < numbers; ++c)
+            for (size_t part = 0; part < size_t(s.parts); ++part)
+                row[(c * size_t(s.parts) + part) * stride] = part ? 0 : v.numbers[c];
+    }
+    for (const BatchPlan::Source& s : plan_->inputs_)
+        if (fits && s.name.kind == Name::Sent && s.name.length && s.name.name == parameter)
+            storage_[s.firstRow * stride + size_t(point)] = float(elements + 1);
+}
+
 template void Batch::fillParameter(const BatchPlan::Source&, float*, const std::span<const ShadePoint>&, const Views&);
 template void Batch::fillParameter(const BatchPlan::Source&, float*, const SurfaceRows&, const Views&);
 template void Batch::fillParameter(const BatchPlan::Source&, float*, const LightRows&, const Views&);

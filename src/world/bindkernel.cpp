@@ -307,11 +307,12 @@ static void bindSent(SiteInfo& i) {
         const int size = int(rowsOf(i, at->second));
         if (name.kind == PairName::Kind::Surface)
             i.outputs.push_back({rsl::OutputName::parameterOf(name.name), at->second, size});
-        if (name.kind == PairName::Kind::Send) i.sent.push_back({name.name, name.element, at->second, size});
+        if (name.kind == PairName::Kind::Send && i.kind == SiteKind::LightSetup)
+            i.sent.push_back({name.name, name.element, at->second, size});
     }
     for (const auto& [pair, value] : i.text) {
         const PairName name = PairName::parse(pair);
-        if (name.kind != PairName::Kind::Send) continue;
+        if (name.kind != PairName::Kind::Send || i.kind != SiteKind::LightSetup) continue;
         i.sentStrings.emplace_back(name.name, value);
         i.sentKey += name.name + '\1' + value + '\2';
     }

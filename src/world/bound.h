@@ -13,6 +13,7 @@ struct ShaderInstance {
     shading::ParameterBlock parameters;
     std::set<std::string> given;                        ///< parameters set by the scene
     std::map<std::string, SourcePlace> handlePlaces;    ///< where the scene set parameters of type `shader`
+    std::vector<rsl::SentParameter> sent;               ///< KernelOptions::sentParameters
     std::vector<rsl::CoShader> coShaders;               ///< from the attributes in effect at the request of this shader
     Matrix toCurrent;                                   ///< at shutter open
     std::shared_ptr<const shading::MovingSpace> moving; ///< null: shader space does not move

@@ -1,4 +1,5 @@
 #include "world/gathersite.h"
+#include "base/limits.h"
 #include "rsl/front/protocol.h"
 #include "rsl/front/visit.h"
 #include <algorithm>
@@ -81,6 +82,26 @@ void readOutputs(const rsl::ir::Site& turn, GatherSite& g, const std::function<v
         if (!fits(g.outputs[k])) unfit(names[k]);
 }
 
+/// Reads the values that the rays of a gather() take along. Elements of an array stand one behind the other, behind its length.
+void readSent(const SiteInfo& i, GatherSite& g) {
+    g.sent.clear();
+    for (const std::string& pair : i.site->names) {
+        const rsl::PairName name = rsl::PairName::parse(pair);
+        const auto at = i.named.find(pair);
+        if (name.kind != rsl::PairName::Kind::Send || at == i.named.end()) continue;
+        rsl::ir::Kind kind = rsl::ir::Kind::Float;
+        int begin = 0;
+        for (const rsl::ir::Kind k : i.site->argKinds) {
+            if (begin == at->second) kind = k;
+            begin += rsl::ir::components(k);
+        }
+        if (name.length) g.sent.push_back({name.to, name.name, kind, -1, at->second, 0});
+        else if (name.element < 0) g.sent.push_back({name.to, name.name, kind, at->second, -1, 1});
+        else if (GatherSite::Sent& array = g.sent.back(); ++array.elements == 1) array.kind = kind, array.row = at->second;
+    }
+    std::erase_if(g.sent, [](const GatherSite::Sent& s) { return s.row < 0; }); // arrays without room
+}
+
 } // namespace
 
 void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world) {
@@ -139,49 +160,71 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
             if (!g->cosine && d->second != "uniform")
                 told(i, "the distribution \"" + d->second + "\" is not known; uniform is used", "uniform, cosine");
         }
-        g->sent.clear();
-        for (const auto& [name, row] : i.named) {
-            if (!name.starts_with(rsl::kSendSurface)) continue;
-            int begin = 0, size = 0;
-            for (const rsl::ir::Kind kind : i.site->argKinds) {
-                if (begin == row) size = rsl::ir::components(kind);
-                begin += rsl::ir::components(kind);
-            }
-            g->sent.push_back({name.substr(std::string_view(rsl::kSendSurface).size()), row, size});
-        }
+        readSent(i, *g);
         if (const auto t = i.named.find("othreshold"); t != i.named.end()) g->threshold = t->second;
     }
 }
 
-std::vector<std::string> GatheredNames::withSent(std::vector<std::string> varying, const ShaderInstance& shader) const {
+/// Whether what is sent to a parameter comes as an input of its own: it may have another value at each point, which texts have
+/// not in kernels otherwise, nor arrays another length.
+static bool apart(const rsl::ParameterInfo& p) { return p.type.base == rsl::Base::String || p.open || p.type.array < 0; }
+
+std::vector<std::string> GatheredNames::withSent(std::vector<std::string> varying, const ShaderInstance& shader,
+                                                 rsl::PairName::To to) const {
     for (const auto& p : shader.program->parameters()) {
-        const bool number = p.type.base != rsl::Base::String && p.type.base != rsl::Base::Matrix && !p.type.array && !p.open;
-        if (number && sent.contains(p.name) && std::find(varying.begin(), varying.end(), p.name) == varying.end())
+        const bool number = !apart(p);
+        if (number && sent.contains({to, p.name}) && std::find(varying.begin(), varying.end(), p.name) == varying.end())
             varying.push_back(p.name);
     }
     std::sort(varying.begin(), varying.end());
     return varying;
 }
 
-void gatheredNames(const rsl::Program& p, GatheredNames& all) {
-    const auto take = [&](const std::string& name) {
-        if (name.starts_with(rsl::kSendSurface)) all.sent.insert(name.substr(std::string_view(rsl::kSendSurface).size()));
-        if (const auto known = meaning(name))
-            if (known->first == Of::Surface || known->first == Of::Displacement)
-                (known->first == Of::Surface ? all.surface : all.displacement).insert(known->second);
-    };
+std::vector<rsl::SentParameter> GatheredNames::sentTexts(const ShaderInstance& shader, rsl::PairName::To to) const {
+    std::vector<rsl::SentParameter> all;
+    for (const auto& p : shader.program->parameters())
+        if (const auto s = sent.find({to, p.name}); s != sent.end() && apart(p) && !p.handle) all.push_back({p.name, s->second});
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+    return all;
+}
+
+void GatheredNames::add(const std::string& name, int length) {
+    if (const rsl::PairName pair = rsl::PairName::parse(name); pair.kind == rsl::PairName::Kind::Send) {
+        int& room = sent[{pair.to, pair.name}];
+        room = std::max({room, 1, length < 0 ? limits::kResizableArray : length});
+    }
+    if (const auto known = meaning(name))
+        if (known->first == Of::Surface || known->first == Of::Displacement)
+            (known->first == Of::Surface ? surface : displacement).insert(known->second);
+}
+
+bool gatheredNames(const rsl::Program& p, GatheredNames& all) {
+    bool made = false;
+    std::set<std::string> texts;
     const auto in = [&](const rsl::StmtPtr& body) {
         if (!body) return;
         rsl::front::everyStmt(
             *body,
             [&](const rsl::Stmt& s) {
                 if (s.kind != rsl::StmtKind::Gather) return;
-                for (const rsl::NamedArg& a : s.pairs) take(a.name);
+                for (const rsl::NamedArg& a : s.pairs) {
+                    made |= a.named == rsl::NamedArg::Name::Made;
+                    if (a.value) all.add(a.name, a.value->type.array);
+                }
             },
-            [](const rsl::Expr&) {});
+            [&](const rsl::Expr& e) {
+                if (e.kind == rsl::ExprKind::String) texts.insert(e.text);
+            });
     };
     rsl::front::everyFunction(p, [&](const rsl::Function& f) { in(f.body); });
-    for (const auto& s : p.shaders) in(s->body);
+    for (const auto& s : p.shaders) {
+        in(s->body);
+        for (const rsl::ShaderParameter& q : s->parameters)
+            if (q.defaultValue && q.defaultValue->kind == rsl::ExprKind::String) texts.insert(q.defaultValue->text);
+    }
+    for (const std::string& t : texts)
+        if (made) all.add(t, -1);
+    return made;
 }
 
 } // namespace alpenglow::transport

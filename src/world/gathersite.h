@@ -1,7 +1,9 @@
 // Arguments of a gather() statement, resolved when its kernel is bound.
 #pragma once
+#include "rsl/front/protocol.h"
 #include "texture/skydirections.h"
 #include "world/impl.h"
+#include <algorithm>
 
 namespace alpenglow::transport {
 
@@ -36,12 +38,19 @@ struct GatherSite {
     bool cosine = false; ///< "distribution" "cosine"; else uniform
     int threshold = -1;  ///< row of "othreshold"
     std::vector<Output> outputs;
-    /// Values sent to parameters of surface shaders at hits: argument rows.
+    /// Values sent to parameters of shaders at hits: argument rows.
     struct Sent {
+        rsl::PairName::To to;
         std::string parameter;
-        int row, size;
+        rsl::ir::Kind kind; ///< of an element
+        int row;            ///< of the first element
+        int lengthRow;      ///< of the number of elements; -1: no array
+        int elements;       ///< at most
     };
     std::vector<Sent> sent;
+    bool sendsTo(rsl::PairName::To to) const {
+        return std::any_of(sent.begin(), sent.end(), [to](const Sent& s) { return s.to == to; });
+    }
     int width = 1;                               ///< rows for a ray: whether it hit, then the outputs
     bool shades = false;                         ///< shaders must run at hits
     bool light = false;                          ///< and their light counts
@@ -55,12 +64,18 @@ void linkGathers(BoundKernel&, const rsl::CompiledKernel&, WorldImpl&);
 /// Names that gather() statements of shaders use.
 struct GatheredNames {
     std::set<std::string> surface, displacement; ///< "x" of "surface:x", "displacement:x"
-    std::set<std::string> sent;                  ///< "x" of "send:surface:x": parameters that then vary from ray to ray
-    /// Varying parameters of a shader, including those that values are sent to.
-    std::vector<std::string> withSent(std::vector<std::string> varying, const ShaderInstance&) const;
+    /// Parameters that values are sent to, so that they vary from ray to ray: "x" of "send:surface:x", with the most elements.
+    std::map<std::pair<rsl::PairName::To, std::string>, int> sent;
+    /// Adds what a name of a gather() means. `length`: of the array behind it, -1: any.
+    void add(const std::string& name, int length);
+    /// Varying parameters of a shader, including those that numbers are sent to.
+    std::vector<std::string> withSent(std::vector<std::string> varying, const ShaderInstance&, rsl::PairName::To) const;
+    /// Parameters that take texts, or arrays of any length: ShaderInstance::sent.
+    std::vector<rsl::SentParameter> sentTexts(const ShaderInstance&, rsl::PairName::To) const;
 };
 
-/// Adds the names that a shader file uses.
-void gatheredNames(const rsl::Program&, GatheredNames&);
+/// Adds the names that a shader file uses. True: some are no literals; then every text of the file is added, and the texts that
+/// the scene gives its parameters may be names as well.
+bool gatheredNames(const rsl::Program&, GatheredNames&);
 
 } // namespace alpenglow::transport

@@ -325,6 +325,7 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});
     o.coShaders = i.coShaders;
     o.varyingParameters = varying;
+    o.sentParameters = i.sent;
     o.computedParameters = i.program->computedParameters(i.given, varying);
     if (i.program->kind() == rsl::ShaderKind::Surface || i.program->kind() == rsl::ShaderKind::Volume)
         o.messages = lightMessages_;

@@ -123,24 +123,6 @@ bool SurfaceBinder::bindAll() {
     return bindMixed() && bindEntering() && bindHitModes();
 }
 
-void SurfaceBinder::findGathers() {
-    std::set<const rsl::Program*> seen;
-    const auto look = [&](const InstanceRef& i) {
-        if (!i || !i->program) return;
-        if (seen.insert(&i->program->program()).second) gatheredNames(i->program->program(), gathered_);
-        for (const rsl::CoShader& c : i->coShaders)
-            if (c.program && seen.insert(c.program).second) gatheredNames(*c.program, gathered_);
-    };
-    const scene::Attributes* last = nullptr;
-    for (const auto& shape : world_.shapes_) {
-        const scene::Attributes& a = shape->attributes();
-        if (&a == last) continue;
-        last = &a;
-        look(instanceOf(a.surface, rsl::ShaderKind::Surface));
-    }
-    for (const BoundLight& l : world_.lights_) look(l.instance);
-}
-
 bool SurfaceBinder::bindHitModes() {
     if (!world_.hitModes_) return true;
     const InstanceRef plain = world_.builtin("constant", rsl::ShaderKind::Surface, diagnostics_);
@@ -224,9 +206,9 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
         b.displacement =
             quiet(world_.withCoShaders(instanceOf(a.surface, rsl::ShaderKind::Displacement, diced), a.coshaders, diagnostics_));
     b.atmosphere.shader = world_.withCoShaders(instanceOf(a.atmosphere, rsl::ShaderKind::Volume), a.coshaders, diagnostics_);
-    const Names varying = gathered_.withSent(varyingOf(*shape, *b.surface), *b.surface);
-    const Names displacementVarying = b.displacement ? varyingOf(*shape, *b.displacement) : Names{};
-    const Names atmosphereVarying = b.atmosphere.shader ? varyingOf(*shape, *b.atmosphere.shader) : Names{};
+    const Names varying = receive(*shape, b.surface, rsl::PairName::To::Surface);
+    const Names displacementVarying = receive(*shape, b.displacement, rsl::PairName::To::Displacement);
+    const Names atmosphereVarying = receive(*shape, b.atmosphere.shader, rsl::PairName::To::Volume);
     b.interior = volumeOf(a.interior, *shape);
     b.exterior = volumeOf(a.exterior, *shape);
     const std::string key = keyOf(b, *shape, grid, {&varying, &displacementVarying, &atmosphereVarying});

@@ -81,7 +81,10 @@ private:
     std::vector<InstanceRef> kept_;                                      ///< keeps instances whose addresses are keys
     std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the scene's shader and its overrides
     std::map<std::string, int> bindingByKey_;
+    /// Varying parameters of a shader at a shape. A shader that gather() sends texts to becomes one that takes them.
+    Names receive(const geometry::Shape&, InstanceRef& shader, rsl::PairName::To);
     GatheredNames gathered_;
+    std::map<std::pair<const ShaderInstance*, rsl::PairName::To>, InstanceRef> receiving_;
     std::unordered_map<const scene::Attributes*, std::pair<geometry::ShapeRef, int>>
         bindingOfAttributes_; ///< of the last shape with these attributes
     std::map<std::vector<const void*>, int> programs_;

@@ -62,6 +62,25 @@ TEST(ProtocolNames, Pairs) {
     EXPECT_EQ(sent.element, 3);
     EXPECT_EQ(sent.text(), "send:light:cone[3]");
     EXPECT_EQ(PairName::send("x").text(), "send:light:x");
+    for (const auto& [to, word] : {std::pair{PairName::To::Surface, "surface"},
+                                   {PairName::To::Displacement, "displacement"},
+                                   {PairName::To::Volume, "volume"}}) {
+        const PairName all = PairName::send("w", -1, to, true), one = PairName::send("w", 2, to);
+        EXPECT_EQ(all.text(), std::string("send:") + word + ":w#");
+        EXPECT_EQ(one.text(), std::string("send:") + word + ":w[2]");
+        for (const PairName& n : {all, one}) {
+            const PairName read = PairName::parse(n.text());
+            EXPECT_EQ(read.kind, PairName::Kind::Send);
+            EXPECT_EQ(read.to, to);
+            EXPECT_EQ(read.name, "w");
+            EXPECT_EQ(read.element, n.element);
+            EXPECT_EQ(read.length, n.length);
+        }
+    }
+    EXPECT_EQ(PairName::parse("send:atmosphere:k").text(), "send:volume:k"); // the same shader
+    EXPECT_EQ(PairName::parse("send:imager:k").kind, PairName::Kind::Plain);
+    EXPECT_EQ(InputName::parse(InputName::sent("k", true).text()), InputName::sent("k", true));
+    EXPECT_EQ(InputName::parse(InputName::sent("k").text()), InputName::sent("k"));
     EXPECT_EQ(PairName::parse(PairName::surface("Kd").text()).kind, PairName::Kind::Surface);
     EXPECT_EQ(PairName::parse("bias").kind, PairName::Kind::Plain);
     EXPECT_EQ(PairName::parse("eta[1]").text(), "eta[1]"); // of other pairs nothing is taken apart

@@ -38,6 +38,11 @@ LibraryCalls::LibraryCalls(Interpreter& to, const Call& call)
 }
 LibraryCalls::~LibraryCalls() { tLibrary = outer_; }
 
+CallsTo::CallsTo(Target& to, const SourcePlace& place, const char* by) : client_{to, place, by}, outer_(tLibrary) {
+    tLibrary = &client_;
+}
+CallsTo::~CallsTo() { tLibrary = outer_; }
+
 Boundary::Boundary() : locked_(!tLibrary) {
     if (locked_) callsMutex().lock();
     if (tDepth++ == 0 && locked_)

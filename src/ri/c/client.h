@@ -34,6 +34,20 @@ private:
     Client* outer_;
 };
 
+/// While it lives, calls of this thread go to a target.
+class CallsTo {
+public:
+    /// place, by: Client's.
+    CallsTo(Target& to, const SourcePlace& place, const char* by);
+    ~CallsTo();
+    CallsTo(const CallsTo&) = delete;
+    CallsTo& operator=(const CallsTo&) = delete;
+
+private:
+    Client client_;
+    Client* outer_;
+};
+
 /// One call of ri.h, around everything that is done for it. Calls of a program come one after the other, whatever their thread;
 /// what they report reaches the program's error handler when the outermost is done (ri/c/errors.h).
 class Boundary {

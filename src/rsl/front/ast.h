@@ -101,10 +101,18 @@ enum class ExprOp : uint8_t {
 };
 
 struct NamedArg {
+    /// Where the name comes from. A name that is no literal stands as a pair of its own, without a name, before the pair that it
+    /// names: its value is a string, which is known when the kernel is built, or only when it runs (ir/build_names.cpp).
+    enum class Name : uint8_t {
+        Written,
+        Made,  ///< `value` is the name of the next pair
+        ByMade ///< the pair before gives the name; `output`: it may be one that is filled
+    };
     std::string name;
     ExprPtr value;
     bool output = false;
     Place place;
+    Name named = Name::Written;
 };
 
 struct Expr {

@@ -68,6 +68,13 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
     return costTo(info, wanted.base);
 }
 
+/// Whether it is a string and can be nothing else.
+bool Checker::isText(const Expr& e) const {
+    if (e.kind == ExprKind::String) return true;
+    const Info& text = infos_.at(&e);
+    return text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader && cheapest(text) == Base::String;
+}
+
 bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, bool pairs, Expr& call, Choice& choice,
                     bool ignoreOutputs) {
     const size_t n = call.args.size();
@@ -82,7 +89,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     if (repeats && !parameters.empty())
         for (; i < n; ++i) {
             // A string where a number would repeat begins the pairs.
-            if (pairs && call.args[i]->kind == ExprKind::String && parameters.back().type.base != Base::String) break;
+            if (pairs && isText(*call.args[i]) && parameters.back().type.base != Base::String) break;
             const int c = argumentCost(*call.args[i], parameters.back(), ignoreOutputs);
             if (c >= kNever) return false;
             choice.cost = std::min(kNever - 1, choice.cost + c);
@@ -93,10 +100,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     for (; i < n; i += 2) { // a name may be in a variable, too: see settlePairs()
         const Expr& name = *call.args[i];
         if (name.kind == ExprKind::String) continue;
-        const Info& text = infos_.at(&name);
-        const bool variable = choice.shadeop && (name.kind == ExprKind::Variable || name.kind == ExprKind::Index) &&
-                              text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader;
-        if (!variable) return false;
+        if (!choice.shadeop || !isText(name)) return false;
         choice.cost = std::min(kNever - 1, choice.cost + kLastResort);
     }
     return true;

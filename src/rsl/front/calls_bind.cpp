@@ -167,15 +167,38 @@ void Checker::optionalArguments(Expr& e, const Shadeop& op) {
     e.pairs.clear();
 }
 
+/// A pair whose name is no literal: two pairs, that of the name first. What its value must be is known when the kernel is built.
+void Checker::madeName(Expr& e, size_t at, const Shadeop& op) {
+    NamedArg name, given;
+    name.named = NamedArg::Name::Made;
+    given.named = NamedArg::Name::ByMade;
+    name.place = given.place = e.args[at]->place;
+    settle(e.args[at], {Base::String, 0});
+    // A text in RSL takes its parameters here, and its names must be literals.
+    const bool ignored = op.lowering == Lowering::Unavailable || op.lowering == Lowering::Rsl;
+    if (op.lowering == Lowering::Rsl)
+        sources_.warning(name.place,
+                         "the name of a parameter of '" + op.name + "' must be written as a literal; this one is ignored",
+                         "'" + op.name + "' is a function in RSL");
+    ExprPtr& value = e.args[at + 1];
+    const bool variable = isVariable(*value) && !infos_.at(value.get()).any;
+    if (variable && !ignored) settleVariable(value);
+    else settleCheapest(value);
+    if (ignored) return;
+    given.output = variable && (op.name == "texture3d" || std::any_of(op.optional.begin(), op.optional.end(), [&](const auto& o) {
+                                    return o.output && o.type.base == value->type.base;
+                                }));
+    name.value = std::move(e.args[at]);
+    given.value = std::move(value);
+    e.pairs.push_back(std::move(name));
+    e.pairs.push_back(std::move(given));
+}
+
 /// "name", value, ... behind the positional arguments.
 void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
     for (size_t i = positional; i + 1 < e.args.size(); i += 2) {
-        if (e.args[i]->kind != ExprKind::String) { // a name that only the run knows
-            if (op->lowering != Lowering::Unavailable)
-                sources_.warning(e.args[i]->place, "the name of a parameter of '" + op->name +
-                                                       "' must be known when the shader is compiled; this one is ignored");
-            settle(e.args[i], {Base::String, 0});
-            settleCheapest(e.args[i + 1]);
+        if (e.args[i]->kind != ExprKind::String) {
+            madeName(e, i, *op);
             continue;
         }
         NamedArg pair;

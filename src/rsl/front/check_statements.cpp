@@ -242,6 +242,36 @@ void Checker::check(StmtPtr& s) {
     }
 }
 
+/// A pair of illuminance or gather. A name that is no literal becomes a pair of its own; the kernel's builder looks what it says.
+void Checker::statementPair(Stmt& s, ExprPtr token, ExprPtr value) {
+    NamedArg pair;
+    pair.place = token->place;
+    pair.value = std::move(value);
+    const bool variable = isVariable(*pair.value), unknown = infos_.at(pair.value.get()).any;
+    if (token->kind != ExprKind::String) {
+        NamedArg naming;
+        naming.named = NamedArg::Name::Made;
+        naming.place = token->place;
+        settle(token, {Base::String, 0});
+        naming.value = std::move(token);
+        s.pairs.push_back(std::move(naming));
+        pair.named = NamedArg::Name::ByMade;
+        pair.output = variable && !unknown;
+    } else {
+        pair.name = token->text;
+        pair.output = pair.name.find(':') != std::string::npos && pair.name.rfind("send:", 0) != 0;
+        if (pair.output && !variable && !unknown)
+            sources_.error(pair.value->place, "the value of \"" + pair.name + "\" must be a variable");
+    }
+    if (pair.output && variable) {
+        settleVariable(pair.value);
+        if (pair.named == NamedArg::Name::Written) written(*pair.value);
+    } else {
+        settleCheapest(pair.value);
+    }
+    s.pairs.push_back(std::move(pair));
+}
+
 void Checker::checkLight(Stmt& s) {
     static const std::map<StmtKind, std::pair<const char*, uint32_t>> kRules = {
         {StmtKind::Illuminance, {"illuminance", kSurface | kVolume}},
@@ -309,25 +339,12 @@ void Checker::checkLight(Stmt& s) {
     while (next < given.size()) {
         ExprPtr token = std::move(given[next++]);
         if (!token) continue;
-        if (token->kind != ExprKind::String || next == given.size()) {
+        if ((token->kind != ExprKind::String && !isText(*token)) || next == given.size()) {
             if (!infos_.at(token.get()).any) sources_.error(token->place, "expected a pair: \"name\", value");
             break;
         }
-        NamedArg pair;
-        pair.name = token->text;
-        pair.place = token->place;
-        pair.value = std::move(given[next++]);
-        if (!pair.value) break;
-        pair.output = pair.name.find(':') != std::string::npos && pair.name.rfind("send:", 0) != 0;
-        if (pair.output && !isVariable(*pair.value) && !infos_.at(pair.value.get()).any)
-            sources_.error(pair.value->place, "the value of \"" + pair.name + "\" must be a variable");
-        if (pair.output && isVariable(*pair.value)) {
-            settleVariable(pair.value);
-            written(*pair.value);
-        } else {
-            settleCheapest(pair.value);
-        }
-        s.pairs.push_back(std::move(pair));
+        if (!given[next]) break;
+        statementPair(s, std::move(token), std::move(given[next++]));
     }
     infos_.clear();
     const bool outerForeign = std::exchange(foreignLight_, foreignLight_ || foreign);

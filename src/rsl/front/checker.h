@@ -114,6 +114,9 @@ private:
     static int costTo(const Info&, Base to);
     static int operandCost(ExprOp, const Operation&, const Info& left, Base leftAs, const Info& right, Base rightAs);
     bool isVariable(const Expr&) const;
+    bool isText(const Expr&) const;
+    void madeName(Expr& call, size_t at, const Shadeop&);
+    void statementPair(Stmt&, ExprPtr token, ExprPtr value);
     void poison(Expr&, Info&);
 
     // settle (settle.cpp, calls.cpp)

@@ -28,7 +28,7 @@ struct Cloner {
         for (const auto& a : e.args) c->args.push_back(copy(a));
         c->space = copy(e.space);
         c->channel = copy(e.channel);
-        for (const auto& p : e.pairs) c->pairs.push_back({p.name, copy(p.value), p.output, p.place});
+        for (const auto& p : e.pairs) c->pairs.push_back({p.name, copy(p.value), p.output, p.place, p.named});
         c->shadeop = e.shadeop;
         c->signature = e.signature;
         c->function = e.function;

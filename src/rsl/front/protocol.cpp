@@ -1,4 +1,5 @@
 #include "rsl/front/protocol.h"
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
@@ -8,8 +9,15 @@ namespace alpenglow::rsl {
 namespace {
 
 constexpr std::string_view kParameter = "param:", kDisplacementPrefix = "displacement:", kSpace = "space:", kMember = "this->",
-                           kDu = "Du:", kDv = "Dv:", kGiven = "given:", kSlope = "slope:", kSend = "send:light:",
+                           kDu = "Du:", kDv = "Dv:", kGiven = "given:", kSlope = "slope:", kSent = "sent:",
                            kSurfacePrefix = "surface:", kLength = "length ", kLightHandle = "light#";
+
+/// What stands before the name of a parameter that a value is sent to. The first of a shader is the one that is written.
+constexpr std::pair<std::string_view, PairName::To> kSends[] = {{"send:light:", PairName::To::Light},
+                                                                {"send:surface:", PairName::To::Surface},
+                                                                {"send:displacement:", PairName::To::Displacement},
+                                                                {"send:volume:", PairName::To::Volume},
+                                                                {"send:atmosphere:", PairName::To::Volume}};
 
 /// Takes a prefix off; false: it is not there.
 bool take(std::string_view& s, std::string_view prefix) {
@@ -43,6 +51,10 @@ InputName InputName::parse(std::string_view s) {
         return space(s.substr(0, arrow), arrow == std::string_view::npos ? std::string_view() : s.substr(arrow + 1));
     }
     if (take(s, kParameter)) return parameter(s);
+    if (take(s, kSent)) {
+        const bool length = takeLast(s, '#');
+        return sent(s, length);
+    }
     if (!take(s, kDisplacementPrefix)) return {Kind::Variable, std::string(s), false, false, {}, {}};
     if (!take(s, kMember)) return displacement(s);
     const bool length = takeLast(s, '#');
@@ -59,6 +71,9 @@ std::string InputName::text() const {
         break;
     case Kind::Displacement:
         t = kDisplacementPrefix;
+        break;
+    case Kind::Sent:
+        t = kSent;
         break;
     case Kind::Space:
         return std::string(kSpace) + from + ">" + to;
@@ -122,13 +137,19 @@ bool isLengthParameter(std::string_view name) { return name.ends_with("[]"); }
 
 PairName PairName::parse(std::string_view s) {
     if (take(s, kSurfacePrefix)) return surface(s);
-    if (!take(s, kSend)) return {Kind::Plain, std::string(s), -1};
-    const int element = takeNumber(s, '[');
-    return send(s, element);
+    for (const auto& [prefix, to] : kSends) {
+        if (!take(s, prefix)) continue;
+        const bool length = takeLast(s, '#');
+        const int element = takeNumber(s, '[');
+        return send(s, element, to, length);
+    }
+    return {Kind::Plain, std::string(s), -1, To::Light, false};
 }
 std::string PairName::text() const {
-    std::string t(kind == Kind::Send ? kSend : kind == Kind::Surface ? kSurfacePrefix : std::string_view());
-    return elementOf(t + name, element);
+    std::string t(kind == Kind::Surface ? kSurfacePrefix : std::string_view());
+    if (kind == Kind::Send)
+        t = std::find_if(std::begin(kSends), std::end(kSends), [&](const auto& s) { return s.second == to; })->first;
+    return elementOf(t + name, element) + (length ? "#" : "");
 }
 
 std::string lengthResult(std::string_view name) { return std::string(kLength) + std::string(name); }

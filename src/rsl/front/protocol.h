@@ -18,16 +18,22 @@ struct InputName {
         Variable,     ///< a predefined variable: "P"
         Parameter,    ///< a parameter of the shader: "param:Kd"
         Displacement, ///< an output of the displacement shader of the primitive: "displacement:height"
+        Sent,         ///< what a gather() sends to a parameter: "sent:name"; zero where there is no `length`
         Space         ///< the matrix between two spaces: "space:object>current"
     };
     Kind kind = Kind::Variable;
-    std::string name;     ///< of the variable or parameter; of a member of a class without "this->"
-    bool member = false;  ///< Displacement: what the displacement() of a class left in a member, "displacement:this->NAME"
-    bool length = false;  ///< of that the number of elements: "displacement:this->NAME#"
+    std::string name;    ///< of the variable or parameter; of a member of a class without "this->"
+    bool member = false; ///< Displacement: what the displacement() of a class left in a member, "displacement:this->NAME"
+    /// Of a member the number of elements: "displacement:this->NAME#". Sent: one more than the elements that came, 2 for a
+    /// value that is no array, 0 where nothing was sent: "sent:NAME#".
+    bool length = false;
     std::string from, to; ///< Space
 
     static InputName parse(std::string_view);
     static InputName parameter(std::string_view name) { return {Kind::Parameter, std::string(name), false, false, {}, {}}; }
+    static InputName sent(std::string_view name, bool length = false) {
+        return {Kind::Sent, std::string(name), false, length, {}, {}};
+    }
     static InputName space(std::string_view from, std::string_view to) {
         return {Kind::Space, {}, false, false, std::string(from), std::string(to)};
     }
@@ -118,15 +124,21 @@ bool isLengthParameter(std::string_view name);
 struct PairName {
     enum class Kind : uint8_t {
         Plain,
-        Send,   ///< a value for a parameter of the lights of a loop: "send:light:NAME"
+        Send,   ///< a value for a parameter of other shaders: "send:light:NAME", "send:surface:NAME"
         Surface ///< the value of an output of the surface, for lights that ask: "surface:NAME"
     };
+    /// Send: the shaders that the value is for. Loops over lights send to lights, gather() to what its rays meet.
+    enum class To : uint8_t { Light, Surface, Displacement, Volume };
     Kind kind = Kind::Plain;
     std::string name;
     int element = -1; ///< Send: of an array that is sent element by element
+    To to = To::Light;
+    bool length = false; ///< Send: how many elements of the array count, "send:surface:NAME#"
     static PairName parse(std::string_view);
-    static PairName send(std::string_view name, int element = -1) { return {Kind::Send, std::string(name), element}; }
-    static PairName surface(std::string_view name) { return {Kind::Surface, std::string(name), -1}; }
+    static PairName send(std::string_view name, int element = -1, To to = To::Light, bool length = false) {
+        return {Kind::Send, std::string(name), element, to, length};
+    }
+    static PairName surface(std::string_view name) { return {Kind::Surface, std::string(name), -1, To::Light, false}; }
     std::string text() const;
 };
 // Pairs that nobody has written: what the compiler says of a call.
@@ -159,7 +171,6 @@ inline constexpr char kGroup[] = "__group"; ///< of a light: the name of its gro
 inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
 /// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
 inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";
-inline constexpr char kSendSurface[] = "send:surface:"; ///< a pair of gather: a value for a parameter of the surfaces it meets
 /// Of a class light with generatePhoton(): what it gives, if it is asked for.
 inline constexpr char kPhotonFrom[] = "__photonFrom", kPhotonWay[] = "__photonWay", kPhotonPower[] = "__photonPower",
                       kPhotonPdf[] = "__photonPdf";

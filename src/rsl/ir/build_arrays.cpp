@@ -1,5 +1,6 @@
-// Arrays that change their length. The storage has a length of its own, the most that the array can reach; how much of it counts,
-// and how much was reserved, are values like those of variables: each point has its own.
+// Arrays that change their length. The storage has a length of its own; how much of it counts, and how much was reserved, are
+// values like those of variables: each point has its own. What does not fit into the storage is kept by whoever runs the kernel
+// (spilledarrays.h), and reached by services; such elements have no derivatives.
 #include "base/limits.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -61,8 +62,10 @@ int Builder::largestResize() {
             const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
             if ((output || other) && e.args[n]) grows(*e.args[n]);
         }
+        if (e.shadeop && e.shadeop->name == "push") unbound_ = true;
         const bool sizes = e.shadeop && (e.shadeop->name == "resize" || e.shadeop->name == "reserve") && e.args.size() == 2;
         if (sizes) wanted(*e.args[1]);
+        if (sizes) unbound_ |= e.args[1]->kind != ExprKind::Number || e.args[1]->number > limits::kShaderArray;
         for (const ExprPtr& a : e.args)
             if (a) self(self, *a);
         for (const NamedArg& p : e.pairs)
@@ -109,9 +112,14 @@ void Builder::everyElement(int count, const std::function<void(Inst* at)>& each)
         for (int i = 0; i < count; ++i) each(constant(static_cast<float>(i)));
         return;
     }
+    countLoop(constant(0), constant(static_cast<float>(count)), each);
+}
+
+/// A loop over the numbers from `first` to `end`, exclusive. `each` must assign no variable.
+void Builder::countLoop(Inst* first, Inst* end, const std::function<void(Inst* at)>& each) {
     Inst* inst = k_.make(Op::Loop, Kind::None);
     inst->place = keptPlace(place_);
-    inst->args = {constant(0)};
+    inst->args = {first};
     inst->results = {Kind::Float};
     inst->regions.resize(2);
     Region* const saved = region_;
@@ -122,7 +130,7 @@ void Builder::everyElement(int count, const std::function<void(Inst* at)>& each)
         return r.params.back();
     };
     Inst* at = enter(inst->regions[0]);
-    inst->regions[0].yields.push_back(emit(Op::Less, Kind::Bool, {at, constant(static_cast<float>(count))}));
+    inst->regions[0].yields.push_back(emit(Op::Less, Kind::Bool, {at, end}));
     at = enter(inst->regions[1]);
     each(at);
     inst->regions[1].yields.push_back(emit(Op::Add, Kind::Float, {at, constant(1)}));
@@ -139,8 +147,98 @@ Inst* Builder::newResizable(Base base, int length) {
     const int room = std::clamp(std::max(length, largestResize()), limits::kResizableArray, limits::kShaderArray);
     Inst* a = newArray(base, room);
     Inst* n = constant(static_cast<float>(length));
-    lengths_[a] = {newSlot(n), newSlot(n)};
+    lengths_[a] = {newSlot(n), newSlot(n), growing_++};
     return a;
+}
+
+/// A service on the part of an array that does not fit into its storage (spilledarrays.h): of an element `at`, or of a length.
+Inst* Builder::spilled(const char* op, const Inst* a, Inst* at, Inst* value) {
+    Site s;
+    s.op = op;
+    s.place = keptPlace(place_);
+    s.pure = false;
+    s.resultType = {Base::Float, 0};
+    s.resultKinds = {value || at == nullptr ? Kind::Float : a->element};
+    s.resultNames = {""};
+    std::vector<Inst*> args;
+    const Type real{Base::Float, 0};
+    addArgument(s, args, constant(static_cast<float>(lengths(a)->id)), real);
+    addArgument(s, args, constant(static_cast<float>(a->index)), real); // its storage
+    addArgument(s, args, at, real);
+    if (value) addArgument(s, args, value, real);
+    return call(Op::Service, std::move(s), std::move(args))[0];
+}
+
+/// The element of an index that is below the length.
+Inst* Builder::loadElement(Inst* a, Inst* index) {
+    Inst* v = emit(Op::ArrayLoad, a->element, {a, index});
+    if (!lengths(a) || !unbound_) return v;
+    Inst* behind = emit(Op::Less, Kind::Bool, {constant(static_cast<float>(a->index) - 0.5f), index});
+    return branch(
+        behind, [&] { return std::vector<Inst*>{spilled("arrayload", a, index, nullptr)}; },
+        [&] { return std::vector<Inst*>{v}; })[0];
+}
+
+void Builder::storeElement(Inst* a, Inst* index, Inst* value) {
+    const auto store = [&] {
+        emit(Op::ArrayStore, Kind::None, {a, index, value});
+        return std::vector<Inst*>{};
+    };
+    if (!lengths(a) || !unbound_) {
+        store();
+        return;
+    }
+    branch(
+        emit(Op::Less, Kind::Bool, {constant(static_cast<float>(a->index) - 0.5f), index}),
+        [&] {
+            spilled("arraystore", a, index, value);
+            return std::vector<Inst*>{};
+        },
+        store);
+}
+
+/// The length that an array gets that wants this one: less where there is no memory, which is said when the shader runs.
+Inst* Builder::resized(const Inst* a, Inst* wanted) {
+    if (!unbound_) return limitLength(a, wanted);
+    return branch(
+        emit(Op::Less, Kind::Bool, {constant(static_cast<float>(a->index)), wanted}),
+        [&] {
+            Site s;
+            s.op = "arrayresize";
+            s.place = keptPlace(place_);
+            s.pure = false;
+            s.resultType = {Base::Float, 0};
+            s.resultKinds = {Kind::Float};
+            s.resultNames = {""};
+            std::vector<Inst*> args;
+            const Type real{Base::Float, 0};
+            addArgument(s, args, constant(static_cast<float>(lengths(a)->id)), real);
+            addArgument(s, args, constant(static_cast<float>(a->index)), real);
+            addArgument(s, args, wanted, real);
+            addArgument(s, args, constant(static_cast<float>(components(a->element))), real);
+            return std::vector<Inst*>{call(Op::Service, std::move(s), std::move(args))[0]};
+        },
+        [&] { return std::vector<Inst*>{wanted}; })[0];
+}
+
+/// Copies what lies behind the storage of either array, up to the length.
+void Builder::copyBehind(Inst* to, Inst* from, Inst* length) {
+    if (!unbound_) return;
+    countLoop(constant(static_cast<float>(std::min(to->index, arrayLength(from)))), length,
+              [&](Inst* at) { storeElement(to, at, coerce(loadElement(from, at), to->element)); });
+}
+
+/// Says, when the shader runs, that an array is longer than what can be done with its elements.
+void Builder::refuseLonger(const Inst* a, const Place& place, const std::string& where) {
+    if (!lengths(a) || !unbound_) return;
+    branch(
+        emit(Op::Less, Kind::Bool, {constant(static_cast<float>(a->index)), lengthOf(a)}),
+        [&] {
+            complain(place,
+                     where + " takes the first " + std::to_string(a->index) + " elements of this array only, and it has more");
+            return std::vector<Inst*>{};
+        },
+        [] { return std::vector<Inst*>{}; });
 }
 
 const Builder::Lengths* Builder::lengths(const Inst* a) const {
@@ -198,12 +296,18 @@ void Builder::copyResizable(Inst* to, const Expr& from) {
         Inst* a = array(from);
         if (a == to) return;
         Inst* n = lengthOf(a);
-        if (!isConst(n)) { // as far as either storage goes
+        if (!isConst(n)) { // as far as either storage goes, then what lies behind
             everyElement(std::min(to->index, a->index),
                          [&](Inst* at) { emit(Op::ArrayStore, Kind::None, {to, at, emit(Op::ArrayLoad, a->element, {a, at})}); });
-            return setLength(limitLength(to, n));
+            n = resized(to, n);
+            copyBehind(to, a, n);
+            return setLength(n);
         }
-        setLength(limitLength(to, n));
+        n = resized(to, n);
+        setLength(n);
+        copyArray(to, from);
+        if (!isConst(n) || n->numbers[0] > static_cast<float>(std::min(to->index, a->index))) copyBehind(to, a, n);
+        return;
     } else if (from.kind == ExprKind::ShadeopCall && from.shadeop && from.shadeop->name == "getshaders") {
         std::vector<Inst*> when;
         const size_t all = handlesOf(from, &when).size();
@@ -244,15 +348,13 @@ Inst* Builder::resizing(const Expr& e) {
         Inst* v = coerce(expr(*e.args[1]), element);
         place_ = e.place;
         Inst* n = get(l.length);
-        Inst* longer = limitLength(a, emit(Op::Add, Kind::Float, {n, constant(1)}));
-        // At the limit the value is dropped: the element behind the last is the last itself then, and keeps what it has.
-        branch(
-            emit(Op::Less, Kind::Bool, {n, longer}),
+        Inst* longer = branch(
+            emit(Op::Less, Kind::Bool, {n, constant(static_cast<float>(a->index))}),
             [&] {
                 emit(Op::ArrayStore, Kind::None, {a, n, v});
-                return std::vector<Inst*>{};
+                return std::vector<Inst*>{emit(Op::Add, Kind::Float, {n, constant(1)})};
             },
-            [] { return std::vector<Inst*>{}; });
+            [&] { return std::vector<Inst*>{spilled("arraystore", a, n, v)}; })[0]; // n where there is no memory
         set(l.length, longer);
         reserve(longer);
         return constant(0);
@@ -261,7 +363,7 @@ Inst* Builder::resizing(const Expr& e) {
         Inst* shorter =
             runtime1("al_max_f", {emit(Op::Sub, Kind::Float, {get(l.length), constant(1)}), constant(0)}, Kind::Float);
         Inst* empty = emit(Op::LessEqual, Kind::Bool, {get(l.length), constant(0)});
-        Inst* v = emit(Op::ArrayLoad, element, {a, shorter});
+        Inst* v = loadElement(a, shorter);
         v = emit(Op::Select, element, {empty, zero(element), v});
         set(l.length, shorter);
         return v;
@@ -269,7 +371,7 @@ Inst* Builder::resizing(const Expr& e) {
     Inst* wanted = expr(*e.args[1], Kind::Float);
     place_ = e.place;
     wanted = runtime1("al_max_f", {runtime1("al_floor", {wanted}, Kind::Float), constant(0)}, Kind::Float);
-    wanted = limitLength(a, wanted);
+    wanted = name == "resize" ? resized(a, wanted) : unbound_ ? wanted : limitLength(a, wanted);
     if (name == "reserve") {
         reserve(wanted);
         return constant(0);

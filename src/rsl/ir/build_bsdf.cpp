@@ -106,7 +106,8 @@ void Builder::checkDistribution(const Expr& e) {
 }
 
 /// The value of a call of bsdf() that gives one colour, or the parts of one that gives an array.
-std::vector<Inst*> Builder::bsdf(const Expr& e) {
+std::vector<Inst*> Builder::bsdf(const Expr& written) {
+    const Expr& e = withNames(written);
     Distribution d;
     d.l = expr(*e.args[0], Kind::Triple);
     d.n = expr(*e.args[1], Kind::Triple);

@@ -130,6 +130,7 @@ bool Builder::isLobe(const Expr& e) const {
 }
 
 Inst* Builder::shadeopCall(const Expr& e) {
+    if (Inst* chosen = callByNames(e)) return chosen;
     const Shadeop& op = *e.shadeop;
     if (options_.path && isLobe(e) && !direct_.count({e.place.file, e.place.line, e.place.column}))
         return service(e, Op::Request);
@@ -181,6 +182,7 @@ Inst* Builder::runtimeCall(const Expr& e) {
         const Parameter& p = s.parameters[std::min(i, s.parameters.size() - 1)];
         if (e.args[i]->type.array) {
             Inst* a = array(*e.args[i]);
+            refuseLonger(a, e.place, e.shadeop->name + "()");
             for (int n = 0; n < arrayLength(a); ++n)
                 args.push_back(emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}));
             continue;

@@ -231,7 +231,7 @@ void Builder::assign(const Expr& l, Inst* value) {
         if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
             warn(l.args[1]->place, "index " + indexText(at->numbers[0]) + " is outside the array of length " +
                                        std::to_string(arrayLength(a)) + "; the nearest element is taken");
-        if (a->op == Op::ArrayNew) emit(Op::ArrayStore, Kind::None, {a, elementOf(a, at), coerce(value, a->element)});
+        if (a->op == Op::ArrayNew) storeElement(a, elementOf(a, at), coerce(value, a->element));
         return;
     }
     // A component of a tuple.
@@ -324,13 +324,16 @@ Inst* Builder::inSpace(const Expr& spaceName, Inst* value, Base base) {
         const Lengths* known = lengths(value);
         Inst* a = known ? newResizable(base, 0) : newArray(base, arrayLength(value));
         if (known) {
-            set(lengths(a)->length, limitLength(a, lengthOf(value)));
+            set(lengths(a)->length, resized(a, lengthOf(value)));
             set(lengths(a)->reserved, get(lengths(a)->length));
         }
         const int storage = std::min(known ? value->index : arrayLength(value), known ? a->index : arrayLength(a));
         everyElement(storage, [&](Inst* at) {
             emit(Op::ArrayStore, Kind::None, {a, at, inSpace(spaceName, emit(Op::ArrayLoad, value->element, {value, at}), base)});
         });
+        if (known && unbound_)
+            countLoop(constant(static_cast<float>(storage)), lengthOf(a),
+                      [&](Inst* at) { storeElement(a, at, inSpace(spaceName, loadElement(value, at), base)); });
         return a;
     }
     Inst* name = expr(spaceName);
@@ -380,7 +383,7 @@ Inst* Builder::expr(const Expr& e) {
             if (const auto t = texts_.find(a);
                 t != texts_.end() && isConst(at) && at->numbers[0] >= 0 && at->numbers[0] < static_cast<float>(t->second.size()))
                 return leaves_.string(t->second[static_cast<size_t>(at->numbers[0])]);
-            Inst* v = emit(Op::ArrayLoad, a->element, {a, elementOf(a, at)});
+            Inst* v = loadElement(a, elementOf(a, at));
             if (open == given_.end() || isConst(at)) return v;
             return emit(Op::Select, a->element,
                         {emit(Op::LessEqual, Kind::Bool, {constant(static_cast<float>(open->second)), at}), zero(a->element), v});

@@ -54,7 +54,7 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     constantPair(g.turn, kPairGather, number);
     g.turn.resultKinds = {Kind::Float};
     g.turn.resultNames = {""};
-    for (const NamedArg& p : s.pairs) {
+    for (const Pair& p : pairsOf(s)) {
         if (!p.value) continue;
         if (p.output) {
             const size_t flag = g.turn.resultKinds.size();
@@ -87,17 +87,38 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     return g;
 }
 
-/// A value for a parameter of the surface shaders that the rays meet.
-void Builder::send(Site& site, std::vector<Inst*>& args, const NamedArg& p) {
-    const bool fits = !p.value->type.array && p.value->type.base != Base::String && p.value->type.base != Base::Matrix;
-    if (!p.name.starts_with(kSendSurface) || !fits) {
-        warn(p.place, "gather sends numbers, colours and points to parameters of surfaces, \"send:surface:NAME\": \"" + p.name +
-                          "\" is ignored");
+/// A value for a parameter of the shaders that the rays meet. Of an array each element is an argument, and before them how many
+/// there are.
+void Builder::send(Site& site, std::vector<Inst*>& args, const Pair& p) {
+    const PairName pair = PairName::parse(p.name);
+    const Type type = p.value->type;
+    if (pair.kind != PairName::Kind::Send) {
+        warn(p.place, "gather sends to parameters of \"send:surface:NAME\", \"send:displacement:NAME\", \"send:volume:NAME\" and "
+                      "\"send:light:NAME\": \"" +
+                          p.name + "\" is ignored");
         return;
     }
-    site.names.push_back(p.name);
-    site.pairStrings.emplace_back();
-    addArgument(site, args, expr(*p.value), p.value->type);
+    const bool handle = p.value->handle || (p.value->symbol && p.value->symbol->handle);
+    if (handle || (pair.to == PairName::To::Light && type.base == Base::String)) {
+        warn(p.place,
+             std::string("gather sends no ") + (handle ? "shaders" : "strings to lights") + ": \"" + p.name + "\" is ignored");
+        return;
+    }
+    const auto give = [&](const PairName& name, Inst* v, Type t) {
+        site.names.push_back(name.text());
+        site.pairStrings.emplace_back();
+        addArgument(site, args, v, t);
+    };
+    if (!type.array) {
+        Inst* v = expr(*p.value);
+        return give(pair, v->kind == Kind::Bool ? coerce(v, Kind::Float) : v, type);
+    }
+    Inst* a = array(*p.value);
+    refuseLonger(a, p.place, "\"" + p.name + "\"");
+    give(PairName::send(pair.name, -1, pair.to, true), lengthOf(a), {Base::Float, 0});
+    for (int n = 0; n < arrayLength(a); ++n)
+        give(PairName::send(pair.name, n, pair.to), emit(Op::ArrayLoad, a->element, {a, constant(static_cast<float>(n))}),
+             type.element());
 }
 
 std::set<int> Builder::assignedByGather(const Stmt& s) {

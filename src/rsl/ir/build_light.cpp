@@ -35,14 +35,15 @@ void Builder::illuminance(const Stmt& s) {
             site.strings[0].clear();
         }
     }
-    std::vector<const NamedArg*> lightParameters;
-    for (const NamedArg& p : s.pairs) {
+    std::vector<const Pair*> lightParameters;
+    const std::vector<Pair> all = pairsOf(s);
+    for (const Pair& p : all) {
         if (p.name.rfind("light:", 0) == 0) {
             lightParameters.push_back(&p);
             continue;
         }
         if (!p.value) continue;
-        if (const PairName pair = PairName::parse(p.name); pair.kind == PairName::Kind::Send) {
+        if (const PairName pair = PairName::parse(p.name); pair.kind == PairName::Kind::Send && pair.to == PairName::To::Light) {
             if (p.value->type.array) {
                 if (p.value->type.base == Base::String) {
                     warn(p.place, "\"" + p.name + "\" sends an array of strings; it is not sent");
@@ -93,13 +94,10 @@ void Builder::illuminance(const Stmt& s) {
     std::set<const Function*> seen;
     for (const StmtPtr& b : s.body)
         if (b) scanAssigned(*b, assigned, seen);
-    for (const NamedArg* p : lightParameters)
+    for (const Pair* p : lightParameters)
         if (p->value && p->value->kind == ExprKind::Variable && p->value->symbol) assigned.insert(slot(p->value->symbol));
     Frame& f = frames_.back();
-    for (const LoopFrame& l : f.loops) {
-        assigned.insert(l.broken);
-        assigned.insert(l.continued);
-    }
+    for (const LoopFrame& l : f.loops) assigned.insert({l.broken, l.continued});
     if (f.returned >= 0) assigned.insert(f.returned);
     if (f.result >= 0) assigned.insert(f.result);
     const LoopFrame flags{newSlot(boolean(false)), newSlot(boolean(false))};
@@ -166,7 +164,7 @@ void Builder::illuminance(const Stmt& s) {
             set(lightSlots[1], visible);
             set(lightSlots[2], Ol);
             set(flags.continued, boolean(false));
-            for (const NamedArg* p : lightParameters) {
+            for (const Pair* p : lightParameters) {
                 Site get;
                 get.op = "lightsource";
                 get.strings = {p->name.substr(6)};

@@ -297,7 +297,7 @@ Inst* Builder::memberElement(const Expr& e) {
         [&](size_t i) -> Inst* {
             const Symbol* s = memberOf(i, member.text);
             Inst* v = s ? memberValue(i, *s) : nullptr;
-            if (v && inArray(v)) return emit(Op::ArrayLoad, v->element, {v, elementOf(v, at)});
+            if (v && inArray(v)) return loadElement(v, elementOf(v, at));
             if (v && inTuple(v)) {
                 const auto part = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
                 Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), part(1), part(0)});

@@ -52,7 +52,8 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
 }
 
 /// The form of trace() that gives an array: a request for each part of the distribution.
-std::vector<Inst*> Builder::traceParts(const Expr& e) {
+std::vector<Inst*> Builder::traceParts(const Expr& written) {
+    const Expr& e = withNames(written);
     std::string name = "uniform";
     size_t lobes = 3;
     for (const NamedArg& p : e.pairs) {
@@ -87,10 +88,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
     s.shadeop = &op;
     s.resultType = parted ? e.type.element() : e.type;
     s.pure = op.pure && kind == Op::Service;
-    const auto mark = [&](const char* pair) {
-        s.names.push_back(pair);
-        s.pairStrings.push_back("1");
-    };
+    const auto mark = [&](const char* pair) { s.names.push_back(pair), s.pairStrings.push_back("1"); };
     std::vector<Inst*> args;
     struct Out {
         const Expr* lvalue;
@@ -144,6 +142,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         }
         if (a.type.array) {
             Inst* from = array(a);
+            refuseLonger(from, a.place, op.name + "()");
             for (int n = 0; n < arrayLength(from); ++n)
                 addArgument(s, args, emit(Op::ArrayLoad, from->element, {from, constant(static_cast<float>(n))}),
                             a.type.element());
@@ -208,6 +207,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
             if (o.name == p.name) known = &o;
         if (p.value->type.array) {
             Inst* from = array(*p.value);
+            refuseLonger(from, p.place, "\"" + p.name + "\" of " + op.name + "()");
             for (int n = 0; n < arrayLength(from); ++n) {
                 s.names.push_back(p.name + "[" + std::to_string(n) + "]");
                 s.pairStrings.push_back("");

@@ -56,6 +56,46 @@ int Builder::parameterLength(const ShaderParameter& p, std::span<const std::pair
 }
 
 Inst* Builder::parameterValue(const ShaderParameter& p) {
+    Inst* usual = ownValue(p);
+    const auto sent = std::find_if(options_.sentParameters.begin(), options_.sentParameters.end(),
+                                   [&](const SentParameter& s) { return s.name == p.symbol->name; });
+    Inst* v = sent == options_.sentParameters.end() ? usual : sentValue(p, usual, sent->room);
+    if ((p.symbol->type.array < 0 || p.symbol->open) && !lengths(v)) given_[v] = parameterLength(p, options_.stringParameters);
+    return v;
+}
+
+/// The value that gather() has sent, or the usual one. Of an array of fixed length the elements that came; an open one has the
+/// length of what came.
+Inst* Builder::sentValue(const ShaderParameter& p, Inst* usual, int room) {
+    const Symbol& s = *p.symbol;
+    Inst* came = input(InputName::sent(s.name, true).text(), {Base::Float, 0}, false); // one more than there are
+    if (!s.type.array)
+        return emit(Op::Select, usual->kind,
+                    {emit(Op::Less, Kind::Bool, {constant(0), came}),
+                     input(InputName::sent(s.name).text(), {s.type.base, 0}, false), usual});
+    const bool open = s.type.array < 0 || s.open;
+    const int length = open ? parameterLength(p, options_.stringParameters) : arrayLength(usual);
+    Inst* sent = input(InputName::sent(s.name).text(), {s.type.base, room}, false);
+    Inst* a = newArray(s.type.base, std::max(open ? room : 1, length));
+    for (int e = 0; e < arrayLength(a); ++e) {
+        Inst* at = constant(static_cast<float>(e));
+        Inst* v = e < length ? emit(Op::ArrayLoad, a->element, {usual, at}) : zero(a->element);
+        if (e < room)
+            v = emit(Op::Select, a->element,
+                     {emit(Op::Less, Kind::Bool, {constant(static_cast<float>(e + 1)), came}),
+                      emit(Op::ArrayLoad, a->element, {sent, at}), v});
+        emit(Op::ArrayStore, Kind::None, {a, at, v});
+    }
+    if (!open) return a;
+    Inst* n = emit(Op::Select, Kind::Float,
+                   {emit(Op::Less, Kind::Bool, {constant(0), came}), emit(Op::Sub, Kind::Float, {came, constant(1)}),
+                    constant(static_cast<float>(length))});
+    lengths_[a] = {newSlot(n), newSlot(n), growing_++};
+    return a;
+}
+
+/// What the scene, the primitive or the default gives.
+Inst* Builder::ownValue(const ShaderParameter& p) {
     const Symbol& s = *p.symbol;
     Type type = s.type;
     const int length = parameterLength(p, options_.stringParameters);
@@ -168,7 +208,6 @@ bool Builder::buildShader() {
         place_ = p.symbol->place;
         const int n = slot(p.symbol);
         Inst* v = parameterValue(p);
-        if (p.symbol->type.array < 0 || p.symbol->open) given_[v] = parameterLength(p, options_.stringParameters);
         if (v->op == Op::ArrayInput && assigned.count(n)) { // inputs are read-only: a copy takes the stores
             Inst* copy = newArray(p.symbol->type.base, arrayLength(v));
             for (int e = 0; e < arrayLength(v); ++e) {
@@ -204,6 +243,7 @@ bool Builder::buildShader() {
 
     const auto output = [&](const std::string& name, Inst* value, Type type) {
         if (value->kind == Kind::Array) {
+            refuseLonger(value, shader_.place, "the output '" + name + "'");
             const int n = lengths(value) ? value->index : given_.count(value) ? given_.at(value) : arrayLength(value);
             for (int e = 0; e < n; ++e) {
                 Inst* v = emit(Op::ArrayLoad, value->element, {value, constant(static_cast<float>(e))});

@@ -92,8 +92,7 @@ Inst* Builder::splineOf(SplineCall c, const std::string& basis, bool solve) {
     const auto pointAt = [&](Inst* s, int j) {
         if (lookUp) {
             Inst* index = emit(Op::Mul, Kind::Float, {s, constant(static_cast<float>(step))});
-            return emit(Op::ArrayLoad, c.storage->element,
-                        {c.storage, emit(Op::Add, Kind::Float, {index, constant(static_cast<float>(j))})});
+            return loadElement(c.storage, emit(Op::Add, Kind::Float, {index, constant(static_cast<float>(j))}));
         }
         Inst* p = point(most - 1, j);
         for (int k = most - 2; k >= 0; --k)

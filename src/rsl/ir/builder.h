@@ -64,6 +64,8 @@ private:
     void set(int slot, Inst* value);
     Inst* initialGlobal(const std::string& name, Type);
     Inst* parameterValue(const ShaderParameter&);
+    Inst* sentValue(const ShaderParameter&, Inst* usual, int room);
+    Inst* ownValue(const ShaderParameter&);
     Inst* constantParameter(const Symbol&, const std::string& text);
     Inst* constantTexts(const std::string& name, int length, std::span<const std::pair<std::string, std::string>> given);
 
@@ -85,7 +87,21 @@ private:
     void turns(std::set<int>& assigned, bool jumps, const Turns&, const Place&);
     static bool jumps(const Stmt&);
     void gather(const Stmt&); // build_gather.cpp
-    void send(Site&, std::vector<Inst*>& args, const NamedArg&);
+    /// A pair of a statement whose name is known.
+    struct Pair {
+        std::string name;
+        const Expr* value; ///< may be null
+        bool output;
+        Place place;
+    };
+    std::vector<Pair> pairsOf(const Stmt&); // build_names.cpp
+    bool nameArgument(const Shadeop&, NamedArg&, const std::string& text);
+    ExprPtr namedNow(const Expr&, std::vector<std::pair<size_t, Inst*>>& open);
+    const Expr& withNames(const Expr&);
+    Inst* callByNames(const Expr&);
+    Inst* chooseNames(ExprPtr, std::span<const std::pair<size_t, Inst*>> open);
+    std::vector<ExprPtr> named_; ///< calls that were built with names that had been made
+    void send(Site&, std::vector<Inst*>& args, const Pair&);
     std::set<int> assignedByGather(const Stmt&);
     int gathers_ = 0; ///< built so far
     struct GatherCall;
@@ -157,7 +173,17 @@ private:
     // build_arrays.cpp: arrays that change their length
     struct Lengths {
         int length, reserved; ///< slots
+        int id;               ///< among the kernel's arrays of this sort, for the services of spilledarrays.h
     };
+    int growing_ = 0;      ///< arrays with an id
+    bool unbound_ = false; ///< after largestResize(): some array may outgrow its storage
+    Inst* spilled(const char* op, const Inst* array, Inst* at, Inst* value);
+    Inst* loadElement(Inst* array, Inst* index);
+    void storeElement(Inst* array, Inst* index, Inst* value);
+    Inst* resized(const Inst* array, Inst* wanted);
+    void copyBehind(Inst* to, Inst* from, Inst* length);
+    void refuseLonger(const Inst* array, const Place&, const std::string& where);
+    void countLoop(Inst* first, Inst* end, const std::function<void(Inst* at)>& each);
     int largestResize();
     bool grows(const Stmt::Declarator&);
     bool lengthKnown(const Inst* a) const {

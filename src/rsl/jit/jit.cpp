@@ -126,6 +126,8 @@ std::string codeKey(const KernelOptions& o) {
     for (const auto& s : varying) text(s);
     k += "\ncomputed ";
     for (const auto& s : o.computedParameters) text(s);
+    if (!o.sentParameters.empty()) k += "\nsent ";
+    for (const auto& s : o.sentParameters) text(s.name), k += std::to_string(s.room) + ",";
     k += "\nmessages ";
     for (const auto& s : o.messages) text(s);
     return k + "\n";

@@ -84,7 +84,7 @@ void ServiceCall::answer(int lane, const Told& t) const {
         return;
     }
     const size_t size = size_t(rsl::ir::components(wanted)), rows = size_t(s.resultRowCount) - before;
-    // A number for a colour, a point or a matrix, as the language converts one (RISpec 3.2, 11.2).
+    // A number for a colour, a point or a matrix, as the language converts one.
     if (!t.kind && wanted != Kind::String && !array && size > 1 && rows == size && t.numbers.size() == 1) {
         for (size_t r = 0; r < rows; ++r) put(int(before + r), lane, size == 16 && r % 5 != 0 ? 0 : t.numbers[0]);
         return put(0, lane, 1);

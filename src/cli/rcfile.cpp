@@ -70,15 +70,10 @@ std::vector<RcFile> rcFiles(Diagnostics& diags) {
     return files;
 }
 
-std::vector<std::string> rcOptions(const std::vector<RcFile>& files, Diagnostics& diags) {
+std::vector<std::string> rcOptions(const std::vector<RcFile>& files) {
     std::vector<std::string> all;
-    for (const RcFile& f : files) {
+    for (const RcFile& f : files)
         if (f.own) all.insert(all.end(), f.options.begin(), f.options.end());
-        else if (f.optionLine > 0)
-            diags.report(Severity::Warning, Rie::IllState, {f.path, f.optionLine, 1},
-                         "options are read from ~/.alpenglowrc only; those of the current folder are left out",
-                         "RIB has its Option, Hider and Display");
-    }
     return all;
 }
 

@@ -26,8 +26,8 @@ inline constexpr const char* kRcFilesText =
 /// $XDG_CONFIG_HOME/alpenglow/alpenglowrc (~/.config without the variable), ~/.alpenglowrc, ./.alpenglowrc. The variable
 /// ALPENGLOW_RC names one file instead of these, or "off". A file of more than 1 MiB is not read (reported).
 std::vector<RcFile> rcFiles(Diagnostics&);
-/// Their options, as arguments that stand before those of the command line. A file in the current folder may have none: that may
-/// be anybody's, and options allow scenes to run programs (reported).
-std::vector<std::string> rcOptions(const std::vector<RcFile>&, Diagnostics&);
+/// Their options, as arguments that stand before those of the command line. Those of the current folder do not count: that may be
+/// anybody's, and options allow scenes to run programs.
+std::vector<std::string> rcOptions(const std::vector<RcFile>&);
 
 } // namespace alpenglow::cli

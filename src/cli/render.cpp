@@ -124,6 +124,10 @@ void readDefaults(const RenderArguments& a, ri::RibReader& reader, Diagnostics& 
         diags.report(Severity::Info, Rie::NoError, {}, "$" + name + " names folders that are searched last: " + value);
     if (a.noRc) return;
     for (const RcFile& f : rcFiles(diags)) {
+        if (!f.own && f.optionLine > 0)
+            diags.report(Severity::Warning, Rie::IllState, {f.path, f.optionLine, 1},
+                         "options are read from ~/.alpenglowrc only; those of the current folder are left out",
+                         "RIB has its Option, Hider and Display");
         if (f.rib.find_first_not_of(" \t\r\n") == f.rib.npos) continue;
         Diagnostic read{Severity::Info, Rie::NoError, {f.path}, "it is read before the scene; --no-rc leaves it out", {}, {}};
         read.always = true;

@@ -51,7 +51,9 @@ std::string statsJson(const RenderStats& all, const std::vector<FrameStats>& fra
     j["software"] = s.software;
     j["command"] = s.command;
     j["options"] = pixelOptions(s);
-    if (!s.environment.empty()) j["environment"] = s.environment;
+    std::string environment;
+    for (const auto& [name, value] : s.environment) environment += (environment.empty() ? "" : " ") + name + "=" + value;
+    j["environment"] = environment;
     j["host"] = hostName();
     j["date"] = dateText();
     j["frames"] = OrderedJson::array();

@@ -32,7 +32,7 @@ TEST_F(ErrorHandler, PrintGoesOn) {
     frames("print", "Sides 3\n");
     run("render a.rib");
     EXPECT_EQ(status, 1) << errors();
-    EXPECT_TRUE(says("a.rib:14:1: error: Sides: it is 1 or 2")) << errors();
+    EXPECT_TRUE(says("a.rib:17:1: error: Sides: it is 1 or 2")) << errors();
     EXPECT_TRUE(there("1.exr") && there("2.exr") && there("3.exr"));
 }
 

@@ -79,12 +79,12 @@ TEST_F(OptionEffects, HitModes) {
     write("green.sl", "surface green() { Oi = 1; Ci = color(0, 1, 0); }\n");
     write("asks.sl", "surface asks(string how = \"\";) {\n    vector up = vector \"world\" (0, 0, -1);\n    Oi = 1;\n"
                      "    if (how == \"diffuse\") Ci = indirectdiffuse(P, normal(up), 16);\n    else Ci = trace(P, up);\n}\n");
-    for (const char* kind : {"diffuse", "specular"})
+    for (const auto& [kind, attribute] : {std::pair{"diffuse", "diffusehitmode"}, {"specular", "specularhitmode"}})
         for (const auto& [mode, want] : {std::pair{"shader", "0 1 0 1\n"}, {"primitive", "1 0 0 1\n"}}) {
             const std::string k = kind;
             write("a.rib",
                   "Format 4 4 1\nPixelSamples 1 1\nHider \"raytrace\"\nWorldBegin\nSides 2\nAttribute \"visibility\" \"int " + k +
-                      "\" 1 \"int camera\" 0\nAttribute \"shade\" \"string " + k + "hitmode\" \"" + mode +
+                      "\" 1 \"int camera\" 0\nAttribute \"shade\" \"string " + attribute + "\" \"" + mode +
                       "\"\nSurface \"green\"\nColor 1 0 0\nSphere 50 -50 50 360\nAttribute \"visibility\" \"int camera\" 1 "
                       "\"int diffuse\" 0 \"int specular\" 0\nSurface \"asks\" \"how\" \"" +
                       k + "\"\nPolygon \"P\" [-9 -9 5 -9 9 5 9 9 5 9 -9 5]\nWorldEnd\n");

@@ -143,7 +143,7 @@ TEST_F(RcFile, VariablesFindWhatIsNowhereElse) {
         EXPECT_TRUE(says(std::string("note: $") + name + " names folders that are searched last: @:" + (dir / "env").string()))
             << errors();
         std::ifstream in(dir / "work" / "s.json");
-        EXPECT_TRUE(nlohmann::json::parse(in).at("environment").contains(name));
+        EXPECT_EQ(nlohmann::json::parse(in).at("environment"), name + ("=@:" + (dir / "env").string() + ":/not/there"));
     }
     shaderFolder(dir / "tree" / "lib" / "shaders", "nowhere", "0, 0, 1");
     scene("nowhere");

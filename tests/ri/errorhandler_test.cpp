@@ -16,7 +16,7 @@ TEST(ErrorHandler, AbortStopsAtTheFirstErrorAndHandsNoFrameOver) {
     EXPECT_FALSE(c->ok);
     EXPECT_EQ(c->frames.size(), 1u); // the one before the error
     ASSERT_EQ(c->count(), 2u) << c->messages();
-    EXPECT_EQ(c->first().place.line, 6);
+    EXPECT_EQ(c->first().place.line, 7);
     EXPECT_NE(c->messages().find("the rest is not read"), std::string::npos);
 }
 

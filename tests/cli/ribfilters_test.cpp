@@ -1,5 +1,5 @@
 // alpenglow rib --filter: libraries in C++ and functions in Python.
-#include "cli/command_folder.h"
+#include "command_folder.h"
 #include <cstdlib>
 
 namespace ribfilters_test {

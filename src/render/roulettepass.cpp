@@ -11,7 +11,7 @@ namespace alpenglow::render {
 namespace {
 
 constexpr int kLeastPixels = 64 * 64; ///< smaller pictures: too few pilot paths to learn from, or too many for the picture
-constexpr int kLeastSide = 24, kMostSide = 48;
+constexpr int kLeastSide = 24, kMostSide = 32;
 constexpr uint64_t kOtherSeed = 0x726f756cull; ///< makes the roulette independent of the picture's own samples
 
 /// Mean luminance of the 5 x 5 pairs of samples about each, and a little of the picture's.

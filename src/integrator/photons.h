@@ -73,6 +73,8 @@ bool savePhotonMap(const World&, const std::string& name, std::span<const photon
                    Diagnostics&);
 /// Makes photons available to the shaders of this world under this name.
 void setPhotonMap(const World&, const std::string& name, std::vector<photons::Photon>);
+/// Whether paths can be traced before the first sample without an effect on the picture.
+bool mayTryPaths(const World&);
 /// Whether mirrors or clear glass may cause caustics in this world.
 bool mayHaveCaustics(const World&);
 /// Size of the caustic guide of a world (world/causticguide.h).

@@ -8,6 +8,8 @@
 
 namespace alpenglow::transport {
 
+struct BounceTally;
+
 class Pipeline final : public shading::Sched::RayService {
 public:
     Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&);
@@ -27,6 +29,7 @@ public:
     const StageSet& stages() const;
     const WorldImpl& world() const;
     Counters& counters();
+    void tally(BounceTally*);    ///< Integrator::tally()
     shading::Sched& scheduler(); ///< of this pipeline; created at the first call
     /// Whether a ray of the last trace() reached the bound of a deferred procedural (Unmade); its results are then undefined.
     bool& unfinished();

@@ -82,7 +82,8 @@ void Transparency::passThrough(const SurfaceBinding& b, const PathRay& ray, Targ
             q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);
         } else if (depth > 3) {
             const Color left(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z));
-            q = world_.lightTraces_ > 0 ? rouletteLocal(depth, left, dice()) : rouletteOfPath(r.weight, dice);
+            q = world_.lightTraces_ > 0 ? rouletteLocal(depth, left, dice())
+                                        : rouletteOfPath(r.weight, RouletteFactors::kUsual, dice);
         }
         if (!(q > 0)) return;
         r.weight = r.weight / q;

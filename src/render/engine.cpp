@@ -12,6 +12,7 @@ public:
     }
     const transport::Counters& counters() const override { return integrator_.counters(); }
     bool seesNothing(std::span<const geometry::Plane> sides) const override { return integrator_.seesNothing(sides); }
+    void tally(transport::BounceTally* t) override { integrator_.tally(t); }
     bool unfinished() const override { return integrator_.unfinished(); }
 
 private:

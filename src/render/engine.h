@@ -6,6 +6,10 @@
 #include <memory>
 #include <span>
 
+namespace alpenglow::transport {
+struct BounceTally;
+}
+
 namespace alpenglow::render {
 
 /// Traces the rays of one thread. See transport::Integrator.
@@ -15,6 +19,7 @@ public:
     virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>, const StopFlag* stop) = 0;
     virtual const transport::Counters& counters() const = 0;
     virtual bool seesNothing(std::span<const geometry::Plane>) const { return false; } ///< see transport::Integrator
+    virtual void tally(transport::BounceTally*) {}                                     ///< see transport::Integrator
     /// See transport::Integrator.
     virtual bool unfinished() const { return false; }
 };

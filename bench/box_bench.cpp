@@ -4,8 +4,8 @@
 #include "bench/box_embree.h"
 #include "bench/box_oracle_runs.h"
 #include "bench/profile.h"
+#include "bsdf/sampling.h"
 #include "integrator/integrator.h"
-#include "lobes/sampling.h"
 #include "render/rendering.h"
 #include "ri/reader.h"
 #include "scene/scene.h"
@@ -45,7 +45,7 @@ struct Box {
     std::shared_ptr<const scene::Frame> frame;
     std::unique_ptr<render::Camera> camera;
     render::OutputPlan plan;
-    std::shared_ptr<const transport::World> world;
+    std::shared_ptr<const world::World> world;
     render::Engine engine = render::transportEngine();
 
     bool load(int width, int height, int threads, int lanes) {
@@ -61,19 +61,19 @@ struct Box {
         settings.progress = render::ProgressMode::None;
         camera = std::make_unique<render::Camera>(frame->options, diagnostics);
         plan = render::planOutputs(frame->options, settings, true, "box.exr", diagnostics);
-        transport::Settings t;
-        t.hider = transport::Hider::Path;
+        world::Settings t;
+        t.hider = world::Hider::Path;
         t.lanes = lanes;
         t.outputs = plan.engineOutputs;
         t.shaderPaths = {ALPENGLOW_SOURCE_DIR "/shaders"};
-        world = transport::buildWorld(frame, t, diagnostics);
+        world = integrator::buildWorld(frame, t, diagnostics);
         if (world) plan.resolve(world->outputWidths(), diagnostics);
         return world != nullptr;
     }
 
     struct Result {
         double cpu = 0, wall = 0, mean = 0;
-        transport::Counters counters;
+        integrator::Counters counters;
     };
     Result render(uint32_t spp) {
         Result r;
@@ -106,7 +106,7 @@ std::vector<accel::Ray> recordRays(const Box& box, const accel::Accel& accel, in
     for (int y = 0; y < box.camera->height(); ++y)
         for (int x = 0; x < box.camera->width(); ++x) {
             float w;
-            transport::CameraRay c = render::pathRay(*box.camera, filter, 0, x, y, 0, &w);
+            integrator::CameraRay c = render::pathRay(*box.camera, filter, 0, x, y, 0, &w);
             accel::Ray r;
             r.org = c.origin;
             r.dir = c.direction;
@@ -118,7 +118,7 @@ std::vector<accel::Ray> recordRays(const Box& box, const accel::Accel& accel, in
                 if (!inside) break;
                 geometry::SurfacePoint p = accel.point(h);
                 Vec3 n = dot(p.n, r.dir) > 0 ? -p.n : p.n;
-                r.dir = transport::Basis(n).toWorld(transport::sampleCosine(numbers.get2(uint32_t(b) + 1, 0, 0, 0)));
+                r.dir = bsdf::Basis(n).toWorld(bsdf::sampleCosine(numbers.get2(uint32_t(b) + 1, 0, 0, 0)));
                 r.org = geometry::offsetOrigin(p, r.dir);
             }
             if (inside) rays.push_back(r);
@@ -148,10 +148,11 @@ const char* partOf(const std::string& s) {
     if (has("7Sampler") || has("13SampleNumbers") || has("nestedS") || has("6render6nested") || has("6sobol") ||
         has("13FilterSampler") || has("6Camera") || has("7pathRay"))
         return "sampling, camera";
-    if (has("5lobes") || has("lobe") || has("Lobe") || has("4draw") || has("5value")) return "lobes";
+    if (has("4bsdf") || has("lobe") || has("Lobe") || has("4draw") || has("5value")) return "lobes";
     if (has("7shading5Batch") || has("12setFootprint")) return "filling batches";
     if (has("4Film") || has("6render")) return "film";
-    if (has("9Scheduler") || has("9transport")) return "scheduling, light samples, requests";
+    if (has("9Scheduler") || has("10integrator") || has("8services") || has("5world"))
+        return "scheduling, light samples, requests";
     return "other";
 }
 
@@ -211,7 +212,7 @@ int main(int argc, char** argv) {
         for (size_t i = 0; i < ours.size(); ++i) r.push_back(oracle[i] / ours[i]);
         return median(r);
     };
-    const transport::Counters& c = last.counters;
+    const integrator::Counters& c = last.counters;
     double ourRays = double(render::totalRays(c)) / samples;
     std::printf("Muttenzer box, %d x %d, %d samples a pixel, %d threads, %d lanes; CPU time, medians of %d\n", width, height, spp,
                 threads, lanes, repeats);
@@ -232,7 +233,7 @@ int main(int argc, char** argv) {
         mean, oracleMean, embreeMean, median(wall), double(render::totalRays(c)) / median(wall) / 1e3,
         double(c.points) / double(c.batches), 100.0 * double(c.lanesUsed) / double(c.lanesRun));
 
-    const accel::Accel& accel = *static_cast<const transport::WorldImpl&>(*box.world).accel_;
+    const accel::Accel& accel = *static_cast<const world::WorldImpl&>(*box.world).accel_;
     bench::BareEmbree bare(accel.shapes());
     for (int bounces : {0, 1, 3}) {
         std::vector<accel::Ray> rays = recordRays(box, accel, bounces);

@@ -1,14 +1,14 @@
 // What lobes cost: nanoseconds a lobe of each kind to prepare it, for a value with its density, and for a draw; one by one
-// (OneLobe, as nobody does in a loop), in full blocks at each width, and in blocks by way of LobeColumns as the engine asks. The
+// (Bsdf, as nobody does in a loop), in full blocks at each width, and in blocks by way of BsdfBatch as the engine asks. The
 // best of several runs.
-#include "lobes/lobe.h"
+#include "bsdf/lobe.h"
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <random>
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::bsdf;
 
 namespace {
 constexpr int kLobes = 1024, kRuns = 15;
@@ -54,15 +54,15 @@ void measure(const LobeKind& kind) {
     const Lobes lobes(kind);
     const auto n = size_t(kLobes);
     const double alone = nanoseconds([&] {
-        for (size_t i = 0; i < n; ++i) kept = OneLobe(kind, lobes.params[i]).value(lobes.from[i]).fcos;
+        for (size_t i = 0; i < n; ++i) kept = Bsdf(kind, lobes.params[i]).value(lobes.from[i]).fcos;
     });
-    std::vector<OneLobe> ready;
+    std::vector<Bsdf> ready;
     for (size_t i = 0; i < n; ++i) ready.emplace_back(kind, lobes.params[i]);
     const double one = nanoseconds([&] {
         for (size_t i = 0; i < n; ++i) kept = ready[i].value(lobes.from[i]).fcos;
     });
-    LobeColumns columns;
-    std::vector<LobeColumns::Place> place(n);
+    BsdfBatch columns;
+    std::vector<BsdfBatch::Place> place(n);
     const double add = nanoseconds([&] {
         columns.clear();
         for (size_t i = 0; i < n; ++i) place[i] = columns.add(kind, lobes.params[i]);

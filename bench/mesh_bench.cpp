@@ -2,9 +2,9 @@
 // mesh_bench [--repeats N]                points of hits and of emitters on meshes made here
 // mesh_bench --rib FILE [--repeats N]     rays through the shapes of a scene; the first run of a mesh of millions takes a while
 #include "accel/accel.h"
+#include "bsdf/sampling.h"
 #include "geometry/build.h"
 #include "geometry/dice.h"
-#include "lobes/sampling.h"
 #include "render/camera.h"
 #include "ri/reader.h"
 #include "scene/scene.h"
@@ -157,7 +157,7 @@ int measureRays(const char* file, int repeats) {
     std::vector<accel::Ray> rays;
     for (int y = 0; y < camera.height(); ++y)
         for (int x = 0; x < camera.width(); ++x) {
-            const transport::CameraRay c = camera.ray(x + uniform(rng), y + uniform(rng), {0.5f, 0.5f}, 0);
+            const integrator::CameraRay c = camera.ray(x + uniform(rng), y + uniform(rng), {0.5f, 0.5f}, 0);
             accel::Ray r;
             r.org = c.origin;
             r.dir = c.direction;
@@ -200,7 +200,7 @@ int measureRays(const char* file, int repeats) {
             const Vec3 n = dot(p.n, rays[i].dir) > 0 ? -p.n : p.n;
             accel::Ray r;
             const float x = uniform(rng), y = uniform(rng);
-            r.dir = transport::Basis(n).toWorld(transport::sampleCosine({x, y}));
+            r.dir = bsdf::Basis(n).toWorld(bsdf::sampleCosine({x, y}));
             r.org = geometry::offsetOrigin(p, r.dir);
             next.push_back(r);
         }

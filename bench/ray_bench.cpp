@@ -52,12 +52,12 @@ template <class F> void timed(double& least, F f) {
     least = std::min(least, cpuSeconds() - begin);
 }
 
-struct Answers {
+struct Services {
     std::vector<accel::Hit> hits;
     std::vector<uint8_t> met;
 };
 
-void trace(const accel::Accel& accel, const bench::RaysOfKind& k, bool together, Answers& out) {
+void trace(const accel::Accel& accel, const bench::RaysOfKind& k, bool together, Services& out) {
     constexpr size_t kSlice = 512;
     const std::span<const accel::Ray> rays(k.rays);
     for (size_t i = 0; i < rays.size(); i += kSlice) {
@@ -69,7 +69,7 @@ void trace(const accel::Accel& accel, const bench::RaysOfKind& k, bool together,
 }
 
 /// Of all that is answered, to the bit.
-uint64_t digestOf(const Answers& a) {
+uint64_t digestOf(const Services& a) {
     uint64_t d = 0;
     const auto take = [&](uint64_t bits) { d = (d ^ bits) * 0x9e3779b97f4a7c15u, d ^= d >> 29; };
     for (const accel::Hit& h : a.hits) {
@@ -87,7 +87,7 @@ uint64_t digestOf(const Answers& a) {
 }
 
 /// Rays of which ours and Embree's answers differ by more than floats do.
-size_t differing(const bench::RaysOfKind& k, const Answers& a, const std::vector<float>& t, const std::vector<uint8_t>& met) {
+size_t differing(const bench::RaysOfKind& k, const Services& a, const std::vector<float>& t, const std::vector<uint8_t>& met) {
     size_t n = 0;
     for (size_t i = 0; i < k.rays.size(); ++i)
         if (k.any) n += (a.met[i] != 0) != (met[i] != 0);
@@ -99,7 +99,7 @@ size_t differing(const bench::RaysOfKind& k, const Answers& a, const std::vector
 void measure(const accel::Accel& accel, const bench::BareEmbree* embree, const std::string& name, const bench::RaysOfKind& k,
              int repeats) {
     const size_t n = k.rays.size();
-    Answers a;
+    Services a;
     std::vector<float> t(k.any ? 0 : n);
     std::vector<uint8_t> met(k.any ? n : 0);
     (k.any ? a.met.resize(n) : a.hits.resize(n));

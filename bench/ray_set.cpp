@@ -1,6 +1,6 @@
 #include "bench/ray_set.h"
 #include "base/matrix.h"
-#include "lobes/sampling.h"
+#include "bsdf/sampling.h"
 #include "render/camera.h"
 #include <cmath>
 #include <optional>
@@ -90,7 +90,7 @@ private:
         if (leaf && uniform(random_) < 0.5f) n = -n;
         const auto origin = [&](const Vec3& d) { return geometry::offsetOrigin(s, d); };
         light(p, s.P, out, [&](const Vec3& d) { return leaf ? 1.f : dot(n, d); }, origin, leaf ? nullptr : &n);
-        const Vec3 d = transport::Basis(n).toWorld(transport::sampleCosine({uniform(random_), uniform(random_)}));
+        const Vec3 d = bsdf::Basis(n).toWorld(bsdf::sampleCosine({uniform(random_), uniform(random_)}));
         return scattered(p, origin(d), d);
     }
 
@@ -125,8 +125,7 @@ private:
             if (l > 0 && dot(e.n, to) < 0 && (!n || cosine(to) > 0)) send("lamp", to / l, l * (1 - 1e-5f));
         }
         if (sky_)
-            send("sky",
-                 n ? transport::Basis(*n).toWorld(transport::sampleCosine({uniform(random_), uniform(random_)})) : anywhere(),
+            send("sky", n ? bsdf::Basis(*n).toWorld(bsdf::sampleCosine({uniform(random_), uniform(random_)})) : anywhere(),
                  1e38f);
         if (sun_ && (!n || cosine(*sun_) > 0)) send("sun", normalize(*sun_ + anywhere() * (uniform(random_) * 0.017f)), 1e38f);
     }
@@ -153,7 +152,7 @@ std::map<std::string, RaysOfKind> raysOf(const scene::Frame& frame, const accel:
         for (int k = 0; k < kTile * kTile; ++k) {
             const int x = int(t % size_t(across)) * kTile + k % kTile, y = int(t / size_t(across)) * kTile + k / kTile;
             const float dx = uniform(random), dy = uniform(random);
-            const transport::CameraRay c = camera.ray(double(x) + dx, double(y) + dy, {0.5f, 0.5f}, 0);
+            const integrator::CameraRay c = camera.ray(double(x) + dx, double(y) + dy, {0.5f, 0.5f}, 0);
             Path p;
             p.ray.org = c.origin;
             p.ray.dir = c.direction;

@@ -43,9 +43,9 @@ patterns=(bench/shaders/*.sl)
 [ -d ../shared/bench ] && patterns=(../shared/bench/*.sl "${patterns[@]}")
 "$build/bin/pattern_bench" --program "$PWD/$program" "${patterns[@]}" || misses=$((misses + 1))
 echo
-echo "== Optimised IR of the patterns: no call, alloca, gather, scatter (ninja test_rsljit)"
-if [ -x "$build/bin/test_rsljit" ]; then
-    if "$build/bin/test_rsljit" --gtest_filter='*PatternsIr*' >"$work/out" 2>&1; then echo "PASS"; else cat "$work/out"; echo "MISS"; misses=$((misses + 1)); fi
+echo "== Optimised IR of the patterns: no call, alloca, gather, scatter (ninja test_rsl_jit)"
+if [ -x "$build/bin/test_rsl_jit" ]; then
+    if "$build/bin/test_rsl_jit" --gtest_filter='*PatternsIr*' >"$work/out" 2>&1; then echo "PASS"; else cat "$work/out"; echo "MISS"; misses=$((misses + 1)); fi
 else
     echo "not built"
 fi

@@ -24,13 +24,12 @@ const std::vector<Rule>& rules() {
          {"7Sampler", "13SampleNumbers", "nestedS", "6render6nested", "6sobol", "13FilterSampler", "6Camera", "7pathRay",
           "8imageRay"}},
         {kPoints, {"8geometry"}},
-        {kLobes,
-         {"5lobes", "lobe", "Lobe", "Distribution", "distribution", "al_bsdf", "9transport4draw", "9transport5value", "3rsl"}},
+        {kLobes, {"4bsdf", "lobe", "Lobe", "Distribution", "distribution", "al_bsdf", "3rsl"}},
         {kLights,
-         {"evaluateLight", "sampleLight", "hazeOf", "lightAt", "Light", "light", "illuminance", "shadow", "Shadow",
+         {"evaluateLight", "sampleLight", "atmosphereOf", "lightAt", "Light", "light", "illuminance", "shadow", "Shadow",
           "transmittance", "Emitter", "emitter", "AreaLight", "arealight", "emission", "chooseL", "chanceOf", "occlu"}},
         {kFilm, {"4Film", "6render"}},
-        {kRequests, {"9transport", "7shading"}}};
+        {kRequests, {"10integrator", "8services", "5world", "5lanes", "7shading"}}};
     return all;
 }
 
@@ -39,7 +38,8 @@ const std::vector<RuleOf<Stage>>& stageRules() {
         {kShade, {"[kernel code]", "7texture"}},
         {kSystem, {"libc.so", "libm.so", "libgcc", "libstdc++", "libtbbmalloc", "[vdso]", "linux-vdso"}},
         {kAccumulate,
-         {"E3addEi", "7deposit", "10RowShading6finish", "14SurfaceShading6finish", "9tellAsker", "13CameraOutputs", "8ExactSum"}},
+         {"E3addEi", "10contribute", "10RowShading6finish", "14SurfaceShading6finish", "9tellAsker", "13CameraOutputs",
+          "8ExactSum"}},
         {kSearch,
          {"5accel", "exactHits", "Quadric5roots", "Quadric6accept", "solveQuadratic", "hitNormal", "11Intersector8castRows"}},
         {kNumbers, {"drawNumbers", "drawBlocks", "13SampleNumbers", "nestedS", "6render6nested", "6sobol"}},
@@ -55,7 +55,7 @@ const std::vector<RuleOf<Stage>>& stageRules() {
          {"8geometry", "placeSurfaces", "10RowShading3run", "7shading5Batch", "10loadPoints", "completePoint", "pointsOfRows",
           "viewsOf"}},
         {kChoose,
-         {"5lobes", "Lobe", "13BlockVertices", "takeDirections", "takeValues", "extendPaths", "nameVertices", "sampleBlock",
+         {"4bsdf", "Lobe", "13BlockVertices", "takeDirections", "takeValues", "extendPaths", "nameVertices", "sampleBlock",
           "evaluateBlock", "prepareBlock"}},
         {kCamera, {"4Film", "6render", "6Camera", "8traceAll", "8beginRay", "12SampleResult"}}};
     return all;

@@ -43,7 +43,7 @@ int withLibrary(const std::string& pattern, const std::string& text) {
     return found;
 }
 
-/// Those of tests/rsljit/pattern_test.cpp, and some that RE2 has meanings of its own for.
+/// Those of tests/rsl/jit/pattern_test.cpp, and some that RE2 has meanings of its own for.
 const char* const kPatterns[] = {"",
                                  "a",
                                  "a+b",

@@ -38,7 +38,7 @@ bool Accel::Impl::readyDirect() {
         if (s->exact()) exact += s->exactPrims();
         else count += s->mesh().triangles();
         if (count > DirectTriangles::kMost || exact > kDirectExact || (s->exact() && s->exactPrims() != 1)) return false;
-        if (!s->exact() && std::any_of(s->mesh().P.begin(), s->mesh().P.end(), Tree::reaches))
+        if (!s->exact() && std::any_of(s->mesh().P.begin(), s->mesh().P.end(), Bvh::reaches))
             return false; // trees leave such shapes out
     }
     for (uint32_t s = 0; s < shapes.size(); ++s) {
@@ -60,7 +60,7 @@ bool Accel::Impl::readyDirect() {
 }
 
 /// Returns the result in q.best.
-void Accel::Impl::meetDirect(Query& q) const {
+void Accel::Impl::intersectDirect(Query& q) const {
     const Ray& r = *q.ray;
     const Vec3d o(r.org), d(r.dir);
     alignas(64) DirectTriangles::Near near;
@@ -81,7 +81,7 @@ void Accel::Impl::meetDirect(Query& q) const {
         double along = dot(to, d), gap = dot(to, to) - b.radius2;
         if (gap > 0 && (along < 0 || along * along < gap * dd * (1 - 1e-9)))
             continue; // starts outside, and points away or misses
-        if (meetExact(q, b.shape, 0) && q.any) return;
+        if (intersectExact(q, b.shape, 0) && q.any) return;
     }
 }
 
@@ -124,14 +124,14 @@ void Accel::Impl::readyForms() {
 
 void Accel::Impl::refuse(Diagnostics& diag) { // without a tree the picture would be black
     sound = false;
-    tree = Tree();
+    tree = Bvh();
     shapes.clear();
     geometryOf.clear();
     diag.report(Severity::Severe, Rie::Limit, {},
                 "the frame has more than a thousand million triangles, curve segments and points");
 }
 
-void Accel::Impl::sayBeyond(const Tree& tree, const Shape& first, Diagnostics& diag) {
+void Accel::Impl::sayBeyond(const Bvh& tree, const Shape& first, Diagnostics& diag) {
     diag.report(Severity::Warning, Rie::Range, first.place(),
                 std::to_string(tree.beyond()) + " triangles, of this " + first.kind() +
                     " among others, extend beyond 1e30 and are not drawn");
@@ -170,7 +170,7 @@ bool Accel::Impl::intersectOne(const Ray& r, Hit& hit) const {
     hit = Hit();
     if (!usable(r)) return false;
     Query q{&r, {INFINITY, kNone, kNone, 0, 0}, false};
-    meetDirect(q);
+    intersectDirect(q);
     if (q.best.shape == kNone) return false;
     hit = {float(q.best.t), q.best.shape, q.best.prim, r.time, q.best.b1, q.best.b2, q.best.t};
     return true;
@@ -184,7 +184,7 @@ bool Accel::Impl::occludedOne(const Ray& r) const {
     }
     if (!usable(r)) return false;
     Query q{&r, {INFINITY, kNone, kNone, 0, 0}, true};
-    meetDirect(q);
+    intersectDirect(q);
     return q.best.shape != kNone;
 }
 

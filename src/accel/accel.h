@@ -1,6 +1,6 @@
 // Ray intersection with shapes.
 //
-// Results do not depend on threads, order of rays, other rays, processor, or the way the tree was built: the tree (tree.h) only
+// Results do not depend on threads, order of rays, other rays, processor, or the way the tree was built: the tree (bvh.h) only
 // proposes candidates and misses none, t and parameters of each candidate are computed in double from the shape, and ties go to
 // the lower (shape, primitive).
 //
@@ -129,9 +129,9 @@ private:
 /// Intersects a triangle in double: returns false if the line is parallel to it or the triangle has no area. b1, b2 are clamped
 /// to the triangle, for candidates known to be hits; `outside`: by how much. wanted(t): returns false to stop early.
 template <class Wanted>
-[[gnu::always_inline]] inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb,
-                                                const Vec3d& fc, double& t, double& b1, double& b2, double& outside,
-                                                Wanted wanted) {
+[[gnu::always_inline]] inline bool intersectTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const Vec3d& fb,
+                                                     const Vec3d& fc, double& t, double& b1, double& b2, double& outside,
+                                                     Wanted wanted) {
     // Differences of float coordinates are exact or nearly so in double: the plane test is correct for an origin one float step
     // off the plane.
     Vec3d a = fa - org, b = fb - org, c = fc - org;
@@ -155,13 +155,13 @@ template <class Wanted>
     }
     return true;
 }
-inline bool meetTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& a, const Vec3d& b, const Vec3d& c, double& t, double& b1,
-                         double& b2, double& outside) {
-    return meetTriangle(org, d, a, b, c, t, b1, b2, outside, [](double) { return true; });
+inline bool intersectTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& a, const Vec3d& b, const Vec3d& c, double& t,
+                              double& b1, double& b2, double& outside) {
+    return intersectTriangle(org, d, a, b, c, t, b1, b2, outside, [](double) { return true; });
 }
-inline bool meetTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t, double& b1,
-                         double& b2, double& outside) {
-    return meetTriangle(Vec3d(org), Vec3d(dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside);
+inline bool intersectTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t,
+                              double& b1, double& b2, double& outside) {
+    return intersectTriangle(Vec3d(org), Vec3d(dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside);
 }
 
 } // namespace alpenglow::accel

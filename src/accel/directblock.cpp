@@ -1,5 +1,5 @@
-// Small scenes in blocks of rays. Rays that float bounds do not decide are intersected one by one (Accel::Impl::meetDirect), with
-// the same bits.
+// Small scenes in blocks of rays. Rays that float bounds do not decide are intersected one by one (Accel::Impl::intersectDirect),
+// with the same bits.
 #include "accel/directblock.h"
 #include "accel/impl.h"
 #include <algorithm>
@@ -107,7 +107,7 @@ void Accel::Impl::nearestInBlock(const DirectRays& block, uint32_t rays, const f
         if (near) {
             const Ray r = rayOf(block, i, time[i]);
             Query q{&r, best, false};
-            for (; near; near &= near - 1) meetExact(q, balls[size_t(std::countr_zero(near))].shape, 0);
+            for (; near; near &= near - 1) intersectExact(q, balls[size_t(std::countr_zero(near))].shape, 0);
             best = q.best;
         }
         if (best.shape != kNone) hit = {float(best.t), best.shape, best.prim, time[i], best.b1, best.b2, best.t};
@@ -131,7 +131,7 @@ void Accel::Impl::anyInBlock(const DirectRays& block, uint32_t rays, const float
             continue;
         }
         Query q{&r, {INFINITY, kNone, kNone, 0, 0}, true};
-        for (; near && !met[i]; near &= near - 1) met[i] = meetExact(q, balls[size_t(std::countr_zero(near))].shape, 0);
+        for (; near && !met[i]; near &= near - 1) met[i] = intersectExact(q, balls[size_t(std::countr_zero(near))].shape, 0);
     }
 }
 

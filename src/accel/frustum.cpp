@@ -23,13 +23,13 @@ bool outside(const Vec3& lo, const Vec3& hi, std::span<const Plane> planes) {
 
 } // namespace
 
-bool Tree::reachesInto(std::span<const geometry::Plane> planes) const {
+bool Bvh::reachesInto(std::span<const geometry::Plane> planes) const {
     if (nodes_.empty()) return false;
     std::vector<uint32_t> open{0};
     while (!open.empty()) {
         const Node& n = nodes_[open.back()];
         open.pop_back();
-        for (int k = 0; k < kWide; ++k) {
+        for (int k = 0; k < kWidth; ++k) {
             const Child c = n.child[k];
             if (c == kNothing) continue;
             Vec3 lo, hi;

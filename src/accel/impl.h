@@ -1,10 +1,10 @@
 // Implementation of Accel: rules of what counts as a hit. Internal to accel.
 #pragma once
 #include "accel/accel.h"
+#include "accel/bvh.h"
 #include "accel/direct.h"
 #include "accel/directblock.h"
 #include "accel/solids.h"
-#include "accel/tree.h"
 #include "geometry/placed.h"
 #include "geometry/quadricform.h"
 #include <cmath>
@@ -65,7 +65,7 @@ struct Accel::Impl {
     std::vector<Levels> levels; ///< empty: all are visible
     geometry::Bounds bounds;
     bool sound = true;
-    Tree tree;
+    Bvh tree;
     std::unique_ptr<Solids> solids; ///< null: there are none
     bool ofSolid(uint32_t s) const { return solids && solids->in(s); }
 
@@ -88,8 +88,8 @@ struct Accel::Impl {
     Ball ballAround(uint32_t shape) const;
     bool readyDirect();
     void refuse(Diagnostics&);
-    static void sayBeyond(const Tree&, const Shape& first, Diagnostics&);
-    void meetDirect(Query&) const;
+    static void sayBeyond(const Bvh&, const Shape& first, Diagnostics&);
+    void intersectDirect(Query&) const;
     /// The same for blocks of rays (directblock.cpp).
     std::shared_ptr<const DirectScene> blockScene; ///< null: the scene has a tree
     bool anyOneSided = false;                      ///< some shape is one-sided
@@ -147,8 +147,8 @@ struct Accel::Impl {
         const Ray& r = *q.ray;
         if (!visible(r, s) || excluded(r, s, prim)) return false;
         double t, b1, b2, outside;
-        if (!meetTriangle(Vec3d(r.org), Vec3d(r.dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside,
-                          [&](double at) { return mayTake(q, at); }))
+        if (!intersectTriangle(Vec3d(r.org), Vec3d(r.dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside,
+                               [&](double at) { return mayTake(q, at); }))
             return false;
         if (outside > kEdge && outside > edgeRoom(Vec3d(r.org), Vec3d(r.dir), Vec3d(a), Vec3d(b), Vec3d(c))) return false;
         return !sameCrossing(r, s, t, a, b, c) && take(q, s, prim, t, b1, b2);
@@ -170,10 +170,10 @@ struct Accel::Impl {
                                                                                : Shape::Wanted::Nearest;
     }
     /// Tries all hits of one primitive of an exact or instanced shape; returns true if one was accepted.
-    bool meetExact(Query& q, uint32_t s, uint32_t prim) const {
+    bool intersectExact(Query& q, uint32_t s, uint32_t prim) const {
         const Ray& r = *q.ray;
         if (!visible(r, s)) return false;
-        if (isPlaced(s)) return meetPlaced(q, s);
+        if (isPlaced(s)) return intersectPlaced(q, s);
         if (r.passed < 0 && excluded(r, s, prim)) return false;
         geometry::ExactHit h[4];
         const Shape& shape = *shapes[s];
@@ -190,7 +190,7 @@ struct Accel::Impl {
     /// A geometry in its own space, for all its instances.
     struct Geometry {
         ShapeRef shape;
-        Tree tree; ///< empty: one exact primitive
+        Bvh tree; ///< empty: one exact primitive
     };
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<uint32_t> geometryOf; ///< by shape: index in geometries, or kNone; empty: no instances
@@ -205,12 +205,12 @@ struct Accel::Impl {
         uint32_t shape;
         bool moves;
     };
-    std::vector<Place> places; ///< Tree::Exact::shape of a part is an index in it
+    std::vector<Place> places; ///< Bvh::Exact::shape of a part is an index in it
     bool placesMove = false;   ///< some of them move or deform
     void readyPlaced();
     /// Boxes of instances, each of a part of the geometry's tree: a ray visits the parts that it may hit, nearest first, and
     /// skips overlapping ones (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial Re-Braiding", HPG 2017).
-    std::vector<Tree::Part> partsOfPlaces();
+    std::vector<Bvh::Part> partsOfPlaces();
     void buildTree(Building b = Building::Best) { tree.build(shapes, {}, {}, partsOfPlaces(), b); } ///< after readyPlaced()
     std::vector<const Shape*> trimmed; ///< by shape: trim information, or null; empty: none
     void readyTrimmed();
@@ -221,10 +221,10 @@ struct Accel::Impl {
         uint32_t shape;
         Vec3d org, dir;
     };
-    /// An instanced geometry without a tree; others are traversed (tree_walk.inc).
-    bool meetPlaced(Query&, uint32_t s) const;
-    bool meetInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
-    bool meetInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
+    /// An instanced geometry without a tree; others are traversed (bvh_walk.inc).
+    bool intersectPlaced(Query&, uint32_t s) const;
+    bool intersectInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
+    bool intersectInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
     bool sameCrossing(const Query&, const Inside&, double t, const Vec3d corner[3]) const;
 
     bool intersectOne(const Ray&, Hit&) const;

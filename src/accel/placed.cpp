@@ -48,7 +48,7 @@ geometry::Bounds placed(const geometry::Bounds& of, const geometry::Affine& m) {
 
 } // namespace
 
-std::vector<Tree::Part> Accel::Impl::partsOfPlaces() {
+std::vector<Bvh::Part> Accel::Impl::partsOfPlaces() {
     // More parts of an instance make camera rays through foliage a fifth faster, but slow down all other rays and building.
     constexpr size_t kParts = 8, kMost = 2'000'000;
     for (uint32_t s = 0; s < shapes.size(); ++s) {
@@ -59,10 +59,10 @@ std::vector<Tree::Part> Accel::Impl::partsOfPlaces() {
         placesMove |= place.moves || place.deforming;
         places.push_back(place);
     }
-    std::vector<Tree::Part> parts;
+    std::vector<Bvh::Part> parts;
     if (places.empty()) return parts;
     const size_t each = std::clamp(kMost / places.size(), size_t(1), kParts);
-    std::vector<std::vector<std::pair<Tree::Child, geometry::Bounds>>> opened(geometries.size());
+    std::vector<std::vector<std::pair<Bvh::Child, geometry::Bounds>>> opened(geometries.size());
     for (size_t g = 0; g < geometries.size(); ++g)
         if (!geometries[g]->tree.empty()) opened[g] = geometries[g]->tree.opened(each);
     std::vector<size_t> first{0};
@@ -72,9 +72,9 @@ std::vector<Tree::Part> Accel::Impl::partsOfPlaces() {
         const Place& p = places[i];
         const auto& boxes = opened[geometryOf[p.shape]];
         for (size_t k = 0; k < boxes.size(); ++k) {
-            Tree::Part& part = parts[first[i] + k];
+            Bvh::Part& part = parts[first[i] + k];
             part.shape = p.shape;
-            part.as = {Tree::kPart | uint32_t(i), boxes[k].first};
+            part.as = {Bvh::kPart | uint32_t(i), boxes[k].first};
             if (p.placed->deforming()) part.bounds = p.placed->bounds();
             else if (!p.moves) part.bounds = placed(boxes[k].second, p.placed->fromGeometry(0));
             else
@@ -95,7 +95,7 @@ void Accel::Impl::readyTrimmed() {
     }
 }
 
-bool Accel::Impl::meetPlaced(Query& q, uint32_t s) const {
+bool Accel::Impl::intersectPlaced(Query& q, uint32_t s) const {
     const Ray& r = *q.ray;
     if (r.passed < 0 && r.excludeShape == s && r.excludePrim == kNone) return false;
     const Geometry& g = geometryAt(s);
@@ -103,10 +103,10 @@ bool Accel::Impl::meetPlaced(Query& q, uint32_t s) const {
     geometry::Affine in;
     if (!place->toGeometry(r.time, in)) return false;
     const Inside at{&g, place, s, in.point(Vec3d(r.org)), in.vector(Vec3d(r.dir))};
-    return !place->deforming() && meetInside(q, at, 0);
+    return !place->deforming() && intersectInside(q, at, 0);
 }
 
-bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim) const {
+bool Accel::Impl::intersectInside(Query& q, const Inside& at, uint32_t prim) const {
     const Ray& r = *q.ray;
     if (r.passed < 0 && excluded(r, at.shape, prim)) return false;
     geometry::ExactHit h[4];
@@ -148,11 +148,12 @@ bool Accel::Impl::sameCrossing(const Query& q, const Inside& at, double t, const
     return false;
 }
 
-bool Accel::Impl::meetInside(Query& q, const Inside& at, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+bool Accel::Impl::intersectInside(Query& q, const Inside& at, uint32_t prim, const Vec3d& a, const Vec3d& b,
+                                  const Vec3d& c) const {
     const Ray& r = *q.ray;
     if (excluded(r, at.shape, prim)) return false;
     double t, b1, b2, outside;
-    if (!meetTriangle(at.org, at.dir, a, b, c, t, b1, b2, outside, [&](double t_) { return mayTake(q, t_); })) return false;
+    if (!intersectTriangle(at.org, at.dir, a, b, c, t, b1, b2, outside, [&](double t_) { return mayTake(q, t_); })) return false;
     if (outside > kEdge && outside > edgeRoom(at.org, at.dir, a, b, c)) return false;
     const Vec3d corner[3] = {a, b, c};
     if (sameCrossing(q, at, t, corner)) return false;

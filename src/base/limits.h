@@ -35,7 +35,8 @@ inline constexpr int kCategoryDepth = 32;                  ///< nesting of a cat
 inline constexpr size_t kLightCache = 256; ///< light samples that a strip of points caches for its next light loop
 inline constexpr size_t kLightBlocks =
     256; ///< illuminate() and solar() blocks of one light shader, counting those of functions once per call
-inline constexpr int kLightTurns = 64;   ///< samples of a light's generateSamples() with an iteration of their own in light loops
+inline constexpr int kLightIterations =
+    64;                                  ///< samples of a light's generateSamples() with an iteration of their own in light loops
 inline constexpr int kMedia = 4;         ///< volumes that a ray tracks; deeper ones drop the outermost
 inline constexpr int kLightHandles = 64; ///< handles returned by getlights()
 inline constexpr int kShadowLayers = 256;                ///< transparent surfaces that a shadow ray passes
@@ -57,9 +58,9 @@ inline constexpr size_t kPatternStates = 20'000;             ///< of a match() p
 inline constexpr size_t kPatternCache = 256;                 ///< compiled match() patterns in the cache
 inline constexpr size_t kRuntimeStrings = size_t(512) << 20; ///< bytes of all strings that shaders make at run time
 inline constexpr int kShaderArray = 16384;                   ///< elements of an RSL array
-inline constexpr size_t kShaderMemory = 1u << 20; ///< bytes of a kernel's local arrays per point, including derivatives
-inline constexpr int kLoopTurns = 10'000'000;     ///< iterations of one loop of a shader at one point; then it ends
-inline constexpr size_t kKernelStack = 64u << 10; ///< bytes of local arrays that generated code keeps on the stack
+inline constexpr size_t kShaderMemory = 1u << 20;  ///< bytes of a kernel's local arrays per point, including derivatives
+inline constexpr int kLoopIterations = 10'000'000; ///< iterations of one loop of a shader at one point; then it ends
+inline constexpr size_t kKernelStack = 64u << 10;  ///< bytes of local arrays that generated code keeps on the stack
 inline constexpr int kResizableArray = 64; ///< elements that a resizable RSL array can grow to, unless the shader sets more
 inline constexpr int kCandidateNotes = 12; ///< candidates of a failed call that are explained
 inline constexpr size_t kServerMessage = 32u << 20;      ///< bytes of one message to the language server

@@ -1,9 +1,9 @@
 // alpenglow eval: RSL at one point.
-#include "answers/withoutscene.h"
 #include "base/printable.h"
 #include "cli/command.h"
 #include "cli/jsonreport.h"
 #include "rsl/evaluate.h"
+#include "services/withoutscene.h"
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <unistd.h>
@@ -42,7 +42,7 @@ void addEval(CLI::App& app, int* status) {
         rsl::ShaderCompiler compiler(settings);
         rsl::KernelOptions options;
         options.lanes = a->lanes;
-        transport::WithoutScene services({"."}, diags);
+        services::WithoutScene services({"."}, diags);
         const Vec3 point;
         services.setPoints({0, 0, -1}, {&point, 1});
         const auto answer = [&](const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes,

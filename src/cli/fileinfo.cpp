@@ -1,11 +1,11 @@
 #include "cli/fileinfo.h"
 #include "base/limits.h"
 #include "cli/scenefacts.h"
-#include "clouds/brickmap.h"
-#include "clouds/cloudfile.h"
 #include "display/imageio.h"
 #include "geometry/bounds.h"
-#include "photons/photonfile.h"
+#include "photonmap/photonfile.h"
+#include "pointcloud/brickmap.h"
+#include "pointcloud/cloudfile.h"
 #include "ptex/ptexfile.h"
 #include "render/filmpicture.h"
 #include "render/partfile.h"
@@ -76,7 +76,7 @@ void addPicture(Facts& f, const display::Image& image) {
 }
 
 bool addCloud(Facts& f, const std::string& file, Diagnostics& d) {
-    const auto cloud = clouds::loadCloud(file, d);
+    const auto cloud = pointcloud::loadCloud(file, d);
     if (!cloud) return false;
     Vec3 lo, hi;
     cloud->bounds(lo, hi);
@@ -89,7 +89,7 @@ bool addCloud(Facts& f, const std::string& file, Diagnostics& d) {
         f["radius"] = {rounded(double(*least)), rounded(double(*most))};
     }
     f["channel"] = Facts::array();
-    for (const clouds::Channel& c : cloud->channels) {
+    for (const pointcloud::Channel& c : cloud->channels) {
         const size_t at = size_t(cloud->offsetOf(c.name));
         Facts mean = Facts::array();
         for (size_t k = 0; k < size_t(sizeOf(c.type)); ++k) {
@@ -103,7 +103,7 @@ bool addCloud(Facts& f, const std::string& file, Diagnostics& d) {
 }
 
 bool addBricks(Facts& f, const std::string& file, Diagnostics& d) {
-    const auto facts = clouds::brickFacts(file, d);
+    const auto facts = pointcloud::brickFacts(file, d);
     if (!facts) return false;
     f["kind"] = "brick map";
     f["points"] = facts->points;
@@ -112,18 +112,18 @@ bool addBricks(Facts& f, const std::string& file, Diagnostics& d) {
     f["from"] = three(facts->corner);
     f["to"] = three(facts->corner + Vec3(facts->side));
     f["channel"] = Facts::array();
-    for (const clouds::Channel& c : facts->channels) f["channel"].push_back({{"type", nameOf(c.type)}, {"name", c.name}});
+    for (const pointcloud::Channel& c : facts->channels) f["channel"].push_back({{"type", nameOf(c.type)}, {"name", c.name}});
     return true;
 }
 
 bool addPhotons(Facts& f, const std::string& file, Diagnostics& d) {
-    const auto map = photons::loadPhotons(file, Matrix(), d);
+    const auto map = photonmap::loadPhotons(file, Matrix(), d);
     if (!map) return false;
     f["kind"] = "photon map";
     f["photons"] = map->size();
     geometry::Bounds b;
     int bounces = 0;
-    for (const photons::Photon& p : map->photons()) b.add(p.P), bounces = std::max(bounces, int(p.bounces));
+    for (const photonmap::Photon& p : map->photons()) b.add(p.P), bounces = std::max(bounces, int(p.bounces));
     if (!b.empty()) f["from"] = three(b.lo), f["to"] = three(b.hi);
     f["bounces"] = bounces;
     f["power"] = three(map->power());

@@ -128,8 +128,8 @@ int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& f
     quad->params = {points};
     frame->primitives.push_back(quad);
 
-    transport::Settings t;
-    t.hider = transport::Hider::Path;
+    world::Settings t;
+    t.hider = world::Hider::Path;
     t.seed = a.seed;
     t.lanes = a.lanes;
     t.maxDepth = a.maxDepth;
@@ -156,7 +156,7 @@ int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& f
     // Samples in up to 64 blocks, each a stratified sequence of its own: their means are independent, so their spread is the
     // error.
     uint32_t blocks = std::min(64u, std::max(2u, a.spp)), each = std::max(1u, (a.spp + blocks - 1) / blocks);
-    transport::CameraRay ray;
+    integrator::CameraRay ray;
     ray.direction = Vec3(normalize(transformVector(toCamera, -N)));
     ray.width = float(radius);
     ray.time = frame->options.shutterOpen;
@@ -173,7 +173,7 @@ int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& f
             if (!tracer) tracer = engine.tracer(world, diags);
             double sum[3] = {0, 0, 0};
             for (uint32_t begin = 0; begin < each; begin += 1024) {
-                std::vector<transport::CameraRay> rays;
+                std::vector<integrator::CameraRay> rays;
                 for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
                     Vec2 e = render::Sampler(a.seed, int(b), 0).get2(0, render::kUseFilter, 0, s);
                     double r = radius * std::sqrt(0.25 + 0.75 * e.x), phi = 2 * kPi * e.y;
@@ -183,7 +183,7 @@ int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& f
                     rays.back().px = int(b);
                     rays.back().sample = s;
                 }
-                std::vector<transport::SampleResult> results(rays.size());
+                std::vector<integrator::SampleResult> results(rays.size());
                 if (!tracer->trace(rays, results, &halt)) return;
                 for (const auto& r : results) {
                     for (int k = 0; k < 3; ++k) sum[k] += double(r.color[k]);

@@ -6,11 +6,11 @@
 #include "cli/fileinfo.h"
 #include "cli/jsonreport.h"
 #include "cli/ranges.h"
-#include "clouds/bounce.h"
-#include "clouds/brickmap.h"
-#include "clouds/brickstream.h"
-#include "clouds/cloudfile.h"
 #include "display/imageio.h"
+#include "pointcloud/bounce.h"
+#include "pointcloud/brickmap.h"
+#include "pointcloud/brickstream.h"
+#include "pointcloud/cloudfile.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
@@ -34,10 +34,10 @@ struct PtcArguments {
 const OutputPolicy kAnywhere{".", true};
 
 /// The channels that are named, and the points in the box; one point a cell; means within a radius.
-clouds::PointCloud filtered(clouds::PointCloud from, const PtcArguments& a) {
-    clouds::PointCloud to;
+pointcloud::PointCloud filtered(pointcloud::PointCloud from, const PtcArguments& a) {
+    pointcloud::PointCloud to;
     std::vector<int> offsets;
-    for (const clouds::Channel& c : from.channels) {
+    for (const pointcloud::Channel& c : from.channels) {
         if (!a.channels.empty() && std::find(a.channels.begin(), a.channels.end(), c.name) == a.channels.end()) continue;
         to.channels.push_back(c);
         for (int k = 0; k < sizeOf(c.type); ++k) offsets.push_back(from.offsetOf(c.name) + k);
@@ -54,11 +54,11 @@ clouds::PointCloud filtered(clouds::PointCloud from, const PtcArguments& a) {
     if (a.depth >= 0) {
         Vec3 corner;
         float side = 0;
-        clouds::cubeAbout(to, &corner, &side);
-        to = clouds::coarser(to, corner, side, a.depth);
+        pointcloud::cubeAbout(to, &corner, &side);
+        to = pointcloud::coarser(to, corner, side, a.depth);
     }
     if (a.smooth > 0) {
-        const auto map = clouds::mapOf(to);
+        const auto map = pointcloud::mapOf(to);
         for (size_t i = 0; i < to.size(); ++i)
             map->lookup({to.P[i], to.N[i], a.smooth, -1}, {to.values.data() + i * size_t(to.width()), size_t(to.width())});
     }
@@ -66,7 +66,7 @@ clouds::PointCloud filtered(clouds::PointCloud from, const PtcArguments& a) {
 }
 
 /// Disks seen from far away along an axis, the nearest first; a channel, or how normals lie.
-display::Image pictureOf(const clouds::PointCloud& cloud, const PtcArguments& a) {
+display::Image pictureOf(const pointcloud::PointCloud& cloud, const PtcArguments& a) {
     const bool back = a.view[0] == '-';
     const int axis = a.view.back() - 'x', right = axis == 0 ? 2 : 0, up = axis == 1 ? 2 : 1;
     Vec3 lo, hi;
@@ -75,7 +75,7 @@ display::Image pictureOf(const clouds::PointCloud& cloud, const PtcArguments& a)
     display::Image image = display::makeImage(a.size, a.size, display::defaultChannels(4));
     std::vector<float> nearest(size_t(a.size) * size_t(a.size), 1e38f);
     int at = cloud.offsetOf(a.channel), count = 0;
-    for (const clouds::Channel& c : cloud.channels)
+    for (const pointcloud::Channel& c : cloud.channels)
         if (c.name == a.channel) count = sizeOf(c.type);
     for (size_t i = 0; i < cloud.size(); ++i) {
         const float depth = back ? -cloud.P[i][axis] : cloud.P[i][axis];
@@ -99,7 +99,7 @@ display::Image pictureOf(const clouds::PointCloud& cloud, const PtcArguments& a)
     return image;
 }
 
-bool writePicture(const std::string& name, const clouds::PointCloud& cloud, const PtcArguments& a, Diagnostics& d) {
+bool writePicture(const std::string& name, const pointcloud::PointCloud& cloud, const PtcArguments& a, Diagnostics& d) {
     display::WriteOptions o;
     o.policy = kAnywhere;
     const auto format = display::formatOfExtension(name);
@@ -109,8 +109,8 @@ bool writePicture(const std::string& name, const clouds::PointCloud& cloud, cons
 }
 
 /// Light after some bounces. "": done; else what is missing.
-std::string bounced(clouds::PointCloud& cloud, const PtcArguments& a) {
-    clouds::BounceOptions o;
+std::string bounced(pointcloud::PointCloud& cloud, const PtcArguments& a) {
+    pointcloud::BounceOptions o;
     o.bounces = a.bounces;
     o.maxSolidAngle = a.solidAngle;
     o.threads = defaultThreads();
@@ -118,7 +118,7 @@ std::string bounced(clouds::PointCloud& cloud, const PtcArguments& a) {
     else if (const auto three = parseNumbers(a.albedo, 3))
         o.albedo = Color(float((*three)[0]), float((*three)[1]), float((*three)[2]));
     else o.albedoChannel = a.albedo;
-    return clouds::bounce(cloud, o);
+    return pointcloud::bounce(cloud, o);
 }
 
 /// What is in files, as `info` tells it.
@@ -138,20 +138,20 @@ int tell(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
 int runPtc(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
     if (a.action == "info") return tell(a, d, found);
     if (a.action == "brick") {
-        if (clouds::brickMapOfFiles(std::span(a.files).first(a.files.size() - 1), a.files.back(), kAnywhere, d)) return kDone;
+        if (pointcloud::brickMapOfFiles(std::span(a.files).first(a.files.size() - 1), a.files.back(), kAnywhere, d)) return kDone;
         const auto unwritten = [](const Diagnostic& m) { return m.code == Rie::System || m.code == Rie::DiskFull; };
         const std::vector<Diagnostic> said = d.all();
         return std::any_of(said.begin(), said.end(), unwritten) ? kOutputFailed : kNothingRendered;
     }
-    std::vector<clouds::PointCloud> from;
+    std::vector<pointcloud::PointCloud> from;
     for (size_t i = 0; i + 1 < a.files.size(); ++i) {
-        auto cloud = clouds::loadCloud(a.files[i], d);
+        auto cloud = pointcloud::loadCloud(a.files[i], d);
         if (!cloud) return kNothingRendered;
         from.push_back(std::move(*cloud));
     }
-    clouds::PointCloud all;
+    pointcloud::PointCloud all;
     if (from.size() == 1) all = std::move(from[0]);
-    else if (const std::string fault = clouds::merge(from, all); !fault.empty()) {
+    else if (const std::string fault = pointcloud::merge(from, all); !fault.empty()) {
         d.report(Severity::Error, Rie::Consistency, {}, "these clouds cannot be merged: " + fault);
         return kNothingRendered;
     }
@@ -169,8 +169,8 @@ int runPtc(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found)
         return kNothingRendered;
     }
     const bool written = a.action == "picture" ? writePicture(out, all, a, d)
-                         : a.action == "toply" ? clouds::savePly(out, all, kAnywhere, d, {})
-                                               : clouds::saveCloud(out, all, kAnywhere, d);
+                         : a.action == "toply" ? pointcloud::savePly(out, all, kAnywhere, d, {})
+                                               : pointcloud::saveCloud(out, all, kAnywhere, d);
     return written ? kDone : kOutputFailed;
 }
 

@@ -1,7 +1,7 @@
 #include "cli/scenefacts.h"
 #include "ri/reader.h"
+#include "scene/deferred.h"
 #include "scene/scene.h"
-#include "scene/unmade.h"
 #include <algorithm>
 #include <cctype>
 #include <map>

@@ -1,5 +1,4 @@
 // alpenglow shade: a shader on a lit ball, or over a unit patch without a scene; also the stopwatch of the kernels.
-#include "answers/withoutscene.h"
 #include "base/installation.h"
 #include "base/limits.h"
 #include "cli/ball.h"
@@ -12,6 +11,7 @@
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
 #include "rsl/spilledarrays.h"
+#include "services/withoutscene.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -81,7 +81,7 @@ struct Rows {
 struct Context {
     const rsl::CompiledKernel* kernel;
     Diagnostics* diagnostics;
-    transport::WithoutScene* services;
+    services::WithoutScene* services;
     bool print;
     size_t begun = 0; ///< index of the batch's first point
     rsl::PrintLog prints{};
@@ -235,7 +235,7 @@ int shade(const ShadeArguments& a) {
         out.emplace_back(size_t(rsl::ir::components(o.kind)) * stride);
         outRows.push_back(out.back().data.get());
     }
-    transport::WithoutScene services(texturePaths, diags);
+    services::WithoutScene services(texturePaths, diags);
     Context context{kernel.get(), &diags, &services, true};
     const StopFlag* stop = watchInterrupts();
     rsl::KernelCall call{};

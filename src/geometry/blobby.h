@@ -1,4 +1,4 @@
-// Blobby nleaf code floats strings: the surface where the field of its blobs is 0.421875 (blob_field.h). Not for other rooms.
+// Blobby nleaf code floats strings: the surface where the field of its blobs is 0.421875 (blob_field.h). Not for other folders.
 //
 // Rays meet the surface itself. Space is cut into boxes until each is small against the blobs in it, boxes that the surface
 // provably misses are dropped, and each that is left is an exact primitive with the part of the field that matters there.

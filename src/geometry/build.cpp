@@ -6,9 +6,9 @@
 #include "geometry/given_normals.h"
 #include "geometry/instance_attributes.h"
 #include "geometry/placed.h"
+#include "scene/deferred.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
-#include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -45,7 +45,8 @@ void keep(const CurveRay& r, CurveHit out[4], int& n, const CurveHit& h) {
     if (h.t < far->t) *far = h;
 }
 
-int meetFlatLine(const CurveSegment& g, double from, double to, const CurveFacing& face, const CurveRay& r, CurveHit out[4]) {
+int intersectFlatLine(const CurveSegment& g, double from, double to, const CurveFacing& face, const CurveRay& r,
+                      CurveHit out[4]) {
     const Vec3d c0 = r.placed(g.p[1]), c1 = r.placed(g.p[2]);
     const Vec3d ends[2] = {c0, c1};
     if (!passesBy(r, ends, 2, 2 * g.widest())) return 0; // mitres reach twice as far
@@ -72,9 +73,9 @@ int meetFlatLine(const CurveSegment& g, double from, double to, const CurveFacin
 
 } // namespace
 
-int meetRibbon(const CurveSegment& g, double from, double to, const CurveFacing& face, bool fromRay, const CurveRay& r,
-               CurveHit out[4]) {
-    if (g.linear) return meetFlatLine(g, from, to, face, r, out);
+int intersectRibbon(const CurveSegment& g, double from, double to, const CurveFacing& face, bool fromRay, const CurveRay& r,
+                    CurveHit out[4]) {
+    if (g.linear) return intersectFlatLine(g, from, to, face, r, out);
     Vec3d p[4];
     for (int i = 0; i < 4; ++i) p[i] = r.placed(g.p[i]);
     if (!passesBy(r, p, 4, g.widest())) return 0;
@@ -144,7 +145,7 @@ namespace {
 
 /// Intersections of the ray, the z axis, with the infinite cone around p0 to p1; number of z. For a near miss (`misses`), two
 /// values around the nearest approach.
-int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2], bool& misses) {
+int intersectCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2], bool& misses) {
     misses = false;
     const double l = length(p1 - p0);
     const Vec3d t = (p1 - p0) / l;
@@ -161,13 +162,13 @@ int meetCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2]
     return 2;
 }
 
-int meetRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]) {
+int intersectRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]) {
     const Vec3d a = r.placed(g.p[1]), b = r.placed(g.p[2]);
     const Vec3d ends[2] = {a, b};
     if (!passesBy(r, ends, 2, 2 * g.widest()) || a == b) return 0;
     double z[2];
     bool misses;
-    const int roots = meetCone(a, g.h[0], b, g.h[1], z, misses);
+    const int roots = intersectCone(a, g.h[0], b, g.h[1], z, misses);
     const Vec3d along = normalize(b - a), before = normalize(a - r.placed(g.p[0])), behind = normalize(r.placed(g.p[3]) - b);
     // Bisecting planes with the neighbours; ends and turns of more than 120 degrees are cut straight.
     const Vec3d first = dot(before, along) > -0.5 ? along + before : along,
@@ -196,11 +197,11 @@ namespace avx2 {
 } // namespace avx2
 #pragma clang attribute pop
 
-int meetTube(const CurveSegment& g, double from, double to, const CurveRay& r, CurveHit out[4], bool nearest, bool plain) {
+int intersectTube(const CurveSegment& g, double from, double to, const CurveRay& r, CurveHit out[4], bool nearest, bool plain) {
     static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
                             __builtin_cpu_supports("bmi2");
-    if (g.linear) return meetRoundLine(g, r, out);
-    return (has && !plain ? avx2::meetTube : common::meetTube)(g, from, to, r, out, nearest);
+    if (g.linear) return intersectRoundLine(g, r, out);
+    return (has && !plain ? avx2::intersectTube : common::intersectTube)(g, from, to, r, out, nearest);
 }
 
 } // namespace alpenglow::geometry

@@ -94,7 +94,7 @@ private:
         const CurveSet::Place p = set_.place(segment);
         return tubes() && !set_.periodic() && p.local == (end ? p.count - 1 : 0);
     }
-    void meetDiscs(const CurveSegment&, uint32_t prim, const CurveRay&, CurveHit* hits, int& n) const;
+    void intersectDiscs(const CurveSegment&, uint32_t prim, const CurveRay&, CurveHit* hits, int& n) const;
     double discArea(const SurfacePoint& onDisc) const;
 
     CurveSet set_;
@@ -209,9 +209,9 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
     if (fromRay_) facing.at = -d;
     CurveHit hits[6];
     const bool round = tubes();
-    int n =
-        round ? meetTube(g, from, to, ray, hits, wanted != Wanted::All) : meetRibbon(g, from, to, facing, fromRay_, ray, hits);
-    if (round) meetDiscs(g, prim, ray, hits, n);
+    int n = round ? intersectTube(g, from, to, ray, hits, wanted != Wanted::All)
+                  : intersectRibbon(g, from, to, facing, fromRay_, ray, hits);
+    if (round) intersectDiscs(g, prim, ray, hits, n);
     std::sort(hits, hits + n, [](const CurveHit& a, const CurveHit& b) { return a.t < b.t; });
     n = std::min(n, wanted != Wanted::All ? 1 : 4);
     for (int i = 0; i < n; ++i) {
@@ -232,7 +232,7 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
 }
 
 /// Adds the hits of a ray on the caps of a primitive.
-void Curves::meetDiscs(const CurveSegment& g, uint32_t prim, const CurveRay& ray, CurveHit* hits, int& n) const {
+void Curves::intersectDiscs(const CurveSegment& g, uint32_t prim, const CurveRay& ray, CurveHit* hits, int& n) const {
     for (const bool end : {false, true}) {
         if (prim % parts_ != (end ? parts_ - 1 : 0) || !closedAt(prim / parts_, end)) continue;
         Jet a, b;

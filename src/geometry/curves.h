@@ -77,12 +77,13 @@ struct CurveHit {
 };
 /// Hits with lo < t <= hi of the part from..to of a segment, at most 4, in no order. fromRay: the ribbon faces the ray, facing.at
 /// is its direction reversed.
-int meetRibbon(const CurveSegment&, double from, double to, const CurveFacing&, bool fromRay, const CurveRay&, CurveHit out[4]);
+int intersectRibbon(const CurveSegment&, double from, double to, const CurveFacing&, bool fromRay, const CurveRay&,
+                    CurveHit out[4]);
 /// Without the end caps of tubes. Subdivides until a cone is within a fiftieth of its radius of the part (or 1/1024 of the
 /// segment remains), then iterates Newton's method on the swept circle to the last bits. nearest: hits other than the first may
 /// be omitted. plain: with the baseline instruction set.
-int meetTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4], bool nearest = false,
-             bool plain = false);
+int intersectTube(const CurveSegment&, double from, double to, const CurveRay&, CurveHit out[4], bool nearest = false,
+                  bool plain = false);
 
 /// Layout of curves in the arrays of their request.
 class CurveSet {

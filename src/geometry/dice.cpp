@@ -8,9 +8,9 @@
 #include "geometry/placed.h"
 #include "geometry/polygon_mesh.h"
 #include "geometry/seams.h"
+#include "scene/deferred.h"
 #include "scene/scene.h"
 #include "scene/shadingrate.h"
-#include "scene/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>

@@ -5,7 +5,7 @@
 #include "integrator/lightpathstates.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Accumulator::Accumulator(const StageSet& s) : Stage(s.context), paths_(s.paths) {}
 
@@ -16,19 +16,19 @@ void Accumulator::begin(size_t samples) {
     shares.clear();
 }
 
-void Accumulator::deposit(Sched& sched, const Deposit& d) {
+void Accumulator::contribute(Sched& sched, const Contribution& d) {
     if (!isFinite(d.light) && d.event != LightEvent::Output) // the target counts those
         return notFinite(d.path, d.event == LightEvent::Sampled ? "light that is sampled" : "light", d.of);
     // Rays of the caustic guide carry only the light of lights that they hit; all other light belongs to the lobe's own ray.
     if (d.path && d.path->guided() && d.event != LightEvent::Met && d.event != LightEvent::Sky) return;
     sched.add(d.target, d.light);
     if (context_.tally && d.path && d.path->sample) context_.tally->add(size_t(d.path->sample->path), d.path->bounces, d.light);
-    depositPart(sched, d.path, d.end, d.light);
+    contributePart(sched, d.path, d.end, d.light);
     for (int32_t share = d.share; share >= 0; share = shares[size_t(share)].next)
         sched.add(shares[size_t(share)].target, d.light * shares[size_t(share)].ratio);
 }
 
-void Accumulator::depositPart(Sched& sched, const PathRay* path, uint16_t end, const Color& light) {
+void Accumulator::contributePart(Sched& sched, const PathRay* path, uint16_t end, const Color& light) {
     if (end == 0 || !path || !path->sample || !isFinite(light)) return;
     const size_t parts = size_t(paths_.automaton->parts());
     sched.add(partTargets[size_t(path->sample->path) * parts + size_t(paths_.automaton->part(end))], light);
@@ -56,10 +56,10 @@ void Accumulator::notFinite(const BatchContext& c, const PathRay& ray, uint32_t 
 }
 
 /// Splits light that passed a volume shader: light of the surface behind it (`met`), and the volume's own.
-void Accumulator::depositThroughVolume(Sched& sched, const PathRay& ray, const Color& met, const Color& shown) {
+void Accumulator::contributeThroughVolume(Sched& sched, const PathRay& ray, const Color& met, const Color& shown) {
     if (ray.guided()) return;
-    depositPart(sched, &ray, paths_.next(ray.path, paths_.object), ray.weight * met);
-    depositPart(sched, &ray, paths_.next(paths_.next(ray.path, paths_.volume), paths_.object), ray.weight * (shown - met));
+    contributePart(sched, &ray, paths_.next(ray.path, paths_.object), ray.weight * met);
+    contributePart(sched, &ray, paths_.next(paths_.next(ray.path, paths_.volume), paths_.object), ray.weight * (shown - met));
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

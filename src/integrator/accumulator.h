@@ -4,7 +4,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct SampleResult;
 class LightPathStates;
@@ -15,33 +15,33 @@ public:
     explicit Accumulator(const StageSet&);
     void begin(size_t samples); ///< Starts a call with so many camera samples; drops the targets and shares of the call before.
     /// Adds light to a target, and the corresponding parts to the outputs that share it.
-    void deposit(Sched&, const Deposit&);
+    void contribute(Sched&, const Contribution&);
     /// Splits light that passed a volume shader by light path. met: light from the surface behind the volume; shown: what the
     /// volume makes of it. The difference is the volume's own contribution.
-    void depositThroughVolume(Sched&, const PathRay&, const Color& met, const Color& shown);
+    void contributeThroughVolume(Sched&, const PathRay&, const Color& met, const Color& shown);
     /// Discards the camera sample of a ray that carries a value that is not finite. `what` made the value, at `place`; each place
     /// is reported once.
     void notFinite(const PathRay*, const std::string& what, const SourcePlace& place);
     void notFinite(const PathRay* ray, const char* what, const ShaderInstance* of);
     void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< The value came from this call site
     /// Sums of a target whose trace() asks for them (TraceSums); else null.
-    TraceSums* sumsOf(TargetId t) {
+    TraceSums* sumsOf(AccumulatorId t) {
         if (traceSums.empty()) return nullptr;
         auto i = traceSums.find(t);
         return i == traceSums.end() ? nullptr : &i->second;
     }
 
-    std::unordered_map<TargetId, TraceSums> traceSums;
+    std::unordered_map<AccumulatorId, TraceSums> traceSums;
     std::vector<Share> shares;
-    std::vector<SampleResult*> results;    ///< by camera sample
-    std::vector<TargetId> lightTargets;    ///< by camera sample: WorldImpl::lightOutputs_
-    std::vector<TargetId> partTargets;     ///< by camera sample and part of the light path outputs
-    TargetId nowhere = shading::kNoTarget; ///< a target that no one reads
-    std::vector<int> spoiled;              ///< PathSample::path of samples to discard; may hold duplicates
+    std::vector<SampleResult*> results;              ///< by camera sample
+    std::vector<AccumulatorId> lightTargets;         ///< by camera sample: WorldImpl::lightOutputs_
+    std::vector<AccumulatorId> partTargets;          ///< by camera sample and part of the light path outputs
+    AccumulatorId nowhere = shading::kNoAccumulator; ///< a target that no one reads
+    std::vector<int> spoiled;                        ///< PathSample::path of samples to discard; may hold duplicates
 
 private:
-    void depositPart(Sched&, const PathRay*, uint16_t end, const Color& light);
+    void contributePart(Sched&, const PathRay*, uint16_t end, const Color& light);
     const LightPathStates& paths_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

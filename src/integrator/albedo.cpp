@@ -5,7 +5,7 @@
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 constexpr uint32_t kDraws = 8;
@@ -22,7 +22,7 @@ void LobeSelection::measureAlbedos() {
     for (const LobeVertex& l : requests_.lobes)
         if (rayOf(l).counts && albedoIsMeasured(l)) lobes.push_back(&l);
     if (lobes.empty()) return;
-    LobeColumns& rows = requests_.rows;
+    BsdfBatch& rows = requests_.rows;
     std::vector<Color> sum(lobes.size(), Color(0));
     std::vector<Vec3> ways(lobes.size());
     std::vector<uint8_t> drawn(lobes.size());
@@ -47,4 +47,4 @@ void LobeSelection::measureAlbedos() {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -2,6 +2,7 @@
 // directions; a shadow ray in a cosine-distributed direction tests for occlusion.
 #include "integrator/ambientlight.h"
 #include "base/direction.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
 #include "integrator/lightkernels.h"
@@ -12,9 +13,8 @@
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/surfacepoints.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 static bool anyAmbient(const WorldImpl& w) {
     return std::any_of(w.skies_.begin(), w.skies_.end(), [&](int l) { return w.lights_[size_t(l)].kind == LightKind::Ambient; });
@@ -111,4 +111,4 @@ void AmbientLight::gather(BatchContext& c) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -5,7 +5,7 @@
 #include "integrator/context.h"
 #include "integrator/vertex.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class LightKernels;
@@ -41,4 +41,4 @@ private:
     SurfacePoints& surfaces_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -8,12 +8,13 @@
 #include "world/outputs.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Atmosphere::Atmosphere(const StageSet& s) : Stage(s.context), inputs_(s.inputs), gathers_(s.gathers) {}
 
-void Atmosphere::haze(const Medium& medium, const SurfaceBinding& binding, std::vector<ShadePoint>& points, std::span<Haze> out,
-                      bool wantSlope, BatchContext* surface, std::span<const int> of) {
+void Atmosphere::atmosphereEffects(const Medium& medium, const SurfaceBinding& binding, std::vector<ShadePoint>& points,
+                                   std::span<AtmosphereEffect> out, bool wantSlope, BatchContext* surface,
+                                   std::span<const int> of) {
     const auto& kernel = medium.kernel.kernel;
     int slopeAt = medium.kernel.plan->output(rsl::OutputName::slope("Ci"));
     bool first = true;
@@ -30,7 +31,7 @@ void Atmosphere::haze(const Medium& medium, const SurfaceBinding& binding, std::
         std::vector<shading::InstanceView> views(c.points.size(), medium.shader->view());
         c.batch = std::make_shared<shading::Batch>(kernel, *medium.kernel.plan, c.points, views, world_);
         if (surface && !gathers_.gathered.empty()) {
-            std::vector<TargetId> targets;
+            std::vector<AccumulatorId> targets;
             for (int k : of) targets.push_back(surface->targets[size_t(k)]);
             gathers_.takeSent(*c.batch, targets, rsl::PairName::To::Volume);
         }
@@ -77,13 +78,13 @@ void Atmosphere::keepOutputs(const shading::Batch& volume, BatchContext& surface
     }
 }
 
-void Atmosphere::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlope) {
+void Atmosphere::atmosphereOfBatch(BatchContext& c, int first, int count, bool wantSlope) {
     int n = int(c.points.size()), end = std::min(first + count, n), ci = c.batch->plan().Ci, oi = c.batch->plan().Oi;
-    c.haze.resize(size_t(n));
+    c.atmosphereEffects.resize(size_t(n));
     const auto mediumOf = [&](int k) { return c.rays[size_t(k)].medium(); };
     std::vector<ShadePoint> points;
     std::vector<int> of;
-    std::vector<Haze> out;
+    std::vector<AtmosphereEffect> out;
     std::vector<char> done(size_t(std::max(0, end - first)));
     for (int i = first; i < end; ++i) {
         const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[size_t(i)])];
@@ -102,8 +103,8 @@ void Atmosphere::hazeOfBatch(BatchContext& c, int first, int count, bool wantSlo
             of.push_back(k);
         }
         out.resize(points.size());
-        haze(*medium, b, points, out, wantSlope, &c, of);
-        for (size_t k = 0; k < of.size(); ++k) c.haze[size_t(of[k])] = out[k];
+        atmosphereEffects(*medium, b, points, out, wantSlope, &c, of);
+        for (size_t k = 0; k < of.size(); ++k) c.atmosphereEffects[size_t(of[k])] = out[k];
     }
 }
 
@@ -111,36 +112,37 @@ void Atmosphere::scaleRequests(BatchContext& c) {
     for (const EmitRecord& e : c.emits)
         for (int lane = 0; lane < e.lanes; ++lane) {
             const size_t point = size_t(e.first + lane);
-            if (!(e.mask >> lane & 1) || point >= c.haze.size() || !c.haze[point].on) continue;
-            for (int k = 0; k < 3; ++k) c.arena[e.offset + size_t(k * e.lanes + lane)] *= c.haze[point].slope[k];
+            if (!(e.mask >> lane & 1) || point >= c.atmosphereEffects.size() || !c.atmosphereEffects[point].on) continue;
+            for (int k = 0; k < 3; ++k) c.arena[e.offset + size_t(k * e.lanes + lane)] *= c.atmosphereEffects[point].slope[k];
         }
 }
 
-void Atmosphere::hazeOfPhotons(BatchContext& c) {
+void Atmosphere::atmosphereOfPhotons(BatchContext& c) {
     const WorldImpl& world = world_;
-    c.haze.clear();
+    c.atmosphereEffects.clear();
     // Origin and end of each segment as the volume shader sees them, by medium.
-    struct Way {
+    struct ShadowSegment {
         const Medium* medium;
         int binding;
         size_t point;
         Vec3 end;
     };
-    std::vector<Way> ways;
+    std::vector<ShadowSegment> ways;
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];
         const int in = r.medium();
         const int binding = in >= 0 ? world.media_[size_t(in)].binding : r.lobeBinding;
         if (binding < 0) continue;
         const Medium& m = in >= 0 ? world.media_[size_t(in)] : world.bindings_[size_t(binding)].atmosphere;
-        if (!m.shader || m.homogeneous) continue; // flights handle homogeneous media
+        if (!m.shader || m.homogeneous) continue; // segmentEvents handle homogeneous media
         ways.push_back({&m, binding, i, in >= 0 ? r.origin : r.lobeOrigin});
     }
     if (ways.empty()) return;
-    c.haze.resize(c.rays.size());
-    std::stable_sort(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.binding < b.binding; });
+    c.atmosphereEffects.resize(c.rays.size());
+    std::stable_sort(ways.begin(), ways.end(),
+                     [](const ShadowSegment& a, const ShadowSegment& b) { return a.binding < b.binding; });
     std::vector<ShadePoint> points;
-    std::vector<Haze> out;
+    std::vector<AtmosphereEffect> out;
     for (size_t first = 0, end; first < ways.size(); first = end) {
         points.clear();
         for (end = first; end < ways.size() && ways[end].medium == ways[first].medium; ++end) {
@@ -157,33 +159,33 @@ void Atmosphere::hazeOfPhotons(BatchContext& c) {
             p.time = here.time;
         }
         out.assign(points.size(), {});
-        haze(*ways[first].medium, world.bindings_[size_t(ways[first].binding)], points, out, true);
+        atmosphereEffects(*ways[first].medium, world.bindings_[size_t(ways[first].binding)], points, out, true);
         for (size_t k = first; k < end; ++k) {
             Color left = out[k - first].slope;
             for (int i = 0; i < 3; ++i) left[i] = std::isfinite(left[i]) ? std::max(left[i], 0.f) : 0;
-            c.haze[ways[k].point] = {Color(0), Color(1), left, true};
+            c.atmosphereEffects[ways[k].point] = {Color(0), Color(1), left, true};
         }
     }
 }
 
-void Atmosphere::hazeOfEmitters(const BoundLight& light, std::span<const ShadePoint> queries, std::span<LightValue> values,
-                                const std::vector<char>* inMedium) {
+void Atmosphere::atmosphereOfEmitters(const BoundLight& light, std::span<const ShadePoint> queries, std::span<LightValue> values,
+                                      const std::vector<char>* inMedium) {
     if (!light.hazy) return;
     std::vector<ShadePoint> one(1);
     for (size_t i = 0; i < queries.size(); ++i) {
-        auto found = world_.hazyEmitters_.find(queries[i].shape);
+        auto found = world_.emittersInAtmosphere_.find(queries[i].shape);
         if (inMedium && (*inMedium)[i]) continue;
-        if (found == world_.hazyEmitters_.end() || values[i].Cl == Color(0)) continue;
+        if (found == world_.emittersInAtmosphere_.end() || values[i].Cl == Color(0)) continue;
         one[0] = queries[i];
         one[0].I = queries[i].P - queries[i].Ps;
         one[0].E = queries[i].Ps;
         one[0].Ci = values[i].Cl;
         one[0].Oi = Color(1);
-        Haze h;
+        AtmosphereEffect h;
         const SurfaceBinding& b = world_.bindings_[size_t(found->second)];
-        haze(b.atmosphere, b, one, {&h, 1}, true);
+        atmosphereEffects(b.atmosphere, b, one, {&h, 1}, true);
         values[i].Cl *= h.slope;
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

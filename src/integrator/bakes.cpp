@@ -5,7 +5,7 @@
 #include "world/cloudstore.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 
@@ -119,13 +119,13 @@ CameraRay rayTo(const World& world, shading::GridPoint& point, int number, const
 
 bool bakedNow(const World& world) { return implOf(world).clouds_->baked.pending(); }
 
-void settleBakes(const World& world, bool keep) {
-    clouds::BakeLog& log = implOf(world).clouds_->baked;
+void commitBakes(const World& world, bool keep) {
+    pointcloud::BakeLog& log = implOf(world).clouds_->baked;
     keep ? log.settle() : log.discard();
 }
 
-bool writeBakes(const World& world, bool allowWrite, const clouds::FileOwners& others, Diagnostics& d) {
+bool writeBakes(const World& world, bool allowWrite, const pointcloud::FileOwners& others, Diagnostics& d) {
     return implOf(world).clouds_->baked.write({".", allowWrite}, d, others);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

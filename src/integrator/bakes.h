@@ -1,13 +1,13 @@
 // Baking: rays to the grid points of primitives whose shaders bake, and the files that result.
 #pragma once
 #include "base/diagnostics.h"
-#include "clouds/bakelog.h"
 #include "integrator/samples.h"
+#include "pointcloud/bakelog.h"
 #include "shading/gridpoint.h"
 #include "world/world.h"
 #include <vector>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Whether a shader of the frame bakes.
 bool bakes(const World&);
@@ -28,8 +28,8 @@ CameraRay rayTo(const World&, shading::GridPoint&, int number, const CameraRay& 
 /// Whether anything was baked since the last call. Call while no thread traces.
 bool bakedNow(const World&);
 /// Appends what was baked since the last call to the earlier records (keep), or discards it. Call while no thread traces.
-void settleBakes(const World&, bool keep);
+void commitBakes(const World&, bool keep);
 /// Writes the baked files, except those that `others` own. Returns false after an error, which is reported.
-bool writeBakes(const World&, bool allowWrite, const clouds::FileOwners& others, Diagnostics&);
+bool writeBakes(const World&, bool allowWrite, const pointcloud::FileOwners& others, Diagnostics&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

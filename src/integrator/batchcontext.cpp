@@ -1,7 +1,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/raystore.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 BatchContext::~BatchContext() {
     if (extrasOf) extrasOf->freeExtras(*this);
@@ -27,4 +27,4 @@ void BatchContext::keepFirst(size_t count) {
     if (!depths.empty()) depths.resize(count);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,11 +1,11 @@
 // A batch of points that are shaded together.
 #pragma once
-#include "answers/kernelrun.h"
 #include "integrator/rays.h"
+#include "services/kernelrun.h"
 #include <exception>
 #include <utility>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class KernelInputs;
 class RayStore;
@@ -20,16 +20,16 @@ struct EmitRecord {
 };
 
 /// Effect of an atmosphere on light behind it: Ci and Oi as seen, and the transmittance (coefficient of Ci).
-struct Haze {
+struct AtmosphereEffect {
     Color shown, opacity, slope{1};
     bool on = false;
 }; ///< on: a volume shader has run
 
 /// Data of a suspended strip (strips.h).
 struct StripMemory {
-    std::vector<float> in;     ///< argument rows of the pending request
-    std::vector<int> laneOf;   ///< lanes that made the request
-    std::vector<TargetId> ids; ///< by laneOf; for a gather, by ray sent
+    std::vector<float> in;          ///< argument rows of the pending request
+    std::vector<int> laneOf;        ///< lanes that made the request
+    std::vector<AccumulatorId> ids; ///< by laneOf; for a gather, by ray sent
     /// By call site and lane: number of calls so far. Counted by lane, so that the random numbers of a lane do not depend on the
     /// others.
     std::vector<uint32_t> occurrences;
@@ -38,19 +38,19 @@ struct StripMemory {
 /// State of one batch while its kernel runs; KernelCall::user.
 struct BatchContext : KernelRun {
     ~BatchContext();
-    KernelInputs* host = nullptr;  ///< answers the calls of the kernel
-    RayStore* extrasOf = nullptr;  ///< not null: frees the RayExtra of the batch's rays in its destructor
-    std::vector<TargetId> targets; ///< by point; a batch for light outputs (aside) has its own
-    std::vector<accel::Hit> hits;  ///< by point, for rays that hit surfaces
+    KernelInputs* host = nullptr;       ///< answers the calls of the kernel
+    RayStore* extrasOf = nullptr;       ///< not null: frees the RayExtra of the batch's rays in its destructor
+    std::vector<AccumulatorId> targets; ///< by point; a batch for light outputs (aside) has its own
+    std::vector<accel::Hit> hits;       ///< by point, for rays that hit surfaces
     /// By point, for a batch in rows (rowshading.h), whose `points` stay empty until a stage needs them; undefined otherwise.
     std::vector<geometry::SurfacePoint> surfaces;
     std::vector<const geometry::Shape*> shapes;
     std::vector<float> ways; ///< incident vectors, then ray origins: three rows each; then du, dv
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
-    std::vector<shading::FreeFlight> flown; ///< by point: the ray segment, for points inside a medium (`between`)
-    std::vector<float> depths;              ///< by point: camera z of the hit, if points have other times; else empty
-    std::vector<Haze> haze;                 ///< by point; empty if no point has a volume before it
+    std::vector<shading::FreeFlight> flown;          ///< by point: the ray segment, for points inside a medium (`between`)
+    std::vector<float> depths;                       ///< by point: camera z of the hit, if points have other times; else empty
+    std::vector<AtmosphereEffect> atmosphereEffects; ///< by point; empty if no point has a volume before it
     /// by point: transparency, i.e. the weight of light from behind; set only during gather() for kernels that do not wait
     std::vector<Color> clear;
     /// by point: probability of continuing behind the surface; 0: a lobe was chosen; empty: 1 everywhere
@@ -75,4 +75,4 @@ struct BatchContext : KernelRun {
     float* requestOut = nullptr;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

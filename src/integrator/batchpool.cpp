@@ -3,7 +3,7 @@
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 BatchPool::BatchPool(const StageSet& s) : Stage(s.context), store_(s.store) {}
 
@@ -31,7 +31,7 @@ void BatchPool::giveBack(std::shared_ptr<BatchContext> c) {
     c->emitted = 0;
     c->failure = nullptr;
     c->arena.clear();
-    c->haze.clear();
+    c->atmosphereEffects.clear();
     c->depths.clear();
     c->flown.clear();
     c->clear.clear();
@@ -41,4 +41,4 @@ void BatchPool::giveBack(std::shared_ptr<BatchContext> c) {
     pool_.push_back(std::move(c));
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,7 +3,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class RayStore;
 struct StageSet;
@@ -21,4 +21,4 @@ private:
     RayStore& store_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -5,7 +5,7 @@
 #include <bit>
 #include <numeric>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 BlockVertices::Guided::Guided(BlockVertices& b, GuideRays& g) : b_(b), guide_(g) {}
 
@@ -69,7 +69,7 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
     s.lanes->evaluate(l.lobe[0], of, w_[0], value[0]);
     size_t points[kBlock];
     std::iota(points, points + kBlock, block * kBlock);
-    s.addBeside(of, w_, points, value[kRowPdf]);
+    s.addLightDirected(of, w_, points, value[kRowPdf]);
     for (; of; of &= of - 1) {
         const int i = std::countr_zero(of);
         const size_t at = block * kBlock + size_t(i);
@@ -113,4 +113,4 @@ void BlockVertices::Guided::keep(size_t block, const BatchContext& c) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

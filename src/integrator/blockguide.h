@@ -3,7 +3,7 @@
 #include "integrator/blockvertices.h"
 #include "integrator/guiderays.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class BlockVertices::Guided {
 public:
@@ -30,4 +30,4 @@ private:
     alignas(64) Row w_[3];      ///< directions of the guide rays of a block
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

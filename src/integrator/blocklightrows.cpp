@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Whether stage `place` makes the points on the light, or the light is a point, and its kernel needs nothing else.
 bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
@@ -184,4 +184,4 @@ bool BlockVertices::asksShadowDisk(const BoundLight& light, const shading::Batch
     return v.shadowRadius > 0;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -14,7 +14,7 @@
 #include <bit>
 #include <numeric>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 void BlockVertices::light(BatchContext& c) {
     if (paths_.automaton) surfaces_.pointsOfRows(c); // needed to tell reflection from transmission
@@ -84,7 +84,8 @@ bool BlockVertices::placeQuery(const BoundLight& light, const LightNumbers& u, c
     tellLit(q, lit);
     if (!placeLightSample(world_, light, u, true, q, s)) return false;
     // Sides 1: rays pass through the emitter from its back, so it sends nothing there.
-    return light.kind != LightKind::Area || light.mean || !s.shape->oneSided() || dot(meetsNormal(q.surface), s.direction) < 0;
+    return light.kind != LightKind::Area || light.mean || !s.shape->oneSided() ||
+           dot(intersectsNormal(q.surface), s.direction) < 0;
 }
 
 /// Chooses a point on the light for each point that samples it.
@@ -162,7 +163,7 @@ void BlockVertices::connect(const BoundLight& light, BatchContext& c) {
 Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l,
                                 BatchContext& c, const size_t* pointOf) {
     Lanes failed = 0, fresh = 0;
-    s.addBeside(lobe.lights & l.asked, l.w, pointOf, value_[kRowPdf]);
+    s.addLightDirected(lobe.lights & l.asked, l.w, pointOf, value_[kRowPdf]);
     const float* kept = !s.lighting && l.met ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
     Lanes some = stages_.contribute(points, lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting, value_[0],
                                     shadow_, &failed);
@@ -238,4 +239,4 @@ void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, cons
     if (says->ownShadow) s.distance = 0; // the light's shader computed visibility itself
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

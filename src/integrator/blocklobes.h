@@ -1,18 +1,18 @@
 // The lobes that a call site requests at the points of a batch, in blocks of 16.
 #pragma once
 #include "base/numberblock.h"
-#include "integrator/beside.h"
+#include "bsdf/lobelanes.h"
+#include "integrator/lightdirected.h"
 #include "lanes/blocks.h"
-#include "lobes/lobelanes.h"
 #include "shading/point.h"
 #include "world/arealight.h"
 #include "world/sites.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// A call site of the kernel that requests lobes.
 struct BlockLobes {
-    int number = 0;                 ///< call site of the kernel, or kFlight
+    int number = 0;                 ///< call site of the kernel, or kSegmentEvent
     const SiteInfo* info = nullptr; ///< null: the phase function of a medium, not a call
     const LobeKind* kind = nullptr;
     const LobeLanes* lanes = nullptr;
@@ -21,15 +21,15 @@ struct BlockLobes {
     bool lights = false;   ///< its lobe samples lights
     bool diffuse = false;  ///< its rays are diffuse
     std::vector<LobeBlock> lobes;
-    std::vector<Beside> beside; ///< by point: light-directed sampling (beside.h); empty: none
-    std::vector<float> narrow;  ///< arguments, by block, for kernels whose strips are narrower than a block
+    std::vector<LightDirected> beside; ///< by point: light-directed sampling (lightdirected.h); empty: none
+    std::vector<float> narrow;         ///< arguments, by block, for kernels whose strips are narrower than a block
 
     /// Points of a block whose lobe may be followed and is not a delta.
     Lanes spreads(size_t block) const;
-    /// Beside::weigh() for the points of a block. value: space for kValueRows rows.
-    void weighBeside(size_t block, Row* value);
+    /// LightDirected::weigh() for the points of a block. value: space for kValueRows rows.
+    void weighLightDirected(size_t block, Row* value);
     /// Turns pdf toward w from the density of the lobes alone into the mixture density. pointOf: by lane, index in the batch.
-    void addBeside(Lanes, const Row* w, const size_t* pointOf, float* pdf) const;
+    void addLightDirected(Lanes, const Row* w, const size_t* pointOf, float* pdf) const;
     /// Samples directions by u, some of them toward lights, and writes kDrawnRows rows to `drawn`.
     void draw(size_t block, Lanes, render::NumberBlock& u, Row* drawn) const;
 };
@@ -55,4 +55,4 @@ struct BlockPlaced {
     Lanes points = 0, metDiffuse = 0, metSpecular = 0;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,13 +1,13 @@
 // Points inside scattering media, in blocks: their lobe is the phase function of the medium, without a kernel (medium.h).
-#include "answers/random.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/medium.h"
 #include "integrator/photonstage.h"
+#include "services/random.h"
 #include <algorithm>
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Whether light kernels of a binding read more at points inside media than rows hold.
 bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
@@ -81,7 +81,7 @@ void BlockVertices::beginMedium(std::span<const Vec3> beside, float anisotropy) 
     sites_.resize(std::max(sites_.size(), count_));
     for (size_t k = 0; k < count_; ++k) {
         Site& s = sites_[k];
-        s.number = kFlight;
+        s.number = kSegmentEvent;
         s.info = nullptr;
         s.kind = kKinds[k];
         s.lanes = &lanes_.lobes[s.kind->index];
@@ -113,11 +113,11 @@ void BlockVertices::takeParts(const BoundLight& light, const BatchContext& c) {
     std::erase_if(litBlocks_, [&](size_t b) {
         for (Lanes left = lit_[b]; left; left &= left - 1) {
             const size_t i = size_t(std::countr_zero(left));
-            lights_[b].part[i] = mediumFlights_.shareOfDistance(c.flown[b * kBlock + i], light);
+            lights_[b].part[i] = mediumEvents_.shareOfDistance(c.flown[b * kBlock + i], light);
             if (lights_[b].part[i] == 0) lit_[b] &= ~(1u << i);
         }
         return lit_[b] == 0;
     });
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
     const bool chooses = !c.between && (count_ > 1 || !c.clear.empty()); // in a medium each point has one lobe
@@ -60,7 +60,7 @@ void BlockVertices::drawDirections(size_t b) {
         if (!picked) continue;
         const LobeBlock& lobe = sites_[k].lobes[b];
         sites_[k].lanes->evaluate(lobe.lobe[0], picked, next_.direction[0], value_[0]);
-        sites_[k].addBeside(picked, next_.direction, points, value_[kRowPdf]);
+        sites_[k].addLightDirected(picked, next_.direction, points, value_[kRowPdf]);
         stages_.takeValues(lobe, int(k), value_[0], next_);
     }
 }
@@ -181,4 +181,4 @@ void BlockVertices::spawn(const RayBlock& rays, Sched& sched) {
     for (int k = 0; k < count; ++k) sched.spawn(tasks[size_t(k)]);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
@@ -23,8 +23,8 @@ bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels &&
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lightKernels_(s.lightKernels),
-      paths_(s.paths), media_(s.media), mediumFlights_(s.mediumFlights), photons_(s.photons), store_(s.store),
-      shadows_(s.shadows), surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons), store_(s.store), shadows_(s.shadows),
+      surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
@@ -82,7 +82,7 @@ bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
     if (!select(c)) return false;
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
-    besideLights(c);
+    lightDirections(c);
     light(c);
     guided_->run(c, sched);
     scatter(c, sched);
@@ -264,4 +264,4 @@ bool BlockVertices::select(const BatchContext& c) {
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

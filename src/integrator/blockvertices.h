@@ -1,5 +1,5 @@
 // Vertices whose kernel requests lobes only, under path: from the kernel's requests to the next rays, 16 points at a time
-// (lanes/stages.h). All other batches are processed point by point (gather.h), with the same bits.
+// (lanes/stages.h). All other batches are processed point by point (vertexsampling.h), with the same bits.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/batchcontext.h"
@@ -9,7 +9,7 @@
 #include "integrator/stageset.h"
 #include "lanes/stages.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class BlockVertices final : Stage {
 public:
@@ -27,7 +27,7 @@ public:
     bool run(BatchContext&, Sched&);
     /// The same for the requests of suspended strips. Returns false, without effect, if the strips must request one by one.
     bool run(BatchContext&, std::span<class KernelStrip* const>, Sched&);
-    /// The same for points inside a medium, with its phase function as lobe. beside: by point, MediumFlights::besideLight().
+    /// The same for points inside a medium, with its phase function as lobe. beside: by point, MediumEvents::lightDirection().
     /// needsPoints(): whether the batch needs its points.
     bool run(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
@@ -87,7 +87,7 @@ private:
     bool takes(const BatchContext&, std::span<KernelStrip* const>) const;
     void nameLights(VertexBlock&, uint32_t site) const;
     void endByChance(size_t block);
-    void besideLights(const BatchContext&); // blockbeside.cpp
+    void lightDirections(const BatchContext&); // blocklightdirected.cpp
     // blockmedium.cpp
     void beginMedium(std::span<const Vec3> beside, float anisotropy);
     void loadFlown(size_t block, const BatchContext&);
@@ -106,7 +106,7 @@ private:
     LightKernels& lightKernels_;
     const LightPathStates& paths_;
     MediaStacks& media_;
-    MediumFlights& mediumFlights_;
+    MediumEvents& mediumEvents_;
     PhotonStage& photons_;
     RayStore& store_;
     ShadowRays& shadows_;
@@ -116,7 +116,7 @@ private:
     LobeLanesList lanes_;
     bool usable_ = false; ///< the world and the settings allow blocks
     Roulette roulette_ = Roulette::None;
-    bool lastSkies_ = false;                     ///< at the last vertex of a path, skies are sampled (Gather::lastSkies)
+    bool lastSkies_ = false;                     ///< at the last vertex of a path, skies are sampled (VertexSampling::lastSkies)
     size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: requesting sites in sites_
     bool waits_ = false;                         ///< the kernel waits for its results
     std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
@@ -147,4 +147,4 @@ private:
     alignas(64) float drawn_[kDrawnRows][kBlock] = {};
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,14 +1,14 @@
 // Requests of waiting kernels in blocks: each call has a target of its own for the light of its rays.
-#include "answers/random.h"
+#include "bsdf/sampling.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/photonstage.h"
 #include "integrator/strips.h"
-#include "lobes/sampling.h"
+#include "services/random.h"
 #include <algorithm>
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Whether the strips of a batch all make the same first request, for one ray each, at nearly all points of the batch.
 bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
@@ -35,7 +35,7 @@ bool BlockVertices::run(BatchContext& c, std::span<KernelStrip* const> strips, S
     if (!takes(c, strips)) return false;
     std::vector<EmitRecord> emits;
     std::vector<float> arena;
-    std::vector<TargetId> targets = c.targets;
+    std::vector<AccumulatorId> targets = c.targets;
     before_.assign(c.points.size(), 0);
     for (const KernelStrip* s : strips) { // as a kernel that does not wait emits it: weight 1, then the arguments
         const StripRequest r = s->request();
@@ -86,4 +86,4 @@ void BlockVertices::endByChance(size_t b) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 constexpr double kMostLight = 1e6;   ///< luminance that a tally can hold
@@ -105,4 +105,4 @@ bool mayLearnRoulette(const World& world) {
 
 void setRoulette(const World& world, const RouletteFactors& r) { *static_cast<const WorldImpl&>(world).roulette_ = r; }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

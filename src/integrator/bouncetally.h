@@ -1,16 +1,19 @@
 // What the bounces of some paths bring and cost, counted while they are traced, and the roulette that follows from it.
 #pragma once
 #include "base/vec.h"
-#include "lobes/roulettefactors.h"
+#include "bsdf/roulettefactors.h"
+#include "integrator/names.h"
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-namespace alpenglow::transport {
-
+namespace alpenglow::world {
 class World;
+} // namespace alpenglow::world
+
+namespace alpenglow::integrator {
 
 /// Counts of one call of Integrator::trace(). Sums of integers, so that they do not depend on the order of rays.
 struct BounceTally {
@@ -39,4 +42,4 @@ bool mayLearnRoulette(const World&);
 /// The roulette of all paths from now on. Call while no thread traces.
 void setRoulette(const World&, const RouletteFactors&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

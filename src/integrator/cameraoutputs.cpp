@@ -5,7 +5,7 @@
 #include "integrator/vertex.h"
 #include "world/outputs.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 CameraOutputs::CameraOutputs(const StageSet& s) : Stage(s.context), accumulator_(s.accumulator) {}
 
@@ -52,7 +52,7 @@ void CameraOutputs::add(const BatchContext& c, int point) {
     SampleResult& r = *accumulator_.results[size_t(ray.sample->path)];
     size_t at = 0;
     for (size_t k = 0; k < wantedAt_.size(); at += size_t(world_.outputWidths_[k++])) {
-        if (!binding.aside.empty() && binding.aside[k]) continue; // LightOutputs::asides() adds it
+        if (!binding.aside.empty() && binding.aside[k]) continue; // LightOutputs::lightOutputBatches() adds it
         const int width = world_.outputWidths_[k];
         if (!givenByOthers(c, k, point)) {
             int to = 0;
@@ -70,4 +70,4 @@ void CameraOutputs::add(const BatchContext& c, int point) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 struct StageSet;
@@ -30,4 +30,4 @@ private:
     Accumulator& accumulator_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
     : b_(b), world_(b.world_), chosenHere_(size_t(kBlock) * LightTree::kMostChosen) {
@@ -359,7 +359,7 @@ void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
     q.lights.parted = c.between;
     for (Lanes left = c.between ? q.there & q.lights.asked : 0; left; left &= left - 1) {
         const int i = std::countr_zero(left);
-        q.lights.part[i] = b.mediumFlights_.shareOfDistance(c.flown[points[i]], world_.lights_[size_t(q.asked[i]->light)]);
+        q.lights.part[i] = b.mediumEvents_.shareOfDistance(c.flown[points[i]], world_.lights_[size_t(q.asked[i]->light)]);
     }
     for (size_t k = 0; k < b.count_; ++k) {
         const BlockVertices::Site& s = b.sites_[k];
@@ -375,4 +375,4 @@ void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

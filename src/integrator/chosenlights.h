@@ -1,9 +1,9 @@
 // Scenes with many lights: each point samples some lights at random (world/lightchooser.h), for vertices in blocks
-// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane. Same bits as gather.h.
+// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane. Same bits as vertexsampling.h.
 #pragma once
 #include "integrator/blockvertices.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class BlockVertices::ChosenLights {
 public:
@@ -69,4 +69,4 @@ private:
     LobeBlock lobe_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

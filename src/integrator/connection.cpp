@@ -2,6 +2,7 @@
 // carries the light of all of them.
 #include "integrator/connection.h"
 #include "base/direction.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
@@ -12,15 +13,14 @@
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
 #include "integrator/shadowrays.h"
-#include "lobes/sampling.h"
 #include "world/emitterfootprint.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Connection::Connection(const StageSet& s, const VertexLobes& v, LightSampling& lightSampling)
     : VertexStage(s, v), lightSampling_(lightSampling), accumulator_(s.accumulator), intersector_(s.intersector),
-      lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces), media_(s.media),
-      mediumFlights_(s.mediumFlights), shadows_(s.shadows) {}
+      lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces), media_(s.media), mediumEvents_(s.mediumEvents),
+      shadows_(s.shadows) {}
 
 void Connection::connect() {
     reached_.clear();
@@ -67,19 +67,19 @@ void Connection::reach(int query) {
         // Sides 1: rays of this lobe pass through the emitter from its back, so it sends nothing there.
         const accel::Sides sides = l.rays->set.sides;
         if (area && !light.mean && q.drawn[k].shape->oneSided() && sides != accel::Sides::Both &&
-            (dot(meetsNormal(q.at[k].surface), w) >= 0) != (sides == accel::Sides::Back))
+            (dot(intersectsNormal(q.at[k].surface), w) >= 0) != (sides == accel::Sides::Back))
             continue;
         reached_.push_back({query, i, 0, w, {}});
     }
 }
 
 /// Whether a ray of trace() could hit a light sample: within its distance, in its set of shapes, on a side that it can hit.
-bool Connection::meets(const LobeVertex& l, int query, const Vec3& w, const Vec3& from, const Vec3& end) const {
+bool Connection::intersects(const LobeVertex& l, int query, const Vec3& w, const Vec3& from, const Vec3& end) const {
     const geometry::Shape& shape = *lightSampling_.queries.drawn[size_t(query)].shape;
     const shading::RaySet& set = l.rays->set;
     if (set.only && !set.only[world_.numberOfShape_.at(&shape)]) return false;
     if (shape.oneSided() && set.sides != accel::Sides::Both &&
-        (dot(meetsNormal(lightSampling_.queries.at[size_t(query)].surface), w) >= 0) != (set.sides == accel::Sides::Back))
+        (dot(intersectsNormal(lightSampling_.queries.at[size_t(query)].surface), w) >= 0) != (set.sides == accel::Sides::Back))
         return false;
     const Vec3 way = end - from;
     return dot(way, w) > 0 && !(length(way) > l.maxDistance);
@@ -98,7 +98,7 @@ Color Connection::contribution(const Reached& r) {
     c *= r.value.colour / (fcos * float(lightSampling_.lightSamples(l))); // the lobe's weight counts once for all its rays
     if (area && l.trace && l.trace->sums)
         if (TraceSums* of = accumulator_.sumsOf(l.target)) of->add(TraceSums::UnshadowedAreaLight, c * (fcos / (drawn * chance)));
-    if (c_->between) c *= mediumFlights_.shareOfDistance(c_->flown[size_t(l.point)], light);
+    if (c_->between) c *= mediumEvents_.shareOfDistance(c_->flown[size_t(l.point)], light);
     if (!light.hasDensity()) return c * (kept * float(kPi) * fcos / (chance * (area ? drawn : 1))); // Cl is irradiance / pi
     float other = 0; // density of this direction by the lobe's own sampling
     if (!world_.settings_.lightOnly && l.chosen > 0 && (lightSampling_.queries.drawn[k].visibility & visibilityBit(l.rays->type)))
@@ -118,7 +118,7 @@ void Connection::send(const Reached& r) {
     const Vec3 from = origin(l, r.w);
     // The light's own surface must not occlude: stop before it by both error bounds.
     const Vec3 end = area ? leavesFrom(lightSampling_.queries.at[k].surface, -r.w) : Vec3();
-    if (l.trace && area && !meets(l, r.query, r.w, from, end)) return;
+    if (l.trace && area && !intersects(l, r.query, r.w, from, end)) return;
     const float away = light.kind == LightKind::Distant ? 1e38f : length(lightSampling_.queries.value[k].L);
     if (l.trace && !area && !light.sky && light.kind != LightKind::Distant && away > l.maxDistance) return;
     const Color given = contribution(r);
@@ -162,4 +162,4 @@ void Connection::send(const Reached& r) {
     if ((asInLoops && !rules_.pickOne && !light.shadows) || lightSampling_.queries.value[k].ownShadow) shadow.distance = 0;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

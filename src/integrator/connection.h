@@ -1,10 +1,10 @@
 // Connection: evaluates lobes for light samples and weights them by MIS against sampling the lobe. One shadow ray carries the
 // light of all lobes of a vertex that can share it. Reads LightSampling::queries; writes ShadowRays::queue.
 #pragma once
+#include "bsdf/lobe.h"
 #include "integrator/vertexlobes.h"
-#include "lobes/lobe.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class Intersector;
@@ -13,7 +13,7 @@ class LightPathStates;
 class LightSampling;
 class LitSurfaces;
 class MediaStacks;
-class MediumFlights;
+class MediumEvents;
 class ShadowRays;
 
 class Connection final : VertexStage {
@@ -32,7 +32,7 @@ private:
     };
     void reach(int query);
     void evaluate();
-    bool meets(const LobeVertex&, int query, const Vec3& w, const Vec3& from, const Vec3& end) const;
+    bool intersects(const LobeVertex&, int query, const Vec3& w, const Vec3& from, const Vec3& end) const;
     void send(const Reached&);
     Color contribution(const Reached&);
     std::vector<Reached> reached_;
@@ -45,8 +45,8 @@ private:
     const LightPathStates& paths_;
     LitSurfaces& litSurfaces_;
     MediaStacks& media_;
-    MediumFlights& mediumFlights_;
+    MediumEvents& mediumEvents_;
     ShadowRays& shadows_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

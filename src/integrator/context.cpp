@@ -1,7 +1,7 @@
 // The context of a thread, and its counters.
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Context::Context(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     : frame(std::move(w)), world(*frame), diagnostics(d), seed(world.settings_.seed),
@@ -49,4 +49,4 @@ uint64_t& Context::raysOf(RayType t) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

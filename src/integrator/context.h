@@ -3,7 +3,7 @@
 #include "integrator/rays.h"
 #include "integrator/samples.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct BounceTally;
 
@@ -57,4 +57,4 @@ protected:
     Diagnostics& diagnostics_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -7,7 +7,7 @@
 #include "integrator/opacities.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 DepthRays::DepthRays(const StageSet& s)
     : Stage(s.context), intersector_(s.intersector), media_(s.media), opacities_(s.opacities) {}
@@ -15,13 +15,13 @@ DepthRays::DepthRays(const StageSet& s)
 namespace {
 
 /// Largest fraction of the light that a step within a medium removes, if there are enough steps.
-constexpr float kHazeStep = 1 / 64.f;
-constexpr int kHazeSteps = 64;
+constexpr float kAtmosphereStep = 1 / 64.f;
+constexpr int kAtmosphereSteps = 64;
 
 /// Ends of steps of equal attenuation along a homogeneous segment with transmittance `left`, as fractions of its length.
-std::vector<float> hazeSteps(const Color& left) {
+std::vector<float> atmosphereSteps(const Color& left) {
     const float least = std::clamp(std::min({left.x, left.y, left.z}), 1e-4f, 1.f);
-    const int count = std::clamp(int((1 - least) / kHazeStep) + 1, 1, kHazeSteps);
+    const int count = std::clamp(int((1 - least) / kAtmosphereStep) + 1, 1, kAtmosphereSteps);
     std::vector<float> ends;
     for (int k = 1; k < count; ++k) {
         const double l = exact::log(double(least));
@@ -32,7 +32,7 @@ std::vector<float> hazeSteps(const Color& left) {
 }
 
 /// A segment of a camera ray within a medium; its sample, and its index among the rays in flight.
-struct HazyWay {
+struct AtmosphereSegment {
     int medium;
     size_t sample, going;
     Vec3 from, to;
@@ -40,19 +40,19 @@ struct HazyWay {
 
 /// Appends the segments within media up to a hit.
 void enterMedia(const WorldImpl& world, const shading::Media* m, const Vec3& begin, const accel::Hit& h, size_t sample,
-                size_t going, std::vector<HazyWay>& ways) {
+                size_t going, std::vector<AtmosphereSegment>& ways) {
     if (!m || m->top() < 0) return;
     const geometry::SurfacePoint at = world.accel_->point(h);
     ways.push_back({m->top(), sample, going, begin, at.displaced ? at.displacedP : at.P});
 }
 
 /// Appends the transmittance within the segments; `left`, by segment: on entry before it, on exit behind it.
-void seeHaze(MediaStacks& media, std::span<const HazyWay> ways, std::span<const ShadowRay> asked, std::span<SampleResult> out,
-             std::span<Color> left) {
+void seeAtmosphere(MediaStacks& media, std::span<const AtmosphereSegment> ways, std::span<const ShadowRay> asked,
+                   std::span<SampleResult> out, std::span<Color> left) {
     // First the transmittance of each whole segment: it determines the number of steps.
     std::vector<ShadowRay> rays;
     std::vector<MediumPart> parts;
-    for (const HazyWay& w : ways) {
+    for (const AtmosphereSegment& w : ways) {
         parts.push_back({w.medium, rays.size(), w.from, w.to});
         rays.push_back(asked[w.sample]);
     }
@@ -63,8 +63,8 @@ void seeHaze(MediaStacks& media, std::span<const HazyWay> ways, std::span<const 
     std::vector<size_t> of;
     for (size_t i = 0; i < ways.size(); ++i) {
         float begin = 0;
-        for (const float end : hazeSteps(whole[i])) {
-            const HazyWay& w = ways[i];
+        for (const float end : atmosphereSteps(whole[i])) {
+            const AtmosphereSegment& w = ways[i];
             const Vec3 way = w.to - w.from;
             parts.push_back({w.medium, rays.size(), w.from + way * begin, w.from + way * end});
             rays.push_back(asked[w.sample]);
@@ -106,7 +106,7 @@ private:
         float z;
     };
     bool takes(Going&, const Color& opacity, float z);
-    void meet();
+    void intersect();
     void pass(Going&, const accel::Hit&);
     DepthRays& stage_;
     const WorldImpl& world_;
@@ -116,8 +116,8 @@ private:
     std::vector<accel::Hit> hits_; ///< by now_
     std::vector<OpacityQuery> met_;
     std::vector<Waiting> waiting_; ///< rays in met_: index in next_, and depth
-    std::vector<HazyWay> ways_;
-    std::vector<Color> hazy_;
+    std::vector<AtmosphereSegment> ways_;
+    std::vector<Color> inAtmosphere_;
 };
 
 void DepthRays::Looking::add(const PathRay& path) {
@@ -138,17 +138,17 @@ bool DepthRays::Looking::takes(Going& g, const Color& opacity, float z) {
 }
 
 /// Finds the next surface of each ray and applies the media before it.
-void DepthRays::Looking::meet() {
+void DepthRays::Looking::intersect() {
     hits_.assign(now_.size(), {});
     ways_.clear();
     for (size_t i = 0; i < now_.size(); ++i)
-        if (stage_.intersector_.meet(now_[i].ray, hits_[i]) && !world_.media_.empty())
+        if (stage_.intersector_.intersect(now_[i].ray, hits_[i]) && !world_.media_.empty())
             enterMedia(world_, now_[i].media, now_[i].begin, hits_[i], now_[i].index, i, ways_);
     if (ways_.empty()) return;
-    hazy_.clear();
-    for (const HazyWay& w : ways_) hazy_.push_back(now_[w.going].left);
-    seeHaze(stage_.media_, ways_, asked_, out_, hazy_);
-    for (size_t k = 0; k < ways_.size(); ++k) now_[ways_[k].going].left = hazy_[k];
+    inAtmosphere_.clear();
+    for (const AtmosphereSegment& w : ways_) inAtmosphere_.push_back(now_[w.going].left);
+    seeAtmosphere(stage_.media_, ways_, asked_, out_, inAtmosphere_);
+    for (size_t k = 0; k < ways_.size(); ++k) now_[ways_[k].going].left = inAtmosphere_[k];
 }
 
 void DepthRays::Looking::pass(Going& g, const accel::Hit& h) {
@@ -177,7 +177,7 @@ bool DepthRays::Looking::run() {
     const StopFlag* const stop = stage_.context_.stop;
     for (int layers = 0; !now_.empty() && layers < limits::kShadowLayers; ++layers) {
         next_.clear(), met_.clear(), waiting_.clear();
-        meet();
+        intersect();
         for (size_t i = 0; i < now_.size(); ++i)
             if (hits_[i].valid() && maxComponent(now_[i].left) > 0) pass(now_[i], hits_[i]);
         if (!met_.empty())
@@ -204,4 +204,4 @@ bool DepthRays::seeThrough(std::span<const CameraRay> rays, std::span<SampleResu
     return looking.run();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

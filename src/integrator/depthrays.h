@@ -3,7 +3,7 @@
 #pragma once
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Intersector;
 class MediaStacks;
@@ -24,4 +24,4 @@ private:
     Opacities& opacities_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,9 +1,9 @@
 #include "integrator/depths.h"
 #include "integrator/bakes.h"
-#include "integrator/unmade.h"
+#include "integrator/deferred.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 namespace {
 
 bool tells(const BoundKernel& k) {
@@ -15,7 +15,7 @@ bool tells(const BoundKernel& k) {
 
 bool depthsNeedNoShaders(const World& world) {
     const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of other folders use their own World
-    if (!w || !w->allOpaque_ || !w->media_.empty() || !w->clippingPlanes_.empty() || hasUnmade(world) || bakes(world))
+    if (!w || !w->allOpaque_ || !w->media_.empty() || !w->clippingPlanes_.empty() || hasDeferred(world) || bakes(world))
         return false;
     for (const SurfaceBinding& b : w->bindings_)
         for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel})
@@ -28,4 +28,4 @@ bool depthsNeedNoShaders(const World& world) {
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,19 +1,19 @@
 // Diffusion in place of walks: samples surface points near the shaded one.
-#include "lobes/dipole.h"
+#include "bsdf/dipole.h"
+#include "bsdf/sampling.h"
 #include "integrator/intersector.h"
 #include "integrator/raystore.h"
 #include "integrator/subsurface.h"
 #include "integrator/subsurfacewalks.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Finds surface points by lines along one of three axes, chosen at random; all intersections of a line count (King et al.,
 /// BSSRDF Importance Sampling, 2013).
 void Walks::probe(int asked) {
     const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(asked)];
-    const Below& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = below_[size_t(a.below)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const PathRay& ray = c_.rays[size_t(a.point)];
     const bool turned = dot(p.surface.n, ray.dir) > 0;
@@ -29,20 +29,20 @@ void Walks::probe(int asked) {
     std::vector<Dipole> dipoles;
     double share[3];
     for (int k = 0; k < 3; ++k) {
-        dipoles.emplace_back(subsurface_.halfSpaces.of(b.index), b.model == SubsurfaceSite::Model::BetterDipole,
+        dipoles.emplace_back(subsurface_.albedoInversions.of(b.index), b.model == SubsurfaceSite::Model::BetterDipole,
                              double(b.absorption[k]), std::max(double(b.scattering[k]), 1e-12));
         share[k] = part[k] / sum;
     }
     const Random random = store_.random(ray);
-    const Vec2 where = random.pair(a.vertex, kFlight, 0), how = random.pair(a.vertex, kFlight, 1);
-    const float which = random.one(a.vertex, kFlight, 0);
+    const Vec2 where = random.pair(a.vertex, kSegmentEvent, 0), how = random.pair(a.vertex, kSegmentEvent, 1);
+    const float which = random.one(a.vertex, kSegmentEvent, 0);
     int channel = 2;
     double at = how.x;
     for (int k = 0; k < 2 && channel == 2; ++k)
         if (at < share[k]) channel = k;
         else at -= share[k];
     while (channel > 0 && !(share[channel] > 0)) --channel; // rounding
-    const double r = dipoles[size_t(channel)].choose(random.one(a.vertex, kFlight, 1), where.x);
+    const double r = dipoles[size_t(channel)].choose(random.one(a.vertex, kSegmentEvent, 1), where.x);
     const Vec2 turn = unitCircle(where.y);
     const Vec3 axes[3] = {about.n, about.t, about.u};
     const double chances[3] = {.5, .25, .25};
@@ -54,7 +54,7 @@ void Walks::probe(int asked) {
     Walker line{asked, from + x * float(r * turn.x) + y * float(r * turn.y) + axis * far, -axis, a.weight, a.weight, a.vertex};
     accel::Ray probe = rayOf(line, 2 * double(far));
     accel::Hit hit;
-    for (int layer = 0; layer < limits::kShadowLayers && intersector_.meet(probe, hit); ++layer) {
+    for (int layer = 0; layer < limits::kShadowLayers && intersector_.intersect(probe, hit); ++layer) {
         world.goOn(probe, hit);
         if (!belongs(hit.shape, b.group)) continue;
         const geometry::SurfacePoint s = world.accel_->point(hit);
@@ -68,11 +68,11 @@ void Walks::probe(int asked) {
             density += chances[j] * d * std::fabs(dot(n, axes[j]));
         }
         if (!(density > 0)) continue;
-        Exit exit{asked, {}, childVertex(a.vertex, kFlight, uint32_t(16 + layer)), hit.shape, s, turned ? -n : n};
+        Exit exit{asked, {}, childVertex(a.vertex, kSegmentEvent, uint32_t(16 + layer)), hit.shape, s, turned ? -n : n};
         for (int i = 0; i < 3; ++i)
             exit.weight[i] = b.scattering[i] > 0 ? float(a.weight[i] * dipoles[size_t(i)].at(length(to)) / density) : 0;
         if (isFinite(exit.weight)) exits_.push_back(exit);
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -6,7 +6,7 @@
 #include "integrator/stageset.h"
 #include "world/turned.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Displacement::Displacement(const StageSet& s) : Stage(s.context), inputs_(s.inputs), gathers_(s.gathers) {}
 
@@ -81,4 +81,4 @@ void Displacement::moveToFacets(BatchContext& c) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,7 +3,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class GatherCalls;
 class KernelInputs;
@@ -24,4 +24,4 @@ private:
     const GatherCalls& gathers_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

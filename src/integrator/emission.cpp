@@ -4,7 +4,7 @@
 #include "world/photonattributes.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 /// Keys of a photon's random numbers; its first ray has vertex 0, as a camera ray has.
@@ -64,7 +64,7 @@ std::vector<uint8_t> EmissionPlan::met(bool both) const {
     std::vector<uint8_t> by;
     for (size_t i = 0; i < world_.shapes_.size(); ++i) {
         const PhotonBinding& b = world_.bindings_[size_t(world_.bindingOf_[i])].photons;
-        by.push_back(both ? b.meetsBoth : b.meets);
+        by.push_back(both ? b.intersectsBoth : b.meets);
     }
     by.push_back(0); // not empty
     return by;
@@ -209,4 +209,4 @@ void EmissionPlan::learn(std::span<const StoredPhoton> stored, const PhotonJob& 
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -2,7 +2,7 @@
 #pragma once
 #include "integrator/photonjob.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// A photon before its first ray.
 struct EmissionStart {
@@ -25,4 +25,4 @@ void startPhotons(LightKernels&, const EmissionPlan&, const EmissionPlan::Light&
 /// is 0. Sets `kept`.
 std::vector<Color> emittedPower(LightKernels&, const EmissionPlan::Light&, std::span<EmissionStart>);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,11 +1,11 @@
 // Emission of photons, by kind of light. The value of the light's shader at the photon's first hit determines its power. So
 // direct light by photons equals the shader's light at each point, even if it does not fall off with the square of the distance,
 // or is projected through a slide.
+#include "bsdf/sampling.h"
 #include "integrator/emission.h"
 #include "integrator/lightkernels.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 
@@ -34,10 +34,10 @@ void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionSta
     const Vec3 even = evenDirection(s.drawn.way);
     s.shape = emitter.samplePoint(s.drawn.place, s.drawn.choose, s.drawn.time, even, s.surface, perArea);
     if (!(perArea > 0) || !std::isfinite(perArea)) return;
-    if (world.accel_->hasSolids() &&
-        !world.accel_->keeps(world.numberOfShape_.at(s.shape), meetsAt(s.surface), meetsNormal(s.surface), s.drawn.time))
+    if (world.accel_->hasSolids() && !world.accel_->keeps(world.numberOfShape_.at(s.shape), intersectsAt(s.surface),
+                                                          intersectsNormal(s.surface), s.drawn.time))
         return;
-    const Vec3& n = meetsNormal(s.surface);
+    const Vec3& n = intersectsNormal(s.surface);
     s.front = s.drawn.side < l.front;
     if (l.light->mean) {
         s.dir = even;
@@ -65,7 +65,7 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
     if (l.light->kind == LightKind::Area) {
         p.surface = s.surface;
         p.shape = s.shape;
-        p.P = meetsAt(s.surface);
+        p.P = intersectsAt(s.surface);
         p.N = s.surface.n;
     } else if (l.light->kind == LightKind::Environment) {
         p.P = at - s.dir;
@@ -198,11 +198,11 @@ std::vector<Color> emittedPower(LightKernels& lights, const EmissionPlan::Light&
         EmissionStart& s = starts[of[k]];
         s.kept = v[k].kept(RayType::Specular);
         if (!v[k].lit || !isFinite(v[k].Cl)) continue;
-        const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? s.origin : meetsAt(s.surface)));
+        const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? s.origin : intersectsAt(s.surface)));
         const Color c = v[k].Cl * (s.factor * (falls ? far * far : 1));
         if (isFinite(c)) power[of[k]] = {std::max(c.x, 0.f), std::max(c.y, 0.f), std::max(c.z, 0.f)};
     }
     return power;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 
@@ -47,7 +47,7 @@ std::vector<EmissionStart> startBlock(const StageSet& set, const PhotonJob& job,
             ray.sides = accel::Sides::Both;
             if (world.fades_) ray.level = levelOf(job.numbers(first + of[l][k]));
             accel::Hit hit;
-            s.length = set.intersector.meet(ray, hit) ? hit.t : 0;
+            s.length = set.intersector.intersect(ray, hit) ? hit.t : 0;
         }
         const std::vector<Color> brings = emittedPower(set.lightKernels, plan.lights()[l], some);
         for (size_t k = 0; k < of[l].size(); ++k) {
@@ -95,7 +95,7 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
     t.from.assign(count, {});
     set.store.samples.resize(count);
     set.accumulator.begin(0);
-    const TargetId root = set.accumulator.nowhere = sched.newRoot(); // the light that photon rays see is discarded
+    const AccumulatorId root = set.accumulator.nowhere = sched.newRoot(); // the light that photon rays see is discarded
     for (uint32_t i = 0; i < count; ++i) {
         const EmissionStart& s = starts[i];
         const float most = maxComponent(t.power[i]);
@@ -121,9 +121,9 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
         r.media = set.photons.aboutLight(plan.lights()[size_t(s.drawn.light)], s);
         if (s.shape) // the atmosphere at the light is applied at the hit
-            if (const auto hazy = w.hazyEmitters_.find(s.shape); hazy != w.hazyEmitters_.end()) {
+            if (const auto hazy = w.emittersInAtmosphere_.find(s.shape); hazy != w.emittersInAtmosphere_.end()) {
                 r.lobeBinding = hazy->second;
-                r.lobeOrigin = meetsAt(s.surface);
+                r.lobeOrigin = intersectsAt(s.surface);
             }
         if (w.fades_) sample.level = levelOf(sample.numbers);
     }
@@ -133,4 +133,4 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
     return done;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

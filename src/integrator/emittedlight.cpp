@@ -1,5 +1,6 @@
 // Emission: light of emitters that rays hit, and of skies behind escaped rays.
 #include "integrator/emittedlight.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
 #include "integrator/gathercalls.h"
@@ -11,21 +12,20 @@
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
-#include "lobes/sampling.h"
 #include "world/skytable.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 EmittedLight::EmittedLight(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces),
-      media_(s.media), mediumFlights_(s.mediumFlights), photons_(s.photons), store_(s.store), gathers_(s.gathers) {}
+      media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons), store_(s.store), gathers_(s.gathers) {}
 
 void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     for (const Sched::Task* t : tasks) // the environment map of a trace()
         if (const PathRay& r = t->payload; maxComponent(store_.extraOf(r).environment) > 0) {
-            accumulator_.deposit(sched, {t->target, r.weight * store_.extraOf(r).environment, LightEvent::Map, &r,
-                                         store_.extraOf(r).share, nullptr, paths_.next(r.path, paths_.map)});
+            accumulator_.contribute(sched, {t->target, r.weight * store_.extraOf(r).environment, LightEvent::Map, &r,
+                                            store_.extraOf(r).share, nullptr, paths_.next(r.path, paths_.map)});
             if (TraceSums* sums = accumulator_.sumsOf(t->target))
                 sums->add(TraceSums::Environment, r.weight * store_.extraOf(r).environment);
         }
@@ -74,8 +74,8 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
                     weight *= world_.settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
                 }
                 const Color light = r.weight * value[i].Cl * weight;
-                accumulator_.deposit(sched, {of[i]->target, light, LightEvent::Sky, &r, store_.extraOf(r).share, l.instance.get(),
-                                             paths_.atLight(r.path, l)});
+                accumulator_.contribute(sched, {of[i]->target, light, LightEvent::Sky, &r, store_.extraOf(r).share,
+                                                l.instance.get(), paths_.atLight(r.path, l)});
             }
     }
 }
@@ -93,7 +93,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
             const PathRay& r = *met[end].point->ray;
             q.push_back(*met[end].point);
             ShadePoint& p = q.back();
-            p.P = meetsAt(p.surface);
+            p.P = intersectsAt(p.surface);
             p.N = p.surface.n;
             p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.volumeBegin();
             litBy_.push_back(store_.extraOf(r).lit);
@@ -135,10 +135,10 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
             }
             if (const FreeFlight& flown = store_.extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)
-                weight *= mediumFlights_.shareOfDistance(flown, light);
+                weight *= mediumEvents_.shareOfDistance(flown, light);
             if (r.bounces > 0 && !r.kind->fromTrace) weight *= v.kept(r.type());
-            accumulator_.deposit(sched, {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, store_.extraOf(r).share,
-                                         light.instance.get(), paths_.atLight(r.path, light)});
+            accumulator_.contribute(sched, {met[i].target, r.weight * v.Cl * weight, LightEvent::Met, &r, store_.extraOf(r).share,
+                                            light.instance.get(), paths_.atLight(r.path, light)});
             if (TraceSums* sums = accumulator_.sumsOf(met[i].target); sums && maxComponent(store_.extraOf(r).part) > 0)
                 sums->add(TraceSums::AreaLight, r.weight * v.Cl * weight);
         }
@@ -167,4 +167,4 @@ void EmittedLight::shine(const BatchContext& c, Sched& sched) {
     emission(met, sched);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

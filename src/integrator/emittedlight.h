@@ -3,7 +3,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class GatherCalls;
@@ -11,7 +11,7 @@ class LightKernels;
 class LightPathStates;
 class LitSurfaces;
 class MediaStacks;
-class MediumFlights;
+class MediumEvents;
 class PhotonStage;
 class RayStore;
 struct StageSet;
@@ -27,7 +27,7 @@ public:
 private:
     struct Met {
         int light;
-        TargetId target;
+        AccumulatorId target;
         const ShadePoint* point;
     };
     void emission(std::span<const Met>, Sched&); ///< sorted by light
@@ -37,10 +37,10 @@ private:
     const LightPathStates& paths_;
     LitSurfaces& litSurfaces_;
     MediaStacks& media_;
-    MediumFlights& mediumFlights_;
+    MediumEvents& mediumEvents_;
     PhotonStage& photons_;
     RayStore& store_;
     const GatherCalls& gathers_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -11,7 +11,7 @@
 #include "integrator/vertexlight.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 void Walks::askSurfaces(Sched& sched) {
     if (photons_.photonTrace()) return;
@@ -58,8 +58,8 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
         const PathRay& ray = c->rays[i];
         const Color light = batch.color(irradiance, int(i));
         if (said(i) && isFinite(light))
-            accumulator_.deposit(sched, {c->targets[i], ray.weight * light, LightEvent::Surface, &ray, store_.extraOf(ray).share,
-                                         b.surface.get()});
+            accumulator_.contribute(sched, {c->targets[i], ray.weight * light, LightEvent::Surface, &ray,
+                                            store_.extraOf(ray).share, b.surface.get()});
     }
     askLights(*c, exits, sched);
     size_t kept = 0;
@@ -81,4 +81,4 @@ void Walks::askLights(BatchContext& c, std::span<const Exit> exits, Sched& sched
     shadows_.flush(sched);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

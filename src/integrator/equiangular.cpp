@@ -1,6 +1,7 @@
 // Equiangular sampling: lights with a position inside of media or near them. Their light falls off with the square of the
 // distance, which distance sampling ignores.
 #include "base/exact.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
 #include "integrator/blockvertices.h"
@@ -10,9 +11,8 @@
 #include "integrator/medium.h"
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 bool Equiangular::look(const FreeFlight& f, const BoundLight& l, MediumSampling how) {
     if (!l.placed || how == MediumSampling::Distance) return false;
@@ -55,7 +55,7 @@ static bool alone(const FreeFlight& f, const BoundLight& l, MediumSampling how) 
 /// Position for which the lights of a whole segment are chosen.
 static Vec3 middle(const FreeFlight& f) { return f.origin + f.dir * (0.5f * f.length); }
 
-float MediumFlights::shareOfDistance(const FreeFlight& f, const BoundLight& l) const {
+float MediumEvents::shareOfDistance(const FreeFlight& f, const BoundLight& l) const {
     const WorldImpl& w = world_;
     const MediumSampling how = w.settings_.mediumSampling;
     if (!rules_.lightsAtRequests || !Equiangular::sees(f, l, how)) return 1;
@@ -70,7 +70,7 @@ namespace {
 /// A point chosen for a light, and its weight in that light's estimate.
 struct Near {
     const FreeFlight* way;
-    const Flight* flight;
+    const RaySegment* flight;
     const Color* weight;
     float t, scale;
 };
@@ -78,9 +78,9 @@ struct Near {
 } // namespace
 
 /// Light of one light at the points chosen for it.
-class MediumFlights::NearLight {
+class MediumEvents::NearLight {
 public:
-    NearLight(MediumFlights& stage, const Medium& m, const BoundLight& l, std::span<const Near> points)
+    NearLight(MediumEvents& stage, const Medium& m, const BoundLight& l, std::span<const Near> points)
         : stage_(stage), medium_(m), light_(l), points_(points), area_(l.kind == LightKind::Area) {}
     void run() {
         if (runInRows()) return;
@@ -98,7 +98,7 @@ public:
 
 private:
     uint32_t use() const { return kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data()); }
-    static uint32_t vertexOf(const PathRay& r) { return childVertex(r.vertex, kFlight, 5); }
+    static uint32_t vertexOf(const PathRay& r) { return childVertex(r.vertex, kSegmentEvent, 5); }
     /// In blocks, where the light supports them.
     bool runInRows() {
         auto c = stage_.batches_.take();
@@ -148,10 +148,11 @@ private:
         const Vec2 u = numbers.pair(vertexOf(r), use(), 0);
         bool there = light_.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light_.pointNeeds);
         if (there && w.accel_->hasSolids())
-            there = w.accel_->keeps(w.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter);
-        if (!there || (s.shape->oneSided() && dot(meetsNormal(p.surface), s.direction) >= 0)) s.pdf = 0; // or from its back
+            there =
+                w.accel_->keeps(w.numberOfShape_.at(s.shape), intersectsAt(p.surface), intersectsNormal(p.surface), p.shutter);
+        if (!there || (s.shape->oneSided() && dot(intersectsNormal(p.surface), s.direction) >= 0)) s.pdf = 0; // or from its back
         p.shape = s.shape;
-        p.P = meetsAt(p.surface);
+        p.P = intersectsAt(p.surface);
         p.N = p.surface.n;
     }
     void send(size_t i) {
@@ -166,7 +167,7 @@ private:
         const float far = length(way);
         if (!(far > 0)) return;
         const Vec3 to = area_ ? drawn_[i].direction : way / far;
-        const float phase = OneLobe(*kind, {r.dir, -r.dir, {}, medium_.homogeneous->anisotropy}).value(to).fcos;
+        const float phase = Bsdf(*kind, {r.dir, -r.dir, {}, medium_.homogeneous->anisotropy}).value(to).fcos;
         const Color c = scattered(n, v.Cl, phase, v.kept(RayType::Diffuse), area_ ? drawn_[i].pdf : 0);
         if (c == Color(0)) return;
         ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter};
@@ -198,7 +199,7 @@ private:
         stage_.shadows_.queue.push_back(s);
     }
 
-    MediumFlights& stage_;
+    MediumEvents& stage_;
     const Medium& medium_;
     const BoundLight& light_;
     std::span<const Near> points_;
@@ -209,7 +210,7 @@ private:
     std::vector<LightValue> value_;
 };
 
-void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
+void MediumEvents::nearLights(std::span<RaySegment> segmentEvents, std::span<const Crossing> crossings, Sched& sched) {
     const WorldImpl& w = world_;
     const Medium& m = w.media_[size_t(crossings[0].way.medium)];
     const MediumSampling how = w.settings_.mediumSampling;
@@ -227,8 +228,8 @@ void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossi
     std::vector<Asked> asked;
     numbers_.clear();
     for (const Crossing& x : crossings) {
-        const Flight& f = flights[x.flight];
-        const uint32_t vertex = childVertex(f.ray->vertex, kFlight, 2);
+        const RaySegment& f = segmentEvents[x.flight];
+        const uint32_t vertex = childVertex(f.ray->vertex, kSegmentEvent, 2);
         if (!chooser.empty()) chooser.choose(middle(x.way), store_.random(*f.ray).one(vertex, kChooseLight, 0), chosen);
         for (const auto& [k, chance] : chosen) {
             const int light = on[size_t(k)];
@@ -248,7 +249,7 @@ void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossi
         const float share =
             alone(x->way, w.lights_[size_t(light)], how) ? 1 : misWeight(float(density), float(x->way.density(t)));
         if (density > 0 && share > 0)
-            near[light].push_back({&x->way, &flights[x->flight], &x->weight, t, float(share / density)});
+            near[light].push_back({&x->way, &segmentEvents[x->flight], &x->weight, t, float(share / density)});
     }
     for (const auto& [light, points] : near) {
         NearLight(*this, m, w.lights_[size_t(light)], points).run();
@@ -256,4 +257,4 @@ void MediumFlights::nearLights(std::span<Flight> flights, std::span<const Crossi
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -2,6 +2,7 @@
 #include "integrator/gathercalls.h"
 #include "base/direction.h"
 #include "base/exact.h"
+#include "bsdf/sampling.h"
 #include "integrator/context.h"
 #include "integrator/gatherrows.h"
 #include "integrator/intersector.h"
@@ -11,12 +12,11 @@
 #include "integrator/opacities.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
-#include "lobes/sampling.h"
 #include "world/raysets.h"
 #include <bit>
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 GatherCalls::GatherCalls(const StageSet& s) : Stage(s.context), set_(s), inputs_(s.inputs) {}
 
@@ -117,10 +117,10 @@ struct Asking {
 };
 
 /// Finds the first surface at which the accumulated opacity exceeds the threshold.
-bool meet(const StageSet& set, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
+bool intersect(const StageSet& set, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
     Color through(1);
     for (int layers = 0; layers < limits::kShadowLayers; ++layers) {
-        if (!set.intersector.meet(ray, hit)) return false;
+        if (!set.intersector.intersect(ray, hit)) return false;
         if (!(maxComponent(threshold) > 0)) return true;
         const SurfaceBinding& b = set.context.world.bindings_[size_t(set.context.world.bindingOf_[hit.shape])];
         const Opacity& o = b.opacityFor(as.kind->set.mode);
@@ -283,7 +283,7 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
             ray.sides = kind.set.sides;
             ray.only = kind.set.only;
             if (p.ray->sample) ray.level = p.ray->sample->level;
-            met = meet(a.set, ray, as, g.threshold >= 0 ? Color(a.triple(g.threshold)) : Color(0), hit);
+            met = intersect(a.set, ray, as, g.threshold >= 0 ? Color(a.triple(g.threshold)) : Color(0), hit);
             ++a.set.context.raysOf(kind.type);
         }
         tellRay(g, row, from, w, met ? float(hit.distance) : 1e38f);
@@ -327,7 +327,7 @@ shading::GivenValue GatherSent::value(size_t sent) const {
     return {s.kind, s.lengthRow >= 0, std::span(values).subspan(begin, ends[sent] - begin)};
 }
 
-void GatherCalls::takeSent(shading::Batch& batch, std::span<const TargetId> targets, rsl::PairName::To to) const {
+void GatherCalls::takeSent(shading::Batch& batch, std::span<const AccumulatorId> targets, rsl::PairName::To to) const {
     if (gathered.empty()) return;
     for (size_t i = 0; i < targets.size(); ++i)
         if (const GatherSent* ray = sending(targets[i], to))
@@ -335,7 +335,7 @@ void GatherCalls::takeSent(shading::Batch& batch, std::span<const TargetId> targ
                 if (ray->site->sent[k].to == to) batch.give(ray->site->sent[k].parameter, int(i), ray->value(k));
 }
 
-const GatherSent* GatherCalls::sending(TargetId target, rsl::PairName::To to) const {
+const GatherSent* GatherCalls::sending(AccumulatorId target, rsl::PairName::To to) const {
     const auto asks = gathered.find(target);
     return asks != gathered.end() && asks->second->site->sendsTo(to) ? asks->second : nullptr;
 }
@@ -350,7 +350,7 @@ bool GatherCalls::lightParameters(const GatherSent& ray, const ShaderInstance& l
                                       [&](const rsl::ParameterInfo& p) { return p.name == s.parameter; });
         const auto have = light.parameters.numbers.find(s.parameter);
         if (own == light.program->parameters().end() || have == light.parameters.numbers.end()) continue;
-        const bool fits = Told::kindOf(own->type.base) == v.kind && (own->type.array != 0 || own->open) == v.array;
+        const bool fits = ShaderValue::kindOf(own->type.base) == v.kind && (own->type.array != 0 || own->open) == v.array;
         if (!fits) continue;
         if (!any) all = light.parameters;
         any = true;
@@ -361,7 +361,7 @@ bool GatherCalls::lightParameters(const GatherSent& ray, const ShaderInstance& l
 }
 
 /// A parameter that is no output is what was sent to it.
-static void tellSent(const GatherSent& ray, const GatherSite::Output& asked, const ShaderInstance* shader, Told& t) {
+static void tellSent(const GatherSent& ray, const GatherSite::Output& asked, const ShaderInstance* shader, ShaderValue& t) {
     using To = rsl::PairName::To;
     const To to = asked.of == Of::Surface ? To::Surface : asked.of == Of::Displacement ? To::Displacement : To::Volume;
     const std::string& name = rsl::internedString(asked.id);
@@ -371,7 +371,7 @@ static void tellSent(const GatherSent& ray, const GatherSite::Output& asked, con
         const shading::GivenValue v = ray.value(k);
         const bool own = std::any_of(shader->program->parameters().begin(), shader->program->parameters().end(),
                                      [&](const rsl::ParameterInfo& p) {
-                                         return p.name == name && !p.output && Told::kindOf(p.type.base) == v.kind &&
+                                         return p.name == name && !p.output && ShaderValue::kindOf(p.type.base) == v.kind &&
                                                 (p.type.array != 0 || p.open) == v.array;
                                      });
         if (!own) continue;
@@ -398,11 +398,11 @@ void GatherCalls::tellGather(const BatchContext& c, int point, GatherSent& sent)
         const shading::Batch* run = o.of == Of::Surface                       ? c.batch.get()
                                     : o.of == Of::Displacement && c.displaced ? c.displaced->batch.get()
                                                                               : nullptr;
-        if (auto t = toldAtHit(inputs_.answers, p, shader, o.id, run, point)) {
+        if (auto t = valueAtHit(inputs_.answers, p, shader, o.id, run, point)) {
             tellSent(sent, o, shader.get(), *t);
             putGathered(sent.row, o, *t);
         }
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

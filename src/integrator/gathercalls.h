@@ -5,7 +5,7 @@
 #include "integrator/context.h"
 #include "world/gathersite.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class KernelInputs;
 struct StageSet;
@@ -35,19 +35,19 @@ public:
                      std::span<const uint32_t> occurrence, std::span<uint32_t> asked, std::vector<GatherSent>& sent);
     /// Sets parameters of shaders of that kind at hits of gather() rays to the values that the rays send. `targets`: by point of
     /// the batch.
-    void takeSent(shading::Batch&, std::span<const TargetId> targets, rsl::PairName::To) const;
+    void takeSent(shading::Batch&, std::span<const AccumulatorId> targets, rsl::PairName::To) const;
     /// The ray of a gather() that sends something to shaders of that kind; null: none.
-    const GatherSent* sending(TargetId, rsl::PairName::To) const;
+    const GatherSent* sending(AccumulatorId, rsl::PairName::To) const;
     /// The parameters of a light that the ray meets, with the numbers that it sends; false: it sends none to this light.
     static bool lightParameters(const GatherSent&, const ShaderInstance& light, shading::ParameterBlock&);
     /// Writes the shader results at a hit to the gather() whose ray found it; `point`: in a batch that has run.
     void tellGather(const BatchContext&, int point, GatherSent&);
 
-    std::unordered_map<TargetId, GatherSent*> gathered; ///< rays of gathers that need shaders, by target
+    std::unordered_map<AccumulatorId, GatherSent*> gathered; ///< rays of gathers that need shaders, by target
 
 private:
     const StageSet& set_;
     KernelInputs& inputs_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,7 +3,7 @@
 #include <bit>
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 void putGathered(float* row, const GatherSite::Output& o, std::initializer_list<float> numbers) {
     if (int(numbers.size()) != o.rows || o.elements || o.open || o.kind == rsl::ir::Kind::String) return; // different type
@@ -13,7 +13,7 @@ void putGathered(float* row, const GatherSite::Output& o, std::initializer_list<
 void putGathered(float* row, const GatherSite::Output& o, const Vec3& v) { putGathered(row, o, {v.x, v.y, v.z}); }
 
 /// Writes a value of any type that fits the variable.
-void putGathered(float* row, const GatherSite::Output& o, const Told& t) {
+void putGathered(float* row, const GatherSite::Output& o, const ShaderValue& t) {
     using rsl::ir::Kind;
     const bool array = o.elements > 0 || o.open, text = o.kind == Kind::String;
     if (t.kind && (*t.kind != o.kind || (t.elements > 0) != array)) return;
@@ -51,7 +51,7 @@ void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const acce
         }
         if (o.of == GatherSite::Of::Attribute) {
             const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[hit.shape])];
-            if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) putGathered(row, o, Told(*i));
+            if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) putGathered(row, o, ShaderValue(*i));
             continue;
         }
         if (!at) at = world.accel_->point(hit);
@@ -69,4 +69,4 @@ void endGatherRay(const GatherSite& g, const shading::TargetValue& v, float* row
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,18 +1,18 @@
 // Rows of a gather(): the values of its outputs for each ray, with or without running a shader.
 #pragma once
-#include "answers/answers.h"
 #include "integrator/batchcontext.h"
+#include "services/services.h"
 #include "world/gathersite.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Writes a value of a gather output and sets its presence row, the one before it, to 1. Does nothing if the types differ.
 void putGathered(float* row, const GatherSite::Output&, std::initializer_list<float>);
 void putGathered(float* row, const GatherSite::Output&, const Vec3&);
-void putGathered(float* row, const GatherSite::Output&, const Told&); ///< of any type that converts to the variable's
+void putGathered(float* row, const GatherSite::Output&, const ShaderValue&); ///< of any type that converts to the variable's
 void tellRay(const GatherSite&, float* row, const Vec3& origin, const Vec3& dir, float distance);
 void tellHit(const WorldImpl&, const GatherSite&, float* row, const accel::Hit&, const Vec3& dir);
 /// Writes the result of a ray that was traced.
 void endGatherRay(const GatherSite&, const shading::TargetValue&, float* row);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,9 +1,10 @@
 // Camera rays with a given hit: a point of a micropolygon, or of a grid that is baked.
 #pragma once
+#include "integrator/names.h"
 #include "shading/gridpoint.h"
 #include "shading/point.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Whether the hit of this ray is given by its sample, regardless of other geometry.
 inline bool beginsAtGrid(const shading::PathRay& r) { return r.sample->grid && r.camera() && r.bounces == 0 && r.layers == 0; }
@@ -14,4 +15,4 @@ inline Vec2 stepsAt(const shading::PathRay& r, const geometry::SurfacePoint& p, 
     return shading::footprintAt(p, r.footprint, r.dir, length(p.P - r.origin), shadingRate);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

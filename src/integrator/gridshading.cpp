@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 
@@ -75,7 +75,7 @@ void GridShading::begin(std::span<const CameraRay> rays, std::span<SampleResult>
 }
 
 /// Finds the next hits of the continuing samples: hits_, points_.
-void GridShading::meet(std::span<const CameraRay> rays) {
+void GridShading::intersect(std::span<const CameraRay> rays) {
     rays_.resize(samples_.size());
     hits_.assign(samples_.size(), {});
     points_.resize(samples_.size());
@@ -90,7 +90,7 @@ void GridShading::meet(std::span<const CameraRay> rays) {
         if (world_.fades_) r.level = pipeline_.stages().store.levelOf(c);
         pipeline_.stages().intersector.clip(r);
     }
-    pipeline_.stages().intersector.meet(rays_, hits_, true);
+    pipeline_.stages().intersector.intersect(rays_, hits_, true);
     unfinished_ |= pipeline_.unfinished();
     for (size_t i = 0; i < samples_.size(); ++i) points_[i] = rays_[i].org + rays_[i].dir * float(hits_[i].distance);
 }
@@ -276,7 +276,7 @@ bool GridShading::depths(std::span<const CameraRay> rays, std::span<SampleResult
     begin(rays, out);
     pipeline_.counters().paths += rays.size();
     pipeline_.counters().camera += rays.size();
-    meet(rays);
+    intersect(rays);
     for (size_t i = 0; i < rays.size(); ++i)
         if (hits_[i].valid()) out[i].z = rays[i].origin.z + rays[i].direction.z * float(hits_[i].distance);
     return !(stop && *stop);
@@ -289,7 +289,7 @@ bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult
     while (!samples_.empty()) {
         if (values_.size() * sizeof(float) > limits::kMicropolygonBytes) forget(); // between layers, when no sample holds a slot
         pipeline_.unfinished() = false;
-        meet(rays);
+        intersect(rays);
         if (stop && *stop) return false;
         findShares();
         if (!shade(stop)) return false;
@@ -317,4 +317,4 @@ bool GridShading::followSampleBySample(std::span<const CameraRay> rays, std::spa
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

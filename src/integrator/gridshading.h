@@ -5,7 +5,7 @@
 #include "integrator/micropolygons.h"
 #include "integrator/samples.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Pipeline;
 
@@ -17,7 +17,7 @@ public:
     /// need values of their own: their time (an open shutter under raytrace) or a volume around the eye.
     static bool takes(const WorldImpl&);
     /// Whether samples without a hit are black and empty.
-    bool emptyIsBlack() const { return !seesSky_ && !world_.unmade_; }
+    bool emptyIsBlack() const { return !seesSky_ && !world_.deferred_; }
     /// Integrator::trace() for camera samples of the picture. The bits do not depend on what was shaded before.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     /// The same for CameraRay::depthOnly.
@@ -38,7 +38,7 @@ private:
     bool follow(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     bool followSampleBySample(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     void begin(std::span<const CameraRay>, std::span<SampleResult>);
-    void meet(std::span<const CameraRay>);
+    void intersect(std::span<const CameraRay>);
     void findShares();
     uint32_t slotOf(const MicropolygonShare&);
     bool shade(const StopFlag*);
@@ -87,4 +87,4 @@ private:
     } work_; ///< scratch memory for shading micropolygons
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,13 +1,13 @@
 #include "integrator/guiderays.h"
-#include "answers/random.h"
 #include "base/hash.h"
+#include "bsdf/sampling.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
-#include "lobes/sampling.h"
+#include "services/random.h"
 #include "world/emitterfootprint.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 GuideRays::GuideRays(const StageSet& s) : Stage(s.context), store_(s.store) {
     // A waiting kernel decides by the results of its rays; in other kernels only lobes of trace() can be deltas.
@@ -98,4 +98,4 @@ bool GuideRays::bringsNothing(const PathRay& r, int binding) const {
            !((r.trail & shading::kTrailMirrored) && world_.bindings_[size_t(binding)].areaLight >= 0);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

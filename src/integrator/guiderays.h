@@ -5,11 +5,11 @@
 // where it meets its first mirror, so that a ray that meets none pays nothing.
 // Reads points, lobes and PathRay::trail; writes rays. Costs about 60 ns a point, and a density at each mirror behind one.
 #pragma once
+#include "bsdf/lobe.h"
 #include "integrator/context.h"
-#include "lobes/lobe.h"
 #include "world/causticguide.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class RayStore;
 struct StageSet;
@@ -35,13 +35,13 @@ public:
 
     /// A lobe with a ray of its own of density `pdf`, followed with probability `chosen`.
     struct Lobe {
-        const PathRay& from; ///< the ray that hit the point
-        TargetId target;     ///< receives the light of the ray
-        Vec3 P;              ///< the point, camera space
-        Color weight;        ///< of the request alone, without the throughput of `from`
-        float indirect;      ///< LobeVertex::indirect times the energy rule, 0 to 1
-        float chosen;        ///< probability that the lobe's own ray is drawn
-        float spread;        ///< half angle of the lobe, radians
+        const PathRay& from;  ///< the ray that hit the point
+        AccumulatorId target; ///< receives the light of the ray
+        Vec3 P;               ///< the point, camera space
+        Color weight;         ///< of the request alone, without the throughput of `from`
+        float indirect;       ///< LobeVertex::indirect times the energy rule, 0 to 1
+        float chosen;         ///< probability that the lobe's own ray is drawn
+        float spread;         ///< half angle of the lobe, radians
         const RayKind* kind;
         int32_t share;
         float importance;
@@ -66,7 +66,7 @@ public:
     bool bringsNothing(const PathRay& r, int binding) const;
     /// Updates a ray that continues behind a surface of this binding. Guide rays end at surfaces that are no mirrors, so light
     /// that the lobe's own ray finds behind such a surface counts in full.
-    void passThrough(PathRay& r, int binding) const {
+    void continueBehind(PathRay& r, int binding) const {
         if (binding < 0 || !ends(binding)) return;
         if (r.guideCode()) r.trail &= shading::kTrailGuide - 1;
         if (r.lobePdf < 0) r.lobePdf = -1;
@@ -80,4 +80,4 @@ private:
     RayStore& store_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -6,7 +6,7 @@
 #include "integrator/raystore.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 GuideScatter::GuideScatter(const StageSet& s, const VertexLobes& v, const LobeSelection& selection)
     : VertexStage(s, v), selection_(selection), guide_(s.guide), paths_(s.paths), media_(s.media) {}
@@ -64,4 +64,4 @@ void GuideScatter::run(Sched& sched) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "integrator/guiderays.h"
 #include "integrator/vertexlobes.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class LightPathStates;
 class LobeSelection;
@@ -30,4 +30,4 @@ private:
     MediaStacks& media_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

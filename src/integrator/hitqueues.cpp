@@ -3,7 +3,7 @@
 #include "integrator/stageset.h"
 #include "integrator/waitingkernels.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 constexpr size_t kBatchPoints = 256;  ///< a group with so many hits is shaded without waiting for more
@@ -67,4 +67,4 @@ size_t HitQueues::longest() const {
                              [&](size_t a, size_t b) { return queues_[a].hits.size() < queues_[b].hits.size(); });
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct StageSet;
 class WaitingKernels;
@@ -28,7 +28,7 @@ private:
     struct Queue {
         std::vector<accel::Hit> hits;
         std::vector<PathRay> rays;
-        std::vector<TargetId> targets;
+        std::vector<AccumulatorId> targets;
         bool waits = false; ///< its kernel waits for rays; if so,
         size_t room = 0;    ///< so many of its points may be shaded now
     };
@@ -38,4 +38,4 @@ private:
     WaitingKernels& waitingKernels_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

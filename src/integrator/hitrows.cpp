@@ -6,7 +6,7 @@
 #include "lanes/stages.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 static_assert(accel::DirectRays::kSize == kBlock);
 
@@ -23,7 +23,7 @@ bool Intersector::castRows(std::span<const Sched::Task> slice) {
     std::fill_n(block.tnear, kBlock, 0.f);
     for (size_t first = 0; first < slice.size(); first += kBlock) {
         const int n = int(std::min(slice.size() - first, size_t(kBlock)));
-        transport::stages().load(&slice[first].payload, int(sizeof(Sched::Task)), n, kWords, rays.origin);
+        lanes::stages().load(&slice[first].payload, int(sizeof(Sched::Task)), n, kWords, rays.origin);
         float time[kBlock];
         for (int i = 0; i < n; ++i) {
             const RayKind& kind = *slice[first + size_t(i)].payload.kind;
@@ -59,7 +59,7 @@ bool Intersector::blockInRows(std::span<const ShadowRay> asked, std::span<Color>
     uint8_t met[kBlock];
     for (size_t first = 0; first < asked.size(); first += kBlock) {
         const int n = int(std::min(asked.size() - first, size_t(kBlock)));
-        transport::stages().load(&asked[first], int(sizeof(ShadowRay)), n, kWords, rows);
+        lanes::stages().load(&asked[first], int(sizeof(ShadowRay)), n, kWords, rows);
         for (int q = 0; q < 3; ++q) {
             std::copy_n(rows[q], kBlock, block.org[q]);
             std::copy_n(rows[3 + q], kBlock, block.dir[q]);
@@ -83,4 +83,4 @@ bool Intersector::blockInRows(std::span<const ShadowRay> asked, std::span<Color>
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -5,7 +5,7 @@
 #include "integrator/pipeline.h"
 #include <optional>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {
     return World::build(std::move(frame), settings, makeKernelEvaluator, d);
@@ -45,4 +45,4 @@ void Integrator::tally(BounceTally* t) { impl_->pipeline.tally(t); }
 bool Integrator::unfinished() const { return impl_->pipeline.unfinished(); }
 const Counters& Integrator::counters() const { return impl_->pipeline.counters(); }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

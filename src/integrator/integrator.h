@@ -11,7 +11,7 @@
 #include <memory>
 #include <span>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// World::build() with an Evaluator that runs kernels as the integrator does.
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame>, const Settings&, Diagnostics&);
@@ -30,7 +30,7 @@ public:
     /// Whether camera rays within all of these half-spaces are known to hit nothing and to be black, so that they need not be
     /// traced. Conservative: false means unknown. True mainly under hidden.
     bool seesNothing(std::span<const geometry::Plane>) const;
-    /// Whether a ray of the last trace() reached the bound of a deferred procedural; its results are then undefined (unmade.h).
+    /// Whether a ray of the last trace() reached the bound of a deferred procedural; its results are then undefined (deferred.h).
     bool unfinished() const;
     const Counters& counters() const;
 
@@ -39,4 +39,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

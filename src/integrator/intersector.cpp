@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Intersector::Intersector(const StageSet& s) : Stage(s.context) {}
 
@@ -38,9 +38,9 @@ accel::Ray Intersector::rayOf(const PathRay& r) const {
     return ray;
 }
 
-bool Intersector::meet(const accel::Ray& ray, accel::Hit& hit) {
+bool Intersector::intersect(const accel::Ray& ray, accel::Hit& hit) {
     world_.accel_->intersect(ray, hit);
-    if (world_.unmade_ && world_.unmade_->meets(ray, hit.valid() ? hit.distance : INFINITY)) {
+    if (world_.deferred_ && world_.deferred_->intersects(ray, hit.valid() ? hit.distance : INFINITY)) {
         unfinished = true;
         hit = {};
     }
@@ -56,7 +56,7 @@ template <class F> static void inParts(size_t n, const StopFlag* stop, F f) {
     for (size_t at = 0; at < n && !(stop && *stop); at += kPart) f(at, std::min(kPart, n - at));
 }
 
-void Intersector::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> found, bool together) {
+void Intersector::intersect(std::span<const accel::Ray> rays, std::span<accel::Hit> found, bool together) {
     std::fill(found.begin(), found.end(), accel::Hit{});
     inParts(rays.size(), context_.stop, [&](size_t at, size_t n) {
         const auto some = rays.subspan(at, n);
@@ -64,8 +64,8 @@ void Intersector::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> f
         if (together) world_.accel_->intersectTogether(some, met, context_.stop);
         else world_.accel_->intersect(some, met, context_.stop);
     });
-    for (size_t i = 0; world_.unmade_ && i < rays.size(); ++i) {
-        if (!world_.unmade_->meets(rays[i], found[i].valid() ? found[i].distance : INFINITY)) continue;
+    for (size_t i = 0; world_.deferred_ && i < rays.size(); ++i) {
+        if (!world_.deferred_->intersects(rays[i], found[i].valid() ? found[i].distance : INFINITY)) continue;
         unfinished = true;
         found[i] = {};
     }
@@ -73,19 +73,19 @@ void Intersector::meet(std::span<const accel::Ray> rays, std::span<accel::Hit> f
     for (const accel::Hit& h : found) counters_.hits += h.valid();
 }
 
-void Intersector::meetFew(std::span<const accel::Ray> rays, std::span<accel::Hit> found) {
+void Intersector::intersectFew(std::span<const accel::Ray> rays, std::span<accel::Hit> found) {
     std::fill(found.begin(), found.end(), accel::Hit{});
     world_.byOpacity_.few->intersect(rays, found, context_.stop);
     counters_.tests += rays.size();
     for (const accel::Hit& h : found) counters_.hits += h.valid();
 }
 
-void Intersector::block(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
+void Intersector::occluded(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
     std::fill(blocked.begin(), blocked.end(), uint8_t(0));
     inParts(rays.size(), context_.stop,
             [&](size_t at, size_t n) { world_.accel_->occluded(rays.subspan(at, n), blocked.subspan(at, n), context_.stop); });
-    for (size_t i = 0; world_.unmade_ && i < rays.size(); ++i) {
-        if (blocked[i] || !world_.unmade_->meets(rays[i], INFINITY)) continue;
+    for (size_t i = 0; world_.deferred_ && i < rays.size(); ++i) {
+        if (blocked[i] || !world_.deferred_->intersects(rays[i], INFINITY)) continue;
         unfinished = true;
         blocked[i] = 1;
     }
@@ -95,7 +95,7 @@ void Intersector::block(std::span<const accel::Ray> rays, std::span<uint8_t> blo
 
 void Intersector::begin(bool grids) {
     grids_ = grids;
-    inRows_ = world_.accel_->takesRows() && !world_.unmade_ && world_.clippingPlanes_.empty() && !world_.shadesAtOpen_;
+    inRows_ = world_.accel_->takesRows() && !world_.deferred_ && world_.clippingPlanes_.empty() && !world_.shadesAtOpen_;
 }
 
 void Intersector::cast(std::span<const Sched::Task> slice) {
@@ -110,9 +110,9 @@ void Intersector::cast(std::span<const Sched::Task> slice) {
         else given_.push_back(uint32_t(i));
     }
     const auto first = [](const Sched::Task& t) { return t.payload.camera() && t.payload.bounces == 0; };
-    if (given_.empty()) return meet(rays_, hits, std::all_of(slice.begin(), slice.end(), first));
+    if (given_.empty()) return intersect(rays_, hits, std::all_of(slice.begin(), slice.end(), first));
     found_.resize(rays_.size());
-    meet(rays_, found_);
+    intersect(rays_, found_);
     size_t next = 0, met = 0;
     for (size_t i = 0; i < slice.size(); ++i) {
         if (next == given_.size() || given_[next] != i) {
@@ -125,4 +125,4 @@ void Intersector::cast(std::span<const Sched::Task> slice) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,20 +3,20 @@
 #pragma once
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct StageSet;
 
 class Intersector final : Stage {
 public:
     explicit Intersector(const StageSet&);
-    /// meet(): nearest hits; block(): whether anything occludes the rays. Rays end at the bounds of deferred procedurals.
+    /// intersect(): nearest hits; occluded(): whether anything occludes the rays. Rays end at the bounds of deferred procedurals.
     /// together: neighbouring rays are coherent.
-    void meet(std::span<const accel::Ray>, std::span<accel::Hit>, bool together = false);
-    bool meet(const accel::Ray&, accel::Hit&);
+    void intersect(std::span<const accel::Ray>, std::span<accel::Hit>, bool together = false);
+    bool intersect(const accel::Ray&, accel::Hit&);
     /// Nearest hits among the shapes that do not block all light, WorldImpl::byOpacity_.few. Rays and hits use its numbers.
-    void meetFew(std::span<const accel::Ray>, std::span<accel::Hit>);
-    void block(std::span<const accel::Ray>, std::span<uint8_t>);
+    void intersectFew(std::span<const accel::Ray>, std::span<accel::Hit>);
+    void occluded(std::span<const accel::Ray>, std::span<uint8_t>);
     /// Transmittance of shadow rays whose answer is available in rows of 16: 1 if unoccluded, else 0. Returns false, without
     /// effect, if these rays need more.
     bool blockInRows(std::span<const ShadowRay>, std::span<Color> out);
@@ -28,7 +28,7 @@ public:
     void begin(bool grids);
 
     std::vector<accel::Hit> hits; ///< by ray of the slice
-    /// A ray reached the bound of a deferred procedural (Unmade) since this was reset; the results are undefined.
+    /// A ray reached the bound of a deferred procedural (DeferredBounds) since this was reset; the results are undefined.
     bool unfinished = false;
 
 private:
@@ -40,4 +40,4 @@ private:
     bool grids_ = false;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,5 +1,6 @@
 // Irradiance caching (world/records.h): calls that interpolate records, and in the pass that makes records, the rays of new ones.
 #include "integrator/irradiancerecords.h"
+#include "bsdf/sampling.h"
 #include "integrator/context.h"
 #include "integrator/intersector.h"
 #include "integrator/mediastacks.h"
@@ -9,11 +10,10 @@
 #include "integrator/requests.h"
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
-#include "lobes/sampling.h"
 #include "world/raysets.h"
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 IrradianceRecords::IrradianceRecords(const StageSet& s)
     : Stage(s.context), intersector_(s.intersector), media_(s.media), occlusion_(s.occlusion), store_(s.store),
@@ -160,7 +160,7 @@ void IrradianceRecords::blockedRecord(Recording& n) {
     std::vector<ShadowRay> rays;
     for (const PathRay& r : n.rays) {
         ShadowRay& s = rays.emplace_back();
-        s = {r.origin, r.dir, n.reach, Color(1), shading::kNoTarget, r.shutter(), nullptr};
+        s = {r.origin, r.dir, n.reach, Color(1), shading::kNoAccumulator, r.shutter(), nullptr};
         s.kind = n.kind;
         s.media = r.media;
         s.hemisphere = int32_t(occlusion_.hemispheres.size());
@@ -173,7 +173,7 @@ void IrradianceRecords::blockedRecord(Recording& n) {
         way.sides = n.kind->set.sides;
         way.only = n.kind->set.only;
         accel::Hit hit;
-        n.ways.push_back(intersector_.meet(way, hit) ? float(hit.distance) : 1e38f);
+        n.ways.push_back(intersector_.intersect(way, hit) ? float(hit.distance) : 1e38f);
     }
     HemisphereRays h;
     h.site = n.site;
@@ -188,7 +188,7 @@ void IrradianceRecords::blockedRecord(Recording& n) {
 
 void IrradianceRecords::keep(const Sched& sched) {
     for (Recording& n : recordings_) {
-        for (const TargetId t : n.targets) {
+        for (const AccumulatorId t : n.targets) {
             const shading::TargetValue v = sched.value(t);
             n.seen.push_back(v.radiance);
             n.ways.push_back(v.distance);
@@ -206,4 +206,4 @@ void IrradianceRecords::forget() {
     shadows_.settled.clear();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -5,7 +5,7 @@
 #include "integrator/context.h"
 #include "integrator/recordings.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Intersector;
 class MediaStacks;
@@ -39,4 +39,4 @@ private:
     ShadowRays& shadows_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "integrator/vertex.h"
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 
@@ -154,4 +154,4 @@ void KernelInputs::bind(rsl::KernelCall& call, BatchContext& c) {
     call.stop = context_.stop ? context_.stop : &kGo;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -5,7 +5,7 @@
 #include "integrator/lightkernels.h"
 #include "integrator/pipeline.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 
@@ -43,4 +43,4 @@ std::unique_ptr<Evaluator> makeKernelEvaluator(const WorldImpl& world, Diagnosti
     return std::make_unique<KernelEvaluator>(world, d, stop);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

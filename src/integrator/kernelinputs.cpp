@@ -3,7 +3,7 @@
 #include "integrator/lightkernels.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 KernelInputs::KernelInputs(const StageSet& s) : Stage(s.context), answers(world_, diagnostics_, &s.lightKernels) {}
 
@@ -44,4 +44,4 @@ void KernelInputs::fill(BatchContext& c) {
     bind(c.batch->call(), c);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

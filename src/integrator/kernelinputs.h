@@ -1,11 +1,11 @@
 // Inputs of kernels from points, parameters by binding, and the callbacks of running kernels.
 #pragma once
-#include "answers/answers.h"
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
+#include "services/services.h"
 #include <array>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct StageSet;
 
@@ -28,7 +28,7 @@ public:
 
     std::vector<shading::InstanceView> views;
     std::vector<uint32_t> viewOf; ///< by point
-    Answers answers;
+    Services answers;
 
 private:
     const shading::ParameterRows* parametersOf(int binding, const shading::BatchPlan&);
@@ -37,4 +37,4 @@ private:
     std::vector<int> slotOf_; ///< by binding: index in views, or -1
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,6 +1,7 @@
 // Stage LastSkies: at the depth limit of a path lamps are still sampled; a sky that is not sampled as a light must count as well.
 // The ray that would have reached it becomes a shadow ray with the light of the sky alone.
 #include "integrator/lastskies.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
@@ -9,9 +10,8 @@
 #include "integrator/requests.h"
 #include "integrator/scatterrays.h"
 #include "integrator/shadowrays.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 LastSkies::LastSkies(const StageSet& s, const VertexLobes& v, ScatterRays& scatter)
     : VertexStage(s, v), scatter_(scatter), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths),
@@ -82,4 +82,4 @@ void LastSkies::lastSky(int number) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -2,7 +2,7 @@
 #pragma once
 #include "integrator/scatterrays.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class LightKernels;
 class LitSurfaces;
@@ -24,4 +24,4 @@ private:
     ShadowRays& shadows_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

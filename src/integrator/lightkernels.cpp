@@ -1,5 +1,6 @@
 // Runs light kernels in batches for the points that they light.
 #include "integrator/lightkernels.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/atmosphere.h"
 #include "integrator/batchpool.h"
@@ -13,10 +14,9 @@
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/strips.h"
-#include "lobes/sampling.h"
 #include "world/gathersite.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 LightKernels::LightKernels(const StageSet& s)
     : Stage(s.context), atmosphere_(s.atmosphere), batches_(s.batches), gathers_(s.gathers), inputs_(s.inputs), media_(s.media),
@@ -31,7 +31,7 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
         std::vector<ShadowRay> rays;
         if (s.rays->samples >= 0 && s.rays->cone >= 0 && row(s.rays->cone) > 0)
             occlusion_.samplesOf(std::max(1.f, row(s.rays->samples)), p.shape, s, c); // reports too many samples
-        shadows_.transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
+        shadows_.transmissionRays(s, p, p.Ps, p.lit, row, Color(1), shading::kNoAccumulator, site, occurrence, rays);
         const auto point3 = [&](size_t arg) { return Vec3(row(s.rows[arg]), row(s.rows[arg] + 1), row(s.rows[arg] + 2)); };
         const Vec3 from = point3(0), to = point3(1);
         media_.shadowsInMedia(rays, from, to, p.Ps, p.lit, c.lit ? c.lit->binding(point) : nullptr);
@@ -48,7 +48,7 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
         std::vector<ShadowRay> rays;
         const size_t had = occlusion_.hemispheres.size();
         if (world_.accel_)
-            occlusion_.hemisphereRays(c, s, p, p.Ps, p.lit, row, Color(1), shading::kNoTarget, site, occurrence, rays);
+            occlusion_.hemisphereRays(c, s, p, p.Ps, p.lit, row, Color(1), shading::kNoAccumulator, site, occurrence, rays);
         else value.radiance = Color(1);
         std::vector<Color> left(rays.size());
         shadows_.transmittances(rays, left);
@@ -60,7 +60,7 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
     return nested_.trace(c, s, point, row, occurrence);
 }
 
-/// Answers a gather() in a light's kernel.
+/// Services a gather() in a light's kernel.
 void LightKernels::gather(BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
     const int lanes = c.requestLanes;
     if (!world_.accel_ || !c.points[size_t(first)].ray) { // lights being measured see no geometry: one ray without a hit
@@ -204,7 +204,7 @@ void LightKernels::evaluateLight(const BoundLight& light, std::vector<ShadePoint
     for (size_t i = 0; i < queries.size(); ++i) // the kernel divided by the squared distance; radiance does not
         if (const float scale = (call.of.empty() ? light : *call.of[i]).intensityScale; scale > 0)
             out[i].Cl *= dot(out[i].L, out[i].L) * scale;
-    atmosphere_.hazeOfEmitters(light, queries, out, call.inMedium);
+    atmosphere_.atmosphereOfEmitters(light, queries, out, call.inMedium);
     batches_.giveBack(std::move(c));
 }
 
@@ -217,4 +217,4 @@ float LightKernels::chanceOf(int light, int binding, const Vec3& from, int bounc
     return at != on.end() && *at == light ? chooser.pmf(int(at - on.begin()), from) : 0;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

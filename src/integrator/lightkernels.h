@@ -1,11 +1,11 @@
 // Runs light shaders in batches for the points that they light; area lights at points on the emitter. If the kernel waits for
 // rays, they are traced to the end at once (nestedtrace.h).
 #pragma once
-#include "answers/answers.h"
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
+#include "services/services.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class Atmosphere;
@@ -52,4 +52,4 @@ private:
     ShadowRays& shadows_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

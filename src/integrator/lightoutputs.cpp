@@ -18,7 +18,7 @@
 #include <map>
 #include <tuple>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 LightOutputs::LightOutputs(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), displacement_(s.displacement), inputs_(s.inputs),
@@ -48,7 +48,7 @@ Color weightOf(const BatchContext& c, const EmitRecord& e, int lane) {
 
 } // namespace
 
-std::vector<std::shared_ptr<BatchContext>> LightOutputs::asides(const BatchContext& c, Sched& sched) {
+std::vector<std::shared_ptr<BatchContext>> LightOutputs::lightOutputBatches(const BatchContext& c, Sched& sched) {
     std::vector<std::shared_ptr<BatchContext>> all;
     const SurfaceBinding& b = *c.binding;
     if (b.lightOutputs.empty() || (c.bound != &b.surfaceS && c.bound != &b.surfaceV)) return all;
@@ -87,14 +87,14 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::asides(const BatchConte
         if (!bound.kernel->facts().suspends) {
             bound.kernel->run(&run->batch->call());
             run->ran();
-            finishAside(*run, 0, int(of.size()), sched);
+            finishLightOutputs(*run, 0, int(of.size()), sched);
         }
         all.push_back(std::move(run));
     }
     return all;
 }
 
-void LightOutputs::finishAside(BatchContext& c, int first, int lanes, Sched& sched) {
+void LightOutputs::finishLightOutputs(BatchContext& c, int first, int lanes, Sched& sched) {
     const int output = c.batch->output(c.aside->slot);
     const bool triple = world_.lightOutputs_[size_t(c.aside->number)].size == 3;
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
@@ -102,13 +102,13 @@ void LightOutputs::finishAside(BatchContext& c, int first, int lanes, Sched& sch
         if (!ray.counts) continue;
         const Color light =
             triple ? ray.weight * c.batch->color(output, i) : Color(luminance(ray.weight) * c.batch->value(output, 0, i), 0, 0);
-        accumulator_.deposit(sched, {c.targets[size_t(i)], light, LightEvent::Output, &ray});
+        accumulator_.contribute(sched, {c.targets[size_t(i)], light, LightEvent::Output, &ray});
     }
 }
 
-std::vector<AskedAside> LightOutputs::shareLight(const BatchContext& c, std::span<const AskedLobe> asked,
-                                                 std::span<const std::shared_ptr<BatchContext>> runs, Sched&) {
-    std::vector<AskedAside> rest;
+std::vector<LightOutputRequest> LightOutputs::shareLight(const BatchContext& c, std::span<const AskedLobe> asked,
+                                                         std::span<const std::shared_ptr<BatchContext>> runs, Sched&) {
+    std::vector<LightOutputRequest> rest;
     if (runs.empty()) return rest;
     std::vector<std::vector<const AskedLobe*>> lobesOf(c.points.size());
     for (const AskedLobe& a : asked) lobesOf[size_t(requests_.lobes[size_t(a.lobe)].point)].push_back(&a);
@@ -155,7 +155,8 @@ std::vector<AskedAside> LightOutputs::shareLight(const BatchContext& c, std::spa
     return rest;
 }
 
-void LightOutputs::followAsides(std::span<const AskedAside> rest, std::span<std::shared_ptr<BatchContext>> runs, Sched& sched) {
+void LightOutputs::followLightOutputs(std::span<const LightOutputRequest> rest, std::span<std::shared_ptr<BatchContext>> runs,
+                                      Sched& sched) {
     size_t next = 0;
     for (const auto& run : runs) {
         BatchContext& c = *run;
@@ -165,12 +166,12 @@ void LightOutputs::followAsides(std::span<const AskedAside> rest, std::span<std:
         }
         std::map<std::pair<int, int>, uint32_t> occurrence; // by call site and point
         for (; next < rest.size() && rest[next].run == &c; ++next) {
-            const AskedAside& a = rest[next];
+            const LightOutputRequest& a = rest[next];
             const EmitRecord& e = c.emits[size_t(a.record)];
             const SiteInfo& s = c.bound->sites[size_t(e.site)];
             const int point = e.first + a.lane;
             const float* args = c.arena.data() + e.offset + size_t(3) * size_t(e.lanes);
-            const TargetId target = c.targets[size_t(point)];
+            const AccumulatorId target = c.targets[size_t(point)];
             const Color through = c.rays[size_t(point)].weight;
             if (s.kind == SiteKind::LightVisibility)
                 requests_.lightVisibility(c, s, point, args, e.lanes, a.lane, a.weight * through, target);
@@ -184,4 +185,4 @@ void LightOutputs::followAsides(std::span<const AskedAside> rest, std::span<std:
     for (auto& run : runs) batches_.giveBack(std::move(run));
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,7 +3,7 @@
 #pragma once
 #include "integrator/requests.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class BatchPool;
 class Displacement;
@@ -12,7 +12,7 @@ class VertexLight;
 class WaitingKernels;
 
 /// A pair of an output that shares no lobe with Ci, or not in all components.
-struct AskedAside {
+struct LightOutputRequest {
     BatchContext* run;
     int record, lane;
     Color weight;
@@ -22,14 +22,14 @@ class LightOutputs final : Stage {
 public:
     explicit LightOutputs(const StageSet&);
     /// Batches that run the light outputs for the camera points of a filled batch.
-    std::vector<std::shared_ptr<BatchContext>> asides(const BatchContext&, Sched&);
+    std::vector<std::shared_ptr<BatchContext>> lightOutputBatches(const BatchContext&, Sched&);
     /// Assigns outputs to the lobes of a batch and returns the pairs that share none. The output batches must have run.
-    std::vector<AskedAside> shareLight(const BatchContext&, std::span<const AskedLobe>,
-                                       std::span<const std::shared_ptr<BatchContext>>, Sched&);
+    std::vector<LightOutputRequest> shareLight(const BatchContext&, std::span<const AskedLobe>,
+                                               std::span<const std::shared_ptr<BatchContext>>, Sched&);
     /// Follows pairs that share no lobe, and outputs whose kernels wait for rays.
-    void followAsides(std::span<const AskedAside>, std::span<std::shared_ptr<BatchContext>>, Sched&);
+    void followLightOutputs(std::span<const LightOutputRequest>, std::span<std::shared_ptr<BatchContext>>, Sched&);
     /// Adds the outputs of completed points.
-    void finishAside(BatchContext&, int first, int lanes, Sched&);
+    void finishLightOutputs(BatchContext&, int first, int lanes, Sched&);
 
 private:
     Accumulator& accumulator_;
@@ -42,4 +42,4 @@ private:
     WaitingKernels& waitingKernels_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

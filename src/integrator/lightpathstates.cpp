@@ -3,7 +3,7 @@
 #include "integrator/context.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 /// Name of a light in expressions, besides its handle: Attribute "light" "group", else parameter "__group" of its shader.
@@ -79,4 +79,4 @@ uint16_t LightPathStates::atLoop(const ShadePoint& p, const PathRay& ray, const 
     return next(ray.path, automaton->symbol(event, scene::PathScattering::Diffuse, label));
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,7 +3,7 @@
 #include "integrator/context.h"
 #include "integrator/vertex.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct StageSet;
 
@@ -35,4 +35,4 @@ private:
     mutable std::unordered_map<const LobeKind*, int> labelOfLobe_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

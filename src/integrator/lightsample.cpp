@@ -1,8 +1,8 @@
 #include "integrator/lightsample.h"
-#include "answers/lightloop.h"
+#include "services/lightloop.h"
 #include "world/skytable.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 void tellLit(ShadePoint& p, const ShadePoint& lit) {
     p.Ps = lit.P;
@@ -30,11 +30,11 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)
                          : light.emitter->sample(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)))
             return false;
-        if (world.accel_->hasSolids() &&
-            !world.accel_->keeps(world.numberOfShape_.at(s.shape), meetsAt(p.surface), meetsNormal(p.surface), p.shutter))
+        if (world.accel_->hasSolids() && !world.accel_->keeps(world.numberOfShape_.at(s.shape), intersectsAt(p.surface),
+                                                              intersectsNormal(p.surface), p.shutter))
             return false; // the part of a lamp outside of its CSG solid
         p.shape = s.shape;
-        p.P = meetsAt(p.surface);
+        p.P = intersectsAt(p.surface);
         p.N = p.surface.n;
         p.Ci = Color(0);
         return true;
@@ -56,4 +56,4 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

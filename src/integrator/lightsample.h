@@ -2,7 +2,7 @@
 #pragma once
 #include "integrator/rays.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// The random numbers of a light sample.
 struct LightNumbers {
@@ -20,4 +20,4 @@ Vec3 originOfLight(const ShaderInstance&, float shutter);
 /// Samples the point on the light for a query filled by tellLit(). Returns false if the sample carries no light.
 bool placeLightSample(const WorldImpl&, const BoundLight&, const LightNumbers&, bool path, ShadePoint& query, Emitter::Sample&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

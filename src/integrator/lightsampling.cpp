@@ -13,7 +13,7 @@
 #include "integrator/shadowrays.h"
 #include "world/emitterfootprint.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 LightSampling::LightSampling(const StageSet& s, const VertexLobes& v, Connection& connection, PhotonScatter& photonScatter)
     : VertexStage(s, v), connection_(connection), photonScatter_(photonScatter), inputs_(s.inputs), lightKernels_(s.lightKernels),
@@ -266,11 +266,11 @@ void LightSampling::askLights(const BoundKernel* shared) {
         const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
         const Random random = store_.random(c_->rays[size_t(q.point[k])]).draw(uint32_t(q.draw[k].nth), uint32_t(q.draw[k].of));
         const float u = random.one(lightVertex(size_t(q.point[k])), use, 0);
-        Answers::chooseSent(light, u, values.data() + k * width, q.value[k]);
+        Services::chooseSent(light, u, values.data() + k * width, q.value[k]);
     }
     for (size_t k = 0; k < q.count && light.channels; ++k)
         if (k == 0 || q.point[k] != q.point[k - 1]) // for several widths, the first
             inputs_.answers.keepChannels(*c_, light, q.point[k], values.data() + k * width);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #pragma once
 #include "integrator/vertexlobes.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Connection;
 class KernelInputs;
@@ -73,4 +73,4 @@ private:
     ShadowRays& shadows_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

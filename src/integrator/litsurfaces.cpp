@@ -2,7 +2,7 @@
 #include "integrator/context.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 LitSurfaces::LitSurfaces(const StageSet& s) : Stage(s.context) {}
 
@@ -40,4 +40,4 @@ void LitSurfaces::tellOutputs(LitValues& told, const BatchContext& c, size_t poi
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "integrator/context.h"
 #include "integrator/vertex.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct StageSet;
 
@@ -19,4 +19,4 @@ public:
     std::vector<LitValues> values; ///< for the current batch; filled only if lights query surfaces
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

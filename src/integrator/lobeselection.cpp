@@ -8,11 +8,11 @@
 #include "integrator/transparency.h"
 #include "integrator/vertexlight.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 LobeSelection::LobeSelection(const StageSet& s, const VertexLobes& v, PhotonScatter& photonScatter)
     : VertexStage(s, v), photonScatter_(photonScatter), accumulator_(s.accumulator), media_(s.media),
-      mediumFlights_(s.mediumFlights), photons_(s.photons), transparency_(s.transparency), vertexLight_(s.vertexLight) {}
+      mediumEvents_(s.mediumEvents), photons_(s.photons), transparency_(s.transparency), vertexLight_(s.vertexLight) {}
 
 namespace {
 /// Indirect light of a lobe may be scaled to 0, but its ray still carries emission: the lobe keeps at least this fraction of its
@@ -118,4 +118,4 @@ float LobeSelection::energyScale(size_t point, const Color& reflected, const Col
     return scale;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,12 +3,12 @@
 #pragma once
 #include "integrator/vertexlobes.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class LightKernels;
 class MediaStacks;
-class MediumFlights;
+class MediumEvents;
 class PhotonScatter;
 class PhotonStage;
 class Transparency;
@@ -18,8 +18,8 @@ class LobeSelection final : VertexStage {
 public:
     LobeSelection(const StageSet&, const VertexLobes&, PhotonScatter&);
     void choose();
-    void measureAlbedos(); ///< estimates albedos without a closed form, for AOVs
-    void besideLights();   ///< selects lights for light-directed sampling (beside.cpp)
+    void measureAlbedos();  ///< estimates albedos without a closed form, for AOVs
+    void lightDirections(); ///< selects lights for light-directed sampling (lightdirected.cpp)
     /// Factor for indirect light by the energy rule: reflected plus transmitted light must not exceed the incident light.
     float energyScale(size_t point, const Color& reflected, const Color& clear);
 
@@ -30,16 +30,16 @@ private:
     void choosePoint(size_t point);
     bool tooDeep(const LobeVertex&, const PathRay&, const SurfaceBinding&) const;
     bool albedoIsMeasured(const LobeVertex&) const; ///< once `delta` is set
-    void besideLight(size_t point);
+    void lightDirection(size_t point);
     std::vector<int> aimed_; ///< lobes that sample toward a light
     render::NumberRows numbers_;
     PhotonScatter& photonScatter_;
     Accumulator& accumulator_;
     MediaStacks& media_;
-    MediumFlights& mediumFlights_;
+    MediumEvents& mediumEvents_;
     PhotonStage& photons_;
     Transparency& transparency_;
     VertexLight& vertexLight_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 MediaStacks::MediaStacks(const StageSet& s) : Stage(s.context), atmosphere_(s.atmosphere) {}
 
@@ -71,7 +71,7 @@ void MediaStacks::dim(std::span<const MediumPart> parts, std::span<const ShadowR
         return std::tie(a->medium, a->ray) < std::tie(b->medium, b->ray);
     });
     std::vector<ShadePoint> points;
-    std::vector<Haze> hazes;
+    std::vector<AtmosphereEffect> hazes;
     for (size_t first = 0, end; first < order.size(); first = end) {
         const Medium& m = world_.media_[size_t(order[first]->medium)];
         points.clear();
@@ -94,7 +94,7 @@ void MediaStacks::dim(std::span<const MediumPart> parts, std::span<const ShadowR
         }
         if (points.empty()) continue;
         hazes.assign(points.size(), {});
-        atmosphere_.haze(m, world_.bindings_[size_t(m.binding)], points, hazes, true);
+        atmosphere_.atmosphereEffects(m, world_.bindings_[size_t(m.binding)], points, hazes, true);
         for (size_t k = first; k < end; ++k) {
             const Color& left = hazes[k - first].slope;
             for (int i = 0; i < 3; ++i) out[order[k]->ray][i] *= std::isfinite(left[i]) ? std::max(left[i], 0.f) : 0;
@@ -102,4 +102,4 @@ void MediaStacks::dim(std::span<const MediumPart> parts, std::span<const ShadowR
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

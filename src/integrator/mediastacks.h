@@ -1,10 +1,10 @@
 // Interior and Exterior (RISpec 3.2): the volumes that rays are inside of, and their transmittance for shadow rays.
 #pragma once
-#include "answers/kernelrun.h"
 #include "integrator/context.h"
+#include "services/kernelrun.h"
 #include <deque>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Atmosphere;
 struct StageSet;
@@ -39,4 +39,4 @@ private:
     Atmosphere& atmosphere_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

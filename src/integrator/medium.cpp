@@ -6,24 +6,24 @@
 #include "integrator/batchpool.h"
 #include "integrator/blockvertices.h"
 #include "integrator/context.h"
-#include "integrator/flights.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/litsurfaces.h"
 #include "integrator/mediastacks.h"
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
+#include "integrator/segmentevents.h"
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/vertexlight.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
-MediumFlights::MediumFlights(const StageSet& s)
+MediumEvents::MediumEvents(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches), blocks_(s.blocks),
-      flights_(s.flights), lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media),
-      store_(s.store), requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
+      segmentEvents_(s.segmentEvents), lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths),
+      media_(s.media), store_(s.store), requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
 
 namespace {
 
@@ -53,19 +53,19 @@ double chanceDeepInside(const Homogeneous& h, const Color& weight, float toSurfa
 
 } // namespace
 
-void MediumFlights::addOpacity(const PathRay& r, const Color& c) {
+void MediumEvents::addOpacity(const PathRay& r, const Color& c) {
     accumulator_.results[size_t(r.sample->path)]->opacity += r.weight * c;
 }
 
 /// Adds emission of the medium along the segment.
-void MediumFlights::glow(const Flight& f, const Homogeneous& h, Sched& sched) {
+void MediumEvents::glow(const RaySegment& f, const Homogeneous& h, Sched& sched) {
     if (!(maxComponent(h.emission) > 0)) return;
     Color c;
     for (int k = 0; k < 3; ++k) c[k] = float(h.emission[k] * f.length * meanLeft(double(h.extinction()[k]) * f.length));
-    accumulator_.deposit(sched, {f.target, f.ray->weight * c, LightEvent::Surface, f.ray, store_.extraOf(*f.ray).share});
+    accumulator_.contribute(sched, {f.target, f.ray->weight * c, LightEvent::Surface, f.ray, store_.extraOf(*f.ray).share});
 }
 
-bool MediumFlights::leaks(const Flight& f) {
+bool MediumEvents::leaks(const RaySegment& f) {
     if (f.point) return false;
     const Medium& m = world_.media_[size_t(f.ray->medium())];
     if (++leaks_ == kLeaksSaid)
@@ -81,7 +81,7 @@ bool MediumFlights::leaks(const Flight& f) {
 }
 
 /// Samples the events on a segment up to a surface; returns the scattering point, if any.
-std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t flight, Vec2 u, Sched& sched) {
+std::optional<MediumEvents::Crossing> MediumEvents::cross(RaySegment& f, size_t flight, Vec2 u, Sched& sched) {
     const PathRay& ray = *f.ray;
     const Homogeneous& h = *world_.media_[size_t(ray.medium())].homogeneous;
     const Color before = ray.weight, left = h.left(f.length);
@@ -129,7 +129,7 @@ std::optional<MediumFlights::Crossing> MediumFlights::cross(Flight& f, size_t fl
 }
 
 /// Continues behind a surface that bounds no volume here.
-void MediumFlights::pass(Flight& f, Sched& sched) {
+void MediumEvents::pass(RaySegment& f, Sched& sched) {
     const PathRay& ray = *f.ray;
     const ShadePoint& p = *f.point;
     PathRay r = ray;
@@ -140,10 +140,10 @@ void MediumFlights::pass(Flight& f, Sched& sched) {
         at[0].ray = &ray;
         if (ray.parted) at[0].I = p.P - ray.volumeBegin();
         at[0].Ci = at[0].Oi = Color(0);
-        Haze h;
-        atmosphere_.haze(world_.media_[size_t(medium)], world_.bindings_[size_t(f.binding)], at, {&h, 1}, true);
+        AtmosphereEffect h;
+        atmosphere_.atmosphereEffects(world_.media_[size_t(medium)], world_.bindings_[size_t(f.binding)], at, {&h, 1}, true);
         if (isFinite(h.shown))
-            accumulator_.deposit(sched, {f.target, r.weight * h.shown, LightEvent::Surface, &ray, store_.extraOf(ray).share});
+            accumulator_.contribute(sched, {f.target, r.weight * h.shown, LightEvent::Surface, &ray, store_.extraOf(ray).share});
         if (ray.counts && isFinite(h.opacity)) addOpacity(ray, h.opacity);
         for (int k = 0; k < 3; ++k) r.weight[k] *= std::isfinite(h.slope[k]) ? std::max(h.slope[k], 0.f) : 0;
     }
@@ -154,31 +154,32 @@ void MediumFlights::pass(Flight& f, Sched& sched) {
     r.media = media_.beyond(world_.bindings_[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
     media_.tellLost(r.media, p);
     r.parted = true;
-    r.vertex = childVertex(ray.vertex, kFlight, 1);
+    r.vertex = childVertex(ray.vertex, kSegmentEvent, 1);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) {
         ++counters_.depthCap;
         f.over = true;
         return;
     }
-    flights_.divert(f, r, sched, travelled);
+    segmentEvents_.spawn(f, r, sched, travelled);
 }
 
-void MediumFlights::happen(std::span<Flight> flights, Sched& sched) {
+void MediumEvents::happen(std::span<RaySegment> segmentEvents, Sched& sched) {
     const WorldImpl& w = world_;
-    const auto crosses = [&](const Flight& f) {
+    const auto crosses = [&](const RaySegment& f) {
         const int medium = f.over ? -1 : f.ray->medium();
         return medium >= 0 && w.media_[size_t(medium)].homogeneous;
     };
     numbers_.clear();
-    for (const Flight& f : flights) // other lights than those that its lobe sampled
-        if (crosses(f)) numbers_.askPair(store_.random(*f.ray).numbers(), childVertex(f.ray->vertex, kFlight, 6), kFlight, 0);
+    for (const RaySegment& f : segmentEvents) // other lights than those that its lobe sampled
+        if (crosses(f))
+            numbers_.askPair(store_.random(*f.ray).numbers(), childVertex(f.ray->vertex, kSegmentEvent, 6), kSegmentEvent, 0);
     numbers_.draw();
     std::vector<Crossing>& crossings = crossings_;
     crossings.clear();
     size_t number = 0;
-    for (size_t i = 0; i < flights.size(); ++i) {
-        Flight& f = flights[i];
+    for (size_t i = 0; i < segmentEvents.size(); ++i) {
+        RaySegment& f = segmentEvents[i];
         if (crosses(f)) {
             const Vec2 u = numbers_.pair(number++);
             if (!leaks(f))
@@ -191,18 +192,18 @@ void MediumFlights::happen(std::span<Flight> flights, Sched& sched) {
     for (size_t first = 0, end; first < crossings.size(); first = end) { // of one medium, so with one list of lights
         for (end = first; end < crossings.size() && crossings[end].way.medium == crossings[first].way.medium;) ++end;
         const auto of = std::span<const Crossing>(crossings).subspan(first, end - first);
-        if (rules_.lightsAtRequests) nearLights(flights, of, sched);
-        scatter(flights, of, sched);
+        if (rules_.lightsAtRequests) nearLights(segmentEvents, of, sched);
+        scatter(segmentEvents, of, sched);
     }
 }
 
-Vec3 MediumFlights::besideLight(const Medium& m, const PathRay& r, const Vec3& from, float* away) const {
+Vec3 MediumEvents::lightDirection(const Medium& m, const PathRay& r, const Vec3& from, float* away) const {
     const WorldImpl& w = world_;
     if (!rules_.lightsAtRequests || w.settings_.mediumSampling == MediumSampling::Distance) return {};
     const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
     const LightChooser& chooser = w.chooserOf(list);
     const std::vector<int>& on = w.sampledOf(list);
-    const uint32_t vertex = childVertex(r.vertex, kFlight, 3);
+    const uint32_t vertex = childVertex(r.vertex, kSegmentEvent, 3);
     LightChooser::Chosen chosen;
     for (size_t k = 0; k < on.size() && chooser.empty(); ++k) chosen.emplace_back(int(k), 1.f);
     if (!chooser.empty()) chooser.choose(from, store_.random(r).one(vertex, kChooseLight, 0), chosen);
@@ -225,7 +226,7 @@ Vec3 MediumFlights::besideLight(const Medium& m, const PathRay& r, const Vec3& f
 }
 
 /// Points of scattering gather light like surfaces, by the phase function.
-void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing> crossings, Sched& sched) {
+void MediumEvents::scatter(std::span<RaySegment> segmentEvents, std::span<const Crossing> crossings, Sched& sched) {
     auto c = batches_.take();
     const Medium& m = world_.media_[size_t(crossings[0].way.medium)];
     c->bound = &m.kernel;
@@ -235,17 +236,17 @@ void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing>
     lights_.clear();
     for (const Crossing& x : crossings) {
         if (!x.stops) continue;
-        const Flight& f = flights[x.flight];
+        const RaySegment& f = segmentEvents[x.flight];
         PathRay& r = c->rays.emplace_back(*f.ray);
         const Vec3d left = x.way.leftAt(x.way.t);
         const double density = x.way.density(left);
         for (int k = 0; k < 3; ++k)
             r.weight[k] = density > 0 ? float(x.weight[k] * m.homogeneous->scattering[k] * (left[k] / density)) : 0;
-        r.vertex = childVertex(f.ray->vertex, kFlight, 0);
+        r.vertex = childVertex(f.ray->vertex, kSegmentEvent, 0);
         r.counts = r.first = false;
         if (rules_.roulette) {
             const double q = chanceDeepInside(*m.homogeneous, r.weight, f.length, r.scattered + 1);
-            if (q < 1 && store_.random(r).one(childVertex(r.vertex, kFlight, 7), kRoulette, 0) >= q) {
+            if (q < 1 && store_.random(r).one(childVertex(r.vertex, kSegmentEvent, 7), kRoulette, 0) >= q) {
                 c->rays.pop_back();
                 continue;
             }
@@ -254,15 +255,15 @@ void MediumFlights::scatter(std::span<Flight> flights, std::span<const Crossing>
         c->targets.push_back(f.target);
         c->bindings.push_back(m.binding);
         c->flown.push_back(x.way);
-        lights_.push_back(besideLight(m, r, r.origin + r.dir * x.way.t));
+        lights_.push_back(lightDirection(m, r, r.origin + r.dir * x.way.t));
     }
     if (!c->rays.empty()) gather(*c, m, sched);
     shadows_.flush(sched); // before their rays are freed
     batches_.giveBack(std::move(c));
 }
 
-/// Gathers light at points in a medium. lights_: by point, besideLight().
-void MediumFlights::gather(BatchContext& c, const Medium& m, Sched& sched) {
+/// Gathers light at points in a medium. lights_: by point, lightDirection().
+void MediumEvents::gather(BatchContext& c, const Medium& m, Sched& sched) {
     static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
     if (blocks_.needsPoints(*c.binding)) placePoints(c, m);
     if (blocks_.run(c, *m.homogeneous, lights_, sched)) return;
@@ -275,7 +276,7 @@ void MediumFlights::gather(BatchContext& c, const Medium& m, Sched& sched) {
         l.point = int(i);
         l.weight = Color(1);
         l.target = c.targets[i];
-        l.site = kFlight;
+        l.site = kSegmentEvent;
         if (world_.lightsAsk()) {
             l.lit = int(litSurfaces_.values.size());
             litSurfaces_.values.emplace_back();
@@ -285,7 +286,7 @@ void MediumFlights::gather(BatchContext& c, const Medium& m, Sched& sched) {
     vertexLight_.gather(c, sched);
 }
 
-void MediumFlights::placePoints(BatchContext& c, const Medium& m) const {
+void MediumEvents::placePoints(BatchContext& c, const Medium& m) const {
     c.points.resize(c.rays.size());
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];
@@ -301,4 +302,4 @@ void MediumFlights::placePoints(BatchContext& c, const Medium& m) const {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

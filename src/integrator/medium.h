@@ -1,11 +1,15 @@
 // Segments through homogeneous scattering media (world/bound.h, Homogeneous), in closed form.
 #pragma once
 #include "base/numberlanes.h"
-#include "integrator/beside.h"
 #include "integrator/context.h"
-#include "integrator/flight.h"
+#include "integrator/lightdirected.h"
+#include "integrator/raysegment.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::services {
+struct KernelRun;
+} // namespace alpenglow::services
+
+namespace alpenglow::integrator {
 
 /// Equiangular sampling: chooses points on a segment uniformly in the angle at which a light sees them (Kulla and Fajardo,
 /// Importance Sampling Techniques for Path Tracing in Participating Media, 2012). The density is about proportional to the light
@@ -29,8 +33,7 @@ class Atmosphere;
 struct BatchContext;
 class BatchPool;
 class BlockVertices;
-class Flights;
-struct KernelRun;
+class SegmentEvents;
 class LightKernels;
 class LightPathStates;
 class LitSurfaces;
@@ -48,10 +51,10 @@ class VertexLight;
 ///  Near lights with a position, more points are chosen by Equiangular and weighted by the power heuristic. Rays scattered there
 ///  are also sampled toward such a light, because rays receive more single scattering the closer they pass it (Georgiev et al.,
 ///  Joint Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
-class MediumFlights final : Stage, public FlightEvent {
+class MediumEvents final : Stage, public SegmentEvent {
 public:
-    explicit MediumFlights(const StageSet&);
-    void happen(std::span<Flight>, Sched&) override;
+    explicit MediumEvents(const StageSet&);
+    void happen(std::span<RaySegment>, Sched&) override;
     /// Does nothing: MediaStacks::dim() applies the transmittance.
     void dim(std::span<const ShadowRay>, std::span<Color>) override {}
     /// MIS weight of distance sampling for light from one light with a position; equiangular sampling has the rest.
@@ -59,9 +62,9 @@ public:
 
     /// Unit direction from a point in a medium to a near light with a position, for light-directed sampling; 0 if there is none.
     /// Among several lights one is chosen uniformly, which is unbiased. `away`: its distance.
-    Vec3 besideLight(const Medium&, const PathRay&, const Vec3& from, float* away = nullptr) const;
+    Vec3 lightDirection(const Medium&, const PathRay&, const Vec3& from, float* away = nullptr) const;
     /// The same for a surface point within a medium; the result has the share of samples.
-    Beside besideSurface(const KernelRun&, size_t point) const;
+    LightDirected atSurfaceInMedium(const KernelRun&, size_t point) const;
     /// Whether the settings and the world use light-directed sampling at surfaces.
     bool surfacesAim() const;
 
@@ -72,15 +75,15 @@ private:
         Color weight;
         bool stops = false;
     }; ///< weight: of the ray at the start of the segment
-    bool leaks(const Flight&); ///< whether the ray left the scene inside a medium; warns once
-    std::optional<Crossing> cross(Flight&, size_t flight, Vec2 random, Sched&);
-    void pass(Flight&, Sched&);
-    void scatter(std::span<Flight>, std::span<const Crossing>, Sched&);
+    bool leaks(const RaySegment&); ///< whether the ray left the scene inside a medium; warns once
+    std::optional<Crossing> cross(RaySegment&, size_t flight, Vec2 random, Sched&);
+    void pass(RaySegment&, Sched&);
+    void scatter(std::span<RaySegment>, std::span<const Crossing>, Sched&);
     void gather(BatchContext&, const Medium&, Sched&);
     void placePoints(BatchContext&, const Medium&) const;
-    void nearLights(std::span<Flight>, std::span<const Crossing>, Sched&);
+    void nearLights(std::span<RaySegment>, std::span<const Crossing>, Sched&);
     void addOpacity(const PathRay&, const Color&); ///< adds to the sample of a camera ray
-    void glow(const Flight&, const Homogeneous&, Sched&);
+    void glow(const RaySegment&, const Homogeneous&, Sched&);
     class NearLight;
     std::vector<Crossing> crossings_;
     render::NumberRows numbers_;
@@ -90,7 +93,7 @@ private:
     Atmosphere& atmosphere_;
     BatchPool& batches_;
     BlockVertices& blocks_;
-    Flights& flights_;
+    SegmentEvents& segmentEvents_;
     LightKernels& lightKernels_;
     LitSurfaces& litSurfaces_;
     const LightPathStates& paths_;
@@ -101,4 +104,4 @@ private:
     VertexLight& vertexLight_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

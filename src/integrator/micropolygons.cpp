@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 namespace {
 
@@ -381,4 +381,4 @@ void Micropolygons::find(std::span<const accel::Hit> hits, std::span<const Vec3>
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

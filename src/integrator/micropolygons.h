@@ -7,12 +7,13 @@
 #pragma once
 #include "geometry/affine.h"
 #include "geometry/dice.h"
+#include "integrator/names.h"
 #include "shading/gridpoint.h"
 #include "world/impl.h"
 #include <memory>
 #include <optional>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Identifies a micropolygon, or a corner of micropolygons.
 struct MicropolygonKey {
@@ -129,4 +130,4 @@ private:
     Corners corners_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,7 +1,7 @@
 #include "integrator/nestedtrace.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
-#include "integrator/flights.h"
 #include "integrator/gathercalls.h"
 #include "integrator/gatherrows.h"
 #include "integrator/litsurfaces.h"
@@ -9,15 +9,15 @@
 #include "integrator/pipeline.h"
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
+#include "integrator/segmentevents.h"
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/waitingkernels.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 NestedTrace::NestedTrace(const StageSet& s)
-    : Stage(s.context), mediumFlights_(s.mediumFlights), accumulator_(s.accumulator), flights_(s.flights) {}
+    : Stage(s.context), mediumEvents_(s.mediumEvents), accumulator_(s.accumulator), segmentEvents_(s.segmentEvents) {}
 
 NestedTrace::~NestedTrace() = default;
 
@@ -26,8 +26,8 @@ void NestedTrace::forget() { inner_.reset(); }
 const StageSet& NestedTrace::begin() {
     if (!inner_) {
         inner_ = std::make_unique<Pipeline>(context_.frame, diagnostics_);
-        for (FlightEvent* e : flights_.events)
-            if (e != &mediumFlights_) inner_->stages().flights.happens(*e); // it has its own
+        for (SegmentEvent* e : segmentEvents_.events)
+            if (e != &mediumEvents_) inner_->stages().segmentEvents.happens(*e); // it has its own
         inner_->stages().context.raysAtOnce = std::min(context_.raysAtOnce, int(Sched::kStripRays));
     }
     const StageSet& s = inner_->stages();
@@ -62,7 +62,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
     const PathRay& from = *p.ray;
     const StageSet& in = begin();
     Sched& sched = inner_->scheduler();
-    const TargetId target = sched.newRoot();
+    const AccumulatorId target = sched.newRoot();
     // request() reads rows of lanes; this is a single lane.
     std::vector<float> rows;
     for (int r = 0; r < rowsOfArguments(s); ++r) rows.push_back(row(r));
@@ -83,7 +83,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
     const Vec3 start = l.elsewhere ? l.from : p.P;
     const bool leaves = p.lit && length(start - p.Ps) <= geometry::roundingError(p.Ps) + 4 * p.lit->pError;
     in.requests.rows.prepare();
-    const LobeColumns::Place place = l.place;
+    const BsdfBatch::Place place = l.place;
     const bool delta = in.requests.rows.delta(place);
     const float spread = in.requests.rows.spread(place);
     if (delta) l.samples = 1;
@@ -139,7 +139,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
 void NestedTrace::gather(std::span<GatherSent> sent) {
     const StageSet& in = begin();
     Sched& sched = inner_->scheduler();
-    std::vector<TargetId> targets;
+    std::vector<AccumulatorId> targets;
     for (GatherSent& g : sent) {
         targets.push_back(sched.newRoot());
         in.gathers.gathered[targets.back()] = &g;
@@ -154,4 +154,4 @@ void NestedTrace::gather(std::span<GatherSent> sent) {
     takeCounts();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

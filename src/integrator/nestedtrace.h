@@ -4,11 +4,11 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
-class Flights;
-class MediumFlights;
+class SegmentEvents;
+class MediumEvents;
 class Pipeline;
 struct GatherSent;
 struct StageSet;
@@ -30,9 +30,9 @@ private:
     shading::TargetValue follow(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row,
                                 uint32_t occurrence);
     std::unique_ptr<Pipeline> inner_;
-    const MediumFlights& mediumFlights_;
+    const MediumEvents& mediumEvents_;
     Accumulator& accumulator_;
-    Flights& flights_;
+    SegmentEvents& segmentEvents_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

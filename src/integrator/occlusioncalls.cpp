@@ -3,6 +3,7 @@
 #include "integrator/occlusioncalls.h"
 #include "base/direction.h"
 #include "base/exact.h"
+#include "bsdf/sampling.h"
 #include "geometry/shape.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
@@ -13,11 +14,10 @@
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/surfacepoints.h"
-#include "lobes/sampling.h"
 #include "shading/gridpoint.h"
 #include "world/raysets.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 OcclusionCalls::OcclusionCalls(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), intersector_(s.intersector), photons_(s.photons), store_(s.store),
@@ -80,9 +80,10 @@ int OcclusionCalls::samplesOf(float asked, const geometry::Shape* shape, const S
     return int(std::min(asked, 4096.f));
 }
 
-TurnedAway::Tally* OcclusionCalls::tallyOf(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Vec3& normal) {
+FlippedNormals::Tally* OcclusionCalls::tallyOf(const BatchContext& c, const SiteInfo& s, const ShadePoint& p,
+                                               const Vec3& normal) {
     if (!p.shape) return nullptr;
-    TurnedAway::Tally*& t = tallies_[{&s, p.shape}];
+    FlippedNormals::Tally*& t = tallies_[{&s, p.shape}];
     if (!t) {
         const auto& files = c.bound->kernel->files();
         const auto& at = s.site->place;
@@ -93,14 +94,14 @@ TurnedAway::Tally* OcclusionCalls::tallyOf(const BatchContext& c, const SiteInfo
     // The centre of a micropolygon at the silhouette may lie behind it: the viewing direction proves nothing there.
     const bool rim = p.ray && p.ray->sample && p.ray->sample->grid && p.ray->sample->grid->micropolygon;
     const float towards = dot(normal, p.I), least = rim ? 0.5f * length(normal) * length(p.I) : 0;
-    if (std::fabs(towards) > least) TurnedAway::Tally::set(towards > 0 ? t->away : t->facing);
+    if (std::fabs(towards) > least) FlippedNormals::Tally::set(towards > 0 ? t->away : t->facing);
     return t;
 }
 
 void OcclusionCalls::noteTurnedAway(const BatchContext& c, const SiteInfo& s, int point, const Vec3& normal) {
     const ShadePoint& p = c.points[size_t(point)];
     if (!p.shape || !p.ray || !p.ray->camera() || c.light || photons_.photonTrace()) return;
-    TurnedAway::Tally& t = *tallyOf(c, s, p, normal);
+    FlippedNormals::Tally& t = *tallyOf(c, s, p, normal);
     if (!(dot(normal, p.I) > 0) || t.facing || t.open) return; // already decided: no more rays
     accel::Ray ray;
     ray.org = surfaces_.leave(c, size_t(point), normal);
@@ -109,12 +110,12 @@ void OcclusionCalls::noteTurnedAway(const BatchContext& c, const SiteInfo& s, in
     ray.sides = accel::Sides::Both;
     if (p.ray->sample) ray.level = p.ray->sample->level;
     accel::Hit hit;
-    if (!intersector_.meet(ray, hit) || world_.shapes_[hit.shape].get() != p.shape) TurnedAway::Tally::set(t.open);
+    if (!intersector_.intersect(ray, hit) || world_.shapes_[hit.shape].get() != p.shape) FlippedNormals::Tally::set(t.open);
 }
 
 void OcclusionCalls::hemisphereRays(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Vec3& at,
                                     const geometry::SurfacePoint* surface, const std::function<float(int)>& f,
-                                    const Color& weight, TargetId target, uint32_t site, uint32_t occurrence,
+                                    const Color& weight, AccumulatorId target, uint32_t site, uint32_t occurrence,
                                     std::vector<ShadowRay>& out) {
     const RaySite& r = *s.rays;
     const OcclusionSite& o = *s.occlusion;
@@ -224,4 +225,4 @@ Color OcclusionCalls::openLight(const ShadowRay& r, const Color& transmitted, Tr
     return r.contribution * open;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -5,7 +5,7 @@
 #include "integrator/context.h"
 #include <map>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class Intersector;
@@ -21,8 +21,8 @@ public:
     explicit OcclusionCalls(const StageSet&);
     /// Makes the rays of an occlusion() at p, for `out`: `weight` is their total contribution when unoccluded.
     void hemisphereRays(const BatchContext&, const SiteInfo&, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint*,
-                        const std::function<float(int)>& row, const Color& weight, TargetId, uint32_t site, uint32_t occurrence,
-                        std::vector<ShadowRay>& out);
+                        const std::function<float(int)>& row, const Color& weight, AccumulatorId, uint32_t site,
+                        uint32_t occurrence, std::vector<ShadowRay>& out);
     /// Contribution of one such ray with this transmittance, 0 to 1; adds further results to `sums`, which may be null.
     Color openLight(const ShadowRay&, const Color& transmitted, TraceSums* sums) const;
     /// Number of samples for a call whose shader requests `asked`: Attribute "irradiance" "nsamples" of the shape if that is 0;
@@ -42,10 +42,10 @@ public:
 private:
     int fewer(const OcclusionSite&, const std::function<float(int)>& row, int count, const BatchContext&) const;
     bool agree(std::vector<ShadowRay>&, size_t begin, HemisphereRays&, const Color& weight);
-    TurnedAway::Tally* tallyOf(const BatchContext&, const SiteInfo&, const ShadePoint&, const Vec3& normal);
+    FlippedNormals::Tally* tallyOf(const BatchContext&, const SiteInfo&, const ShadePoint&, const Vec3& normal);
     render::NumberRows numbers_; ///< for the rays of one call
     std::unordered_map<const scene::Attributes*, OfShape> ofShapes_;
-    std::map<std::pair<const SiteInfo*, const geometry::Shape*>, TurnedAway::Tally*> tallies_;
+    std::map<std::pair<const SiteInfo*, const geometry::Shape*>, FlippedNormals::Tally*> tallies_;
     Accumulator& accumulator_;
     Intersector& intersector_;
     PhotonStage& photons_;
@@ -55,4 +55,4 @@ private:
     SurfacePoints& surfaces_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -5,7 +5,7 @@
 #include "integrator/kernelinputs.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Opacities::Opacities(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), displacement_(s.displacement), inputs_(s.inputs) {}
@@ -79,4 +79,4 @@ void Opacities::takeOpacities(std::span<const OpacityQuery> met, const std::func
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,7 +3,7 @@
 #pragma once
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class Displacement;
@@ -24,4 +24,4 @@ private:
     KernelInputs& inputs_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

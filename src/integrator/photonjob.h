@@ -3,7 +3,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/storedphoton.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class LightKernels;
 struct PhotonJob;
@@ -114,12 +114,12 @@ inline constexpr float kLeastTilt = 1e-3f;
 /// Factor from the radiance that a lobe scatters along the reverse path to the power of the photon (adjoint correction): lobe at
 /// `l`; `from`: direction to where the photon came from; `to`: where it goes; both unit and away from the surface; n: its unit
 /// normal; N: shading normal.
-float photonFactor(const LobeColumns&, LobeColumns::Place, const LobeKind&, bool delta, const Vec3& from, const Vec3& to,
+float photonFactor(const BsdfBatch&, BsdfBatch::Place, const LobeKind&, bool delta, const Vec3& from, const Vec3& to,
                    const Vec3& n, const Vec3& N);
 
 /// Transmittance of the volume before a photon's hit.
 inline Color leftOfPhoton(const BatchContext& c, size_t point) {
-    return c.haze.empty() || !c.haze[point].on ? Color(1) : c.haze[point].slope;
+    return c.atmosphereEffects.empty() || !c.atmosphereEffects[point].on ? Color(1) : c.atmosphereEffects[point].slope;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

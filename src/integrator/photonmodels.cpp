@@ -1,8 +1,8 @@
 // Surfaces with a photon shading model (Attribute "photon" "shadingmodel"), and photon map lookups at surfaces.
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
 #include "integrator/emission.h"
-#include "integrator/gather.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
 #include "integrator/photonjob.h"
@@ -13,12 +13,12 @@
 #include "integrator/surfaceshading.h"
 #include "integrator/transparency.h"
 #include "integrator/vertexlight.h"
-#include "lobes/sampling.h"
+#include "integrator/vertexsampling.h"
 #include "shadeops/specular.h"
 #include "world/mediaabout.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 PhotonTrace& PhotonStage::begin() {
     if (!photonTrace_) photonTrace_ = std::make_unique<PhotonTrace>();
@@ -136,11 +136,11 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
     vertexLight_.gather(c, sched);
     for (size_t i = 0; i < n; ++i)
         if (const Color clear = transparency_.goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
-            transparency_.passThrough(world_.bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,
-                                      c.passes[i], 0, sched);
+            transparency_.continueBehind(world_.bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,
+                                         c.passes[i], 0, sched);
 }
 
-const photons::PhotonMap* PhotonStage::globalMapOf(int binding) {
+const photonmap::PhotonMap* PhotonStage::globalMapOf(int binding) {
     const auto [at, fresh] = globalMaps_.try_emplace(binding, nullptr);
     const PhotonBinding& b = world_.bindings_[size_t(binding)].photons;
     if (fresh && !b.globalMap.empty()) at->second = world_.photons_->find(b.globalMap, {});
@@ -150,7 +150,7 @@ const photons::PhotonMap* PhotonStage::globalMapOf(int binding) {
 void PhotonStage::takeGlobalMaps(BatchContext& c, Sched& sched) {
     size_t kept = 0;
     for (size_t i = 0; i < c.rays.size(); ++i) {
-        const photons::PhotonMap* map = c.rays[i].kind->gathersPhotons ? globalMapOf(c.bindings[i]) : nullptr;
+        const photonmap::PhotonMap* map = c.rays[i].kind->gathersPhotons ? globalMapOf(c.bindings[i]) : nullptr;
         if (map) {
             const PathRay& r = c.rays[i];
             const ShadePoint& p = c.points[i];
@@ -159,8 +159,8 @@ void PhotonStage::takeGlobalMaps(BatchContext& c, Sched& sched) {
                 map->radiance({p.surface.displaced ? p.surface.displacedP : p.surface.P, dot(n, r.dir) > 0 ? -n : n,
                                world_.bindings_[size_t(c.bindings[i])].photons.estimator, 0});
             shading_.tellAsker(c, int(i), Color(1), sched);
-            accumulator_.deposit(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, store_.extraOf(r).share,
-                                         nullptr, paths_.atPhotons(r.path)});
+            accumulator_.contribute(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, store_.extraOf(r).share,
+                                            nullptr, paths_.atPhotons(r.path)});
             store_.freeExtra(r);
             sched.release(c.targets[i]);
             continue;
@@ -192,4 +192,4 @@ void PhotonStage::tilt(BatchContext& c) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,12 +1,12 @@
 #include "integrator/photons.h"
+#include "integrator/deferred.h"
 #include "integrator/photonstage.h"
 #include "integrator/pipeline.h"
-#include "integrator/unmade.h"
-#include "photons/photonfile.h"
+#include "photonmap/photonfile.h"
 #include "world/causticguide.h"
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct PhotonEmission::Impl {
     std::shared_ptr<const WorldImpl> world;
@@ -93,16 +93,16 @@ std::vector<std::string> photonMapsOf(const World& world, bool all) {
     return {names.begin(), names.end()};
 }
 
-std::map<std::string, std::vector<photons::Photon>> photonsByMap(const World& world, std::span<const std::string> maps,
-                                                                 std::span<const StoredPhoton> stored) {
+std::map<std::string, std::vector<photonmap::Photon>> photonsByMap(const World& world, std::span<const std::string> maps,
+                                                                   std::span<const StoredPhoton> stored) {
     const auto& w = static_cast<const WorldImpl&>(world);
-    std::map<std::string, std::vector<photons::Photon>> by;
+    std::map<std::string, std::vector<photonmap::Photon>> by;
     for (const std::string& name : maps) by[name];
     const auto named = namedBySurfaces(w);
-    std::vector<std::vector<photons::Photon>*> ofAll; // maps that no surface names
+    std::vector<std::vector<photonmap::Photon>*> ofAll; // maps that no surface names
     for (auto& [name, photons] : by)
         if (!named.count({name, false}) && !named.count({name, true})) ofAll.push_back(&photons);
-    std::vector<std::vector<photons::Photon>*> global, caustic; // by binding
+    std::vector<std::vector<photonmap::Photon>*> global, caustic; // by binding
     for (const SurfaceBinding& b : w.bindings_) {
         const auto find = [&](const std::string& name) {
             const auto i = by.find(name);
@@ -120,15 +120,15 @@ std::map<std::string, std::vector<photons::Photon>> photonsByMap(const World& wo
     return by;
 }
 
-bool savePhotonMap(const World& world, const std::string& name, std::span<const photons::Photon> photons, uint64_t emitted,
+bool savePhotonMap(const World& world, const std::string& name, std::span<const photonmap::Photon> photons, uint64_t emitted,
                    bool allowWrite, Diagnostics& d) {
     const auto& w = static_cast<const WorldImpl&>(world);
-    return photons::savePhotons(name, photons, emitted, w.cameraToWorld_, {".", allowWrite}, d);
+    return photonmap::savePhotons(name, photons, emitted, w.cameraToWorld_, {".", allowWrite}, d);
 }
 
 bool mayTryPaths(const World& world) {
     const auto& w = static_cast<const WorldImpl&>(world);
-    if (hasUnmade(world)) return false; // the world may be replaced while rays are traced
+    if (hasDeferred(world)) return false; // the world may be replaced while rays are traced
     const auto bakes = [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; };
     return std::none_of(w.bindings_.begin(), w.bindings_.end(),
                         [&](const SurfaceBinding& b) { // their samples would be baked, too
@@ -154,7 +154,7 @@ GuideFigures guideCaustics(const World& world, std::span<const StoredPhoton> sto
     for (const StoredPhoton& s : stored) {
         const float l = luminance(s.photon.power);
         if (!s.caustic || !(l > 0)) continue;
-        const int side = CausticGuide::sideOf(photons::unpackUnit(s.photon.normal));
+        const int side = CausticGuide::sideOf(photonmap::unpackUnit(s.photon.normal));
         photons.push_back({s.photon.P, s.photon.P + s.way, side, l});
         power += l;
     }
@@ -166,12 +166,12 @@ GuideFigures guideCaustics(const World& world, std::span<const StoredPhoton> sto
     return figures;
 }
 
-void setPhotonPasses(const World& world, uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>> passes) {
+void setPhotonPasses(const World& world, uint32_t first, std::vector<std::unique_ptr<photonmap::PhotonGrid>> passes) {
     static_cast<const WorldImpl&>(world).photons_->setPasses(first, std::move(passes));
 }
 
-void setPhotonMap(const World& world, const std::string& name, std::vector<photons::Photon> photons) {
-    static_cast<const WorldImpl&>(world).photons_->set(name, std::make_shared<const photons::PhotonMap>(std::move(photons)));
+void setPhotonMap(const World& world, const std::string& name, std::vector<photonmap::Photon> photons) {
+    static_cast<const WorldImpl&>(world).photons_->set(name, std::make_shared<const photonmap::PhotonMap>(std::move(photons)));
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

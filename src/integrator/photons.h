@@ -4,7 +4,7 @@
 #include "base/stopflag.h"
 #include "integrator/samples.h"
 #include "integrator/storedphoton.h"
-#include "photons/photongrid.h"
+#include "photonmap/photongrid.h"
 #include "world/world.h"
 #include <map>
 #include <memory>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Purpose of an emission.
 struct PhotonUse {
@@ -65,14 +65,14 @@ private:
 std::vector<std::string> photonMapsOf(const World&, bool all);
 
 /// Sorts photons by map: those of surfaces that name the map; for a map that no surface names, all photons.
-std::map<std::string, std::vector<photons::Photon>> photonsByMap(const World&, std::span<const std::string> maps,
-                                                                 std::span<const StoredPhoton>);
+std::map<std::string, std::vector<photonmap::Photon>> photonsByMap(const World&, std::span<const std::string> maps,
+                                                                   std::span<const StoredPhoton>);
 
 /// Writes a map to a file. Returns false after an error, which is reported.
-bool savePhotonMap(const World&, const std::string& name, std::span<const photons::Photon>, uint64_t emitted, bool allowWrite,
+bool savePhotonMap(const World&, const std::string& name, std::span<const photonmap::Photon>, uint64_t emitted, bool allowWrite,
                    Diagnostics&);
 /// Makes photons available to the shaders of this world under this name.
-void setPhotonMap(const World&, const std::string& name, std::vector<photons::Photon>);
+void setPhotonMap(const World&, const std::string& name, std::vector<photonmap::Photon>);
 /// Whether paths can be traced before the first sample without an effect on the picture.
 bool mayTryPaths(const World&);
 /// Whether mirrors or clear glass may cause caustics in this world.
@@ -87,6 +87,6 @@ struct GuideFigures {
 /// traces.
 GuideFigures guideCaustics(const World&, std::span<const StoredPhoton>, double emitted, float brightness);
 /// Sets the photons of the samples from `first` on and removes earlier ones. Call while no thread traces.
-void setPhotonPasses(const World&, uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>>);
+void setPhotonPasses(const World&, uint32_t first, std::vector<std::unique_ptr<photonmap::PhotonGrid>>);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

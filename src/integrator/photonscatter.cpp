@@ -6,6 +6,7 @@
 // "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders conserves radiance without the
 // factor for the change of solid angle; the adjoint has its inverse.
 #include "integrator/photonscatter.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
 #include "integrator/guiderays.h"
@@ -20,9 +21,8 @@
 #include "integrator/scatterrays.h"
 #include "integrator/shadowrays.h"
 #include "integrator/transparency.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 PhotonScatter::PhotonScatter(const StageSet& s, const VertexLobes& v, LobeSelection& selection, ScatterRays& scatter)
     : VertexStage(s, v), selection_(selection), scatter_(scatter), accumulator_(s.accumulator), batches_(s.batches),
@@ -36,7 +36,7 @@ bool hasCosine(const LobeKind& k) { return k.name == "diffuse" || (k.distributio
 float least(float x) { return std::max(std::fabs(x), 1e-4f); }
 } // namespace
 
-float photonFactor(const LobeColumns& rows, LobeColumns::Place place, const LobeKind& kind, bool delta, const Vec3& from,
+float photonFactor(const BsdfBatch& rows, BsdfBatch::Place place, const LobeKind& kind, bool delta, const Vec3& from,
                    const Vec3& to, const Vec3& n, const Vec3& N) {
     const float here = least(dot(from, n)), there = least(dot(to, n)), ways = there / here;
     const bool through = (dot(from, n) > 0) != (dot(to, n) > 0);
@@ -70,7 +70,7 @@ bool PhotonScatter::mirrors(const LobeVertex& l) const {
 /// This holds for microfacets and for highlights around the mirror direction. A highlight around another direction, as by
 /// refraction, has paths that only one of both finds. Shaders that move P are excluded, as they cannot run twice (lookBack()).
 bool PhotonScatter::isNarrow(const LobeVertex& l, float below, const Vec3& in) const {
-    const LobeColumns& rows = requests_.rows;
+    const BsdfBatch& rows = requests_.rows;
     if (l.delta || l.below >= 0 || c_->between || !(rows.spread(l.place) < below)) return false;
     if (c_->binding->moveS || c_->bound->kernel->facts().suspends) return false;
     constexpr float kSame = 1e-3f; // between unit directions
@@ -91,7 +91,7 @@ bool PhotonScatter::leftToPhotons(const LobeVertex& l, const BoundLight& light) 
 bool PhotonScatter::seesAll(const LobeVertex& l) const {
     const shading::RaySet& set = l.rays->set;
     return !l.elsewhere && !set.only && !(l.maxDistance < 1e37f) && set.mode == shading::HitMode::Default &&
-           set.sides == accel::Sides::Front && world_.bindings_[size_t(c_->bindings[size_t(l.point)])].photons.meetsBoth;
+           set.sides == accel::Sides::Front && world_.bindings_[size_t(c_->bindings[size_t(l.point)])].photons.intersectsBoth;
 }
 
 uint8_t PhotonScatter::trailBehind(const LobeVertex& l) const {
@@ -131,8 +131,8 @@ void PhotonScatter::restPhotons() {
         const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
         s.photon.P = p.surface.displaced ? p.surface.displacedP : p.surface.P;
         s.photon.power = {std::max(power.x, 0.f), std::max(power.y, 0.f), std::max(power.z, 0.f)};
-        s.photon.from = photons::packUnit(-from.dir);
-        s.photon.normal = photons::packUnit(dot(n, from.dir) > 0 ? -n : n);
+        s.photon.from = photonmap::packUnit(-from.dir);
+        s.photon.normal = photonmap::packUnit(dot(n, from.dir) > 0 ? -n : n);
         for (int k = 0; k < 3; ++k) s.photon.reflected[k] = uint8_t(std::clamp(given[k], 0.f, 1.f) * 255 + .5f);
         s.photon.bounces = uint8_t(std::min<int>(from.bounces, 255));
         s.number = t.first + uint32_t(from.sample->path);
@@ -213,7 +213,7 @@ std::shared_ptr<BatchContext> PhotonScatter::shadeBack(std::span<LobeRay* const>
         way.level = from.sample->level;
         accel::Hit hit;
         ShadePoint& p = c->points[size_t(s->point)];
-        p.I = s->w * -(intersector_.meet(way, hit) ? hit.t : length(p.I));
+        p.I = s->w * -(intersector_.intersect(way, hit) ? hit.t : length(p.I));
         p.E = p.P - p.I;
         c->rays[size_t(s->point)].dir = -s->w;
     }
@@ -237,7 +237,7 @@ void PhotonScatter::lookBack(Sched& sched) {
     for (LobeRay& s : scatter_.sent)
         if (s.goes && requests_.lobes[size_t(s.lobe)].narrow) turned.push_back(&s);
     if (turned.empty()) return;
-    LobeColumns& rows = requests_.rows;
+    BsdfBatch& rows = requests_.rows;
     const size_t had = requests_.lobes.size();
     const auto c = shadeBack(turned, sched);
     std::vector<Color> sum(c->points.size(), Color(0));
@@ -288,15 +288,15 @@ void PhotonScatter::takePhotons(Sched& sched) {
     for (size_t point = 0; point < c_->points.size(); ++point) {
         if (begin_[point] == begin_[point + 1]) continue;
         const PathRay& ray = c_->rays[point];
-        const photons::PhotonGrid* grid = photons_.passOf(ray);
+        const photonmap::PhotonGrid* grid = photons_.passOf(ray);
         if (!grid || grid->size() == 0) continue;
         const ShadePoint& p = c_->points[point];
         const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
         const Vec3& at = p.surface.displaced ? p.surface.displacedP : p.surface.P;
         const float time = ray.shutter(), perArea = 1 / (float(kPi) * grid->radius() * grid->radius() * grid->lasts(time));
         near_.clear();
-        grid->within(at, time, [&](const photons::Photon& photon) {
-            if (!(std::fabs(dot(photons::unpackUnit(photon.normal), n)) > 0.7f)) return;
+        grid->within(at, time, [&](const photonmap::Photon& photon) {
+            if (!(std::fabs(dot(photonmap::unpackUnit(photon.normal), n)) > 0.7f)) return;
             const Vec3 w = photon.direction();
             near_.push_back({w, photon.power * (perArea / least(dot(w, n)))});
         });
@@ -306,15 +306,15 @@ void PhotonScatter::takePhotons(Sched& sched) {
             if (!l.followed || !spreads(l)) continue;
             const Color weight = l.lobeOfShader ? l.weight * selection_.indirectScale[point] : l.weight;
             const Color light = (l.ownsTarget ? weight : weight * ray.weight) * givenBack(l);
-            accumulator_.deposit(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l), nullptr,
-                                         paths_.atPhotons(paths_.atLobe(l, p, ray, near_[0].from))});
+            accumulator_.contribute(sched, {l.target, light, LightEvent::Photons, &ray, shareOf(l), nullptr,
+                                            paths_.atPhotons(paths_.atLobe(l, p, ray, near_[0].from))});
         }
     }
 }
 
 /// Light of near_ that a lobe reflects.
 Color PhotonScatter::givenBack(const LobeVertex& l) {
-    LobeColumns& rows = requests_.rows;
+    BsdfBatch& rows = requests_.rows;
     Color sum(0);
     if (l.kind->name == "diffuse") { // the most frequent case
         const Vec3 axis = rows.triple(l.place, kRowAxis);
@@ -329,4 +329,4 @@ Color PhotonScatter::givenBack(const LobeVertex& l) {
     return sum;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

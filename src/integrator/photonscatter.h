@@ -4,7 +4,7 @@
 #include "integrator/scatterrays.h"
 #include <optional>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class BatchPool;
 class GuideRays;
@@ -57,4 +57,4 @@ private:
     Transparency& transparency_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

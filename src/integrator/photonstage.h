@@ -2,9 +2,9 @@
 #pragma once
 #include "integrator/context.h"
 #include "integrator/photonjob.h"
-#include "photons/photongrid.h"
+#include "photonmap/photongrid.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class LightPathStates;
@@ -23,7 +23,7 @@ public:
     PhotonTrace* photonTrace() const { return photonTrace_.get(); }
     PhotonTrace& begin(); ///< switches the pipeline to photons
     /// The photons of the pass that a ray's sample uses; null: none.
-    const photons::PhotonGrid* passOf(const PathRay& r) const {
+    const photonmap::PhotonGrid* passOf(const PathRay& r) const {
         return r.sample && !photonTrace_ ? world_.photons_->pass(r.sample->sample) : nullptr;
     }
     /// Whether light of this emitter, which a ray hit, is already in the photons of its sample.
@@ -43,8 +43,8 @@ public:
     void takeModels(BatchContext&, bool all);
 
 private:
-    const photons::PhotonMap* globalMapOf(int binding);
-    std::unordered_map<int, const photons::PhotonMap*> globalMaps_; ///< by binding
+    const photonmap::PhotonMap* globalMapOf(int binding);
+    std::unordered_map<int, const photonmap::PhotonMap*> globalMaps_; ///< by binding
     std::unique_ptr<PhotonTrace> photonTrace_;
     Accumulator& accumulator_;
     const LightPathStates& paths_;
@@ -56,4 +56,4 @@ private:
     VertexLight& vertexLight_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -11,7 +11,6 @@
 #include "integrator/depthrays.h"
 #include "integrator/displacement.h"
 #include "integrator/emittedlight.h"
-#include "integrator/flights.h"
 #include "integrator/gathercalls.h"
 #include "integrator/guiderays.h"
 #include "integrator/hitqueues.h"
@@ -31,6 +30,7 @@
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
 #include "integrator/rowshading.h"
+#include "integrator/segmentevents.h"
 #include "integrator/shadowrays.h"
 #include "integrator/subsurfacewalks.h"
 #include "integrator/surfacepoints.h"
@@ -42,7 +42,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// The stages, connected by `set`. Each is made after the stages that its constructor uses.
 struct Pipeline::Parts {
@@ -55,13 +55,13 @@ struct Pipeline::Parts {
     Intersector intersector;
     HitQueues queues;
     SurfacePoints surfaces;
-    Flights flights;
+    SegmentEvents segmentEvents;
     EmittedLight emitted;
     LitSurfaces litSurfaces;
     Transparency transparency;
     LightKernels lightKernels;
     NestedTrace nested;
-    MediumFlights mediumFlights;
+    MediumEvents mediumEvents;
     OcclusionCalls occlusion;
     IrradianceRecords records;
     GatherCalls gathers;
@@ -89,19 +89,19 @@ struct Pipeline::Parts {
 
 Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     : context(std::move(w), d),
-      set{context,      store,       paths,         accumulator,  intersector, queues,         surfaces,  flights,
-          emitted,      litSurfaces, transparency,  lightKernels, nested,      mediumFlights,  occlusion, records,
+      set{context,      store,       paths,         accumulator,  intersector, queues,         surfaces,  segmentEvents,
+          emitted,      litSurfaces, transparency,  lightKernels, nested,      mediumEvents,   occlusion, records,
           gathers,      guide,       shadows,       opacities,    media,       atmosphere,     batches,   inputs,
           displacement, blocks,      cameraOutputs, shading,      rowShading,  waitingKernels, requests,  ambient,
           vertexLight,  subsurface,  photons,       lightOutputs, depthRays},
-      store(set), paths(set), accumulator(set), intersector(set), queues(set), surfaces(set), flights(set), emitted(set),
-      litSurfaces(set), transparency(set), lightKernels(set), nested(set), mediumFlights(set), occlusion(set), records(set),
+      store(set), paths(set), accumulator(set), intersector(set), queues(set), surfaces(set), segmentEvents(set), emitted(set),
+      litSurfaces(set), transparency(set), lightKernels(set), nested(set), mediumEvents(set), occlusion(set), records(set),
       gathers(set), guide(set), shadows(set), opacities(set), media(set), atmosphere(set), batches(set), inputs(set),
       displacement(set), blocks(set), cameraOutputs(set), shading(set), rowShading(set), waitingKernels(set), requests(set),
       ambient(set), vertexLight(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set) {
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
     const WorldImpl& world = context.world;
-    if (std::any_of(world.media_.begin(), world.media_.end(), event)) flights.happens(mediumFlights);
+    if (std::any_of(world.media_.begin(), world.media_.end(), event)) segmentEvents.happens(mediumEvents);
 }
 
 Pipeline::Pipeline(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : parts_(std::make_unique<Parts>(std::move(w), d)) {}
@@ -213,10 +213,10 @@ bool Pipeline::traceAll(std::span<const CameraRay> rays, std::span<SampleResult>
     for (int width : w.outputWidths_) aovs += size_t(width);
     sums.begin(rays.size());
     if (parts_->context.tally) parts_->context.tally->begin(rays.size());
-    sums.nowhere = w.lightOutputs_.empty() ? shading::kNoTarget : sched.newRoot();
+    sums.nowhere = w.lightOutputs_.empty() ? shading::kNoAccumulator : sched.newRoot();
     parts_->intersector.begin(std::any_of(rays.begin(), rays.end(), [](const CameraRay& c) { return c.grid != nullptr; }));
     const scene::LightPaths* const paths = parts_->paths.automaton;
-    std::vector<TargetId> roots(rays.size());
+    std::vector<AccumulatorId> roots(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         out[i] = SampleResult{};
         out[i].aovs.assign(aovs, 0.f);
@@ -238,7 +238,7 @@ bool Pipeline::traceAll(std::span<const CameraRay> rays, std::span<SampleResult>
 }
 
 /// Copies the light at the targets of camera samples to the results.
-void Pipeline::takeResults(std::span<SampleResult> out, std::span<const TargetId> roots) {
+void Pipeline::takeResults(std::span<SampleResult> out, std::span<const AccumulatorId> roots) {
     const WorldImpl& w = world();
     const Accumulator& sums = parts_->accumulator;
     const scene::LightPaths* const paths = parts_->paths.automaton;
@@ -278,7 +278,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
         else if (p.guide.bringsNothing(slice[i].payload, world().bindingOf_[hits[i].shape])) p.store.freeExtra(slice[i].payload);
         else p.queues.add(slice[i], hits[i], sched);
     }
-    p.flights.fly(missed, sched);
+    p.segmentEvents.run(missed, sched);
     p.emitted.misses(missed, sched);
     for (const Sched::Task* t : missed) p.store.freeExtra(t->payload);
     // While kernels wait for rays no hits are held back: depth first keeps the number of frames small.
@@ -304,7 +304,7 @@ void Pipeline::shadeHits(size_t group, Sched& sched) {
     p.queues.take(group, *c);
     if (p.rowShading.takes(group) && p.rowShading.shade(*c, sched)) return p.batches.finish(std::move(c), sched);
     p.surfaces.placePoints(*c);
-    p.flights.fly(*c, sched);
+    p.segmentEvents.run(*c, sched);
     if (c->rays.empty()) return p.batches.giveBack(std::move(c));
     p.emitted.shine(*c, sched);
     p.store.keepIndirect(*c);
@@ -322,4 +322,4 @@ void Pipeline::shadeHits(size_t group, Sched& sched) {
     p.batches.finish(std::move(c), sched);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -6,7 +6,7 @@
 #include "integrator/stageset.h"
 #include "shading/scheduler.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct BounceTally;
 
@@ -31,7 +31,8 @@ public:
     Counters& counters();
     void tally(BounceTally*);    ///< Integrator::tally()
     shading::Sched& scheduler(); ///< of this pipeline; created at the first call
-    /// Whether a ray of the last trace() reached the bound of a deferred procedural (Unmade); its results are then undefined.
+    /// Whether a ray of the last trace() reached the bound of a deferred procedural (DeferredBounds); its results are then
+    /// undefined.
     bool& unfinished();
 
 private:
@@ -41,7 +42,7 @@ private:
     bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
     void beginRay(const CameraRay&, size_t i, shading::PathRay&); ///< the i-th of a call
     void beginTrace();                                            ///< resets per-call state
-    void takeResults(std::span<SampleResult>, std::span<const shading::TargetId> roots);
+    void takeResults(std::span<SampleResult>, std::span<const shading::AccumulatorId> roots);
     void endTrace(); ///< adds the scheduler's counts, then calls forget()
     void forget();   ///< drops the state of a trace() that has ended or was abandoned
     void shadeHits(size_t group, shading::Sched&);
@@ -50,4 +51,4 @@ private:
     std::unique_ptr<shading::Sched> sched_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,11 +1,13 @@
 // Rays and light between stages: shadow rays, contributions to targets.
 #pragma once
 #include "base/exactsum.h"
+#include "integrator/names.h"
 #include "shading/scheduler.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
+using shading::AccumulatorId;
 using shading::FreeFlight;
 using shading::PathRay;
 using shading::PathSample;
@@ -13,7 +15,6 @@ using shading::RayExtra;
 using shading::RayKind;
 using shading::Sched;
 using shading::ShadePoint;
-using shading::TargetId;
 
 /// Kinds of the rays that most vertices send.
 inline constexpr RayKind kDiffuseKind{RayType::Diffuse, false, {}, 0}, kSpecularKind{RayType::Specular, false, {}, 0};
@@ -24,7 +25,7 @@ struct ShadowRay {
     Vec3 origin, dir;
     float distance;
     Color contribution;
-    TargetId target;
+    AccumulatorId target;
     float time;
     const PathRay* ray = nullptr;
     bool areaLight = false;                ///< of a trace() that returns "arealight" sums
@@ -51,8 +52,8 @@ enum class LightEvent : uint8_t {
     Map,     ///< the environment map of a trace()
     Photons  ///< photons, i.e. light via mirrors and glass
 };
-struct Deposit {
-    TargetId target = shading::kNoTarget;
+struct Contribution {
+    AccumulatorId target = shading::kNoAccumulator;
     Color light;
     LightEvent event = LightEvent::Surface;
     const PathRay* path = nullptr;      ///< the ray up to its last vertex; may be null
@@ -67,20 +68,20 @@ struct HemisphereRays {
     float share = 1;    ///< weight of one of its rays
     shading::Fade fade; ///< attenuates occlusion by distant surfaces
     float spread = 0;   ///< of the rays, for the environment map
-    TurnedAway::Tally* tally = nullptr;
+    FlippedNormals::Tally* tally = nullptr;
     /// Counts an unoccluded ray.
     void open(const Color& transmitted) const {
-        if (tally && transmitted != Color(0)) TurnedAway::Tally::set(tally->open);
+        if (tally && transmitted != Color(0)) FlippedNormals::Tally::set(tally->open);
     }
 };
 
 /// The segment from a to b for a shadow ray. If an end is `at`, a shaded point on the surface `s` (may be null), that surface
 /// does not occlude the ray.
-struct Way {
+struct ShadowSegment {
     Vec3 origin, dir;
     float distance = 0;
 };
-Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
+ShadowSegment segmentBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 
 /// Number of float rows of all arguments of a call.
 int rowsOfArguments(const SiteInfo&);
@@ -91,7 +92,7 @@ Vec3 onShadowDisk(const Vec3& centre, const Vec3& w, float radius, Vec2 random);
 /// Further light along a ShadowRay, and the next one along it.
 struct MoreLight {
     Color contribution;
-    TargetId target;
+    AccumulatorId target;
     int32_t share;
     bool areaLight;
     uint16_t path;
@@ -119,7 +120,7 @@ struct OpacityQuery {
 
 /// The part of a contribution that an output also receives, and the next output for the same light.
 struct Share {
-    TargetId target;
+    AccumulatorId target;
     Color ratio;
     int32_t next;
 };
@@ -130,4 +131,4 @@ inline constexpr size_t kShadowsAtOnce = size_t(1) << 16;
 inline float mean(const Color& c) { return (c.x + c.y + c.z) / 3; }
 inline bool isFinite(const Color& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

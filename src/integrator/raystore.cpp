@@ -7,7 +7,7 @@
 #include "world/raysets.h"
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 RayStore::RayStore(const StageSet& s) : Stage(s.context) {
     noSample.numbers = render::SampleNumbers(render::Sampler(context_.seed, 0, 0), 0);
@@ -101,4 +101,4 @@ void RayStore::forgetExtras() {
     freeExtras_.clear();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

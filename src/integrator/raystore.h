@@ -1,12 +1,12 @@
 // Data that rays share or rarely have: camera samples, kinds of rays, sets of shapes, and RayExtra. Reads PathRay. Costs nothing
 // for rays without extras; a kind is looked up by hash unless it is the last one used.
 #pragma once
-#include "answers/random.h"
 #include "integrator/context.h"
+#include "services/random.h"
 #include <deque>
 #include <map>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct BatchContext;
 struct CameraRay;
@@ -57,4 +57,4 @@ private:
     std::map<std::tuple<int32_t, int32_t, const scene::Attributes*>, const uint8_t*> subsetsKnown_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "lanes/blocks.h"
 #include <cstddef>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 inline constexpr int kRayWords = int(sizeof(PathRay) / 4), kTaskWords = RayBlock::kWords;
 static_assert(sizeof(Sched::Task) == 4 * kTaskWords && sizeof(RayBlock) == kTaskWords * sizeof(Row));
@@ -43,4 +43,4 @@ static_assert(offsetof(PathRay, diffuseBounces) == offsetof(PathRay, bounces) + 
 /// Parts of RayBlock::flags.
 inline constexpr uint32_t kAskedBits = 0xffff, kFirstBit = 1u << 16;
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -2,7 +2,7 @@
 #pragma once
 #include "integrator/rays.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 struct Recording {
     LightRecord record;
@@ -13,11 +13,11 @@ struct Recording {
     Color tint{1}; ///< of the environment map
     const RayKind* kind = nullptr;
     const TraceSite* site = nullptr;
-    bool blocks = false;           ///< of an occlusion()
-    std::vector<PathRay> rays;     ///< to be sent
-    std::vector<TargetId> targets; ///< by ray, after sending
-    std::vector<Color> seen;       ///< result, by ray
+    bool blocks = false;                ///< of an occlusion()
+    std::vector<PathRay> rays;          ///< to be sent
+    std::vector<AccumulatorId> targets; ///< by ray, after sending
+    std::vector<Color> seen;            ///< result, by ray
     std::vector<float> ways;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,10 +1,10 @@
-// Interprets the requests of kernels at points (docs/design/rsl.md). gather.h processes the lobes.
+// Interprets the requests of kernels at points (docs/design/rsl.md). vertexsampling.h processes the lobes.
 #include "integrator/requests.h"
 #include "base/direction.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/ambientlight.h"
 #include "integrator/context.h"
-#include "integrator/gather.h"
 #include "integrator/irradiancerecords.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/litsurfaces.h"
@@ -15,14 +15,14 @@
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/subsurfacewalks.h"
-#include "lobes/sampling.h"
+#include "integrator/vertexsampling.h"
 #include "shadeops/distributions.h"
 #include "texture/lookup.h"
 #include "world/blocksite.h"
 #include "world/raysets.h"
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Requests::Requests(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), records_(s.records), paths_(s.paths),
@@ -70,7 +70,7 @@ template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& 
 
 /// Requests that shadow rays answer.
 void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& f,
-                              const Color& weight, TargetId target, bool owns, uint32_t occurrence) {
+                              const Color& weight, AccumulatorId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[size_t(point)];
     const uint32_t site = uint32_t(s.site - c.bound->kernel->sites().data());
     const size_t had = shadows_.queue.size(), settled = shadows_.settled.size();
@@ -183,7 +183,7 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
 }
 
 void Requests::request(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
-                       TargetId target, bool owns, uint32_t occurrence) {
+                       AccumulatorId target, bool owns, uint32_t occurrence) {
     const ShadePoint& p = c.points[point];
     const auto f = [&](int row) { return in[size_t(row) * lanes + lane]; };
     auto v = [&](int arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
@@ -308,4 +308,4 @@ void Requests::clear() {
     rows.clear();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,11 +1,11 @@
-// Interprets the requests of kernels (docs/light.md): collects lobes for the stages of gather.h, and makes shadow rays.
+// Interprets the requests of kernels (docs/light.md): collects lobes for the stages of vertexsampling.h, and makes shadow rays.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 #include "integrator/vertex.h"
 #include <map>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class AmbientLight;
@@ -35,21 +35,22 @@ public:
     /// lobes.
     void requestPairs(BatchContext&, std::vector<AskedLobe>* asked, Sched&, bool lobesToo = true);
     /// Interprets one call. `in`: argument rows. owns: LobeVertex::ownsTarget.
-    void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId,
+    void request(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, AccumulatorId,
                  bool owns, uint32_t occurrence);
     /// `in`: argument rows, followed by two rows: ShadowReach::radius and the vertex for random numbers.
-    void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight, TargetId);
+    void lightVisibility(BatchContext&, const SiteInfo&, int point, const float* in, int lanes, int lane, Color weight,
+                         AccumulatorId);
     /// Radiance of the environment map of a trace() in direction w (unit, current space).
     Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
     void clear();
 
     std::vector<LobeVertex> lobes; ///< requested so far
-    LobeColumns rows;              ///< of `lobes`
+    BsdfBatch rows;                ///< of `lobes`
     std::vector<int> apartAt; ///< points of the batch that request indirect light separate from direct light (rsl::kPairApart)
 
 private:
     void requestShadows(BatchContext&, const SiteInfo&, int point, const std::function<float(int)>& row, const Color& weight,
-                        TargetId, bool owns, uint32_t occurrence);
+                        AccumulatorId, bool owns, uint32_t occurrence);
     template <class Row> const LobeKind* lobeOf(const BatchContext&, const SiteInfo&, const Row&);
     template <class Row> const RayKind* raysOfTrace(const SiteInfo&, const Row&, const ShadePoint&);
     template <class Row>
@@ -69,4 +70,4 @@ private:
     SubsurfaceWalks& subsurface_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

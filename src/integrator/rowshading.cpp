@@ -4,7 +4,6 @@
 #include "integrator/blockvertices.h"
 #include "integrator/cameraoutputs.h"
 #include "integrator/context.h"
-#include "integrator/flights.h"
 #include "integrator/gathercalls.h"
 #include "integrator/gridrays.h"
 #include "integrator/kernelinputs.h"
@@ -12,6 +11,7 @@
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
+#include "integrator/segmentevents.h"
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/surfacepoints.h"
@@ -19,12 +19,13 @@
 #include "integrator/transparency.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 RowShading::RowShading(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), blocks_(s.blocks), cameraOutputs_(s.cameraOutputs),
-      flights_(s.flights), gathers_(s.gathers), inputs_(s.inputs), paths_(s.paths), photons_(s.photons), store_(s.store),
-      requests_(s.requests), shadows_(s.shadows), surfaces_(s.surfaces), shading_(s.shading), transparency_(s.transparency) {
+      segmentEvents_(s.segmentEvents), gathers_(s.gathers), inputs_(s.inputs), paths_(s.paths), photons_(s.photons),
+      store_(s.store), requests_(s.requests), shadows_(s.shadows), surfaces_(s.surfaces), shading_(s.shading),
+      transparency_(s.transparency) {
     takes_.assign(!world_.moves_ && world_.media_.empty() ? size_t(world_.groups_) : 0, 1);
     for (const SurfaceBinding& b : world_.bindings_)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
@@ -48,8 +49,8 @@ bool RowShading::takes(const SurfaceBinding& b) const {
 }
 
 bool RowShading::shade(BatchContext& c, Sched& sched) {
-    if (!flights_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() || !accumulator_.traceSums.empty() ||
-        !blocks_.takesRays(c))
+    if (!segmentEvents_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() ||
+        !accumulator_.traceSums.empty() || !blocks_.takesRays(c))
         return false;
     // Rays with "falloff", or whose call requests distance and normal of the hit, need the point.
     for (const PathRay& r : c.rays)
@@ -149,11 +150,11 @@ void RowShading::finish(BatchContext& c, Sched& sched) {
         const ShaderInstance* of = world_.bindings_[size_t(c.bindings[i])].surface.get();
         if (!isFinite(shown)) accumulator_.notFinite(&ray, "Ci", of);
         else if (!(shown == Color(0)))
-            accumulator_.deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share,
-                                         of, paths_.next(ray.path, paths_.object)});
+            accumulator_.contribute(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray,
+                                            store_.extraOf(ray).share, of, paths_.next(ray.path, paths_.object)});
         if (!ray.counts) continue;
         cameraOutputs_.see(ray, opacity, c.surfaces[i].P.z, false);
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,13 +4,13 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class AmbientLight;
 class BlockVertices;
 class CameraOutputs;
-class Flights;
+class SegmentEvents;
 class GatherCalls;
 class KernelInputs;
 class LightPathStates;
@@ -43,7 +43,7 @@ private:
     AmbientLight& ambient_;
     BlockVertices& blocks_;
     CameraOutputs& cameraOutputs_;
-    Flights& flights_;
+    SegmentEvents& segmentEvents_;
     GatherCalls& gathers_;
     KernelInputs& inputs_;
     const LightPathStates& paths_;
@@ -57,4 +57,4 @@ private:
     std::vector<char> takes_; ///< by group
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

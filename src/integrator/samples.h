@@ -1,6 +1,7 @@
 // Camera rays and their results.
 #pragma once
 #include "base/vec.h"
+#include "integrator/names.h"
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,7 +10,7 @@ namespace alpenglow::shading {
 struct GridPoint; // shading/gridpoint.h
 }
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Counts of one integrator thread; the renderer adds them up.
 struct Counters {
@@ -42,7 +43,7 @@ struct CameraRay {
     bool records = false;
     /// For deep shadow maps only: computes SampleResult::left alone. Equal for all rays of a call.
     bool depths = false;
-    /// For depth only: computes SampleResult::z alone, given transport::depthsNeedNoShaders(). Equal for all rays of a call.
+    /// For depth only: computes SampleResult::z alone, given integrator::depthsNeedNoShaders(). Equal for all rays of a call.
     bool depthOnly = false;
     /// A given hit, which must outlive the call; other geometry is ignored. Null: the ray is intersected.
     const shading::GridPoint* grid = nullptr;
@@ -65,4 +66,4 @@ struct SampleResult {
     Color behind{0};                  ///< for rays with a given hit: transparency there; the ray does not continue
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,5 +1,6 @@
 // Stage ScatterRays: rays of lobes. With Rules::pickOne one lobe of a vertex is followed, else all.
 #include "integrator/scatterrays.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/connection.h"
 #include "integrator/guiderays.h"
@@ -12,10 +13,9 @@
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
 #include "integrator/subsurfacewalks.h"
-#include "lobes/sampling.h"
 #include "world/emitterfootprint.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 ScatterRays::ScatterRays(const StageSet& s, const VertexLobes& v, LobeSelection& selection, Connection& connection,
                          PhotonScatter& photonScatter)
@@ -82,7 +82,7 @@ void ScatterRays::pick(size_t point, float number) {
 
 /// Samples directions for the rays of one iteration and evaluates their lobes.
 void ScatterRays::draw(int turn) {
-    LobeColumns& rows = requests_.rows;
+    BsdfBatch& rows = requests_.rows;
     numbers_.clear();
     for (LobeRay& s : sent) {
         s.goes = turn < s.count;
@@ -126,7 +126,7 @@ void ScatterRays::draw(int turn) {
 }
 
 void ScatterRays::drawAgain(int turn) {
-    LobeColumns& rows = requests_.rows;
+    BsdfBatch& rows = requests_.rows;
     for (int tries = 1; tries < kDrawTries; ++tries) {
         numbers_.clear();
         for (const LobeRay& s : sent) {
@@ -172,7 +172,7 @@ bool ScatterRays::mayEnd(int bounces) const {
 }
 
 /// A ray that carries emission only is useless if it misses the bounding spheres of all emitters.
-bool ScatterRays::meetsEmitter(const LobeVertex& l, const Vec3& w) const {
+bool ScatterRays::intersectsEmitter(const LobeVertex& l, const Vec3& w) const {
     if (!l.lights) return false;
     const Vec3& from = l.elsewhere ? l.from : c_->points[size_t(l.point)].P;
     const float error = 1e-3f * (1 + length(from)) + std::fabs(l.bias);
@@ -212,8 +212,8 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     const PathRay& from = c_->rays[size_t(s.point)];
     Vec3 w = s.w;
     const PhotonTrace* photon = photons_.photonTrace();
-    if (photon && p.shape->oneSided() && !(dot(w, meetsNormal(p.surface)) > 0)) return; // invisible from there
-    if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !meetsEmitter(l, w)) return;
+    if (photon && p.shape->oneSided() && !(dot(w, intersectsNormal(p.surface)) > 0)) return; // invisible from there
+    if (!photon && l.trace && l.trace->onlyLights && !(l.base > 0) && !intersectsEmitter(l, w)) return;
     const float pdf = s.value.pdf;
     const Color f = l.delta ? s.value.colour : pdf > 0 ? s.value.colour / pdf : Color(0);
     RayExtra extra;
@@ -286,4 +286,4 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     ++counters_.depthSum; // over camera rays: mean number of bounces
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

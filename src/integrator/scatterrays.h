@@ -1,9 +1,9 @@
 // Scattering: samples the selected lobes, plays roulette, makes the next rays.
 #pragma once
+#include "bsdf/lobe.h"
 #include "integrator/vertexlobes.h"
-#include "lobes/lobe.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class Connection;
@@ -47,7 +47,7 @@ private:
     void throwDice(int turn);
     bool mayEnd(int bounces) const;
     void sendRay(const LobeRay&, Sched&);
-    bool meetsEmitter(const LobeVertex&, const Vec3& w) const;
+    bool intersectsEmitter(const LobeVertex&, const Vec3& w) const;
     /// Survival probability of the ray; 0: it is not sent.
     float roulette(const LobeVertex&, const LobeRay&, uint16_t& asked, const Color& weight) const;
     render::NumberRows numbers_;
@@ -62,4 +62,4 @@ private:
     SubsurfaceWalks& subsurface_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

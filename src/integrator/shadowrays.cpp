@@ -2,9 +2,9 @@
 // opacity-only kernel runs for all rays that hit it, wave by wave.
 #include "integrator/shadowrays.h"
 #include "base/exact.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
-#include "integrator/flights.h"
 #include "integrator/intersector.h"
 #include "integrator/irradiancerecords.h"
 #include "integrator/lightpathstates.h"
@@ -12,16 +12,16 @@
 #include "integrator/occlusioncalls.h"
 #include "integrator/opacities.h"
 #include "integrator/raystore.h"
+#include "integrator/segmentevents.h"
 #include "integrator/stageset.h"
-#include "lobes/sampling.h"
 #include "world/raysets.h"
 #include <limits>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 ShadowRays::ShadowRays(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), flights_(s.flights), intersector_(s.intersector), records_(s.records),
-      paths_(s.paths), media_(s.media), occlusion_(s.occlusion), opacities_(s.opacities), store_(s.store) {}
+    : Stage(s.context), accumulator_(s.accumulator), segmentEvents_(s.segmentEvents), intersector_(s.intersector),
+      records_(s.records), paths_(s.paths), media_(s.media), occlusion_(s.occlusion), opacities_(s.opacities), store_(s.store) {}
 
 namespace {
 accel::Ray shadowRay(const ShadowRay& s) {
@@ -53,7 +53,7 @@ bool passes(const geometry::Bounds& b, const ShadowRay& r) {
 }
 } // namespace
 
-Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s) {
+ShadowSegment segmentBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s) {
     const Vec3 all = b - a;
     const float distance = length(all);
     if (!(distance > 0)) return {a, Vec3(0, 0, 1), 0};
@@ -66,10 +66,10 @@ Way wayBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::Sur
     };
     const Vec3 from = end(a, d), to = end(b, -d), left = to - from;
     const float l = length(left);
-    return dot(left, d) > 0 ? Way{from, left / l, l} : Way{from, d, 0};
+    return dot(left, d) > 0 ? ShadowSegment{from, left / l, l} : ShadowSegment{from, d, 0};
 }
 
-bool ShadowRays::meetsOpaqueAlone(const ShadowRay& r) const {
+bool ShadowRays::intersectsOnlyOpaque(const ShadowRay& r) const {
     if (r.hemisphere >= 0 && occlusion_.hemispheres[size_t(r.hemisphere)].fade.fades())
         return false; // the distance of the surfaces matters
     return !world_.mediaOverrule_ && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
@@ -81,13 +81,13 @@ void ShadowRays::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Colo
     std::vector<size_t> of;
     for (size_t i = 0; i < rays.size(); ++i) {
         out[i] = Color(1);
-        if (!meetsOpaqueAlone(rays[i])) continue;
+        if (!intersectsOnlyOpaque(rays[i])) continue;
         rays_.push_back(shadowRay(rays[i]));
         rays_.back().only = world_.byOpacity_.opaque.data();
         of.push_back(i);
     }
     blocked_.resize(of.size());
-    intersector_.block(rays_, blocked_);
+    intersector_.occluded(rays_, blocked_);
     for (size_t k = 0; k < of.size(); ++k)
         if (blocked_[k]) out[of[k]] = Color(0);
 }
@@ -101,7 +101,7 @@ void ShadowRays::blockedByAll(std::span<const ShadowRay> rays, std::span<Color> 
         const size_t n = std::min(kAtOnce, rays.size() - first);
         rays_.clear();
         for (const ShadowRay& r : rays.subspan(first, n)) rays_.push_back(shadowRay(r));
-        intersector_.block(rays_, std::span(blocked_).first(n));
+        intersector_.occluded(rays_, std::span(blocked_).first(n));
         for (size_t i = 0; i < n; ++i) out[first + i] = blocked_[i] ? Color(0) : Color(1);
     }
 }
@@ -109,7 +109,7 @@ void ShadowRays::blockedByAll(std::span<const ShadowRay> rays, std::span<Color> 
 void ShadowRays::transmittances(std::span<const ShadowRay> rays, std::span<Color> out) {
     counters_.shadow += rays.size();
     passSurfaces(rays, out);
-    for (FlightEvent* e : flights_.events) e->dim(rays, out);
+    for (SegmentEvent* e : segmentEvents_.events) e->dim(rays, out);
 }
 
 /// Transmittance of surfaces and media: surface by surface, for all rays of a wave before their opacity shaders run.
@@ -135,7 +135,7 @@ private:
         return r.hemisphere >= 0 && stage_.occlusion_.hemispheres[size_t(r.hemisphere)].fade.fades();
     }
     void begin();
-    void meet();
+    void intersect();
     void pass(const Going&, const accel::Ray& behind, const accel::Hit&);
     bool enters(Going&, const SurfaceBinding&, const accel::Hit&, const Vec3& dir);
     void leaves(const Going&);
@@ -167,9 +167,10 @@ void ShadowRays::Passing::takes(size_t i, const Color& opacity, double distance)
 /// Starts the rays that opaque surfaces do not block.
 void ShadowRays::Passing::begin() {
     stage_.blockedByOpaque(rays_, out_);
-    few_ = world_.byOpacity_.few && std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.meetsOpaqueAlone(r); });
+    few_ =
+        world_.byOpacity_.few && std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.intersectsOnlyOpaque(r); });
     for (size_t i = 0; i < rays_.size(); ++i) {
-        const bool alone = stage_.meetsOpaqueAlone(rays_[i]);
+        const bool alone = stage_.intersectsOnlyOpaque(rays_[i]);
         if (alone && out_[i] == Color(0)) continue;
         const Going g{i, 0, rays_[i].media, rays_[i].origin};
         if (alone && (world_.allOpaque_ || !passes(world_.byOpacity_.clearBounds, rays_[i]))) {
@@ -201,10 +202,10 @@ bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel:
 }
 
 /// Finds the next hit of each ray.
-void ShadowRays::Passing::meet() {
+void ShadowRays::Passing::intersect() {
     hits_.resize(now_.size());
-    if (few_) stage_.intersector_.meetFew(ways_, hits_);
-    else stage_.intersector_.meet(ways_, hits_);
+    if (few_) stage_.intersector_.intersectFew(ways_, hits_);
+    else stage_.intersector_.intersect(ways_, hits_);
     for (size_t i = 0; i < now_.size(); ++i) {
         if (!hits_[i].valid()) {
             leaves(now_[i]);
@@ -248,7 +249,7 @@ void ShadowRays::Passing::run() {
     const StopFlag* const stop = stage_.context_.stop;
     while (!now_.empty()) {
         next_.clear(), nextWays_.clear(), met_.clear(), asks_.clear();
-        meet();
+        intersect();
         stage_.opacities_.takeOpacities(
             met_, [&](size_t k, const Color& opacity) { takes(next_[asks_[k]].index, opacity, met_[k].hit.distance); });
         size_t kept = 0;
@@ -281,7 +282,7 @@ Color ShadowRays::transmittance(const ShadowRay& s) {
 }
 
 void ShadowRays::transmissionRays(const SiteInfo& s, const ShadePoint& p, const Vec3& at, const geometry::SurfacePoint* surface,
-                                  const std::function<float(int)>& f, const Color& weight, TargetId target, uint32_t site,
+                                  const std::function<float(int)>& f, const Color& weight, AccumulatorId target, uint32_t site,
                                   uint32_t occurrence, std::vector<ShadowRay>& out) {
     const RaySite& r = *s.rays;
     auto point = [&](size_t arg) { return Vec3(f(s.rows[arg]), f(s.rows[arg] + 1), f(s.rows[arg] + 2)); };
@@ -310,7 +311,7 @@ void ShadowRays::transmissionRays(const SiteInfo& s, const ShadePoint& p, const 
                                                            .pair(p.ray->vertex, site, occurrence * 4096))) *
                           length(b - a);
         }
-        const Way way = wayBetween(a, end, at, surface);
+        const ShadowSegment way = segmentBetween(a, end, at, surface);
         ray.origin = bias >= 0 ? a + way.dir * bias : way.origin;
         ray.dir = way.dir;
         ray.distance = bias >= 0 ? std::max(0.f, way.distance - bias) : way.distance;
@@ -320,7 +321,7 @@ void ShadowRays::transmissionRays(const SiteInfo& s, const ShadePoint& p, const 
 }
 
 void ShadowRays::flush(Sched& s) {
-    for (const Deposit& d : settled) accumulator_.deposit(s, d);
+    for (const Contribution& d : settled) accumulator_.contribute(s, d);
     settled.clear();
     records_.follow(s);
     if (queue.empty()) return;
@@ -328,16 +329,16 @@ void ShadowRays::flush(Sched& s) {
     transmittances(queue, transmitted_);
     for (size_t i = 0; i < queue.size(); ++i) {
         const ShadowRay& r = queue[i];
-        const auto arrives = [&](const Color& contribution, TargetId target, int32_t share, bool areaLight, uint16_t path) {
+        const auto arrives = [&](const Color& contribution, AccumulatorId target, int32_t share, bool areaLight, uint16_t path) {
             const Color light = contribution * transmitted_[i];
             for (int k = path && !straights_.empty() ? straights_[i] : 0; k > 0; --k) path = paths_.next(path, paths_.straight);
-            accumulator_.deposit(s, {target, light, LightEvent::Sampled, r.ray, share, nullptr, paths_.next(path, r.light)});
+            accumulator_.contribute(s, {target, light, LightEvent::Sampled, r.ray, share, nullptr, paths_.next(path, r.light)});
             if (TraceSums* sums = areaLight ? accumulator_.sumsOf(target) : nullptr) sums->add(TraceSums::AreaLight, light);
         };
         if (r.hemisphere >= 0) { // these alone; no other light shares their rays
             if (transmitted_[i] == Color(0) && isFinite(r.contribution)) continue;
-            accumulator_.deposit(s, {r.target, occlusion_.openLight(r, transmitted_[i], accumulator_.sumsOf(r.target)),
-                                     LightEvent::Sampled, r.ray, r.share, nullptr, paths_.next(r.path, r.light)});
+            accumulator_.contribute(s, {r.target, occlusion_.openLight(r, transmitted_[i], accumulator_.sumsOf(r.target)),
+                                        LightEvent::Sampled, r.ray, r.share, nullptr, paths_.next(r.path, r.light)});
             continue;
         }
         arrives(r.contribution, r.target, r.share, r.areaLight, r.path);
@@ -356,4 +357,4 @@ void ShadowRays::clear() {
     more.clear();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,10 +3,10 @@
 #pragma once
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
-class Flights;
+class SegmentEvents;
 class Intersector;
 class IrradianceRecords;
 class LightPathStates;
@@ -24,21 +24,21 @@ public:
     Color transmittance(const ShadowRay&);
     /// Makes the rays of a transmission() from a to b, for `out`: as many as requested, each with its share of `weight`.
     void transmissionRays(const SiteInfo&, const ShadePoint&, const Vec3& at, const geometry::SurfacePoint*,
-                          const std::function<float(int)>& row, const Color& weight, TargetId, uint32_t site, uint32_t occurrence,
-                          std::vector<ShadowRay>& out);
+                          const std::function<float(int)>& row, const Color& weight, AccumulatorId, uint32_t site,
+                          uint32_t occurrence, std::vector<ShadowRay>& out);
     /// Traces the queue, adds the light, and empties the queue.
     void flush(Sched&);
     void clear();
 
     std::vector<ShadowRay> queue;
-    std::vector<MoreLight> more;  ///< further light along rays of the queue
-    std::vector<Deposit> settled; ///< contributions that need no ray, added with the queue
+    std::vector<MoreLight> more;       ///< further light along rays of the queue
+    std::vector<Contribution> settled; ///< contributions that need no ray, added with the queue
 
 private:
     class Passing;
     void passSurfaces(std::span<const ShadowRay>, std::span<Color> out); ///< transmittance of surfaces and media
     /// Whether opaque surfaces are tested first and separately, and others only where a ray may hit them.
-    bool meetsOpaqueAlone(const ShadowRay&) const;
+    bool intersectsOnlyOpaque(const ShadowRay&) const;
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
     void blockedByAll(std::span<const ShadowRay>, std::span<Color> out);
     std::vector<uint16_t> straights_; ///< by ray: surfaces passed straight through; filled only for light path outputs
@@ -46,7 +46,7 @@ private:
     std::vector<accel::Ray> rays_;
     std::vector<uint8_t> blocked_;
     Accumulator& accumulator_;
-    Flights& flights_;
+    SegmentEvents& segmentEvents_;
     Intersector& intersector_;
     IrradianceRecords& records_;
     const LightPathStates& paths_;
@@ -56,4 +56,4 @@ private:
     RayStore& store_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

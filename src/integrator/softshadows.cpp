@@ -1,15 +1,15 @@
 // Traced shadows of light loops. A point light may have a radius (__shadowradius): shadows are then cast by the disk around its
 // position that faces the lit point, while attenuation, cone and cosine stay those of the point.
 #include "base/direction.h"
+#include "bsdf/sampling.h"
 #include "integrator/lightkernels.h"
 #include "integrator/mediastacks.h"
 #include "integrator/raystore.h"
 #include "integrator/requests.h"
 #include "integrator/shadowrays.h"
-#include "lobes/sampling.h"
 #include <bit>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Vec3 onShadowDisk(const Vec3& centre, const Vec3& w, float radius, Vec2 u) {
     const float r = radius * std::sqrt(u.x);
@@ -25,7 +25,7 @@ int rowsOfArguments(const SiteInfo& s) {
 }
 
 void Requests::lightVisibility(BatchContext& c, const SiteInfo& s, int point, const float* in, int lanes, int lane, Color weight,
-                               TargetId target) {
+                               AccumulatorId target) {
     const auto f = [&](int row) { return in[size_t(row) * size_t(lanes) + size_t(lane)]; };
     const Vec3 l(f(s.rows[1]), f(s.rows[1] + 1), f(s.rows[1] + 2));
     const Vec3 w = directionOr(l, {});
@@ -72,7 +72,7 @@ void LightKernels::shadowLight(const KernelRun& c, const BoundLight& light, int 
         const bool soft = v[i].shadowRadius > 0 && lit.ray;
         count[i] = soft ? v[i].shadowSamples : 1;
         for (int k = 0; k < count[i]; ++k) {
-            ShadowRay ray{o, w, distance, Color(1), shading::kNoTarget, lit.shutter, lit.ray};
+            ShadowRay ray{o, w, distance, Color(1), shading::kNoAccumulator, lit.shutter, lit.ray};
             if (soft) {
                 const Random numbers = store_.random(*lit.ray).draw(uint32_t(k), uint32_t(count[i]));
                 const Vec2 u = numbers.pair(lit.ray->vertex, use, draw);
@@ -105,4 +105,4 @@ void LightKernels::takeShadowSays(LightValue& v, const BoundLight& light, float 
     v.shadowSamples = samples >= 1 ? int(std::min(samples, kMost)) : 1;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,7 +1,9 @@
 // The stages of one thread by name. The constructor of a stage takes from here the references to the stages that it calls.
 #pragma once
 
-namespace alpenglow::transport {
+#include "integrator/names.h"
+
+namespace alpenglow::integrator {
 
 class Accumulator;
 class AmbientLight;
@@ -13,7 +15,7 @@ class CameraOutputs;
 class DepthRays;
 class Displacement;
 class EmittedLight;
-class Flights;
+class SegmentEvents;
 class GatherCalls;
 class GuideRays;
 class HitQueues;
@@ -25,7 +27,7 @@ class LightOutputs;
 class LightPathStates;
 class LitSurfaces;
 class MediaStacks;
-class MediumFlights;
+class MediumEvents;
 class NestedTrace;
 class OcclusionCalls;
 class Opacities;
@@ -49,13 +51,13 @@ struct StageSet {
     Intersector& intersector;
     HitQueues& queues;
     SurfacePoints& surfaces;
-    Flights& flights;
+    SegmentEvents& segmentEvents;
     EmittedLight& emitted;
     LitSurfaces& litSurfaces;
     Transparency& transparency;
     LightKernels& lightKernels;
     NestedTrace& nested;
-    MediumFlights& mediumFlights;
+    MediumEvents& mediumEvents;
     OcclusionCalls& occlusion;
     IrradianceRecords& records;
     GatherCalls& gathers;
@@ -81,4 +83,4 @@ struct StageSet {
     DepthRays& depthRays;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

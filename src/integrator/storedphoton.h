@@ -1,12 +1,13 @@
 // The result of a photon emission.
 #pragma once
-#include "photons/photon.h"
+#include "integrator/names.h"
+#include "photonmap/photon.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// A stored photon.
 struct StoredPhoton {
-    photons::Photon photon;
+    photonmap::Photon photon;
     uint32_t number = 0;  ///< number in the emission
     int32_t binding = 0;  ///< of the surface that stores it
     Vec3 way;             ///< from the point toward the surface that reflected it here, if any
@@ -14,4 +15,4 @@ struct StoredPhoton {
     bool caustic = false; ///< came by delta lobes only (mirrors, glass), at least one
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -6,7 +6,7 @@
 #include "integrator/shadowrays.h"
 #include "integrator/surfaceshading.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 void putResult(const SiteInfo& site, const shading::TargetValue& value, const TraceSums* sums, float* out, int lanes, int lane) {
     const auto put = [&](int row, int rows, const Color& v) {
@@ -77,14 +77,14 @@ bool KernelStrip::advance(Sched& s, std::unique_ptr<Sched::Strip> self) {
     if (m_.occurrences.empty()) m_.occurrences.resize(c_->bound->sites.size() * 64);
     if (c_->bound->sites[size_t(site_)].kind == SiteKind::Gather) askGather();
     m_.ids.resize(gather_ ? sent_.size() : m_.laneOf.size());
-    s.wait(std::move(self), int(m_.ids.size()), [&](int i, TargetId id) {
+    s.wait(std::move(self), int(m_.ids.size()), [&](int i, AccumulatorId id) {
         m_.ids[size_t(i)] = id;
         s.hold(id);
     });
     if (m_.ids.empty()) return false; // ready at once
     const SiteInfo& site = c_->bound->sites[size_t(site_)];
     if (site.trace && site.trace->sums)
-        for (TargetId id : m_.ids) stages_.accumulator.traceSums[id] = {};
+        for (AccumulatorId id : m_.ids) stages_.accumulator.traceSums[id] = {};
     stages_.waiting.push_back(this);
     return false;
 }
@@ -142,7 +142,7 @@ void KernelStrip::noteAsked(uint64_t lobes) {
 }
 
 void KernelStrip::asked(Sched& s) {
-    for (TargetId id : m_.ids) s.release(id);
+    for (AccumulatorId id : m_.ids) s.release(id);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

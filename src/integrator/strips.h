@@ -4,7 +4,7 @@
 #include "integrator/waitingkernels.h"
 #include <array>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Writes the result of a request to the outputs of its call: rows of `lanes` floats; `sums` may be null.
 void putResult(const SiteInfo&, const shading::TargetValue&, const TraceSums* sums, float* out, int lanes, int lane);
@@ -56,4 +56,4 @@ private:
     std::array<uint32_t, 64> asked_{}; ///< by lane: rays requested so far
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

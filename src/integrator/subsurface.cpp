@@ -2,6 +2,7 @@
 // uniformly, so the light at the end of a walk is what diffuse() finds there; the walk itself is exact.
 #include "integrator/subsurface.h"
 #include "base/exact.h"
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
 #include "integrator/context.h"
@@ -17,13 +18,12 @@
 #include "integrator/stageset.h"
 #include "integrator/subsurfacewalks.h"
 #include "integrator/vertexlight.h"
-#include "lobes/sampling.h"
 #include "world/raysets.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
-Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> asked, std::span<const Below> below)
+Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> asked, std::span<const SubsurfaceMedium> below)
     : Stage(s.context), c_(c), asked_(asked), below_(below), accumulator_(s.accumulator), batches_(s.batches),
       displacement_(s.displacement), intersector_(s.intersector), inputs_(s.inputs), lightKernels_(s.lightKernels),
       litSurfaces_(s.litSurfaces), photons_(s.photons), store_(s.store), requests_(s.requests), shadows_(s.shadows),
@@ -65,7 +65,7 @@ void Walks::run(Sched& sched) {
 /// inside stays.
 std::optional<Walks::Entry> Walks::entry(int asked) const {
     const WalkAsked& a = asked_[size_t(asked)];
-    const Below& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = below_[size_t(a.below)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const bool turned = dot(p.surface.n, c_.rays[size_t(a.point)].dir) > 0;
     const Vec3 side = turned ? -p.surface.n : p.surface.n;
@@ -81,10 +81,10 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
     const float beside = 8 * geometry::roundingError(b.from);
     accel::Ray ray = rayOf({asked, b.from + at.out * beside, -at.out, {}, {}, 0}, 1e38);
     accel::Hit hit;
-    bool met = intersector_.meet(ray, hit);
+    bool met = intersector_.intersect(ray, hit);
     for (int k = 0; met && !belongs(hit.shape, b.group); ++k) {
         world_.goOn(ray, hit);
-        met = k < limits::kShadowLayers && intersector_.meet(ray, hit);
+        met = k < limits::kShadowLayers && intersector_.intersect(ray, hit);
     }
     if (!met) return {};
     const geometry::SurfacePoint s = world_.accel_->point(hit);
@@ -104,18 +104,19 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
 /// Starts a walk: samples a direction of uniform light refracted into the surface.
 void Walks::start(int asked) {
     const WalkAsked& a = asked_[size_t(asked)];
-    const Below& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = below_[size_t(a.below)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const PathRay& ray = c_.rays[size_t(a.point)];
     const std::optional<Entry> entered = entry(asked);
     if (!entered) return; // there is no interior
     Walker w{asked, {}, {}, a.weight, a.weight, a.vertex};
-    const Vec3 outside = sampleCosine(store_.random(ray).pair(a.vertex, kFlight, 0)); // a direction outside, around the normal
+    const Vec3 outside =
+        sampleCosine(store_.random(ray).pair(a.vertex, kSegmentEvent, 0)); // a direction outside, around the normal
     const double n = b.index, sine2 = (1 - double(outside.z) * outside.z) / (n * n);
     if (!(sine2 < 1)) return; // total reflection
     const double cosine = std::sqrt(1 - sine2);
     const double through = 1 - fresnelInside(cosine, n); // relative to its mean over the flux
-    const double mean = (1 - subsurface_.halfSpaces.of(b.index).first()) * n * n;
+    const double mean = (1 - subsurface_.albedoInversions.of(b.index).first()) * n * n;
     w.weight = w.begin = a.weight * float(b.index == 1 ? 1 : through / mean);
     w.dir = Basis(-entered->out).toWorld({float(outside.x / n), float(outside.y / n), float(cosine)});
     w.dir = w.dir / length(w.dir);
@@ -130,8 +131,8 @@ void Walks::start(int asked) {
 
 /// Samples the distance to the next scattering by one channel of the walker's weight.
 double Walks::distance(const Walker& w) const {
-    const Below& b = below_[size_t(asked_[size_t(w.asked)].below)];
-    const Vec2 u = store_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]).pair(w.vertex, kFlight, 1);
+    const SubsurfaceMedium& b = below_[size_t(asked_[size_t(w.asked)].below)];
+    const Vec2 u = store_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]).pair(w.vertex, kSegmentEvent, 1);
     const Color part = absolute(w.weight);
     double at = double(u.x) * (double(part.x) + part.y + part.z);
     int channel = 2;
@@ -145,7 +146,7 @@ double Walks::distance(const Walker& w) const {
 
 /// Updates a walker's weight after a distance: transmittance over the density of all channels.
 void Walks::weigh(Walker& w, double way, bool scatters) const {
-    const Below& b = below_[size_t(asked_[size_t(w.asked)].below)];
+    const SubsurfaceMedium& b = below_[size_t(asked_[size_t(w.asked)].below)];
     const Color part = absolute(w.weight);
     const double sum = double(part.x) + part.y + part.z;
     double left[3], density = 0;
@@ -179,17 +180,17 @@ void Walks::step() {
         rays.push_back(rayOf(w, reach.back()));
     }
     std::vector<accel::Hit> hits(rays.size());
-    intersector_.meet(rays, hits);
+    intersector_.intersect(rays, hits);
     going_.clear();
     for (size_t i = 0; i < walkers_.size(); ++i) {
         Walker& w = walkers_[i];
         const int group = below_[size_t(asked_[size_t(w.asked)].below)].group;
         for (int k = 0; hits[i].valid() && !belongs(hits[i].shape, group); ++k) { // skips unrelated geometry
             world.goOn(rays[i], hits[i]);
-            if (k >= limits::kShadowLayers || !intersector_.meet(rays[i], hits[i])) hits[i] = {};
+            if (k >= limits::kShadowLayers || !intersector_.intersect(rays[i], hits[i])) hits[i] = {};
         }
-        const bool goes = hits[i].valid() ? meet(w, hits[i], reach[i]) : scatter(w, reach[i]);
-        w.vertex = childVertex(w.vertex, kFlight, 3);
+        const bool goes = hits[i].valid() ? intersect(w, hits[i], reach[i]) : scatter(w, reach[i]);
+        w.vertex = childVertex(w.vertex, kSegmentEvent, 3);
         if (goes && ++w.steps < limits::kPathDepth) going_.push_back(w);
         else if (goes) ++counters_.depthCap;
     }
@@ -198,7 +199,7 @@ void Walks::step() {
 
 bool Walks::scatter(Walker& w, double way) {
     if (!(way < 1e30)) return false; // leaves an interior without a boundary
-    const Below& b = below_[size_t(asked_[size_t(w.asked)].below)];
+    const SubsurfaceMedium& b = below_[size_t(asked_[size_t(w.asked)].below)];
     weigh(w, way, true);
     const Color left = absolute(w.weight), begin = absolute(w.begin);
     if (!(maxComponent(left) > 0) || !isFinite(left)) return false;
@@ -210,15 +211,15 @@ bool Walks::scatter(Walker& w, double way) {
         w.weight = w.weight / q;
     }
     w.at += w.dir * float(way);
-    w.dir = scattered(w.dir, b.anisotropy, random.pair(w.vertex, kFlight, 2));
+    w.dir = scattered(w.dir, b.anisotropy, random.pair(w.vertex, kSegmentEvent, 2));
     return true;
 }
 
 /// At the boundary: returns true if the walker is reflected, or enters another part of the same interior.
-bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
+bool Walks::intersect(Walker& w, const accel::Hit& hit, double) {
     const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(w.asked)];
-    const Below& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = below_[size_t(a.below)];
     geometry::SurfacePoint at = world.accel_->point(hit);
     const Vec3 n = at.displaced ? at.displacedN : at.n;
     weigh(w, hit.distance, false);
@@ -238,7 +239,7 @@ bool Walks::meet(Walker& w, const accel::Hit& hit, double) {
         return true;
     }
     const double reflected = b.index == 1 ? 0 : fresnelInside(std::min(cosine, 1.0), b.index);
-    if (reflected > 0 && store_.random(c_.rays[size_t(a.point)]).one(w.vertex, kFlight, 0) < reflected) {
+    if (reflected > 0 && store_.random(c_.rays[size_t(a.point)]).one(w.vertex, kSegmentEvent, 0) < reflected) {
         w.dir = w.dir - out * float(2 * cosine);
         w.dir = w.dir / length(w.dir);
         w.at = geometry::offsetOrigin(at, w.dir);
@@ -255,7 +256,7 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
         const PathRay& from = c_.rays[size_t(a.point)];
         PathRay& r = c.rays.emplace_back(from);
         r.weight = x.weight;
-        r.vertex = childVertex(x.vertex, kFlight, 4);
+        r.vertex = childVertex(x.vertex, kSegmentEvent, 4);
         r.counts = r.first = false;
         r.dir = -x.out; // as if it came from outside
         if (photons_.photonTrace()) r.trail = shading::kTrailSpread;
@@ -305,7 +306,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
         l.point = int(i);
         l.weight = Color(1);
         l.target = c->targets[i];
-        l.site = kFlight;
+        l.site = kSegmentEvent;
         l.directOnly = !rules_.pickOne;
         l.share = asked_[size_t(x.asked)].share;
         l.indirect = asked_[size_t(x.asked)].indirect;
@@ -344,9 +345,10 @@ void Walks::skies(const BatchContext& c, Sched& sched) {
         lightKernels_.evaluateLight(light, q, value);
         for (size_t i = 0; i < q.size(); ++i)
             if (value[i].lit)
-                accumulator_.deposit(sched, {c.targets[i], c.rays[i].weight * value[i].Cl * value[i].kept(RayType::Diffuse),
-                                             LightEvent::Sky, &c.rays[i], store_.extraOf(c.rays[i]).share, light.instance.get()});
+                accumulator_.contribute(sched,
+                                        {c.targets[i], c.rays[i].weight * value[i].Cl * value[i].kept(RayType::Diffuse),
+                                         LightEvent::Sky, &c.rays[i], store_.extraOf(c.rays[i]).share, light.instance.get()});
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

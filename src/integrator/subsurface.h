@@ -2,7 +2,7 @@
 #pragma once
 #include "integrator/subsurfacewalks.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class BatchPool;
@@ -20,7 +20,7 @@ class VertexLight;
 /// The walks that a batch has requested, and their exits: points that gather light as diffuse() does.
 class Walks final : Stage {
 public:
-    Walks(const StageSet&, BatchContext&, std::span<const WalkAsked>, std::span<const Below>);
+    Walks(const StageSet&, BatchContext&, std::span<const WalkAsked>, std::span<const SubsurfaceMedium>);
     void run(Sched&);
 
 private:
@@ -48,7 +48,7 @@ private:
     void start(int asked);
     void step();
     bool scatter(Walker&, double distance);
-    bool meet(Walker&, const accel::Hit&, double reached);
+    bool intersect(Walker&, const accel::Hit&, double reached);
     void probe(int asked);
     void weigh(Walker&, double way, bool scatters) const;
     double distance(const Walker&) const;
@@ -67,7 +67,7 @@ private:
 
     BatchContext& c_;
     std::span<const WalkAsked> asked_;
-    std::span<const Below> below_;
+    std::span<const SubsurfaceMedium> below_;
     std::vector<Walker> walkers_, going_;
     std::vector<Exit> exits_;
 
@@ -86,4 +86,4 @@ private:
     VertexLight& vertexLight_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -6,7 +6,7 @@
 #include "integrator/subsurface.h"
 #include "world/raysets.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 SubsurfaceWalks::SubsurfaceWalks(const StageSet& s) : Stage(s.context), set_(s), occlusion_(s.occlusion) {}
 
@@ -30,7 +30,7 @@ void SubsurfaceWalks::request(BatchContext& c, const SiteInfo& s, const ShadePoi
                               LobeVertex& l) {
     const SubsurfaceSite& site = *s.subsurface;
     const OfShape& of = ofShape(p.shape->attributes());
-    Below b = belowOf(site, of, f, halfSpaces);
+    SubsurfaceMedium b = subsurfaceMediumOf(site, of, f, albedoInversions);
     b.group = site.group.empty() ? of.group : groupNamed(site.group);
     const float many = of.samples > 0 ? float(of.samples) : rules_.pickOne ? 1 : float(kSamplesElsewhere);
     const float samples = site.samples < 0 ? many : f(site.samples);
@@ -49,7 +49,7 @@ void SubsurfaceWalks::request(BatchContext& c, const SiteInfo& s, const ShadePoi
 }
 
 void SubsurfaceWalks::walk(BatchContext& c, Sched& sched) {
-    const std::vector<Below> ofLobes = std::exchange(below, {});
+    const std::vector<SubsurfaceMedium> ofLobes = std::exchange(below, {});
     const std::vector<WalkAsked> asked = std::exchange(walks, {});
     if (!asked.empty()) Walks(set_, c, asked, ofLobes).run(sched);
 }
@@ -59,4 +59,4 @@ void SubsurfaceWalks::clear() {
     below.clear();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -3,10 +3,10 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 #include "integrator/vertex.h"
-#include "world/below.h"
+#include "world/subsurfacemedium.h"
 #include <map>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class OcclusionCalls;
 struct StageSet;
@@ -27,9 +27,9 @@ public:
     };
     const OfShape& ofShape(const scene::Attributes&);
 
-    std::vector<Below> below;     ///< for Requests::lobes
-    std::vector<WalkAsked> walks; ///< requested by the lobes of a batch; removed when these are done
-    HalfSpaces halfSpaces;
+    std::vector<SubsurfaceMedium> below; ///< for Requests::lobes
+    std::vector<WalkAsked> walks;        ///< requested by the lobes of a batch; removed when these are done
+    AlbedoInversions albedoInversions;
 
 private:
     int groupNamed(const std::string&);
@@ -39,4 +39,4 @@ private:
     OcclusionCalls& occlusion_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 SurfacePoints::SurfacePoints(const StageSet& s) : Stage(s.context), store_(s.store) {}
 
@@ -74,4 +74,4 @@ Vec3 SurfacePoints::leave(const BatchContext& c, size_t point, const Vec3& w) co
     return geometry::offsetOrigin(p.surface, w, p.P == p.surface.P ? 0 : length(p.P - p.surface.P));
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

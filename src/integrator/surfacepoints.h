@@ -4,7 +4,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class RayStore;
 struct StageSet;
@@ -26,4 +26,4 @@ private:
     RayStore& store_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

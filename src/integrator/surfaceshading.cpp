@@ -25,7 +25,7 @@
 #include "world/outputs.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 SurfaceShading::SurfaceShading(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), atmosphere_(s.atmosphere), blocks_(s.blocks),
@@ -36,7 +36,7 @@ SurfaceShading::SurfaceShading(const StageSet& s)
 /// Writes results other than light to the call whose ray hit the point.
 void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacity, Sched& sched) {
     const PathRay& ray = c.rays[size_t(i)];
-    const TargetId target = c.targets[size_t(i)];
+    const AccumulatorId target = c.targets[size_t(i)];
     if (ray.first) {
         sched.setNearer(target, length(c.points[size_t(i)].P - ray.origin), c.points[size_t(i)].N);
         sched.setTransmission(target, Color(1) - opacity);
@@ -47,7 +47,7 @@ void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacit
     const RayExtra& extra = store_.extraOf(ray);
     if (extra.fade.fades() && maxComponent(extra.environment) > 0) { // the sky shows through partial blocking
         const Color light = extra.whole * extra.environment * opacity * (1 - extra.kept);
-        accumulator_.deposit(sched, {target, light, LightEvent::Map, &ray, extra.share});
+        accumulator_.contribute(sched, {target, light, LightEvent::Map, &ray, extra.share});
         if (TraceSums* sums = accumulator_.sumsOf(target)) sums->add(TraceSums::Environment, light);
     }
     if (TraceSums* sums = accumulator_.sumsOf(target)) {
@@ -58,13 +58,13 @@ void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacit
 }
 
 void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
-    if (c.aside) return lightOutputs_.finishAside(c, first, lanes, sched);
+    if (c.aside) return lightOutputs_.finishLightOutputs(c, first, lanes, sched);
     shading::Batch& b = *c.batch;
     int ci = b.plan().Ci, oi = b.plan().Oi;
     cameraOutputs_.begin(c);
     bool suspended = b.kernel().facts().suspends; // then the atmosphere has not run yet
     const bool media = !world_.media_.empty();
-    if (suspended) atmosphere_.hazeOfBatch(c, first, lanes, media || paths_.automaton);
+    if (suspended) atmosphere_.atmosphereOfBatch(c, first, lanes, media || paths_.automaton);
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[i];
         const SurfaceBinding& binding = world_.bindings_[c.bindings[i]];
@@ -75,19 +75,22 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
         }
         tellAsker(c, i, opacity, sched);
         Color shown = color;
-        if (!c.haze.empty() && c.haze[size_t(i)].on && !(binding.matte && ray.camera())) { // shade() has scaled the pairs
-            shown = c.haze[size_t(i)].shown;
-            opacity = c.haze[size_t(i)].opacity;
+        if (!c.atmosphereEffects.empty() && c.atmosphereEffects[size_t(i)].on &&
+            !(binding.matte && ray.camera())) { // shade() has scaled the pairs
+            shown = c.atmosphereEffects[size_t(i)].shown;
+            opacity = c.atmosphereEffects[size_t(i)].opacity;
         }
         if (!isFinite(opacity)) accumulator_.notFinite(&ray, "Oi", binding.surface.get());
-        const bool hazed = !c.haze.empty() && c.haze[size_t(i)].on; // then light of the surface and of the volume are separated
+        const bool hazed = !c.atmosphereEffects.empty() &&
+                           c.atmosphereEffects[size_t(i)].on; // then light of the surface and of the volume are separated
         if (isFinite(shown))
-            accumulator_.deposit(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share,
-                                         binding.surface.get(), hazed ? uint16_t(0) : paths_.next(ray.path, paths_.object)});
+            accumulator_.contribute(sched,
+                                    {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray, store_.extraOf(ray).share,
+                                     binding.surface.get(), hazed ? uint16_t(0) : paths_.next(ray.path, paths_.object)});
         else accumulator_.notFinite(&ray, "Ci", binding.surface.get());
         if (hazed && ray.path && isFinite(shown))
-            accumulator_.depositThroughVolume(sched, ray, binding.matte && ray.camera() ? shown : c.haze[size_t(i)].slope * color,
-                                              shown);
+            accumulator_.contributeThroughVolume(
+                sched, ray, binding.matte && ray.camera() ? shown : c.atmosphereEffects[size_t(i)].slope * color, shown);
         if (ray.counts) {
             cameraOutputs_.seeNormal(ray, c.points[size_t(i)], opacity);
             cameraOutputs_.see(ray, opacity, c.depths.empty() ? c.points[size_t(i)].P.z : c.depths[size_t(i)], binding.matte);
@@ -97,8 +100,8 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
         const Color clear = chance > 0 && !c.opaque ? transparency_.goesOn(c, i) : Color(0);
         if (ray.counts && ray.sample->grid) accumulator_.results[size_t(ray.sample->path)]->behind = clear;
         else if (maxComponent(clear) > 0)
-            transparency_.passThrough(binding, ray, c.targets[i], c.points[i], clear, chance,
-                                      asked.empty() ? 0 : asked[size_t(i - first)], sched);
+            transparency_.continueBehind(binding, ray, c.targets[i], c.points[i], clear, chance,
+                                         asked.empty() ? 0 : asked[size_t(i - first)], sched);
     }
 }
 
@@ -119,7 +122,8 @@ bool SurfaceShading::vanish(BatchContext& c, Sched& sched) {
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];
         if (r.counts) cameraOutputs_.see(r, Color(0), c.depths.empty() ? c.points[i].P.z : c.depths[i], false);
-        transparency_.passThrough(world_.bindings_[size_t(c.bindings[i])], r, c.targets[i], c.points[i], Color(1), 1, 0, sched);
+        transparency_.continueBehind(world_.bindings_[size_t(c.bindings[i])], r, c.targets[i], c.points[i], Color(1), 1, 0,
+                                     sched);
     }
     return true;
 }
@@ -127,12 +131,12 @@ bool SurfaceShading::vanish(BatchContext& c, Sched& sched) {
 void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     if (c->binding->displacement) displacement_.take(*c);
     const auto& kernel = *c->bound->kernel;
-    if (photons_.photonTrace()) atmosphere_.hazeOfPhotons(*c);
+    if (photons_.photonTrace()) atmosphere_.atmosphereOfPhotons(*c);
     if (photons_.photonTrace() && kernel.facts().suspends) return photons_.photonsByModel(*c, sched);
     inputs_.fill(*c);
     if (c->displaced) c->batch->tell(*c->displaced->batch);
     gathers_.takeSent(*c->batch, c->targets, rsl::PairName::To::Surface);
-    auto aside = lightOutputs_.asides(*c, sched);
+    auto aside = lightOutputs_.lightOutputBatches(*c, sched);
     if (c->binding->moveS) displacement_.moveToFacets(*c); // the kernel moves P itself: it starts with the undisplaced surface
     const int n = int(c->points.size());
     counters_.points += uint64_t(n);
@@ -142,7 +146,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
 
     if (kernel.facts().suspends) {
         waitingKernels_.start(c, sched);
-        lightOutputs_.followAsides(lightOutputs_.shareLight(*c, {}, aside, sched), aside, sched);
+        lightOutputs_.followLightOutputs(lightOutputs_.shareLight(*c, {}, aside, sched), aside, sched);
         return;
     }
     kernel.run(&c->batch->call());
@@ -154,7 +158,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
                                                       return world_.bindings_[size_t(b)].atmosphere.shader != nullptr;
                                                   }));
     if (hazy) {
-        atmosphere_.hazeOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
+        atmosphere_.atmosphereOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
         atmosphere_.scaleRequests(*c);
     }
     if (aside.empty() && blocks_.takes(*c)) {
@@ -176,7 +180,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     vertexLight_.gather(*c, sched);
     shadows_.flush(sched);
     finish(*c, 0, n, sched);
-    lightOutputs_.followAsides(rest, aside, sched);
+    lightOutputs_.followLightOutputs(rest, aside, sched);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -4,7 +4,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class AmbientLight;
@@ -58,4 +58,4 @@ private:
     WaitingKernels& waitingKernels_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

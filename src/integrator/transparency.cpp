@@ -1,4 +1,5 @@
 #include "integrator/transparency.h"
+#include "bsdf/sampling.h"
 #include "integrator/context.h"
 #include "integrator/guiderays.h"
 #include "integrator/lightpathstates.h"
@@ -6,9 +7,8 @@
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
-#include "lobes/sampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 Transparency::Transparency(const StageSet& s)
     : Stage(s.context), guide_(s.guide), paths_(s.paths), media_(s.media), photons_(s.photons), store_(s.store) {}
@@ -23,13 +23,13 @@ bool isOpaque(const shading::Batch& b) {
 
 Color Transparency::leftBehind(const BatchContext& c, int i) const {
     // An atmosphere continues behind a transparent surface, as if it were absent. A medium ends there, and another one begins.
-    if (world_.media_.empty() || c.haze.empty() || !c.haze[size_t(i)].on) return Color(1);
+    if (world_.media_.empty() || c.atmosphereEffects.empty() || !c.atmosphereEffects[size_t(i)].on) return Color(1);
     const PathRay& ray = c.rays[size_t(i)];
     const SurfaceBinding& binding = world_.bindings_[size_t(c.bindings[size_t(i)])];
     const bool ends =
         ray.medium() >= 0 ||
         binding.beyond(ray.media ? *ray.media : shading::Media(), c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0;
-    return ends ? c.haze[size_t(i)].slope : Color(1);
+    return ends ? c.atmosphereEffects[size_t(i)].slope : Color(1);
 }
 
 Color Transparency::clearAt(const BatchContext& c, int i) const {
@@ -55,13 +55,13 @@ void Transparency::tellClear(BatchContext& c) {
 /// straight on for viewers behind; those from behind are scattered only.
 Color Transparency::goesOn(const BatchContext& c, int i) const {
     const ShadePoint& p = c.points[size_t(i)];
-    if (photons_.photonTrace() && p.shape->oneSided() && dot(c.rays[size_t(i)].dir, meetsNormal(p.surface)) < 0)
+    if (photons_.photonTrace() && p.shape->oneSided() && dot(c.rays[size_t(i)].dir, intersectsNormal(p.surface)) < 0)
         return leftBehind(c, i);
     return c.clear.empty() ? clearAt(c, i) : c.clear[size_t(i)];
 }
 
-void Transparency::passThrough(const SurfaceBinding& b, const PathRay& ray, TargetId target, const ShadePoint& p,
-                               const Color& transparency, float chance, uint32_t asked, Sched& sched) {
+void Transparency::continueBehind(const SurfaceBinding& b, const PathRay& ray, AccumulatorId target, const ShadePoint& p,
+                                  const Color& transparency, float chance, uint32_t asked, Sched& sched) {
     if (ray.quiet) return;
     const Color t = transparency / chance;
     PathRay r = ray;
@@ -94,7 +94,7 @@ void Transparency::passThrough(const SurfaceBinding& b, const PathRay& ray, Targ
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.first = false;
-    guide_.passThrough(r, int(&b - world_.bindings_.data()));
+    guide_.continueBehind(r, int(&b - world_.bindings_.data()));
     r.path = paths_.next(ray.path, paths_.straight);
     r.media = media_.beyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
     media_.tellLost(r.media, p);
@@ -118,4 +118,4 @@ void Transparency::passThrough(const SurfaceBinding& b, const PathRay& ray, Targ
     sched.spawn(r.bounces + r.layers, target, r);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

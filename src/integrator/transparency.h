@@ -3,7 +3,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class GuideRays;
 class LightPathStates;
@@ -27,8 +27,8 @@ public:
     Color leftBehind(const BatchContext&, int point) const; ///< transmittance of the volume before the point
     /// Continues a ray behind a point. `chance`: probability of this choice; `asked`: rays that a waiting kernel has requested
     /// there.
-    void passThrough(const SurfaceBinding&, const PathRay&, TargetId, const ShadePoint&, const Color& transparency, float chance,
-                     uint32_t asked, Sched&);
+    void continueBehind(const SurfaceBinding&, const PathRay&, AccumulatorId, const ShadePoint&, const Color& transparency,
+                        float chance, uint32_t asked, Sched&);
 
 private:
     const GuideRays& guide_;
@@ -38,4 +38,4 @@ private:
     RayStore& store_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

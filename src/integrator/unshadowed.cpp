@@ -5,7 +5,7 @@
 #include "integrator/lightkernels.h"
 #include "integrator/litsurfaces.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& through, const Color& environment, TraceSums& sums) {
     const shading::RaySet& set = l.rays->set;
@@ -21,7 +21,7 @@ void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& thr
     ray.only = world_.shining_.data();
     ray.level = from.sample->level;
     accel::Hit hit;
-    while (intersector_.meet(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
+    while (intersector_.intersect(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
     if (!hit.valid()) return sums.add(TraceSums::UnshadowedEnvironment, through * environment);
     // Lobes that sample lights estimate area lights by these samples.
     const auto isOn = [&](int light) {
@@ -39,7 +39,7 @@ void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& thr
         std::vector<ShadePoint> q(1);
         q[0].shape = world_.shapes_[hit.shape].get();
         world_.accel_->point(hit, q[0].surface, b.pointNeeds);
-        q[0].P = meetsAt(q[0].surface);
+        q[0].P = intersectsAt(q[0].surface);
         q[0].N = q[0].surface.n;
         q[0].Ps = l.elsewhere ? l.from : p.P;
         q[0].shutter = p.shutter;
@@ -54,4 +54,4 @@ void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& thr
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,11 +1,11 @@
-// A shaded point for the stages of gather.h: its lobes, and the values that lights query.
+// A shaded point for the stages of vertexsampling.h: its lobes, and the values that lights query.
 #pragma once
-#include "answers/kernelrun.h"
-#include "integrator/beside.h"
+#include "integrator/lightdirected.h"
 #include "integrator/rays.h"
-#include "world/below.h"
+#include "services/kernelrun.h"
+#include "world/subsurfacemedium.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Values of a lit surface for lights that query them, whether the light is sampled or hit by a ray.
 struct LitValues {
@@ -21,7 +21,7 @@ struct WalkAsked {
     int point = 0;
     int32_t below = -1;
     Color weight;
-    TargetId target = shading::kNoTarget;
+    AccumulatorId target = shading::kNoAccumulator;
     uint32_t vertex = 0; ///< random number key
     int32_t share = -1;  ///< Accumulator::shares
     float indirect = 1;  ///< LobeVertex::indirect at the exit
@@ -32,7 +32,7 @@ struct AmbientAsked {
     int point = 0;
     Vec3 way;     ///< the shading normal; then the unit direction of its shadow ray
     Color weight; ///< as ShadowRay::contribution
-    TargetId target = shading::kNoTarget;
+    AccumulatorId target = shading::kNoAccumulator;
     bool owns = false; ///< LobeVertex::ownsTarget
     int lit = -1;      ///< index in LitSurfaces::values
 };
@@ -41,9 +41,9 @@ struct AmbientAsked {
 struct LobeVertex {
     int point = 0;
     const LobeKind* kind = nullptr;
-    LobeColumns::Place place; ///< in Requests::rows
-    Color weight;             ///< of the request, without the ray's throughput
-    TargetId target = shading::kNoTarget;
+    BsdfBatch::Place place; ///< in Requests::rows
+    Color weight;           ///< of the request, without the ray's throughput
+    AccumulatorId target = shading::kNoAccumulator;
     const RayKind* rays = &kDiffuseKind;
     bool lights = true;       ///< samples lights
     bool deltaLights = true;  ///< including point, spot and distant lights (not trace() without "samplelights")
@@ -73,7 +73,7 @@ struct LobeVertex {
     uint8_t guide = 0;       ///< GuideRays::Aim::trail() for its own ray
     float chosen = 1;        ///< probability that the indirect ray of this lobe is followed
     bool last = false;       ///< its ray would exceed the depth limit: skies are sampled in its place
-    Beside beside;           ///< light-directed sampling in a medium
+    LightDirected beside;    ///< light-directed sampling in a medium
 };
 
 /// n or -n: on the side of the surface at p from which a ray in direction dir arrives.
@@ -81,4 +81,4 @@ inline Vec3 onSeenSide(const Vec3& n, const ShadePoint& p, const Vec3& dir) {
     return (dot(n, p.surface.n) > 0) == (dot(dir, p.surface.n) < 0) ? n : -n;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,12 +1,12 @@
 #include "integrator/vertexlight.h"
 #include "integrator/ambientlight.h"
 #include "integrator/context.h"
-#include "integrator/gather.h"
 #include "integrator/requests.h"
 #include "integrator/stageset.h"
 #include "integrator/subsurfacewalks.h"
+#include "integrator/vertexsampling.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 VertexLight::~VertexLight() = default;
 
@@ -15,8 +15,8 @@ VertexLight::VertexLight(const StageSet& s)
 
 void VertexLight::gather(BatchContext& c, Sched& sched) {
     if (!ambient_.asked.empty()) ambient_.gather(c);
-    std::unique_ptr<Gather> g = std::move(gather_); // moved out, so that a nested call makes its own
-    if (!g) g = std::make_unique<Gather>(set_);
+    std::unique_ptr<VertexSampling> g = std::move(gather_); // moved out, so that a nested call makes its own
+    if (!g) g = std::make_unique<VertexSampling>(set_);
     g->run(c, sched);
     requests_.apartAt.clear();
     gather_ = std::move(g);
@@ -35,4 +35,4 @@ void VertexLight::tellScaled(const SurfaceBinding& b, bool more) {
                              {}});
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,13 +1,14 @@
-// Light over the lobes that a batch requests (Requests::lobes): runs the stages of Gather (gather.h), then the subsurface walks.
+// Light over the lobes that a batch requests (Requests::lobes): runs the stages of VertexSampling (vertexsampling.h), then the
+// subsurface walks.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class AmbientLight;
-class Gather;
+class VertexSampling;
 class Requests;
 struct StageSet;
 class SubsurfaceWalks;
@@ -23,7 +24,7 @@ public:
 
 private:
     const StageSet& set_;
-    std::unique_ptr<Gather> gather_; ///< reused for its memory
+    std::unique_ptr<VertexSampling> gather_; ///< reused for its memory
     /// Shaders already reported: reflectance over 1; reflectance plus transparency over 1.
     std::set<const void*> tamed_, tamedClear_;
     AmbientLight& ambient_;
@@ -31,4 +32,4 @@ private:
     SubsurfaceWalks& subsurface_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

@@ -1,4 +1,4 @@
-// The lobes of a batch by point, and functions that the stages of gather.h share.
+// The lobes of a batch by point, and functions that the stages of vertexsampling.h share.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/raystore.h"
@@ -6,7 +6,7 @@
 #include "integrator/stageset.h"
 #include "integrator/surfacepoints.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 /// Requests::lobes of one batch, sorted by point.
 class VertexLobes {
@@ -44,4 +44,4 @@ protected:
     SurfacePoints& surfaces_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

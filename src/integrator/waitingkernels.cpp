@@ -13,7 +13,7 @@
 #include "integrator/vertexlight.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 WaitingKernels::WaitingKernels(const StageSet& s)
     : Stage(s.context), accumulator(s.accumulator), gathers(s.gathers), requests(s.requests), shadows(s.shadows),
@@ -79,4 +79,4 @@ int WaitingKernels::roomFor(const rsl::CompiledKernel& k, const rsl::CompiledKer
     return int(std::clamp<size_t>(left / frame, 1, size_t(limits::kSliceRays))) * k.lanes();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

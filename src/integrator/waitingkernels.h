@@ -4,7 +4,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 
 class Accumulator;
 class BatchPool;
@@ -49,4 +49,4 @@ private:
     VertexLight& vertexLight_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::integrator

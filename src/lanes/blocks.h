@@ -1,11 +1,12 @@
 // Data of the integrator's block stages: blocks of 16 points in rows. A row has one number for each point. No standard header
 // beyond <cstdint>: code for newer processors must not leave a copy of a library's inline function for others.
 #pragma once
-#include "lobes/lobelanes.h"
-#include "lobes/roulettefactors.h"
+#include "bsdf/lobelanes.h"
+#include "bsdf/roulettefactors.h"
+#include "lanes/names.h"
 #include <cstdint>
 
-namespace alpenglow::transport {
+namespace alpenglow::lanes {
 
 inline constexpr int kBlock = kLobeBlock; ///< points of a block
 using Row = float[kBlock];
@@ -128,7 +129,7 @@ struct alignas(64) RayBlock {
     Row importance;
 };
 
-/// Roulette rule: none, by throughput, or by the weight of the followed lobe (lobes/sampling.h).
+/// Roulette rule: none, by throughput, or by the weight of the followed lobe (bsdf/sampling.h).
 enum class Roulette : uint8_t { None, Throughput, Local };
 
 /// Rules of select().
@@ -143,4 +144,4 @@ struct Selected {
     Lanes cut = 0; ///< points of VertexBlock::last where a lobe would have been followed
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::lanes

@@ -3,7 +3,7 @@
 #include "lanes/lighttree.h"
 #include "lanes/records.h"
 
-namespace alpenglow::transport::AL_NAMESPACE {
+namespace alpenglow::lanes::AL_NAMESPACE {
 
 typedef int64_t vl __attribute__((ext_vector_type(ALPENGLOW_LANES))); ///< mask of vd
 
@@ -311,4 +311,4 @@ static int chooseLights(const LightTree& tree, const Row* P, const float* random
     return c.count;
 }
 
-} // namespace alpenglow::transport::AL_NAMESPACE
+} // namespace alpenglow::lanes::AL_NAMESPACE

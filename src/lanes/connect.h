@@ -2,7 +2,7 @@
 #pragma once
 #include "lanes/rows.h"
 
-namespace alpenglow::transport::AL_NAMESPACE {
+namespace alpenglow::lanes::AL_NAMESPACE {
 
 static Lanes placeFarLights(const float* L, int stride, bool endless, LightBlock& to) {
     Lanes odd = 0;
@@ -61,4 +61,4 @@ static Lanes contributeLight(const VertexBlock& v, const LobeBlock& lobe, const 
     return some;
 }
 
-} // namespace alpenglow::transport::AL_NAMESPACE
+} // namespace alpenglow::lanes::AL_NAMESPACE

@@ -1,8 +1,10 @@
 // The light tree in the layout of its stage (meaning: world/lightchooser.h). No standard header beyond <cstdint>, as in blocks.h.
 #pragma once
+
+#include "lanes/names.h"
 #include <cstdint>
 
-namespace alpenglow::transport {
+namespace alpenglow::lanes {
 
 /// A node of one cache line, so that lanes load complete nodes and transpose them to rows.
 struct alignas(64) LightNode {
@@ -49,4 +51,4 @@ struct ChosenLight {
     float chance;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::lanes

@@ -4,7 +4,7 @@
 #include "base/exactlanes.h"
 #include "lanes/rows.h"
 
-namespace alpenglow::transport::AL_NAMESPACE {
+namespace alpenglow::lanes::AL_NAMESPACE {
 
 inline constexpr int kH = kW / 2;
 typedef float hf __attribute__((ext_vector_type(ALPENGLOW_LANES / 2)));
@@ -316,4 +316,4 @@ static Lanes placeOnEmitters(const VertexBlock& v, const FlatEmitter* const* lam
     return seenFrom(v, r, perArea, oneSided, share, to, P, N, stride);
 }
 
-} // namespace alpenglow::transport::AL_NAMESPACE
+} // namespace alpenglow::lanes::AL_NAMESPACE

@@ -2,7 +2,7 @@
 #pragma once
 #include "lanes/rows.h"
 
-namespace alpenglow::transport::AL_NAMESPACE {
+namespace alpenglow::lanes::AL_NAMESPACE {
 
 template <class, int...> struct Numbers {};
 template <class T, T... I> struct NumbersOf {
@@ -66,4 +66,4 @@ static int storeRecords(const void* rows, int words, Lanes points, void* to) {
     return stored;
 }
 
-} // namespace alpenglow::transport::AL_NAMESPACE
+} // namespace alpenglow::lanes::AL_NAMESPACE

@@ -2,7 +2,7 @@
 #pragma once
 #include "lanes/rows.h"
 
-namespace alpenglow::transport::AL_NAMESPACE {
+namespace alpenglow::lanes::AL_NAMESPACE {
 
 /// Directions toward the viewer.
 AL_INLINE V3 toViewer(const VertexBlock& v, int at) { return normalizeOr(-load3(v.I, at), load3(v.n, at)); }
@@ -154,4 +154,4 @@ static Selected selectLobes(VertexBlock& v, LobeBlock* const* sites, int count, 
     return found;
 }
 
-} // namespace alpenglow::transport::AL_NAMESPACE
+} // namespace alpenglow::lanes::AL_NAMESPACE

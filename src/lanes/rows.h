@@ -4,7 +4,7 @@
 #include "lanes/stages.h"
 #include "shadeops/lanes.h"
 
-namespace alpenglow::transport::AL_NAMESPACE {
+namespace alpenglow::lanes::AL_NAMESPACE {
 using namespace rsl::AL_NAMESPACE;
 
 inline constexpr int kW = ALPENGLOW_LANES;
@@ -103,10 +103,10 @@ AL_INLINE V3 leave(const VertexBlock& v, int at, const V3& w) {
     return choose(bias > 0, P + w * bias, offsetOrigin(P, load3(v.n, at), load(v.error + at), w));
 }
 
-/// MIS weight of technique a against b: misWeight() of lobes/sampling.h.
+/// MIS weight of technique a against b: misWeight() of bsdf/sampling.h.
 AL_INLINE vf misWeight(vf a, vf b) {
     const vf r = b / a;
     return select(a > 0, vf(1) / (vf(1) + r * r), vf(0));
 }
 
-} // namespace alpenglow::transport::AL_NAMESPACE
+} // namespace alpenglow::lanes::AL_NAMESPACE

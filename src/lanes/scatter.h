@@ -2,7 +2,7 @@
 #pragma once
 #include "lanes/rows.h"
 
-namespace alpenglow::transport::AL_NAMESPACE {
+namespace alpenglow::lanes::AL_NAMESPACE {
 
 static void pickLobe(VertexBlock& v, const LobeBlock* const* sites, int count, const float* number, ScatterBlock& to) {
     to.goes = to.single = 0;
@@ -73,7 +73,7 @@ static void nameVertices(const VertexBlock& v, const uint32_t* key, ScatterBlock
     }
 }
 
-/// Survival probability by rouletteOfPath() or rouletteLocal() (lobes/sampling.h); 0: the path ends.
+/// Survival probability by rouletteOfPath() or rouletteLocal() (bsdf/sampling.h); 0: the path ends.
 AL_INLINE vf chanceToGoOn(Roulette rule, const V3& weight, const V3& request, const vf& factor, const vf& dice) {
     const vf likely = rule == Roulette::Local ? maxComponent(request) : factor * rootLanes(maxComponent(absolute(weight)));
     const vf most = select(likely < 1, likely, vf(1));
@@ -106,4 +106,4 @@ static Lanes extendPaths(const VertexBlock& v, Roulette rule, ScatterBlock& to) 
     return bad;
 }
 
-} // namespace alpenglow::transport::AL_NAMESPACE
+} // namespace alpenglow::lanes::AL_NAMESPACE

@@ -1,6 +1,6 @@
 #include "lanes/stages.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::lanes {
 
 // One for each file compiled from lanes/stages.inc.
 const Stages& stages_4v2();
@@ -21,4 +21,4 @@ const Stages& stages() {
     return widest;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::lanes

@@ -16,7 +16,7 @@
 #include "lanes/blocks.h"
 #include "lanes/lighttree.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::lanes {
 
 struct Stages {
     /// Sets the rows named by `needs` (LobeNeed) for the points of `asked`, and LobeBlock::asked, the points of nonzero weight,
@@ -51,7 +51,7 @@ struct Stages {
     /// (kValueRows) of non-delta lobes to colour and pdf.
     void (*takeDirections)(const LobeBlock&, int site, bool lighting, const float* drawn, ScatterBlock&);
     void (*takeValues)(const LobeBlock&, int site, const float* value, ScatterBlock&);
-    /// Sets ScatterBlock::vertex as childVertex() of answers/random.h. key: number of the call site, by site.
+    /// Sets ScatterBlock::vertex as childVertex() of services/random.h. key: number of the call site, by site.
     void (*name)(const VertexBlock&, const uint32_t* key, ScatterBlock&);
     /// Sets origin and weight; ends paths by the rule and ScatterBlock::dice. Returns points whose throughput is not finite.
     Lanes (*extend)(const VertexBlock&, Roulette, ScatterBlock&);
@@ -71,4 +71,4 @@ const Stages* stages(int lanes);
 /// The widest that this processor can run.
 const Stages& stages();
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::lanes

@@ -57,7 +57,7 @@ private:
     std::optional<render::OutputPlan> plan_; ///< as `own_`, with the curves that are kept
     render::PictureFacts facts_;
     render::Imager imager_;
-    std::shared_ptr<const transport::World> world_;
+    std::shared_ptr<const world::World> world_;
     int frame_ = 0;
     bool whole_ = false;         ///< the frame's pictures are kept
     double last_ = 0, cost_ = 0; ///< when the growing picture was last looked at, and how long that took, seconds

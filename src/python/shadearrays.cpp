@@ -1,9 +1,9 @@
 #include "python/shadearrays.h"
-#include "answers/withoutscene.h"
 #include "rsl/front/protocol.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
 #include "rsl/spilledarrays.h"
+#include "services/withoutscene.h"
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -221,7 +221,7 @@ private:
     const std::vector<rsl::ParameterValue>& values_;
     const ShadeRequest& request_;
     Diagnostics& diagnostics_;
-    transport::WithoutScene services_;
+    services::WithoutScene services_;
     rsl::PrintLog prints_;
     rsl::SpilledArrays spilled_;
     StopFlag stop_;

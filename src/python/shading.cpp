@@ -1,5 +1,4 @@
 // alpenglow.eval(), shade() and info(): RSL without a scene.
-#include "answers/withoutscene.h"
 #include "base/installation.h"
 #include "cli/command.h"
 #include "cli/shaderdescription.h"
@@ -7,6 +6,7 @@
 #include "python/shadearrays.h"
 #include "ri/requests/request.h"
 #include "rsl/evaluate.h"
+#include "services/withoutscene.h"
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
@@ -41,7 +41,7 @@ py::dict evaluateOne(const std::string& expression, const std::string& setup, in
         rsl::ShaderCompiler compiler(compilerSettings(dialect, allowExec, shaderFolders({})));
         rsl::KernelOptions options;
         options.lanes = lanes;
-        transport::WithoutScene services({"."}, messages.diagnostics);
+        services::WithoutScene services({"."}, messages.diagnostics);
         const Vec3 point;
         services.setPoints({0, 0, -1}, {&point, 1});
         e = rsl::evaluate(compiler, setup, expression, options, messages.diagnostics,

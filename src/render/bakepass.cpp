@@ -13,14 +13,14 @@ constexpr size_t kRays = 256;             ///< in one trace(): their shaders may
 
 /// Traces all samples of some points. Returns false if stopped.
 bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::vector<int>& numbers, uint32_t samples,
-                 const transport::CameraRay& pixel) {
+                 const integrator::CameraRay& pixel) {
     const auto work = [&](int worker, size_t task) {
         const size_t begin = task * kRays, end = std::min(points.size(), begin + kRays);
-        std::vector<transport::CameraRay> rays;
-        for (size_t i = begin; i < end; ++i) rays.push_back(transport::rayTo(*job.world, points[i], numbers[i], pixel));
-        std::vector<transport::SampleResult> results(rays.size());
+        std::vector<integrator::CameraRay> rays;
+        for (size_t i = begin; i < end; ++i) rays.push_back(integrator::rayTo(*job.world, points[i], numbers[i], pixel));
+        std::vector<integrator::SampleResult> results(rays.size());
         for (uint32_t s = 0; s < samples; ++s) {
-            for (transport::CameraRay& r : rays) r.sample = s;
+            for (integrator::CameraRay& r : rays) r.sample = s;
             if (!job.trace(worker, rays, results)) return;
         }
     };
@@ -28,8 +28,8 @@ bool tracePoints(Job& job, std::vector<shading::GridPoint>& points, const std::v
 }
 
 /// Whether no point of a shape bakes, if a few points are representative.
-bool noneBakes(Job& job, uint32_t shape, const std::vector<shading::GridPoint>& all, const transport::CameraRay& pixel) {
-    if (!transport::bakesAllOrNone(*job.world, shape)) return false;
+bool noneBakes(Job& job, uint32_t shape, const std::vector<shading::GridPoint>& all, const integrator::CameraRay& pixel) {
+    if (!integrator::bakesAllOrNone(*job.world, shape)) return false;
     std::vector<shading::GridPoint> few;
     std::vector<int> numbers;
     for (const bool corner : {true, false})
@@ -39,18 +39,18 @@ bool noneBakes(Job& job, uint32_t shape, const std::vector<shading::GridPoint>& 
             numbers.push_back(int(i));
             ++n;
         }
-    transport::noteLightsOfBakes(*job.world);
-    const bool whole = tracePoints(job, few, numbers, 1, pixel), none = !transport::bakedNow(*job.world);
-    const bool lit = transport::bakingLightsRan(*job.world, shape);
-    transport::settleBakes(*job.world, false);
+    integrator::noteLightsOfBakes(*job.world);
+    const bool whole = tracePoints(job, few, numbers, 1, pixel), none = !integrator::bakedNow(*job.world);
+    const bool lit = integrator::bakingLightsRan(*job.world, shape);
+    integrator::commitBakes(*job.world, false);
     return whole && none && lit;
 }
 
 } // namespace
 
 bool bakeGrids(Job& job, uint32_t samples) {
-    if (!job.world || !transport::bakes(*job.world)) return true;
-    const transport::CameraRay pixel = job.camera.ray(job.camera.width() / 2., job.camera.height() / 2., {0.5f, 0.5f}, 0);
+    if (!job.world || !integrator::bakes(*job.world)) return true;
+    const integrator::CameraRay pixel = job.camera.ray(job.camera.width() / 2., job.camera.height() / 2., {0.5f, 0.5f}, 0);
     std::vector<shading::GridPoint> all, points;
     std::vector<int> numbers;
     bool whole = true;
@@ -58,14 +58,14 @@ bool bakeGrids(Job& job, uint32_t samples) {
     const auto flush = [&] {
         if (!points.empty()) {
             whole = whole && tracePoints(job, points, numbers, samples, pixel);
-            transport::settleBakes(*job.world, whole);
+            integrator::commitBakes(*job.world, whole);
         }
         points.clear();
         numbers.clear();
     };
-    for (const uint32_t shape : transport::bakedShapes(*job.world)) {
+    for (const uint32_t shape : integrator::bakedShapes(*job.world)) {
         all.clear();
-        transport::bakedPoints(*job.world, shape, all);
+        integrator::bakedPoints(*job.world, shape, all);
         if (noneBakes(job, shape, all, pixel)) continue;
         for (size_t i = 0; i < all.size() && whole; ++i) {
             points.push_back(all[i]);

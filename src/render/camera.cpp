@@ -276,7 +276,7 @@ std::vector<geometry::Plane> Camera::sides(const Window& w) const {
 
 Matrix Camera::cameraToFirst(double time) const { return inverse(scene::at(transform_, time)) * worldToCamera_; }
 
-transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) const {
+integrator::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) const {
     const double eye = stereo_ == Stereo::None ? 0 : eyeOf(rx, ry);
     double xs = left_ + (right_ - left_) * rx / width_, ys = top_ - (top_ - bottom_) * ry / height_;
     double pixel = pixel_;
@@ -302,7 +302,7 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
     double l = length(direction), cosine = direction.z / l, start = near_ * l;
     direction /= l;
 
-    transport::CameraRay r;
+    integrator::CameraRay r;
     const double part = opening_.at(double(time01));
     r.shutter = float(part);
     r.time = float(shutter_.at(part));
@@ -328,9 +328,9 @@ transport::CameraRay Camera::ray(double rx, double ry, Vec2 lens, float time01) 
     return r;
 }
 
-void Camera::plainRays(std::span<const Vec2> raster, transport::CameraRay* out) const {
+void Camera::plainRays(std::span<const Vec2> raster, integrator::CameraRay* out) const {
     constexpr size_t kAtOnce = 16; // loops over these are vectorised
-    const transport::CameraRay like = ray(0, 0, {0.5f, 0.5f}, 0);
+    const integrator::CameraRay like = ray(0, 0, {0.5f, 0.5f}, 0);
     const double width = right_ - left_, height = top_ - bottom_, tangent = perspective_ ? tangent_ : 1;
     for (size_t first = 0; first < raster.size(); first += kAtOnce) {
         double x[kAtOnce] = {}, y[kAtOnce] = {}, l[kAtOnce];
@@ -350,7 +350,7 @@ void Camera::plainRays(std::span<const Vec2> raster, transport::CameraRay* out) 
         for (size_t i = 0; i < kAtOnce; ++i) l[i] = std::sqrt(x[i] * x[i] + y[i] * y[i] + 1);
         const double pixel = 0.5 * (pixel_ * tangent_);
         for (size_t i = 0; i < n; ++i) {
-            transport::CameraRay& r = out[first + i] = like;
+            integrator::CameraRay& r = out[first + i] = like;
             const double cosine = 1 / l[i];
             r.spread = float(pixel * cosine);
             r.origin = Vec3(Vec3d(x[i] * near_, y[i] * near_, near_));

@@ -61,11 +61,11 @@ public:
     /// The ray through a raster position. lens: two numbers in [0, 1) for the point on the lens; time01: one for the shutter. The
     /// ray starts at the near plane, in camera space at shutter open, where the scene is stored; `cosine` refers to the camera at
     /// the ray's time. width and spread describe half the larger side of a pixel.
-    transport::CameraRay ray(double rx, double ry, Vec2 lens, float time01) const;
+    integrator::CameraRay ray(double rx, double ry, Vec2 lens, float time01) const;
     /// Whether rays differ by raster position only: one eye without motion, and no lens.
     bool plain() const { return stereo_ == Stereo::None && !(lensRadius_ > 0) && !transform_.moves(); }
     /// ray() of a plain() camera at shutter open for many raster positions: out[i] for the i-th, with the same bits.
-    void plainRays(std::span<const Vec2> raster, transport::CameraRay* out) const;
+    void plainRays(std::span<const Vec2> raster, integrator::CameraRay* out) const;
 
     /// Half-spaces in camera space whose intersection contains everything that rays of a part of the picture can hit. Empty:
     /// unknown (a lens, a moving camera, a stereo pair).

@@ -12,7 +12,7 @@ struct Row {
     std::vector<display::DeepStep> steps;
 };
 
-display::DeepChange change(const transport::DepthStep& s, const Color& before) {
+display::DeepChange change(const integrator::DepthStep& s, const Color& before) {
     return {s.z, {before.x, before.y, before.z}, {s.left.x, s.left.y, s.left.z}};
 }
 
@@ -35,8 +35,8 @@ bool DepthLoop::row(int worker, int y, Row& out) {
     const Window& w = job_.camera.window();
     const int samples = nx_ * ny_;
     ImageRays image(job_.camera, seed_, nx_, ny_, jitter_);
-    std::vector<transport::CameraRay>& rays = image.rays();
-    std::vector<transport::SampleResult> results;
+    std::vector<integrator::CameraRay>& rays = image.rays();
+    std::vector<integrator::SampleResult> results;
     std::vector<display::DeepChange> changes;
     int64_t begun = 0; // samples of the row started
     const auto finish = [&] {
@@ -50,12 +50,12 @@ bool DepthLoop::row(int worker, int y, Row& out) {
         image.clear();
         for (int64_t i = begun; i < std::min(all, begun + kSlice); ++i) image.ask(w.x0 + int(i / samples), y, int(i % samples));
         image.make();
-        for (transport::CameraRay& r : rays) r.depths = true;
+        for (integrator::CameraRay& r : rays) r.depths = true;
         results.assign(rays.size(), {});
         if (!job_.trace(worker, rays, results)) return false;
-        for (const transport::SampleResult& r : results) {
+        for (const integrator::SampleResult& r : results) {
             Color before(1);
-            for (const transport::DepthStep& s : r.left) {
+            for (const integrator::DepthStep& s : r.left) {
                 changes.push_back(change(s, before));
                 before = s.left;
             }

@@ -5,27 +5,27 @@ namespace {
 
 class IntegratorTracer final : public Tracer {
 public:
-    IntegratorTracer(std::shared_ptr<const transport::World> w, Diagnostics& d) : integrator_(std::move(w), d) {}
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> results,
+    IntegratorTracer(std::shared_ptr<const world::World> w, Diagnostics& d) : integrator_(std::move(w), d) {}
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> results,
                const StopFlag* stop) override {
         return integrator_.trace(rays, results, stop);
     }
-    const transport::Counters& counters() const override { return integrator_.counters(); }
+    const integrator::Counters& counters() const override { return integrator_.counters(); }
     bool seesNothing(std::span<const geometry::Plane> sides) const override { return integrator_.seesNothing(sides); }
-    void tally(transport::BounceTally* t) override { integrator_.tally(t); }
+    void tally(integrator::BounceTally* t) override { integrator_.tally(t); }
     bool unfinished() const override { return integrator_.unfinished(); }
 
 private:
-    transport::Integrator integrator_;
+    integrator::Integrator integrator_;
 };
 
 } // namespace
 
 Engine transportEngine() {
-    return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics& d) {
-                return transport::buildWorld(std::move(f), s, d);
+    return {[](std::shared_ptr<const scene::Frame> f, const world::Settings& s, Diagnostics& d) {
+                return integrator::buildWorld(std::move(f), s, d);
             },
-            [](std::shared_ptr<const transport::World> w, Diagnostics& d) -> std::unique_ptr<Tracer> {
+            [](std::shared_ptr<const world::World> w, Diagnostics& d) -> std::unique_ptr<Tracer> {
                 return std::make_unique<IntegratorTracer>(std::move(w), d);
             }};
 }

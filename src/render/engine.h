@@ -6,29 +6,28 @@
 #include <memory>
 #include <span>
 
-namespace alpenglow::transport {
+namespace alpenglow::integrator {
 struct BounceTally;
 }
 
 namespace alpenglow::render {
 
-/// Traces the rays of one thread. See transport::Integrator.
+/// Traces the rays of one thread. See integrator::Integrator.
 class Tracer {
 public:
     virtual ~Tracer() = default;
-    virtual bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult>, const StopFlag* stop) = 0;
-    virtual const transport::Counters& counters() const = 0;
-    virtual bool seesNothing(std::span<const geometry::Plane>) const { return false; } ///< see transport::Integrator
-    virtual void tally(transport::BounceTally*) {}                                     ///< see transport::Integrator
-    /// See transport::Integrator.
+    virtual bool trace(std::span<const integrator::CameraRay>, std::span<integrator::SampleResult>, const StopFlag* stop) = 0;
+    virtual const integrator::Counters& counters() const = 0;
+    virtual bool seesNothing(std::span<const geometry::Plane>) const { return false; } ///< see integrator::Integrator
+    virtual void tally(integrator::BounceTally*) {}                                    ///< see integrator::Integrator
+    /// See integrator::Integrator.
     virtual bool unfinished() const { return false; }
 };
 
 struct Engine {
-    std::function<std::shared_ptr<const transport::World>(std::shared_ptr<const scene::Frame>, const transport::Settings&,
-                                                          Diagnostics&)>
+    std::function<std::shared_ptr<const world::World>(std::shared_ptr<const scene::Frame>, const world::Settings&, Diagnostics&)>
         build;
-    std::function<std::unique_ptr<Tracer>(std::shared_ptr<const transport::World>, Diagnostics&)> tracer;
+    std::function<std::unique_ptr<Tracer>(std::shared_ptr<const world::World>, Diagnostics&)> tracer;
 };
 
 /// The renderer's own engine: buildWorld() and Integrator.

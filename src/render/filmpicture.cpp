@@ -18,8 +18,8 @@ std::string number(double v) {
 
 /// The world that runs the imager of a merged film. Returns null if there is no imager, or if the world cannot be made
 /// (reported).
-std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std::string& file, const MergeSettings& settings,
-                                                    Diagnostics& diags) {
+std::shared_ptr<const world::World> imagerWorld(const Film& film, const std::string& file, const MergeSettings& settings,
+                                                Diagnostics& diags) {
     const auto text = film.metadata.find(kImagerKey);
     if (text == film.metadata.end()) {
         diags.report(Severity::Error, Rie::Incapable, {file},
@@ -31,7 +31,7 @@ std::shared_ptr<const transport::World> imagerWorld(const Film& film, const std:
     auto& paths = scene->settings.shaderPaths;
     paths.insert(paths.begin(), settings.shaderPaths.begin(), settings.shaderPaths.end());
     scene->settings.allowExec = settings.allowExec;
-    return transport::buildWorld(scene->frame, scene->settings, diags);
+    return integrator::buildWorld(scene->frame, scene->settings, diags);
 }
 
 std::string rangesText(const std::vector<SampleRange>& ranges) {

@@ -10,7 +10,7 @@
 
 namespace alpenglow::render {
 
-using transport::Hider;
+using world::Hider;
 
 /// The hider that runs for the scene's; reports unknown ones.
 Hider hiderOf(const scene::Options&, Diagnostics&);
@@ -29,10 +29,10 @@ struct Renderer::FrameWork {
     SampleRange wanted{};
     OutputPlan plan;
     std::string checkpoint; ///< "": none
-    transport::Settings settings;
+    world::Settings settings;
     std::shared_ptr<const scene::Frame> made; ///< the frame with the procedurals expanded so far
     std::unique_ptr<Diagnostics> later;       ///< for worlds with further procedurals: reports only new messages
-    std::shared_ptr<const transport::World> world;
+    std::shared_ptr<const world::World> world;
     PictureFacts picture;
     Imager imager;
     uint64_t nonFinite = 0; ///< samples that were dropped

@@ -1,5 +1,5 @@
 #include "render/guidepass.h"
-#include "photons/limits.h"
+#include "photonmap/limits.h"
 #include "render/filtersampler.h"
 #include "render/photonpass.h"
 #include "scene/scene.h"
@@ -28,16 +28,16 @@ float brightnessOf(Job& job) {
     for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x) samples.push_back({x * std::max(o.xres, 1) / kSide, y * std::max(o.yres, 1) / kSide, 0});
     NumberRows numbers;
-    std::vector<transport::CameraRay> rays;
+    std::vector<integrator::CameraRay> rays;
     std::vector<float> weights;
     pathRays(job.camera, filter, job.settings.seed ^ kOtherSeed, samples, numbers, rays, weights);
-    for (transport::CameraRay& r : rays) r.sample = 0x40000000u; // larger than any sample number of a picture
-    std::vector<transport::SampleResult> results(rays.size());
+    for (integrator::CameraRay& r : rays) r.sample = 0x40000000u; // larger than any sample number of a picture
+    std::vector<integrator::SampleResult> results(rays.size());
     Diagnostics silent;
     const auto tracer = job.engine.tracer(job.world, silent);
     if (!tracer->trace(rays, results, &job.halt) || job.halt) return 0;
     std::vector<double> light;
-    for (const transport::SampleResult& r : results)
+    for (const integrator::SampleResult& r : results)
         if (const float l = luminance(r.color); l >= 0) light.push_back(l);
     std::sort(light.begin(), light.end());
     double sum = 0;
@@ -49,12 +49,12 @@ float brightnessOf(Job& job) {
 
 bool learnCaustics(Job& job) {
     const scene::Options& o = job.world->frame().options;
-    if (refused(o) || !job.world->photons() || !transport::mayHaveCaustics(*job.world)) return true;
+    if (refused(o) || !job.world->photons() || !integrator::mayHaveCaustics(*job.world)) return true;
     Diagnostics silent;
     PhotonPasses passes(job, job.world, {true, false, true, 0, true}, silent);
     if (!passes.emission().lights()) return true;
-    std::vector<transport::StoredPhoton> found;
-    const auto take = [&](uint32_t, std::vector<transport::StoredPhoton> stored) { found = std::move(stored); };
+    std::vector<integrator::StoredPhoton> found;
+    const auto take = [&](uint32_t, std::vector<integrator::StoredPhoton> stored) { found = std::move(stored); };
     // Few enough to cost nothing in small pictures. For the complete picture, so that a crop equals that part of the picture.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
     const auto pilot = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 14)));
@@ -63,15 +63,15 @@ bool learnCaustics(Job& job) {
     passes.emission().learn(found, kPilot, pilot);
     const auto photons = uint32_t(std::clamp(pixels, double(1u << 13), double(1u << 17)));
     // For emitters that are not flat, emission is inefficient: sends more.
-    std::vector<transport::StoredPhoton> all;
+    std::vector<integrator::StoredPhoton> all;
     uint32_t turns = 0;
     do {
         if (!passes.emit(kLearned - turns, 1, photons, limits::kPhotonsAtRest, take)) return false;
         all.insert(all.end(), found.begin(), found.end());
     } while (++turns < kMostTurns && double(all.size()) < pixels / 8);
-    for (transport::StoredPhoton& s : all) s.photon.power /= float(turns);
+    for (integrator::StoredPhoton& s : all) s.photon.power /= float(turns);
     const float brightness = brightnessOf(job);
-    job.guide = transport::guideCaustics(*job.world, all, passes.emission().power(), brightness);
+    job.guide = integrator::guideCaustics(*job.world, all, passes.emission().power(), brightness);
     job.world->flushPrints(false);
     return !job.pollStop();
 }

@@ -1,8 +1,8 @@
 // `hidden` and `raytrace`: PixelSamples image samples a pixel, reconstructed by each display's own filter, in bands of rows.
 #include "base/limits.h"
 #include "base/sampler.h"
+#include "integrator/deferred.h"
 #include "integrator/depths.h"
-#include "integrator/unmade.h"
 #include "render/growth.h"
 #include "render/imaging.h"
 #include "render/noise.h"
@@ -25,8 +25,8 @@ struct Wanted {
 struct Kept {
     std::vector<Wanted> wanted;
     ImageRays image;
-    std::vector<transport::CameraRay> behind;
-    std::vector<transport::SampleResult> results, found;
+    std::vector<integrator::CameraRay> behind;
+    std::vector<integrator::SampleResult> results, found;
     std::vector<size_t> of; ///< by ray of `behind`
 };
 
@@ -103,7 +103,7 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
     // With motion, surfaces are shaded at shutter open, but rays hit them at other depths.
     const bool still = job.camera.shutterClose() <= job.camera.shutterOpen();
     const bool ofDepth = depthsAlone_ || job.plan.needsDepth(DepthFilter::Midpoint);
-    behindUnshaded_ = ofDepth && still && job.world && transport::depthsNeedNoShaders(*job.world);
+    behindUnshaded_ = ofDepth && still && job.world && integrator::depthsNeedNoShaders(*job.world);
     unshaded_ = depthsAlone_ && behindUnshaded_;
 }
 
@@ -188,13 +188,13 @@ Window ImageLoop::beginBand(const Window& part) {
 
 void ImageLoop::band(int b) {
     const Window part{window_.x0, rowOf(b), window_.x1, rowOf(b + 1)};
-    if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // of samples that are not traced again
+    if (job_.world && integrator::hasDeferred(*job_.world)) job_.world->flushPrints(true); // of samples that are not traced again
     const Window fresh = beginBand(part);
     SampleBuffer& buffer = *buffer_;
     const std::vector<Window> tiles = tilesOf(fresh);
     const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
     // Tasks that may be repeated after expansion are not complete while others run.
-    const bool watched = job_.settings.watcher && !(job_.world && transport::hasUnmade(*job_.world));
+    const bool watched = job_.settings.watcher && !(job_.world && integrator::hasDeferred(*job_.world));
     if (watched) growth_.emplace(buffer, part, kTile);
     const uint64_t dropped = buffer.nonFinite();
     trace(
@@ -285,10 +285,10 @@ bool ImageLoop::traceBehind(int worker, Kept& k) const {
     constexpr float kBehind = 1 + 1e-5f; // relative to depth: beyond rounding, before any surface behind
     k.behind.clear();
     k.of.clear();
-    const std::vector<transport::CameraRay>& rays = k.image.rays();
+    const std::vector<integrator::CameraRay>& rays = k.image.rays();
     for (size_t i = 0; i < rays.size(); ++i) {
         if (!(k.results[i].z < 1e38f) || k.results[i].zSecond < 1e38f || !(rays[i].direction.z > 0)) continue;
-        transport::CameraRay r = rays[i];
+        integrator::CameraRay r = rays[i];
         const float way = (k.results[i].z * kBehind - r.origin.z) / r.direction.z;
         r.origin += r.direction * way;
         r.start += way;
@@ -317,14 +317,14 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
     kept.image.clear();
     for (const Wanted& w : wanted) kept.image.ask(w.x, w.y, w.k);
     kept.image.make();
-    std::vector<transport::CameraRay>& rays = kept.image.rays();
-    for (transport::CameraRay& r : rays) r.depthOnly = unshaded_;
+    std::vector<integrator::CameraRay>& rays = kept.image.rays();
+    for (integrator::CameraRay& r : rays) r.depthOnly = unshaded_;
     kept.results.resize(rays.size());
     if (!job_.trace(worker, rays, kept.results)) return false;
     if (job_.plan.needsDepth(DepthFilter::Midpoint) && !job_.unfinished(worker) && !traceBehind(worker, kept)) return false;
     if (job_.unfinished(worker)) return true; // these are traced again
     for (size_t k = 0; k < rays.size(); ++k) {
-        transport::SampleResult& r = kept.results[k];
+        integrator::SampleResult& r = kept.results[k];
         r.aovs.resize(aovs_.size());
         ImageSample s;
         s.color = clampSample(r.color, job_.settings.sampleClamp);
@@ -342,9 +342,10 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
 
 void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     const std::vector<Wanted> pixels = differing(buffer, part);
-    constexpr size_t kPixels = 64;                                                      // in a task
-    if (job_.world && transport::hasUnmade(*job_.world)) job_.world->flushPrints(true); // existing samples are not traced again
-    if (growth_) { // everything so far, while no worker is active
+    constexpr size_t kPixels = 64; // in a task
+    if (job_.world && integrator::hasDeferred(*job_.world))
+        job_.world->flushPrints(true); // existing samples are not traced again
+    if (growth_) {                     // everything so far, while no worker is active
         reconstruct(buffer, part);
         std::vector<std::pair<int, int>> places;
         for (const Wanted& w : pixels) places.push_back({w.x, w.y});

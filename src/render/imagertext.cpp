@@ -185,9 +185,9 @@ void makeAbsolute(std::vector<std::string>& folders) {
 
 } // namespace
 
-std::string imagerToText(const scene::Frame& frame, const transport::Settings& settings) {
+std::string imagerToText(const scene::Frame& frame, const world::Settings& settings) {
     if (!frame.options.imager) return "";
-    transport::Settings from = settings;
+    world::Settings from = settings;
     for (auto* folders : {&from.shaderPaths, &from.texturePaths, &from.pluginPaths}) makeAbsolute(*folders);
     ImagerWriter options, attributes, how;
     optionFields(options, frame.options);
@@ -214,7 +214,7 @@ std::optional<ImagerScene> imagerFromText(const std::string& text, const std::st
         settingFields(how, scene.settings);
         int hider = 0;
         how("hiderNumber", hider);
-        scene.settings.hider = transport::Hider(std::clamp(hider, 0, int(transport::Hider::Path)));
+        scene.settings.hider = world::Hider(std::clamp(hider, 0, int(world::Hider::Path)));
         if (scene.settings.lanes != 4 && scene.settings.lanes != 8) scene.settings.lanes = 16;
         fromJson(j.at("systems"), frame->coordinateSystems);
         if (j.contains("attributes")) {

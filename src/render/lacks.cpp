@@ -24,7 +24,7 @@ std::string unseenHint(size_t shapes, size_t before) {
 
 } // namespace
 
-void sayMissingOutputs(const OutputPlan& plan, const transport::World& world, Diagnostics& diags) {
+void sayMissingOutputs(const OutputPlan& plan, const world::World& world, Diagnostics& diags) {
     const std::vector<std::string> missing = world.missingOutputs();
     if (missing.empty()) return;
     const std::vector<std::string> known = world.knownOutputs();
@@ -52,7 +52,7 @@ void sayEmptyClouds(const Job& job, Diagnostics& diags) {
 
 void sayTurnedAway(const Job& job, Diagnostics& diags) {
     if (job.interrupted || !job.world) return;
-    for (const transport::World::TurnedAwayCall& f : job.world->callsTurnedAway()) {
+    for (const world::World::FlippedNormalsCall& f : job.world->callsTurnedAway()) {
         const std::string where =
             f.primitive.line > 0 ? " (" + f.primitive.file + ":" + std::to_string(f.primitive.line) + ")" : "";
         warn(diags, f.call,
@@ -69,7 +69,7 @@ void sayEmptyPicture(const Job& job, const scene::Frame& frame, Diagnostics& dia
     if (job.interrupted || job.shone || !job.world || !job.plan.needs(Source::Ci) || c.window().width() < c.width() ||
         c.window().height() < c.height())
         return;
-    const transport::World::Facts facts = job.world->facts();
+    const world::World::Facts facts = job.world->facts();
     if (!job.met && frame.options.imager) return; // it may paint the complete picture
     if (!job.met) {
         warn(diags, {}, "the picture is empty: the camera sees nothing of the scene", unseenHint(facts.shapes, facts.before));

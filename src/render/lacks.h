@@ -5,7 +5,7 @@
 namespace alpenglow::render {
 
 /// Warns for each display variable that is neither a shader output of the frame nor predefined: its channels are 0.
-void sayMissingOutputs(const OutputPlan&, const transport::World&, Diagnostics&);
+void sayMissingOutputs(const OutputPlan&, const world::World&, Diagnostics&);
 
 /// After the frame: warns if no camera ray hit a surface or light, or if all surfaces are black. Says nothing about pictures
 /// without colour, parts of a picture, and interrupted frames.

@@ -105,7 +105,7 @@ void addLightChannels(const OutputPlan& plan, std::vector<Channel>& c) {
             c.push_back({"part." + std::to_string(part) + kNames[k], ChannelRule(int(ChannelRule::PartOfRed) + k)});
 }
 
-void addLightValues(const OutputPlan& plan, const transport::SampleResult& s, std::vector<float>* out) {
+void addLightValues(const OutputPlan& plan, const integrator::SampleResult& s, std::vector<float>* out) {
     if (plan.needs(Source::Albedo)) out->insert(out->end(), {s.albedo.x, s.albedo.y, s.albedo.z});
     if (plan.needs(Source::Normal)) out->insert(out->end(), {s.normal.x, s.normal.y, s.normal.z});
     for (size_t part = 0; part < size_t(plan.parts); ++part) {

@@ -266,7 +266,7 @@ std::vector<Channel> filmChannels(const OutputPlan& plan) {
     return c;
 }
 
-void filmValues(const OutputPlan& plan, const transport::SampleResult& sample, std::vector<float>* out) {
+void filmValues(const OutputPlan& plan, const integrator::SampleResult& sample, std::vector<float>* out) {
     constexpr float inf = std::numeric_limits<float>::infinity();
     const auto& [opacity, z, zSecond, aovs] = std::tie(sample.opacity, sample.z, sample.zSecond, sample.aovs);
     bool hit = z < kFarAway;

@@ -67,7 +67,7 @@ struct OutputBasis {
 struct OutputPlan {
     OutputBasis basis;
     std::vector<OutputSpec> pictures;
-    std::vector<std::string> engineOutputs; ///< transport::Settings::outputs
+    std::vector<std::string> engineOutputs; ///< world::Settings::outputs
     std::vector<int> engineWidths;          ///< floats of each: by displays (0: undeclared), then by resolve() from the shaders
     std::vector<scene::LightPaths::Source> lights;       ///< light path expressions
     std::shared_ptr<const scene::LightPaths> lightPaths; ///< from `lights`; null: none. Not in part files
@@ -93,7 +93,7 @@ OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics
 /// Channels of a film for the plan, in addition to colour and alpha.
 std::vector<Channel> filmChannels(const OutputPlan&);
 /// Appends the values of filmChannels() of one sample.
-void filmValues(const OutputPlan&, const transport::SampleResult&, std::vector<float>* out);
+void filmValues(const OutputPlan&, const integrator::SampleResult&, std::vector<float>* out);
 
 // Outputs that are not shader outputs (lightchannels.cpp).
 /// Sets the source of a variable by "source" of its DisplayChannel, or by a predefined name.
@@ -102,7 +102,7 @@ void setSource(OutputVariable&, const scene::Options&, OutputPlan&, const Source
 void joinLightPaths(OutputPlan&, Diagnostics&);
 /// Append film channels and their values; and the values of images after the engine's floats.
 void addLightChannels(const OutputPlan&, std::vector<Channel>&);
-void addLightValues(const OutputPlan&, const transport::SampleResult&, std::vector<float>*);
+void addLightValues(const OutputPlan&, const integrator::SampleResult&, std::vector<float>*);
 /// Position of such a variable after the engine's floats, and total number of these floats.
 size_t lightFloat(const OutputPlan&, const OutputVariable&);
 size_t lightFloats(const OutputPlan&);
@@ -121,7 +121,7 @@ struct PictureFacts {
     std::shared_ptr<const display::DeepSamples> deep; ///< of deep shadow maps; null: none
 };
 
-/// Runs an imager over `count` pixels in place; see transport::World::runImager. Returns false if the user stopped it; the pixels
+/// Runs an imager over `count` pixels in place; see world::World::runImager. Returns false if the user stopped it; the pixels
 /// are then undefined. Null: no imager.
 using Imager = std::function<bool(int count, const float* x, const float* y, float* r, float* g, float* b, float* a)>;
 

@@ -24,11 +24,11 @@ constexpr uint32_t kMostOfPass = 32; // samples per pixel, for passes that add f
 
 } // namespace
 
-transport::CameraRay pathRay(const Camera& camera, const FilterSampler& filter, uint64_t seed, int x, int y, uint32_t sample,
-                             float* weight) {
+integrator::CameraRay pathRay(const Camera& camera, const FilterSampler& filter, uint64_t seed, int x, int y, uint32_t sample,
+                              float* weight) {
     const PixelSample one{x, y, sample};
     NumberRows numbers;
-    std::vector<transport::CameraRay> rays;
+    std::vector<integrator::CameraRay> rays;
     std::vector<float> weights;
     pathRays(camera, filter, seed, {&one, 1}, numbers, rays, weights);
     *weight = weights[0];
@@ -36,7 +36,7 @@ transport::CameraRay pathRay(const Camera& camera, const FilterSampler& filter, 
 }
 
 void pathRays(const Camera& camera, const FilterSampler& filter, uint64_t seed, std::span<const PixelSample> samples,
-              NumberRows& numbers, std::vector<transport::CameraRay>& rays, std::vector<float>& weights) {
+              NumberRows& numbers, std::vector<integrator::CameraRay>& rays, std::vector<float>& weights) {
     const bool moves = camera.shutterClose() > camera.shutterOpen();
     const SeedKey key(seed);
     numbers.clear();
@@ -54,7 +54,7 @@ void pathRays(const Camera& camera, const FilterSampler& filter, uint64_t seed, 
         const FilterSample f = filter.sample(numbers.pair(next++));
         const Vec2 lens = camera.hasLens() ? numbers.pair(next++) : Vec2{0.5f, 0.5f};
         const float time = moves ? numbers.one(next++) : 0;
-        transport::CameraRay& r = rays.emplace_back(camera.ray(p.x + 0.5 + f.dx, p.y + 0.5 + f.dy, lens, time));
+        integrator::CameraRay& r = rays.emplace_back(camera.ray(p.x + 0.5 + f.dx, p.y + 0.5 + f.dy, lens, time));
         r.px = p.x;
         r.py = p.y;
         r.sample = p.sample;
@@ -68,8 +68,8 @@ namespace {
 struct Rays {
     std::vector<PixelSample> samples;
     NumberRows numbers;
-    std::vector<transport::CameraRay> rays;
-    std::vector<transport::SampleResult> results;
+    std::vector<integrator::CameraRay> rays;
+    std::vector<integrator::SampleResult> results;
     std::vector<float> weights;
 };
 
@@ -243,7 +243,7 @@ bool PathLoop::take(int worker, std::vector<float>& out, Rays& r) {
     r.results.resize(r.rays.size());
     if (!job_.trace(worker, r.rays, r.results)) return false;
     for (size_t k = 0; k < r.rays.size(); ++k) {
-        transport::SampleResult& s = r.results[k];
+        integrator::SampleResult& s = r.results[k];
         const Color c = clampSample(s.color, settings_.sampleClamp);
         if (const float m = maxComponent(s.color); settings_.sampleClamp > 0 && m > settings_.sampleClamp)
             for (Color& part : s.parts) part *= settings_.sampleClamp / m;

@@ -9,30 +9,30 @@ namespace alpenglow::render {
 /// Emits photons on the threads of a job and shows progress.
 class PhotonPasses {
 public:
-    PhotonPasses(Job&, std::shared_ptr<const transport::World>, const transport::PhotonUse&);
+    PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&);
     /// The same with other diagnostics.
-    PhotonPasses(Job&, std::shared_ptr<const transport::World>, const transport::PhotonUse&, Diagnostics&);
-    transport::PhotonEmission& emission() { return emission_; }
+    PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&, Diagnostics&);
+    integrator::PhotonEmission& emission() { return emission_; }
     /// Emits `count` photons of a pass and collects the stored ones. Returns false if stopped, or if more than limits::kPhotons
     /// were stored, which is reported; *emitted is then the number of photons emitted for these.
-    bool emit(uint32_t pass, uint64_t count, std::vector<transport::StoredPhoton>& stored, const std::string& what,
+    bool emit(uint32_t pass, uint64_t count, std::vector<integrator::StoredPhoton>& stored, const std::string& what,
               uint64_t* emitted);
     /// Emits passes first to first + passes - 1 independently: take(pass, stored) receives the stored photons of `count` emitted
     /// ones, pass by pass. A pass ends when more than `most` are stored, which is reported once; these then carry the light of
     /// all. Returns false if stopped.
     bool emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
-              const std::function<void(uint32_t pass, std::vector<transport::StoredPhoton>)>& take);
+              const std::function<void(uint32_t pass, std::vector<integrator::StoredPhoton>)>& take);
     /// Distance that lights, and surfaces hit by photons so far, move while the shutter is open.
     float travel() const;
 
 private:
     bool emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end,
-                    std::vector<std::vector<transport::StoredPhoton>>& of);
-    transport::PhotonEmission::Thread& thread(int worker);
+                    std::vector<std::vector<integrator::StoredPhoton>>& of);
+    integrator::PhotonEmission::Thread& thread(int worker);
     Job& job_;
     Diagnostics& diagnostics_;
-    transport::PhotonEmission emission_;
-    std::vector<std::unique_ptr<transport::PhotonEmission::Thread>> threads_; ///< by worker
+    integrator::PhotonEmission emission_;
+    std::vector<std::unique_ptr<integrator::PhotonEmission::Thread>> threads_; ///< by worker
 };
 
 /// Number of photons by Hider or Option "photon" "emit", at most limits::kPhotonsEmitted; larger numbers are reported.

@@ -1,17 +1,17 @@
 // Deferred procedurals: expands those that a frame needs from the start, and builds worlds with those that rays reached.
-#include "integrator/unmade.h"
+#include "integrator/deferred.h"
 #include "render/framework.h"
 #include "render/lacks.h"
 #include "render/levels.h"
 #include "render/photonpass.h"
-#include "scene/unmade.h"
+#include "scene/deferred.h"
 #include <algorithm>
 #include <set>
 
 namespace alpenglow::render {
 
 void Renderer::makeAll(FrameWork& f) {
-    const auto waits = [](const scene::PrimitiveRef& p) { return p && scene::isUnmade(*p); };
+    const auto waits = [](const scene::PrimitiveRef& p) { return p && scene::isDeferred(*p); };
     if (!makeProcedurals_ || std::none_of(f.made->primitives.begin(), f.made->primitives.end(), waits)) return;
     if (auto all = makeProcedurals_(*f.made, {})) f.made = std::move(all);
 }
@@ -22,7 +22,7 @@ bool Renderer::buildFrame(FrameWork& f) {
     const auto build = [&] { return engine_.build(drawnLevels(f.made, f.camera), f.settings, diagnostics_); };
     f.settings = engineSettings(f);
     f.world = build();
-    if (f.world && makeProcedurals_ && transport::hasUnmade(*f.world) && transport::needsAllShapes(*f.world)) {
+    if (f.world && makeProcedurals_ && integrator::hasDeferred(*f.world) && integrator::needsAllShapes(*f.world)) {
         makeAll(f);
         f.world.reset();
         f.world = build();
@@ -35,7 +35,7 @@ bool Renderer::buildFrame(FrameWork& f) {
     f.plan.resolve(f.world->outputWidths(), diagnostics_, f.world->missingOutputs());
     f.settings.outputWidths = f.plan.engineWidths;
     sayMissingOutputs(f.plan, *f.world, diagnostics_);
-    transport::World::Facts facts = f.world->facts();
+    world::World::Facts facts = f.world->facts();
     stats_.buildSec += facts.buildSec;
     stats_.compileSec += facts.compileSec;
     return true;
@@ -43,7 +43,7 @@ bool Renderer::buildFrame(FrameWork& f) {
 
 void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
     if (!makeProcedurals_) return;
-    job.make = [&f, this](std::span<const int> met) -> std::shared_ptr<const transport::World> {
+    job.make = [&f, this](std::span<const int> met) -> std::shared_ptr<const world::World> {
         if (!f.later) {
             auto said = std::make_shared<std::set<std::string>>();
             for (const Diagnostic& d : diagnostics_.all()) said->insert(toString(d));
@@ -56,7 +56,7 @@ void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
         if (!made) return nullptr;
         stats_.parseSec += clockSeconds() - begun;
         f.made = std::move(made);
-        std::shared_ptr<const transport::World> next = engine_.build(drawnLevels(f.made, f.camera), f.settings, *f.later);
+        std::shared_ptr<const world::World> next = engine_.build(drawnLevels(f.made, f.camera), f.settings, *f.later);
         if (!next) return nullptr;
         stats_.buildSec += next->facts().buildSec;
         stats_.compileSec += next->facts().compileSec;
@@ -68,7 +68,7 @@ void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
 void sayProcedurals(const scene::Frame& f, Diagnostics& d) {
     size_t all = 0, left = 0;
     for (const scene::PrimitiveRef& p : f.primitives)
-        if (p && scene::isProcedural(*p)) ++all, left += scene::isUnmade(*p);
+        if (p && scene::isProcedural(*p)) ++all, left += scene::isDeferred(*p);
     if (all)
         d.report(Severity::Info, Rie::NoError, {},
                  "of " + std::to_string(all) + " procedurals outside of the picture " + std::to_string(all - left) +

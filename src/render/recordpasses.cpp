@@ -16,8 +16,8 @@ bool findRecords(Job& job) {
     for (int step = kCoarse; step >= kFine; step /= 2) {
         const auto work = [&](int worker, size_t i) {
             const Window& t = tiles[i];
-            std::vector<transport::CameraRay> rays;
-            std::vector<transport::SampleResult> results;
+            std::vector<integrator::CameraRay> rays;
+            std::vector<integrator::SampleResult> results;
             const auto flush = [&] {
                 results.assign(rays.size(), {});
                 const bool whole = job.trace(worker, rays, results);
@@ -26,7 +26,7 @@ bool findRecords(Job& job) {
             };
             for (int y = t.y0 + step / 2; y < t.y1; y += step)
                 for (int x = t.x0 + step / 2; x < t.x1; x += step) {
-                    transport::CameraRay& r = rays.emplace_back(job.camera.ray(x + 0.5, y + 0.5, {0.5f, 0.5f}, 0));
+                    integrator::CameraRay& r = rays.emplace_back(job.camera.ray(x + 0.5, y + 0.5, {0.5f, 0.5f}, 0));
                     r.px = x;
                     r.py = y;
                     r.sample = uint32_t(step);

@@ -195,7 +195,7 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
     for (uint32_t s = begin; s < end && !job.pollStop(); ++s) {
         if (path && !caustics.ready(s, 1)) break;
         float weight = 1;
-        transport::CameraRay ray;
+        integrator::CameraRay ray;
         if (path) ray = pathRay(job.camera, filter, settings_.seed, x, y, s, &weight);
         else {
             image.clear();
@@ -203,7 +203,7 @@ void Renderer::printPixel(Job& job, const scene::Options& o, SampleRange wanted,
             image.make();
             ray = image.rays()[0];
         }
-        transport::SampleResult r;
+        integrator::SampleResult r;
         bool whole = job.trace(0, {&ray, 1}, {&r, 1});
         while (whole && job.unfinished(0)) whole = job.makeMet() && job.trace(0, {&ray, 1}, {&r, 1});
         if (!whole) break;

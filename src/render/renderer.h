@@ -74,7 +74,7 @@ private:
     /// True after an error of a frame under ErrorHandler "abort": it is refused.
     bool abandons(const FrameWork&);
     void noteInterrupted(const struct Job&); ///< by the user
-    transport::Settings engineSettings(const FrameWork&) const;
+    world::Settings engineSettings(const FrameWork&) const;
     std::function<bool(int, const float*, const float*, float*, float*, float*, float*)> imagerOf(FrameWork&);
     void describeFrame(FrameWork&);
     void writtenPictures(FrameWork&, bool fine);

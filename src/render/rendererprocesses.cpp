@@ -2,7 +2,7 @@
 #include "base/realpath.h"
 #include "display/driver.h"
 #include "integrator/bakes.h"
-#include "integrator/unmade.h"
+#include "integrator/deferred.h"
 #include "render/frameprocesses.h"
 #include "render/framework.h"
 #include "render/heap.h"
@@ -89,7 +89,7 @@ void Renderer::beforeRead(const std::string& name) {
 
 void Renderer::declareBakes(const FrameWork& f) {
     // A procedural expanded later may contain shaders that bake.
-    if (inProcess()) processes_->declare(transport::bakes(*f.world) || transport::hasUnmade(*f.world));
+    if (inProcess()) processes_->declare(integrator::bakes(*f.world) || integrator::hasDeferred(*f.world));
 }
 
 void Renderer::awaitTurn() {

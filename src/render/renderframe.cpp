@@ -25,7 +25,7 @@
 namespace alpenglow::render {
 namespace {
 
-using transport::Hider;
+using world::Hider;
 
 /// Whether pictures are written to files.
 bool writesFiles(const RenderSettings& s) { return !s.watcher || s.watcher->writes(); }
@@ -181,8 +181,8 @@ bool Renderer::planFrame(FrameWork& f) {
     return true;
 }
 
-transport::Settings Renderer::engineSettings(const FrameWork& f) const {
-    transport::Settings t;
+world::Settings Renderer::engineSettings(const FrameWork& f) const {
+    world::Settings t;
     t.hider = f.hider;
     t.seed = settings_.seed;
     t.lanes = settings_.lanes;
@@ -412,22 +412,22 @@ bool Renderer::renderGrid(FrameWork& f, Job& job) {
 
 /// Writes the files of bake() and bake3d(), unless the frame was interrupted.
 void Renderer::writeBaked(FrameWork& f, const Job& job) {
-    if (!transport::bakes(*f.world)) return;
+    if (!integrator::bakes(*f.world)) return;
     if (job.interrupted)
         return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: baked files are not written");
     awaitTurn();
-    clouds::FileOwners others;
+    pointcloud::FileOwners others;
     for (const OutputSpec& s : f.plan.pictures) {
         const display::DriverDescriptor* driver = display::findDriver(s.type);
         if (driver && !driver->writes) continue;
         others[fileIdentity(s.name)] =
             s.place.line > 0 ? "the Display of " + s.place.file + ":" + std::to_string(s.place.line) : "the picture";
     }
-    outcome_.outputFailed |= !transport::writeBakes(*f.world, settings_.allowWrite, others, diagnostics_);
+    outcome_.outputFailed |= !integrator::writeBakes(*f.world, settings_.allowWrite, others, diagnostics_);
 }
 
 void Renderer::takeFigures(const FrameWork& f, Job& job) {
-    transport::Counters c = job.counters();
+    integrator::Counters c = job.counters();
     stats_.totalRays += totalRays(c);
     stats_.rays["camera"] += c.camera;
     stats_.rays["diffuse"] += c.diffuse;
@@ -455,7 +455,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
         sayEmptyClouds(job, diagnostics_);
         sayTurnedAway(job, diagnostics_);
     }
-    const transport::World::Facts facts = f.world->facts(); // kernels may be compiled during rendering
+    const world::World::Facts facts = f.world->facts(); // kernels may be compiled during rendering
     stats_.shading.kernels = facts.kernels;
     stats_.shading.affineKernels = facts.affine;
     stats_.shading.suspendingKernels = facts.suspending;

@@ -1,5 +1,5 @@
 #include "render/rendering.h"
-#include "integrator/unmade.h"
+#include "integrator/deferred.h"
 #include <algorithm>
 #include <chrono>
 #include <numeric>
@@ -7,7 +7,7 @@
 
 namespace alpenglow::render {
 
-Job::Job(const RenderSettings& s, const Camera& c, const OutputPlan& p, Engine& e, std::shared_ptr<const transport::World> w,
+Job::Job(const RenderSettings& s, const Camera& c, const OutputPlan& p, Engine& e, std::shared_ptr<const world::World> w,
          int threads, Progress& progress_, Diagnostics& d)
     : settings(s), camera(c), plan(p), engine(e), world(std::move(w)), team(threads), progress(progress_), diagnostics(d),
       startSeconds(clockSeconds()), unfinished_(size_t(team.threads()), 0) {
@@ -33,7 +33,7 @@ bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const 
         };
         if (!team.run(left.size(), &halt, task, [&](size_t done) { tick(before + done); })) return false;
         if (std::find(again.begin(), again.end(), 1) == again.end()) return true;
-        if (!transport::hasPrints(*world)) { // otherwise prints could not be assigned to a world
+        if (!integrator::hasPrints(*world)) { // otherwise prints could not be assigned to a world
             size_t kept = 0;
             for (size_t i = 0; i < left.size(); ++i)
                 if (again[i]) left[kept++] = left[i];
@@ -48,15 +48,15 @@ bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const 
 }
 
 bool Job::makeMet() {
-    const std::vector<int> numbers = transport::procedurals(*world);
-    std::shared_ptr<const transport::World> next = make && !numbers.empty() ? make(numbers) : nullptr;
+    const std::vector<int> numbers = integrator::procedurals(*world);
+    std::shared_ptr<const world::World> next = make && !numbers.empty() ? make(numbers) : nullptr;
     if (!next) {
         if (!pollStop()) throw std::runtime_error("procedurals that rays reached cannot be expanded");
         return false;
     }
-    transport::takeOver(*next, *world);
+    integrator::takeOver(*next, *world);
     // Nearest first; then twice as many each round, so that a long row of procedurals needs few rounds.
-    transport::askForProcedurals(*next, 1 << std::min(++rounds_, 20));
+    integrator::askForProcedurals(*next, 1 << std::min(++rounds_, 20));
     earlier_ = counters();
     world = std::move(next);
     begin();
@@ -64,7 +64,7 @@ bool Job::makeMet() {
     return true;
 }
 
-bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<transport::SampleResult> out) {
+bool Job::trace(int worker, std::span<const integrator::CameraRay> in, std::span<integrator::SampleResult> out) {
     Tracer& t = *tracers[size_t(worker)];
     bool whole = t.trace(in, out, &halt) && !halt;
     if (t.unfinished()) unfinished_[size_t(worker)] = 1;
@@ -72,7 +72,7 @@ bool Job::trace(int worker, std::span<const transport::CameraRay> in, std::span<
     rayTotal += now - rays[size_t(worker)];
     rays[size_t(worker)] = now;
     if (whole && !t.unfinished() && !(met && shone))
-        for (const transport::SampleResult& r : out) {
+        for (const integrator::SampleResult& r : out) {
             if (!r.left.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // depth renders need no light
             if (r.z < 1e38f || luminance(r.opacity) > 0) met = true;
             if (r.color.x != 0 || r.color.y != 0 || r.color.z != 0) shone = true;
@@ -89,10 +89,10 @@ bool Job::pollStop() {
     return interrupted;
 }
 
-transport::Counters Job::counters() const {
-    transport::Counters all = earlier_;
+integrator::Counters Job::counters() const {
+    integrator::Counters all = earlier_;
     for (const auto& t : tracers) {
-        const transport::Counters& c = t->counters();
+        const integrator::Counters& c = t->counters();
         all.camera += c.camera;
         all.diffuse += c.diffuse;
         all.specular += c.specular;
@@ -125,7 +125,7 @@ double Job::elapsed() const { return clockSeconds() - startSeconds; }
 
 double clockSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-uint64_t totalRays(const transport::Counters& c) { return c.camera + c.diffuse + c.specular + c.transmission + c.shadow; }
+uint64_t totalRays(const integrator::Counters& c) { return c.camera + c.diffuse + c.specular + c.transmission + c.shadow; }
 
 std::vector<Window> tilesOf(const Window& w, int side) {
     std::vector<Window> tiles;

@@ -17,7 +17,7 @@
 
 namespace alpenglow::render {
 
-/// Dimensions of a camera sample, beyond all call sites and uses of the integrator (answers/random.h).
+/// Dimensions of a camera sample, beyond all call sites and uses of the integrator (services/random.h).
 enum CameraUse : uint32_t { kUseFilter = 1u << 24, kUseLens, kUseTime, kUseNet };
 
 /// Side in pixels of the tiles that threads take.
@@ -33,7 +33,7 @@ struct Job {
     const Camera& camera;
     const OutputPlan& plan;
     Engine& engine;
-    std::shared_ptr<const transport::World> world;
+    std::shared_ptr<const world::World> world;
     Team team;
     Progress& progress;
     Diagnostics& diagnostics;
@@ -47,14 +47,14 @@ struct Job {
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, at the last report
     std::atomic<uint64_t> rayTotal{0};
-    transport::GuideFigures guide;              ///< of path
+    integrator::GuideFigures guide;             ///< of path
     std::atomic<bool> met{false}, shone{false}; ///< some camera ray hit a surface; carried light
 
-    Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const transport::World>, int threads,
+    Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const world::World>, int threads,
         Progress&, Diagnostics&);
-    /// Builds the world with procedurals that rays reached (integrator/unmade.h), by number; returns null if the user stops, or
+    /// Builds the world with procedurals that rays reached (integrator/deferred.h), by number; returns null if the user stops, or
     /// after an error (reported). Unset: no deferred procedurals.
-    std::function<std::shared_ptr<const transport::World>(std::span<const int>)> make;
+    std::function<std::shared_ptr<const world::World>(std::span<const int>)> make;
     /// Runs tasks 0 to count - 1 like Team::run(). Tasks whose rays reached deferred procedurals are repeated after expansion, so
     /// the results of a task must be those of its last run.
     bool run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick);
@@ -63,34 +63,34 @@ struct Job {
     /// Expands the procedurals that rays reached, between tasks. Returns false if stopped.
     bool makeMet();
     /// Traces on a worker and counts its rays. Returns false if stopped; the results are then undefined.
-    bool trace(int worker, std::span<const transport::CameraRay>, std::span<transport::SampleResult>);
+    bool trace(int worker, std::span<const integrator::CameraRay>, std::span<integrator::SampleResult>);
     /// Forwards the user's stop, or that of an error, to the tracers; returns true if there was one.
     bool pollStop();
-    transport::Counters counters() const;
+    integrator::Counters counters() const;
     double elapsed() const;
 
 private:
     void begin();
     std::vector<uint8_t> unfinished_; ///< by worker
-    transport::Counters earlier_;     ///< of replaced tracers
+    integrator::Counters earlier_;    ///< of replaced tracers
     int rounds_ = 0;                  ///< expansion rounds
 };
 
 /// Seconds of a monotonic clock.
 double clockSeconds();
-uint64_t totalRays(const transport::Counters&);
+uint64_t totalRays(const integrator::Counters&);
 /// The tiles of a window, in reading order.
 std::vector<Window> tilesOf(const Window&, int side = kTile);
 
 /// The camera ray of a sample of `path`, at a position sampled from the filter. *weight is FilmSample::weight.
-transport::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
+integrator::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
 /// The same for many samples at a time.
 struct PixelSample {
     int x, y;
     uint32_t sample;
 };
 void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<const PixelSample>, NumberRows&,
-              std::vector<transport::CameraRay>& rays, std::vector<float>& weights);
+              std::vector<integrator::CameraRay>& rays, std::vector<float>& weights);
 /// Adds samples to the film in complete passes until the range is done, the requested noise or time is reached, or the user
 /// stops. `wanted`: sample indices of every pixel. Returns false if not a single pass was completed.
 bool renderPath(Job&, Film&, SampleRange wanted, uint64_t seed, const std::function<void(Film&)>& afterPass);
@@ -127,7 +127,7 @@ public:
     /// Makes the rays requested since clear(): places()[i] in its pixel and rays()[i] belong to the i-th request.
     void make();
     std::span<const Vec2> places() const { return places_.places(); }
-    std::vector<transport::CameraRay>& rays() { return rays_; }
+    std::vector<integrator::CameraRay>& rays() { return rays_; }
 
 private:
     void makePlain();
@@ -140,7 +140,7 @@ private:
     };
     std::vector<Asked> asked_;
     std::vector<Vec2> raster_;
-    std::vector<transport::CameraRay> rays_;
+    std::vector<integrator::CameraRay> rays_;
 };
 /// Samples with values that are not finite: their number, and sample, y and x of the first.
 struct DroppedSamples {

@@ -18,7 +18,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
         ++outcome_.refused;
         return;
     }
-    const std::vector<std::string> maps = transport::photonMapsOf(*f.world, true);
+    const std::vector<std::string> maps = integrator::photonMapsOf(*f.world, true);
     if (maps.empty())
         return refuse("Hider \"photon\": no surface and no shader of the frame names a photon map",
                       "Attribute \"photon\" \"string globalmap\" \"room.photons\"");
@@ -29,7 +29,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     if (!passes.emission().lights())
         return refuse("Hider \"photon\": no light of the frame emits photons",
                       "ambient lights and lights without a position emit none");
-    std::vector<transport::StoredPhoton> stored;
+    std::vector<integrator::StoredPhoton> stored;
     uint64_t emitted = 0;
     const bool whole = passes.emit(0, photonsToEmit(f.o, diagnostics_), stored, maps.front(), &emitted);
     noteInterrupted(job);
@@ -44,11 +44,11 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     }
     ++outcome_.rendered;
     awaitTurn();
-    for (const auto& [name, photons] : transport::photonsByMap(*f.world, maps, stored)) {
+    for (const auto& [name, photons] : integrator::photonsByMap(*f.world, maps, stored)) {
         if (photons.empty())
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
                                 "photon map \"" + name + "\" is empty: no photon was stored on its surfaces");
-        const bool saved = transport::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
+        const bool saved = integrator::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
         outcome_.outputFailed |= !saved;
         if (saved)
             diagnostics_.report(Severity::Info, Rie::NoError, {},
@@ -59,24 +59,24 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
 
 void Renderer::makePhotonMaps(FrameWork& f, Job& job) {
     if (!f.world->photons()) return;
-    const std::vector<std::string> maps = transport::photonMapsOf(*f.world, false);
+    const std::vector<std::string> maps = integrator::photonMapsOf(*f.world, false);
     if (maps.empty()) return;
     // Under path shaders request lobes; under the other hiders they evaluate lights themselves.
     Diagnostics silent; // its messages were reported when the frame was built
-    std::shared_ptr<const transport::World> world = f.world;
+    std::shared_ptr<const world::World> world = f.world;
     if (!f.path) {
-        transport::Settings settings = f.settings;
+        world::Settings settings = f.settings;
         settings.hider = Hider::Path;
         world = engine_.build(drawnLevels(f.frame, f.camera), settings, silent);
         if (!world || !world->photons()) return;
     }
     PhotonPasses passes(job, world, {.all = false});
     if (!passes.emission().lights()) return; // lookups report a missing map
-    std::vector<transport::StoredPhoton> stored;
+    std::vector<integrator::StoredPhoton> stored;
     uint64_t emitted = 0;
     if (!passes.emit(0, photonsToEmit(f.path ? scene::Options(f.o) : f.o, diagnostics_), stored, "photons", &emitted)) return;
-    for (auto& [name, photons] : transport::photonsByMap(*world, maps, stored))
-        transport::setPhotonMap(*f.world, name, std::move(photons));
+    for (auto& [name, photons] : integrator::photonsByMap(*world, maps, stored))
+        integrator::setPhotonMap(*f.world, name, std::move(photons));
 }
 
 } // namespace alpenglow::render

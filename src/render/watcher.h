@@ -11,7 +11,7 @@ namespace alpenglow::render {
 struct WatchedFrame {
     const OutputPlan& plan;
     const PictureFacts& picture;
-    std::shared_ptr<const transport::World> world;
+    std::shared_ptr<const world::World> world;
     const Imager& imager; ///< may be empty
 };
 

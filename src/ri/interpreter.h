@@ -74,7 +74,7 @@ public:
 
     /// RibReader::nextScene().
     void nextScene();
-    /// RibReader::make(). unmade.cpp
+    /// RibReader::make(). deferred.cpp
     std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
     void leavePrograms(); ///< RibReader::leavePrograms(). procedural.cpp
     void endPrograms();
@@ -261,7 +261,7 @@ private:
     // unlit.cpp
     void noteEnded(const Block&);
     void sayUnlit(const scene::Frame&);
-    // unmade.cpp
+    // deferred.cpp
     /// Whether a procedural may wait until a ray comes to its bound; then it is put into the frame as one that is not yet made.
     bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                const Call& call);

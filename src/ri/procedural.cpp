@@ -1,10 +1,10 @@
 // Procedurals: content from archives, programs and libraries, expanded where they stand, in the order of the file, or later
-// (unmade.cpp).
+// (deferred.cpp).
 #include "base/exact.h"
 #include "base/limits.h"
+#include "ri/deferred.h"
 #include "ri/interpreter.h"
 #include "ri/program.h"
-#include "ri/unmade.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -3,8 +3,8 @@
 #include "base/limits.h"
 #include "base/readlog.h"
 #include "base/stopflag.h"
+#include "scene/deferred.h"
 #include "scene/frameconsumer.h"
-#include "scene/unmade.h"
 #include <functional>
 #include <istream>
 #include <memory>
@@ -28,8 +28,8 @@ struct ReaderOptions {
     bool allowRead = true;               ///< archives may lie anywhere; false: below the folders that archive.cpp names
     bool regularFiles = false;           ///< readFile() refuses pipes and devices: the scene is read more than once
     size_t mostLights = limits::kLights; ///< of one frame; further ones are reported
-    /// Procedurals that nothing need meet (ri/unmade.cpp says which) stand in their frame as primitives of the kind
-    /// scene::kUnmade, until RibReader::make() is asked for what is in them. False: all are expanded where they stand.
+    /// Procedurals that nothing need meet (ri/deferred.cpp says which) stand in their frame as primitives of the kind
+    /// scene::kDeferred, until RibReader::make() is asked for what is in them. False: all are expanded where they stand.
     bool defers = false;
     bool threads = true;            ///< archives may be parsed by several threads; false: none is started
     std::vector<int> frames;        ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
@@ -65,8 +65,8 @@ public:
     /// that call; else it stays, because what was read held options only, for all scenes behind it.
     void nextScene();
     /// While FrameConsumer::render() runs, with ReaderOptions::defers: the frame that was handed over, or that this function gave
-    /// last, with what is in some of its procedurals, which are named by scene::unmadeNumber(); none named: in all, and in those
-    /// within them. Where light sources come to light that way, all are made. Null: no frame is being rendered.
+    /// last, with what is in some of its procedurals, which are named by scene::deferredNumber(); none named: in all, and in
+    /// those within them. Where light sources come to light that way, all are made. Null: no frame is being rendered.
     std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
     /// In a process that began as a copy of another: programs that were started stay with that one, and are started again here
     /// once they are asked.

@@ -1,6 +1,6 @@
 // Lights that an AttributeEnd has ended before anything could be lit by them.
 #include "ri/interpreter.h"
-#include "scene/unmade.h"
+#include "scene/deferred.h"
 #include <fmt/format.h>
 #include <set>
 #include <utility>
@@ -26,7 +26,7 @@ void Interpreter::sayUnlit(const scene::Frame& frame) {
     const auto look = [&](const std::vector<scene::PrimitiveRef>& list) {
         const scene::Attributes* last = nullptr; // most share those of the one before
         for (const auto& p : list) {
-            if (scene::isUnmade(*p)) dark.clear();
+            if (scene::isDeferred(*p)) dark.clear();
             if (p->attributes.get() != last) lit(p->attributes);
             last = p->attributes.get();
         }

@@ -25,7 +25,7 @@ struct Evaluation {
     std::string printed; ///< by printf()
 };
 
-/// As ServiceFn, of a kernel; false: not answered, and nothing written. What this room does not know, maps and rays, the caller
+/// As ServiceFn, of a kernel; false: not answered, and nothing written. What this folder does not know, maps and rays, the caller
 /// may.
 using AnswerFn = std::function<bool(const CompiledKernel&, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
                                     const float* in, float* out)>;

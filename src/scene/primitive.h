@@ -41,7 +41,7 @@ struct Attributes {
     // State of the renderer, which no request names.
     std::vector<SolidStep> solid; ///< the blocks of SolidBegin around what is made now, from the outermost (scene/solids.h)
     int solidChildren = 0;        ///< blocks and parts that the innermost of them has had
-    std::string part;             ///< scene::partOf() (scene/unmade.h)
+    std::string part;             ///< scene::partOf() (scene/deferred.h)
     /// Between levels of detail: what is made is there for samples whose own number in [0, 1) is at least the first and below
     /// the second. Nothing: for all.
     std::optional<std::array<float, 2>> level;

@@ -47,10 +47,10 @@ std::vector<Shadeop> stringShadeops();
 std::vector<Shadeop> arrayShadeops();
 std::vector<Shadeop> textureShadeops();
 std::vector<Shadeop> raytracingShadeops();
-std::vector<Shadeop> bmrtShadeops();
-std::vector<Shadeop> publishedShadeops();
+std::vector<Shadeop> rayTestShadeops();
+std::vector<Shadeop> compatibilityShadeops();
 std::vector<Shadeop> facetShadeops();
-std::vector<Shadeop> plausibleShadeops();
+std::vector<Shadeop> radianceSampleShadeops();
 
 /// What must be there besides the point of `alpenglow eval` (Example::when), where several shadeops need the same.
 inline constexpr const char* kOneLight = "one light with Cl = 1 stands straight over N";

@@ -60,9 +60,10 @@ void readArray(const std::vector<std::string>& list, size_t& i, Type& type) {
 
 std::vector<Shadeop> buildAll() {
     std::vector<Shadeop> all;
-    for (auto section : {mathematicsShadeops, noiseShadeops, geometryShadeops, matrixShadeops, colourShadeops, splineShadeops,
-                         derivativeShadeops, lightingShadeops, bsdfShadeops, messageShadeops, stringShadeops, arrayShadeops,
-                         textureShadeops, raytracingShadeops, bmrtShadeops, facetShadeops, publishedShadeops, plausibleShadeops})
+    for (auto section :
+         {mathematicsShadeops, noiseShadeops, geometryShadeops, matrixShadeops, colourShadeops, splineShadeops,
+          derivativeShadeops, lightingShadeops, bsdfShadeops, messageShadeops, stringShadeops, arrayShadeops, textureShadeops,
+          raytracingShadeops, rayTestShadeops, facetShadeops, compatibilityShadeops, radianceSampleShadeops})
         for (Shadeop& op : section()) {
             // One name, one object: rotate() of points and rotate() of matrices stand in two sections.
             auto same = std::find_if(all.begin(), all.end(), [&](const Shadeop& o) { return o.name == op.name; });

@@ -26,8 +26,8 @@
 
 namespace alpenglow::shading {
 
-using TargetId = int32_t;
-inline constexpr TargetId kNoTarget = -1;
+using AccumulatorId = int32_t;
+inline constexpr AccumulatorId kNoAccumulator = -1;
 
 /// Result of a request for light. `radiance` is a sum over all tasks of the target; the rest is written at most once, by the
 /// first task spawned.
@@ -42,7 +42,7 @@ template <class Payload> class Scheduler {
 public:
     struct Task {
         int32_t depth = 0; ///< 0 = camera
-        TargetId target = kNoTarget;
+        AccumulatorId target = kNoAccumulator;
         Payload payload{};
     };
     using Tasks = TaskList<Task>;
@@ -77,10 +77,10 @@ public:
         : service_(service), stop_(stop), frameLimit_(frameLimit), sliceRays_(sliceRays) {}
 
     /// A root target, read with value() after run().
-    TargetId newRoot() { return newTarget(-1); }
+    AccumulatorId newRoot() { return newTarget(-1); }
     void spawn(Task t) { spawn(t.depth, t.target, t.payload); }
     /// For a payload made from another and modified in place; the reference is valid until the next spawn.
-    Task& spawn(int depth, TargetId target, const Payload& from = {}) {
+    Task& spawn(int depth, AccumulatorId target, const Payload& from = {}) {
         hold(target);
         Tasks& chunk = chunkAt(depth, 1);
         chunk.push({depth, target, from});
@@ -97,7 +97,7 @@ public:
         queued_ += count;
     }
     /// Adds light to a target. The sum is exact, so order does not matter. Non-finite values are counted and dropped.
-    void add(TargetId id, const Color& c) {
+    void add(AccumulatorId id, const Color& c) {
         if (c.x == 0 && c.y == 0 && c.z == 0) return;
         Target& t = targets_[id];
         if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
@@ -108,14 +108,14 @@ public:
         if (c.y != 0) t.sum[1].add(c.y);
         if (c.z != 0) t.sum[2].add(c.z);
     }
-    void setTransmission(TargetId id, const Color& c) { targets_[id].value.transmission = c; }
-    void setDistance(TargetId id, float d, const Vec3& normal = {}) {
+    void setTransmission(AccumulatorId id, const Color& c) { targets_[id].value.transmission = c; }
+    void setDistance(AccumulatorId id, float d, const Vec3& normal = {}) {
         targets_[id].value.distance = d;
         targets_[id].value.normal = normal;
     }
 
     /// Sets the distance if this hit is nearer. Order does not matter.
-    void setNearer(TargetId id, float d, const Vec3& normal) {
+    void setNearer(AccumulatorId id, float d, const Vec3& normal) {
         TargetValue& v = targets_[id].value;
         const auto key = [](const Vec3& n) { return std::array<float, 3>{n.x, n.y, n.z}; };
         if (d < v.distance || (d == v.distance && key(normal) < key(v.normal))) setDistance(id, d, normal);
@@ -130,7 +130,7 @@ public:
         frameBytes_ += w.bytes = w.strip->frameBytes();
         peakFrameBytes_ = std::max(peakFrameBytes_, frameBytes_);
         ++suspensions_;
-        std::vector<TargetId> ids(count);
+        std::vector<AccumulatorId> ids(count);
         for (int i = 0; i < count; ++i) ids[i] = newTarget(slot);
         strips_[slot].targets = ids;
         strips_[slot].open = count + 1; // one for this loop, so that nothing becomes ready while it runs
@@ -179,7 +179,7 @@ public:
         return true;
     }
 
-    TargetValue value(TargetId id) const {
+    TargetValue value(AccumulatorId id) const {
         const Target& t = targets_[id];
         TargetValue v = t.value;
         v.radiance = {t.sum[0].toFloat(), t.sum[1].toFloat(), t.sum[2].toFloat()};
@@ -222,15 +222,15 @@ private:
     };
     struct Waiting {
         std::unique_ptr<Strip> strip;
-        std::vector<TargetId> targets;
+        std::vector<AccumulatorId> targets;
         int open = 0;
         size_t bytes = 0;
     };
 
-    TargetId newTarget(int strip) {
-        TargetId id;
+    AccumulatorId newTarget(int strip) {
+        AccumulatorId id;
         if (freeTargets_.empty()) {
-            id = TargetId(targets_.size());
+            id = AccumulatorId(targets_.size());
             targets_.emplace_back();
             open_.emplace_back();
         } else {
@@ -250,7 +250,7 @@ private:
         strips_.emplace_back();
         return int(strips_.size()) - 1;
     }
-    void complete(TargetId id) {
+    void complete(AccumulatorId id) {
         Open& t = open_[size_t(id)];
         if (--t.pending == 0 && t.strip >= 0) closeChild(t.strip);
     }
@@ -320,7 +320,7 @@ private:
         frameBytes_ -= w.bytes;
         std::vector<TargetValue> results;
         results.reserve(w.targets.size());
-        for (TargetId id : w.targets) {
+        for (AccumulatorId id : w.targets) {
             results.push_back(value(id));
             freeTargets_.push_back(id);
         }
@@ -347,10 +347,10 @@ public:
     /// For Strip::resume: takes ownership of the strip being resumed, to pass it to wait() again.
     std::unique_ptr<Strip> takeResuming() { return std::move(resuming_); }
     /// For a strip that keeps a task's target open until it ends: run() closes the task's own count, so the strip adds one.
-    void hold(TargetId id) {
+    void hold(AccumulatorId id) {
         if (!plain()) ++open_[size_t(id)].pending;
     }
-    void release(TargetId id) {
+    void release(AccumulatorId id) {
         if (!plain()) complete(id);
     }
 
@@ -361,7 +361,7 @@ private:
     int sliceRays_;
     std::vector<Target> targets_;
     std::vector<Open> open_; ///< by target
-    std::vector<TargetId> freeTargets_;
+    std::vector<AccumulatorId> freeTargets_;
     std::deque<Waiting> strips_;
     std::vector<int> freeStrips_;
     std::vector<std::vector<Tasks>> queues_; ///< by depth, in chunks of at most a slice

@@ -1,9 +1,9 @@
 #include "texture/maketexture.h"
 #include "base/exact.h"
 #include "base/realpath.h"
-#include "clouds/bakefile.h"
-#include "clouds/brickstream.h"
 #include "display/imageio.h"
+#include "pointcloud/bakefile.h"
+#include "pointcloud/brickstream.h"
 #include "texture/lookup.h"
 #include <cmath>
 
@@ -14,9 +14,9 @@ constexpr int tileSide = 64; // 48 KiB of rgb floats: one disk read, a few cache
 
 /// Reads baked data as a picture of light or data.
 std::optional<display::Image> readBaked(const std::string& path, const MakeOptions& o, Diagnostics& diags) {
-    const auto baked = clouds::loadBaked(path, diags, o.place);
+    const auto baked = pointcloud::loadBaked(path, diags, o.place);
     if (!baked) return {};
-    clouds::BakedPicture p = clouds::pictureOf(*baked);
+    pointcloud::BakedPicture p = pointcloud::pictureOf(*baked);
     if (p.outside > 0)
         diags.report(Severity::Warning, Rie::Range, o.place,
                      "\"" + path + "\": " + std::to_string(p.outside) + " of " + std::to_string(baked->size()) +
@@ -40,7 +40,7 @@ bool replacesIts(const char* source, const std::string& path, const std::string&
 std::optional<display::Image> readPicture(const std::string& given, const std::string& map, const MakeOptions& o,
                                           Diagnostics& diags) {
     bool binary = false;
-    const std::string name = clouds::bakeFileName(given, &binary);
+    const std::string name = pointcloud::bakeFileName(given, &binary);
     std::string outside;
     auto found = findFile(name, o.searchPath, o.read, &outside);
     if (!found && !outside.empty()) {
@@ -55,7 +55,7 @@ std::optional<display::Image> readPicture(const std::string& given, const std::s
         diags.report(Severity::Warning, Rie::NoError, o.place,
                      "picture \"" + name + "\" was not found as named; \"" + found->path + "\" is used");
     if (replacesIts("picture", found->path, map, o, diags)) return {};
-    if (clouds::isBaked(found->path)) return readBaked(found->path, o, diags);
+    if (pointcloud::isBaked(found->path)) return readBaked(found->path, o, diags);
     display::ReadOptions r;
     r.place = o.place;
     auto image = display::readImage(found->path, diags, r);
@@ -203,7 +203,7 @@ bool makeBrickMap(const std::vector<std::string>& names, const std::string& bric
         if (replacesIts("point cloud", found->path, bricks, o, diags)) return false;
         paths.push_back(found->path);
     }
-    return clouds::brickMapOfFiles(paths, bricks, o.policy, diags, o.place);
+    return pointcloud::brickMapOfFiles(paths, bricks, o.policy, diags, o.place);
 }
 
 bool runMakeRequest(const std::string& request, const std::vector<std::string>& strings, const std::vector<float>& numbers,

@@ -19,8 +19,8 @@ struct MakeOptions {
     SourcePlace place;
 };
 
-/// Pictures may be files of bake() (clouds/bakefile.h), also "name&binary". Returns false after an error, which is reported; an
-/// older map of that name is then intact. Unknown wrap modes and filters, and widths that are not positive, are reported and
+/// Pictures may be files of bake() (pointcloud/bakefile.h), also "name&binary". Returns false after an error, which is reported;
+/// an older map of that name is then intact. Unknown wrap modes and filters, and widths that are not positive, are reported and
 /// replaced by the defaults.
 bool makeTexture(const std::string& picture, const std::string& texture, const MakeOptions&, Diagnostics&);
 bool makeLatLongEnvironment(const std::string& picture, const std::string& texture, const MakeOptions&, Diagnostics&);
@@ -32,7 +32,7 @@ bool makeCubeFaceEnvironment(const std::vector<std::string>& pictures, const std
 /// map is written, with a warning that shadow() cannot use it.
 bool makeShadow(const std::string& zfile, const std::string& shadow, const MakeOptions&, Diagnostics&);
 
-/// Point clouds as one brick map (clouds/brickmap.h).
+/// Point clouds as one brick map (pointcloud/brickmap.h).
 bool makeBrickMap(const std::vector<std::string>& clouds, const std::string& bricks, const MakeOptions&, Diagnostics&);
 
 /// Runs a RIB request by name: strings and numbers in order of its arguments (MakeTexture: picture texture swrap twrap filter;

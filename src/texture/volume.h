@@ -2,7 +2,7 @@
 // like point clouds. (0, 0, 0) is the upper left corner of the first slice, (1, 1, 1) the lower right one of the last.
 #pragma once
 #include "base/file.h"
-#include "clouds/map.h"
+#include "pointcloud/map.h"
 #include "texture/maketexture.h"
 #include <memory>
 #include <optional>
@@ -52,6 +52,6 @@ bool makeGradients(const std::string& volume, const std::string& picture, int ra
 /// For texture3d(): maps the volume to the unit cube. Channels: "color" (r, g, b, or grey), "alpha" (a, else the mean of the
 /// colours), "gradient" (vector: 2 r - 1, 2 g - 1, 2 b - 1), and each channel by its name. Interpolated between voxels and
 /// levels; empty outside of the cube.
-std::shared_ptr<const clouds::CloudMap> mapOf(Volume);
+std::shared_ptr<const pointcloud::CloudMap> mapOf(Volume);
 
 } // namespace alpenglow::texture

@@ -8,7 +8,7 @@ namespace alpenglow::texture {
 namespace {
 
 /// A volume for texture3d(): its channels interleaved, in all levels.
-class VolumeMap : public clouds::CloudMap {
+class VolumeMap : public pointcloud::CloudMap {
 public:
     explicit VolumeMap(Volume v) {
         const auto has = [&](const char* name) {
@@ -27,11 +27,11 @@ public:
                                 : r >= 0 ? r
                                 : y >= 0 ? y
                                          : 0};
-        channels_ = {{"color", clouds::ChannelType::Color},
-                     {"alpha", clouds::ChannelType::Float},
-                     {"gradient", clouds::ChannelType::Vector}};
+        channels_ = {{"color", pointcloud::ChannelType::Color},
+                     {"alpha", pointcloud::ChannelType::Float},
+                     {"gradient", pointcloud::ChannelType::Vector}};
         for (const std::string& n : v.names)
-            if (n != "color" && n != "alpha" && n != "gradient") channels_.push_back({n, clouds::ChannelType::Float});
+            if (n != "color" && n != "alpha" && n != "gradient") channels_.push_back({n, pointcloud::ChannelType::Float});
         Volume all{v.width, v.height, v.depth, std::vector<std::string>(size_t(width())), {}};
         const size_t voxels = size_t(v.width) * size_t(v.height) * size_t(v.depth), n = v.names.size();
         all.values.reserve(voxels * size_t(width()));
@@ -47,9 +47,9 @@ public:
         while (levels_.back().width > 1 || levels_.back().height > 1 || levels_.back().depth > 1)
             levels_.push_back(half(levels_.back()));
     }
-    const std::vector<clouds::Channel>& channels() const override { return channels_; }
+    const std::vector<pointcloud::Channel>& channels() const override { return channels_; }
 
-    bool lookup(const clouds::Query& q, std::span<float> out) const override {
+    bool lookup(const pointcloud::Query& q, std::span<float> out) const override {
         for (int k = 0; k < 3; ++k)
             if (!(q.P[k] >= 0 && q.P[k] <= 1)) return false;
         const Volume& fine = levels_.front();
@@ -106,12 +106,12 @@ private:
             for (size_t k = 0; k < out.size(); ++k) out[k] += w * from[k];
         }
     }
-    std::vector<clouds::Channel> channels_;
+    std::vector<pointcloud::Channel> channels_;
     std::vector<Volume> levels_;
 };
 
 } // namespace
 
-std::shared_ptr<const clouds::CloudMap> mapOf(Volume v) { return std::make_shared<VolumeMap>(std::move(v)); }
+std::shared_ptr<const pointcloud::CloudMap> mapOf(Volume v) { return std::make_shared<VolumeMap>(std::move(v)); }
 
 } // namespace alpenglow::texture

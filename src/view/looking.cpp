@@ -17,7 +17,7 @@ constexpr size_t kMostPoints = 4000;
 
 using Seconds = std::chrono::duration<double>;
 
-render::Imager imagerOf(const std::shared_ptr<const transport::World>& world, Diagnostics& diags) {
+render::Imager imagerOf(const std::shared_ptr<const world::World>& world, Diagnostics& diags) {
     return [world, &diags](int n, const float* x, const float* y, float* r, float* g, float* b, float* a) {
         world->runImager(n, x, y, r, g, b, a, diags);
         return true;

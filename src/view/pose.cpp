@@ -89,10 +89,10 @@ namespace {
 class Turned final : public render::Tracer {
 public:
     Turned(std::unique_ptr<render::Tracer> of, const Matrix& m) : of_(std::move(of)), m_(m) {}
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> results,
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> results,
                const StopFlag* stop) override {
         rays_.assign(rays.begin(), rays.end());
-        for (transport::CameraRay& r : rays_) {
+        for (integrator::CameraRay& r : rays_) {
             const Vec3d o = transformPoint(m_, {r.origin.x, r.origin.y, r.origin.z});
             const Vec3d d = transformVector(m_, {r.direction.x, r.direction.y, r.direction.z});
             const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
@@ -101,12 +101,12 @@ public:
         }
         return of_->trace(rays_, results, stop);
     }
-    const transport::Counters& counters() const override { return of_->counters(); }
+    const integrator::Counters& counters() const override { return of_->counters(); }
 
 private:
     std::unique_ptr<render::Tracer> of_;
     Matrix m_;
-    std::vector<transport::CameraRay> rays_;
+    std::vector<integrator::CameraRay> rays_;
 };
 
 } // namespace

@@ -29,7 +29,7 @@ private:
     const render::OutputPlan* own_ = nullptr;
     std::optional<render::OutputPlan> plan_; ///< without curves
     render::PictureFacts facts_;
-    std::shared_ptr<const transport::World> world_;
+    std::shared_ptr<const world::World> world_;
     double last_ = -1, cost_ = 0;
     bool stale_ = false;
 };

@@ -93,7 +93,7 @@ std::shared_ptr<const scene::Frame> Session::frameFor() const {
 render::Engine Session::engine() {
     const render::Engine own = render::transportEngine();
     render::Engine e;
-    e.build = [this, own](const std::shared_ptr<const scene::Frame>&, const transport::Settings& settings, Diagnostics& diags) {
+    e.build = [this, own](const std::shared_ptr<const scene::Frame>&, const world::Settings& settings, Diagnostics& diags) {
         const bool there = world_ && worldKey_ == round_.worldKey;
         if (there && (round_.dragging || samePlace(*worldPose_, *round_.pose))) return world_;
         setPhase(Phase::Building);
@@ -114,7 +114,7 @@ render::Engine Session::engine() {
         setPhase(pass_.phase);
         return world_;
     };
-    e.tracer = [this, own](const std::shared_ptr<const transport::World>& world, Diagnostics& diags) {
+    e.tracer = [this, own](const std::shared_ptr<const world::World>& world, Diagnostics& diags) {
         auto tracer = own.tracer(world, diags);
         if (samePlace(*worldPose_, *round_.pose)) return tracer;
         return turned(std::move(tracer), round_.pose->to(*worldPose_));

@@ -71,7 +71,7 @@ private:
     struct Means {
         render::OutputPlan plan;
         render::PictureFacts facts;
-        std::shared_ptr<const transport::World> world;
+        std::shared_ptr<const world::World> world;
     };
     struct Kept { ///< of the complete picture: for continuing, showing and saving
         std::shared_ptr<const Means> means;
@@ -183,7 +183,7 @@ private:
         std::shared_ptr<const Loaded> scene;
     } round_;
     Pass pass_{};
-    std::shared_ptr<const transport::World> world_;
+    std::shared_ptr<const world::World> world_;
     std::string worldKey_, filmKey_;
     std::optional<Pose> worldPose_;
     std::shared_ptr<const Means> means_;       ///< of the current pass

@@ -1,10 +1,10 @@
 #include "world/arealight.h"
 #include "base/limits.h"
-#include "lobes/sampling.h"
+#include "bsdf/sampling.h"
 #include "scene/solids.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 // A whole sphere whose transform keeps it one: rows of the upper 3x3 of equal length and orthogonal.
@@ -128,8 +128,8 @@ geometry::Bounds Emitter::bounds() const {
 }
 
 float Emitter::areaPdf(const Entry& e, double share, const geometry::SurfacePoint& p, const Vec3& from) const {
-    Vec3 d = meetsAt(p) - from;
-    float d2 = dot(d, d), cosine = std::fabs(dot(d, meetsNormal(p))) / std::sqrt(d2);
+    Vec3 d = intersectsAt(p) - from;
+    float d2 = dot(d, d), cosine = std::fabs(dot(d, intersectsNormal(p))) / std::sqrt(d2);
     if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
     return float(share * density(e, p) * e.shape->turnedDensity(p, from) * d2 / cosine);
 }
@@ -197,7 +197,7 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
     } else if (!place(e, from, u, time, point, needs)) {
         return false;
     }
-    Vec3 d = meetsAt(point) - from;
+    Vec3 d = intersectsAt(point) - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
@@ -212,7 +212,7 @@ bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, 
     out.shape = e.shape;
     out.visibility = e.visibility;
     if (!place(e, from, u, time, point, needs)) return false;
-    const Vec3 d = meetsAt(point) - from;
+    const Vec3 d = intersectsAt(point) - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
@@ -251,4 +251,4 @@ float Emitter::pdf(const geometry::Shape* shape, const geometry::SurfacePoint& h
     return areaPdf(e, share, hit, from);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

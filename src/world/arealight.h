@@ -6,7 +6,7 @@
 #include <span>
 #include <unordered_map>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// The geometry of one area light. A shape is chosen in proportion to area; among more than limits::kLightsSampled shapes in
 /// proportion to area over squared distance (LightChooser). Complete spheres that are spheres in camera space, and a few near
@@ -105,4 +105,4 @@ private:
     LightChooser chooser_; ///< over entries_; empty if there are few
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

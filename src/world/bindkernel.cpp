@@ -11,7 +11,7 @@
 #include "world/raysets.h"
 #include "world/unknownfilter.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 SourcePlace placeOf(const rsl::ir::Site& s, const rsl::CompiledKernel& k) {
     const auto& files = k.files();
@@ -32,7 +32,7 @@ SiteKind kindOf(const std::string& op) {
                                                           {"subsurface", SiteKind::Subsurface},
                                                           {"indirectdiffuse", SiteKind::Irradiance},
                                                           {"gather", SiteKind::Gather},
-                                                          {"gatherturn", SiteKind::GatherTurn},
+                                                          {"gatherturn", SiteKind::GatherIteration},
                                                           {"lightvisibility", SiteKind::LightVisibility},
                                                           {"illuminance", SiteKind::Illuminance},
                                                           {"texture", SiteKind::Texture},
@@ -482,4 +482,4 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     return b;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

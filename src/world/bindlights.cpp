@@ -5,7 +5,7 @@
 #include "world/lightobjects.h"
 #include "world/outputs.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using rsl::OutputName;
 
@@ -88,7 +88,7 @@ void setLightKind(BoundLight& part, const std::string& block, bool area, bool pa
     part.cone = block == rsl::kBlockCone;
     if (part.kind != LightKind::Area && !((part.kind == LightKind::Environment || part.cone) && path)) part.samples = 1;
     if (part.sentCl >= 0) { // each of its samples is one iteration
-        part.samples = limits::kLightTurns;
+        part.samples = limits::kLightIterations;
         part.shadows |= !path && part.instance->parameters.numbers.count(rsl::kSentShadows) > 0;
     }
     const bool emits = part.instance->parameters.numbers.count(rsl::kEmits) > 0;
@@ -403,4 +403,4 @@ void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

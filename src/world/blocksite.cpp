@@ -1,7 +1,7 @@
 #include "world/blocksite.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 /// Whether a call requests lobes.
@@ -87,4 +87,4 @@ bool asksBlocks(const BoundKernel& b) {
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -2,7 +2,7 @@
 #pragma once
 #include "world/sites.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Argument rows of a call that requests a lobe without any work for each point; null: another kind of call.
 std::shared_ptr<const LobeArguments> blockSite(const SiteInfo&);
@@ -11,4 +11,4 @@ float defaultEta(const LobeKind&);
 /// Whether all lobe requests of the kernel are such calls.
 bool asksBlocks(const BoundKernel&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -4,7 +4,7 @@
 #include "world/sites.h"
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// A shader of the scene: its program, and parameter values in current space.
 struct ShaderInstance {
@@ -161,8 +161,8 @@ struct PhotonBinding {
     std::string globalMap, causticMap; ///< Attribute "photon"; "": none
     int estimator = 50;                ///< photons in a lookup
     PhotonModel model = PhotonModel::Shader;
-    bool meets = true;     ///< Attribute "visibility" "photon"; unset: visible to diffuse or to specular rays
-    bool meetsBoth = true; ///< visible to both, so photons reach every place that rays of lobes start from
+    bool meets = true;          ///< Attribute "visibility" "photon"; unset: visible to diffuse or to specular rays
+    bool intersectsBoth = true; ///< visible to both, so photons reach every place that rays of lobes start from
 };
 
 /// Shapes with the same surface, atmosphere and lights; they are shaded together.
@@ -211,4 +211,4 @@ struct SurfaceBinding {
     PhotonBinding photons;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

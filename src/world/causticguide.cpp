@@ -1,12 +1,12 @@
 // Builds cells and lobes from photons, and evaluates and samples them.
 #include "world/causticguide.h"
-#include "lobes/sampling.h"
+#include "bsdf/sampling.h"
 #include <algorithm>
 #include <climits>
 #include <cstring>
 #include <numeric>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -230,4 +230,4 @@ Vec3 CausticGuide::draw(const Cell& c, const Vec3& P, Vec2 u) const {
     return normalize(Basis(d * (1 / std::sqrt(far2))).toWorld({s * turn.x, s * turn.y, 1 - away}));
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

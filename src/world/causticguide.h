@@ -5,6 +5,7 @@
 // for Path Guiding" (2020).
 #pragma once
 #include "base/vec.h"
+#include "world/names.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,7 +14,7 @@
 #include <span>
 #include <vector>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// A photon stored on a surface after delta reflection and transmission only. Camera space.
 struct GuidePhoton {
@@ -88,4 +89,4 @@ private:
     size_t lobeCount_ = 0;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,31 +3,31 @@
 #include "world/cloudstore.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
-clouds::ChannelType channelOf(rsl::Type t) {
+pointcloud::ChannelType channelOf(rsl::Type t) {
     switch (t.base) {
     case rsl::Base::Color:
-        return clouds::ChannelType::Color;
+        return pointcloud::ChannelType::Color;
     case rsl::Base::Point:
-        return clouds::ChannelType::Point;
+        return pointcloud::ChannelType::Point;
     case rsl::Base::Vector:
-        return clouds::ChannelType::Vector;
+        return pointcloud::ChannelType::Vector;
     case rsl::Base::Normal:
-        return clouds::ChannelType::Normal;
+        return pointcloud::ChannelType::Normal;
     case rsl::Base::Matrix:
-        return clouds::ChannelType::Matrix;
+        return pointcloud::ChannelType::Matrix;
     default:
-        return clouds::ChannelType::Float;
+        return pointcloud::ChannelType::Float;
     }
 }
 
 /// The channel type by number of components, if the type is unknown.
-clouds::ChannelType channelOf(rsl::ir::Kind k) {
+pointcloud::ChannelType channelOf(rsl::ir::Kind k) {
     const int n = rsl::ir::components(k);
-    return n == 3 ? clouds::ChannelType::Color : n == 16 ? clouds::ChannelType::Matrix : clouds::ChannelType::Float;
+    return n == 3 ? pointcloud::ChannelType::Color : n == 16 ? pointcloud::ChannelType::Matrix : pointcloud::ChannelType::Float;
 }
 
 bool isOption(const std::string& name) {
@@ -51,7 +51,7 @@ void noteString(const std::string& name, const SourcePlace& at, const WorldImpl&
 std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
     auto c = std::make_shared<CloudSite>();
     const rsl::ir::Site& s = *i.site;
-    clouds::BakeLayout& l = c->layout;
+    pointcloud::BakeLayout& l = c->layout;
     l.place = {s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column};
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
@@ -108,12 +108,12 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
     l.where = l.place.file + where;
     for (const CloudSite::Part& p : c->parts) {
         l.channels.push_back({p.name, p.type});
-        l.width += clouds::sizeOf(p.type);
+        l.width += pointcloud::sizeOf(p.type);
     }
-    const auto area = [](const clouds::Channel& a) { return a.name == "_area"; };
+    const auto area = [](const pointcloud::Channel& a) { return a.name == "_area"; };
     if (i.kind == SiteKind::Bake3d && std::none_of(l.channels.begin(), l.channels.end(), area)) {
         c->addsArea = true;
-        l.channels.push_back({"_area", clouds::ChannelType::Float});
+        l.channels.push_back({"_area", pointcloud::ChannelType::Float});
         ++l.width;
     }
     c->writes = i.kind != SiteKind::Texture3d && (c->computed || !c->name.empty());
@@ -125,4 +125,4 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
     return c;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,9 +1,9 @@
 // Arguments of a bake(), bake3d() or texture3d() call, resolved when the kernel is bound.
 #pragma once
-#include "clouds/bakelog.h"
+#include "pointcloud/bakelog.h"
 #include "world/sites.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Argument rows, or -1.
 struct CloudSite {
@@ -20,14 +20,14 @@ struct CloudSite {
     int centres = -1, maxDepth = -1;
     struct Part {
         std::string name;
-        clouds::ChannelType type;
+        pointcloud::ChannelType type;
         int row;
     }; ///< row: of arguments; texture3d(): of results
     std::vector<Part> parts;
-    clouds::BakeLayout layout; ///< unused by texture3d()
-    bool addsArea = false;     ///< bake3d() without "_area": appends that channel
+    pointcloud::BakeLayout layout; ///< unused by texture3d()
+    bool addsArea = false;         ///< bake3d() without "_area": appends that channel
 };
 
 std::shared_ptr<const CloudSite> cloudSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

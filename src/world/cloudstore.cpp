@@ -1,11 +1,11 @@
 #include "world/cloudstore.h"
-#include "clouds/brickmap.h"
-#include "clouds/cloudfile.h"
-#include "clouds/limits.h"
+#include "pointcloud/brickmap.h"
+#include "pointcloud/cloudfile.h"
+#include "pointcloud/limits.h"
 #include "texture/volume.h"
 #include <tuple>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 std::optional<std::string> CloudStore::pathOf(const std::string& name, const SourcePlace& place) {
     static constexpr MapKind kKind{"point cloud", "lookups return 0", "make it by bake3d() in an earlier frame", true,
@@ -13,13 +13,13 @@ std::optional<std::string> CloudStore::pathOf(const std::string& name, const Sou
     return findMap(name, files_, kKind, diagnostics_, place);
 }
 
-const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePlace& place) {
+const pointcloud::CloudMap* CloudStore::find(const std::string& name, const SourcePlace& place) {
     if (name.empty()) return nullptr;
     std::lock_guard lock(mutex_);
     const auto [at, fresh] = maps_.try_emplace(name);
     if (!fresh) return at->second.get();
     // Image stacks and voxel grids are looked up like point clouds.
-    const auto volume = [&]() -> std::shared_ptr<const clouds::CloudMap> {
+    const auto volume = [&]() -> std::shared_ptr<const pointcloud::CloudMap> {
         std::vector<std::string> folders = {""};
         folders.insert(folders.end(), files_.folders.begin(), files_.folders.end());
         auto v = texture::loadVolume(name, {folders, files_.read, place}, diagnostics_);
@@ -27,7 +27,7 @@ const clouds::CloudMap* CloudStore::find(const std::string& name, const SourcePl
     };
     if (texture::namesVolume(name)) return (at->second = volume()).get();
     if (const auto path = pathOf(name, place))
-        at->second = texture::holdsVolume(*path) ? volume() : clouds::openMap(*path, diagnostics_, place);
+        at->second = texture::holdsVolume(*path) ? volume() : pointcloud::openMap(*path, diagnostics_, place);
     return at->second.get();
 }
 
@@ -37,7 +37,7 @@ void CloudStore::noteLights(const BoundLight& first, std::span<const BoundLight*
     lightsRan.insert(all.begin(), all.end());
 }
 
-void CloudStore::noteLookup(const clouds::CloudMap* map, bool found, const SourcePlace& place) {
+void CloudStore::noteLookup(const pointcloud::CloudMap* map, bool found, const SourcePlace& place) {
     std::lock_guard lock(mutex_);
     const auto [at, fresh] = asked_.try_emplace(map, Asked{found, place});
     if (fresh) return;
@@ -55,8 +55,8 @@ std::vector<std::pair<std::string, SourcePlace>> CloudStore::foundNothing() {
     return all;
 }
 
-std::shared_ptr<const clouds::PointOctree>
-CloudStore::octree(const std::string& name, bool light, const std::optional<clouds::Shear>& shear, const SourcePlace& place) {
+std::shared_ptr<const pointcloud::PointOctree>
+CloudStore::octree(const std::string& name, bool light, const std::optional<pointcloud::Shear>& shear, const SourcePlace& place) {
     if (name.empty()) return nullptr;
     std::lock_guard lock(mutex_);
     for (const bool lit : {light, true}) // one with light serves both
@@ -67,32 +67,33 @@ CloudStore::octree(const std::string& name, bool light, const std::optional<clou
     return made;
 }
 
-std::shared_ptr<const clouds::PointOctree>
-CloudStore::makeOctree(const std::string& name, bool light, const std::optional<clouds::Shear>& shear, const SourcePlace& place) {
+std::shared_ptr<const pointcloud::PointOctree> CloudStore::makeOctree(const std::string& name, bool light,
+                                                                      const std::optional<pointcloud::Shear>& shear,
+                                                                      const SourcePlace& place) {
     const auto path = pathOf(name, place);
     if (!path) return nullptr;
     const auto report = [&](Severity s, const std::string& what, const std::string& hint) {
         diagnostics_.reportOnce("octree:" + name + what,
                                 {s, Rie::BadFile, place, "point cloud \"" + name + "\" " + what, hint, {}});
     };
-    if (clouds::isBrickMap(*path)) {
+    if (pointcloud::isBrickMap(*path)) {
         report(Severity::Error, "is a brick map, which point-based shadeops cannot read; it is ignored",
                "use the point cloud that it was made of");
         return nullptr;
     }
-    auto cloud = clouds::loadCloud(*path, diagnostics_, place);
+    auto cloud = pointcloud::loadCloud(*path, diagnostics_, place);
     if (!cloud) return nullptr;
     if (cloud->size() > limits::kOctreePoints) {
         report(Severity::Error, "has more than " + std::to_string(limits::kOctreePoints) + " points; it is ignored",
                "alpenglow ptc filter --depth thins it");
         return nullptr;
     }
-    if (shear) clouds::transform(*cloud, shear->matrix());
+    if (shear) pointcloud::transform(*cloud, shear->matrix());
     std::string channel;
     if (light)
         for (const char* known : {"_irradiance", "_radiosity"})
             if (cloud->offsetOf(known) >= 0) channel = known;
-    auto octree = std::make_shared<clouds::PointOctree>(*cloud, channel);
+    auto octree = std::make_shared<pointcloud::PointOctree>(*cloud, channel);
     if (cloud->size() == 0) report(Severity::Warning, "has no points", "bake3d() says which surfaces it bakes");
     else if (octree->leftOut() > 0)
         report(octree->points().empty() ? Severity::Error : Severity::Warning,
@@ -104,4 +105,4 @@ CloudStore::makeOctree(const std::string& name, bool light, const std::optional<
     return octree;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -8,7 +8,7 @@
 #include "world/impl.h"
 #include "world/turned.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -170,4 +170,4 @@ void WorldImpl::diceShapes(Diagnostics& d) {
     geometry::diceShapes(shapes_, dice, d);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,7 +1,7 @@
 #include "world/emitterfacets.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using geometry::Placed;
 using geometry::Shape;
@@ -97,4 +97,4 @@ double EmitterFacets::density(const geometry::SurfacePoint& p) const {
     return now > 0 ? share(p.facet) / now : 0;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

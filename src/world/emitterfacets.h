@@ -4,11 +4,11 @@
 #include "geometry/placed.h"
 #include "world/lightchooser.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Where rays hit a point of an emitter: on its facet if it is diced.
-inline const Vec3& meetsAt(const geometry::SurfacePoint& p) { return p.facet != geometry::kNone ? p.displacedP : p.P; }
-inline const Vec3& meetsNormal(const geometry::SurfacePoint& p) { return p.facet != geometry::kNone ? p.displacedN : p.n; }
+inline const Vec3& intersectsAt(const geometry::SurfacePoint& p) { return p.facet != geometry::kNone ? p.displacedP : p.P; }
+inline const Vec3& intersectsNormal(const geometry::SurfacePoint& p) { return p.facet != geometry::kNone ? p.displacedN : p.n; }
 /// Origin of a ray along dir, or end of a ray against dir: offset from the surface that rays hit.
 inline Vec3 leavesFrom(const geometry::SurfacePoint& p, const Vec3& dir) {
     if (p.facet == geometry::kNone) return geometry::offsetOrigin(p, dir);
@@ -41,4 +41,4 @@ private:
     std::vector<double> cumulative_; ///< cumulative areas, by triangle
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

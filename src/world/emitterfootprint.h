@@ -1,9 +1,9 @@
 // Footprint of a light sample on an emitter: equal to that of a lobe's ray that hits it, so that both estimate the same light.
 #pragma once
-#include "lobes/lobe.h"
+#include "bsdf/lobe.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Half angle in radians by which rays of a lobe widen: half of the lobe's spread, at least that of the incoming ray.
 inline float spreadBehind(const shading::PathRay& ray, float lobeSpread) {
@@ -21,10 +21,10 @@ inline bool usesFootprint(const BoundLight& l) {
 /// Sets du and dv of a point on an emitter, whose surface is known, for a ray from `from` that widens by `spread` per unit of
 /// length (spreadBehind()). `ray`: the ray that found `from`.
 inline void setEmitterFootprint(shading::ShadePoint& p, const shading::PathRay& ray, const Vec3& from, float spread) {
-    const Vec3 way = meetsAt(p.surface) - from;
+    const Vec3 way = intersectsAt(p.surface) - from;
     const float distance = length(way);
     const shading::Footprint footprint{ray.footprint.at(length(from - ray.origin)), spread};
     shading::setFootprint(p, footprint, distance > 0 ? way / distance : ray.dir, distance, 1);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

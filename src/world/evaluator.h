@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// For one thread. Rethrows exceptions of kernel callbacks.
 class Evaluator {
@@ -18,4 +18,4 @@ public:
     virtual void light(const BoundLight&, std::vector<ShadePoint>&, std::span<LightValue>) = 0;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -2,7 +2,7 @@
 #include "base/limits.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 namespace {
 
 using rsl::Base;
@@ -81,4 +81,4 @@ std::optional<rsl::ParameterValue> fitParameter(const scene::Param& given, const
     return value;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

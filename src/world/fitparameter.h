@@ -3,9 +3,10 @@
 #include "base/diagnostics.h"
 #include "rsl/compiler.h"
 #include "scene/param.h"
+#include "world/names.h"
 #include <optional>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// The value with the declared type, not transformed. Arrays of open length get at most limits::kShaderArray elements. One number
 /// becomes a grey color. Other types with the same number of components are accepted with a warning; point, vector and normal
@@ -14,4 +15,4 @@ namespace alpenglow::transport {
 std::optional<rsl::ParameterValue> fitParameter(const scene::Param& given, const rsl::ParameterInfo& declared,
                                                 const std::string& shader, const SourcePlace& call, Diagnostics&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -118,12 +118,12 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world)
                                        {Severity::Warning, Rie::BadToken, place, "gather: " + what, hint, {}});
     };
     for (SiteInfo& i : b.sites) {
-        if (i.kind != SiteKind::Gather && i.kind != SiteKind::GatherTurn) continue;
+        if (i.kind != SiteKind::Gather && i.kind != SiteKind::GatherIteration) continue;
         auto& g = known[numberOf(i)];
         if (!g) g = std::make_shared<GatherSite>();
         i.gather = g;
         g->number = std::atoi(numberOf(i).c_str());
-        if (i.kind == SiteKind::GatherTurn) {
+        if (i.kind == SiteKind::GatherIteration) {
             g->outputs.clear();
             const auto unknown = [&](const std::string& name) {
                 told(i, "\"" + name + "\" is not known; the variable is not changed",
@@ -227,4 +227,4 @@ bool gatheredNames(const rsl::Program& p, GatheredNames& all) {
     return made;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,7 +5,7 @@
 #include "world/impl.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 struct GatherSite {
     enum class Category : uint8_t { Rays, Directions, Sky };
@@ -78,4 +78,4 @@ struct GatheredNames {
 /// the scene gives its parameters may be names as well.
 bool gatheredNames(const rsl::Program&, GatheredNames&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

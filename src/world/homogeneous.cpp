@@ -3,7 +3,7 @@
 #include "world/impl.h"
 #include "world/outputs.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using rsl::OutputName;
 
@@ -124,4 +124,4 @@ void WorldImpl::placeLights(Evaluator& evaluator) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,7 +3,7 @@
 #include "world/impl.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, float* g, float* b, float* alpha, Diagnostics& d,
                           const StopFlag* stop) const {
@@ -71,4 +71,4 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

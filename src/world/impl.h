@@ -1,6 +1,6 @@
 // Implementation of World for its users inside of the renderer: shapes, shaders and lights with their bindings.
 #pragma once
-#include "lobes/roulettefactors.h"
+#include "bsdf/roulettefactors.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
 #include "scene/fwd.h"
@@ -8,17 +8,17 @@
 #include "texture/irradiance.h"
 #include "texture/skydirections.h"
 #include "world/bound.h"
+#include "world/deferred.h"
 #include "world/evaluator.h"
+#include "world/flippednormals.h"
 #include "world/lightchooser.h"
 #include "world/photonstore.h"
 #include "world/records.h"
-#include "world/turnedaway.h"
-#include "world/unmade.h"
 #include "world/world.h"
 #include <functional>
 #include <unordered_map>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Subsets of a world's shapes that rays are restricted to.
 class ShapeSubsets {
@@ -45,7 +45,7 @@ public:
     std::vector<int> outputWidths() const override { return outputWidths_; }
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
     std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const override;
-    std::vector<TurnedAwayCall> callsTurnedAway() const override { return turnedAway_.blocked(); }
+    std::vector<FlippedNormalsCall> callsTurnedAway() const override { return turnedAway_.blocked(); }
     std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool interpolates() const override { return interpolates_; }
@@ -143,10 +143,10 @@ public:
     /// Random number key of a shape: its index, or with deferred procedurals a number that does not depend on which were
     /// expanded.
     uint32_t keyOfShape(uint32_t shape) const { return keysOfShapes_.empty() ? shape : keysOfShapes_[shape]; }
-    std::vector<uint32_t> keysOfShapes_; ///< empty: indices are used
-    std::unique_ptr<Unmade> unmade_;     ///< null: no deferred procedurals
-    geometry::Bounds procedurals_;       ///< around all deferred procedurals, expanded or not
-    void findProcedurals();              ///< fills unmade_ and procedurals_
+    std::vector<uint32_t> keysOfShapes_;       ///< empty: indices are used
+    std::unique_ptr<DeferredBounds> deferred_; ///< null: no deferred procedurals
+    geometry::Bounds procedurals_;             ///< around all deferred procedurals, expanded or not
+    void findProcedurals();                    ///< fills deferred_ and procedurals_
     /// Bounding box of everything, independent of which procedurals were expanded.
     geometry::Bounds bounds() const {
         geometry::Bounds b = accel_->bounds();
@@ -204,7 +204,7 @@ public:
     std::shared_ptr<RouletteFactors> roulette_ = std::make_shared<RouletteFactors>();
     std::shared_ptr<CloudStore> clouds_; ///< point clouds, and baked data; thread safe
     std::shared_ptr<PtexStore> ptex_;    ///< Ptex files; thread safe
-    mutable TurnedAway turnedAway_;
+    mutable FlippedNormals turnedAway_;
     bool globalMaps_ = false; ///< some surface has a global photon map that an indirectdiffuse() may use
     mutable LightRecords records_;
     bool interpolates_ = false; ///< some call may use irradiance caching
@@ -275,8 +275,8 @@ public:
         BoundKernel kernel;
     };
     std::vector<LightGroup> lightGroups_;
-    std::unordered_map<const geometry::Shape*, int> hazyEmitters_; ///< emitters in an atmosphere, to their binding
-    float clipNear_ = 0, clipFar_ = 1;                             ///< of the request Clipping, for depth()
+    std::unordered_map<const geometry::Shape*, int> emittersInAtmosphere_; ///< emitters in an atmosphere, to their binding
+    float clipNear_ = 0, clipFar_ = 1;                                     ///< of the request Clipping, for depth()
     std::vector<std::pair<Vec3d, Vec3d>>
         clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the side of the normal
 };
@@ -291,4 +291,4 @@ template <class Place> texture::Handle TextureSite::map(const WorldImpl& world, 
     return map_.load(std::memory_order_relaxed);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

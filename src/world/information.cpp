@@ -5,7 +5,7 @@
 #include "world/objectbox.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -169,4 +169,4 @@ Matrix spaceAt(const WorldImpl& w, const std::string& from, const std::string& t
     return in * out;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

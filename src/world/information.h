@@ -3,7 +3,7 @@
 #include "world/impl.h"
 #include <optional>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Numbers or strings: one, or an array.
 struct Information {
@@ -28,4 +28,4 @@ std::optional<Information> rayInfoOf(const std::string& name, const shading::Pat
 Matrix spaceAt(const WorldImpl&, const std::string& from, const std::string& to, const shading::ShadePoint&,
                const SurfaceBinding*);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

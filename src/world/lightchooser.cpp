@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 constexpr int kBins = 12; // candidate split positions, by axis
@@ -335,4 +335,4 @@ float LightChooser::pmf(int light, const Vec3& at) const {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

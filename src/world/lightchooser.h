@@ -2,12 +2,13 @@
 #pragma once
 #include "base/vec.h"
 #include "lanes/lighttree.h"
+#include "world/names.h"
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Directions within an angle of an axis.
 struct Cone {
@@ -34,8 +35,8 @@ struct LightBound {
 /// times the largest cosine at which its light can leave toward the point, so lights that face away get none. A fraction kBlind
 /// is equal for all lights, so that lights whose power was missed (a spot between the probes) are also found.
 ///
-/// Far nodes act as one light; near ones are opened first (the cut), with shares relative to the whole cut. Below the cut a
-/// node's probability is divided between its children by the same measure. One random number makes the choice by systematic
+/// Far nodes act as one light; near ones are opened first (the cut), with shares relative to the whole cut. SubsurfaceMedium the
+/// cut a node's probability is divided between its children by the same measure. One random number makes the choice by systematic
 /// sampling: a comb of unit spacing over the cumulative probabilities of the leaves includes each light with exactly its
 /// probability, by which its contribution is divided. After Conty Estevez and Kulla, Importance Sampling of Many Lights with
 /// Adaptive Tree Splitting (2018); the comb makes the number of lights equal at all points.
@@ -93,4 +94,4 @@ private:
     int wanted_ = 1;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -4,7 +4,7 @@
 #include <locale>
 #include <sstream>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 constexpr char kPlace[] = "shader@"; // not a space name of a scene: followed by sixteen numbers
@@ -76,4 +76,4 @@ bool placeOf(const std::string& space, Matrix& toCurrent) {
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

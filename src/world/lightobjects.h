@@ -2,10 +2,11 @@
 #pragma once
 #include "base/matrix.h"
 #include "rsl/compiler.h"
+#include "world/names.h"
 #include <set>
 #include <string>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Names of methods and members that a shader uses on handles from getlights() or getlight(), as far as its text shows. Without
 /// light(L, Cl) and light(L, Cl, Ol), which the renderer implements.
@@ -24,4 +25,4 @@ std::string spaceAt(const Matrix& toCurrent);
 /// Recovers the matrix from a name made by spaceAt(); returns false for any other name.
 bool placeOf(const std::string& space, Matrix& toCurrent);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,7 +3,7 @@
 // the choice, so the mean is unchanged.
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 /// Whether the light's kernel needs only its parameters and the point, so that lights may share a call.
@@ -94,4 +94,4 @@ void WorldImpl::makeChoosers(Diagnostics& d) {
     if (many && settings_.hider == Hider::Path) groupLights(d);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,6 +1,6 @@
 #include "world/mapfiles.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 std::optional<FoundFile> lookUpMap(const std::string& name, const MapFiles& files, const MapKind& kind, std::string* outside) {
     std::vector<std::string> folders = {""};
@@ -27,4 +27,4 @@ std::optional<std::string> findMap(const std::string& name, const MapFiles& file
     return {};
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,8 +1,9 @@
 // Looks up map files by name: point clouds, photon maps and Ptex files.
 #pragma once
 #include "base/file.h"
+#include "world/names.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Where maps are looked up.
 struct MapFiles {
@@ -25,4 +26,4 @@ std::optional<FoundFile> lookUpMap(const std::string& name, const MapFiles&, con
 /// place than its name says.
 std::optional<std::string> findMap(const std::string& name, const MapFiles&, const MapKind&, Diagnostics&, const SourcePlace&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

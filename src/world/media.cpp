@@ -3,7 +3,7 @@
 #include "world/mediaabout.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using shading::Media;
 
@@ -58,4 +58,4 @@ Media mediaAbout(const WorldImpl& world, const Vec3& at, float time) {
     return about;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

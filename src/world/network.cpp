@@ -6,7 +6,7 @@
 #include "world/patterns.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 bool takesOutputs(const ShaderInstance& i) {
     return std::any_of(i.parameters.strings.begin(), i.parameters.strings.end(),
@@ -116,4 +116,4 @@ void addPatterns(WorldImpl& world, const ShaderInstance& shader, const std::map<
     to.insert(to.end(), reached.begin(), reached.end());
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

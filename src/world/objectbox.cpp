@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 namespace {
 
 struct Box {
@@ -68,4 +68,4 @@ std::optional<std::array<float, 6>> objectBox(const scene::Primitive& p) {
     return box.b;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,10 +1,11 @@
 // The bounding box of a primitive in object space, for attribute("geometry:boundingbox").
 #pragma once
 #include "scene/primitive.h"
+#include "world/names.h"
 #include <array>
 #include <optional>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 inline constexpr const char kObjectBox[] = "geometry:boundingbox";
 
@@ -12,4 +13,4 @@ inline constexpr const char kObjectBox[] = "geometry:boundingbox";
 /// quadrics with a full sweep. Returns nothing for primitives without points and box (blobbies).
 std::optional<std::array<float, 6>> objectBox(const scene::Primitive&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,7 +3,7 @@
 #include "world/cloudstore.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -52,7 +52,7 @@ bool sendsNothing(const Opacity& o) { return sendsNothing(o.kernel); }
 } // namespace
 
 bool WorldImpl::onlyCameraRays() const {
-    if (settings_.hider == Hider::Path || !media_.empty() || unmade_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
+    if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
         interpolates_ || settings_.bsdfOnly || settings_.lightOnly)
         return false;
     for (const BoundLight& l : lights_) {
@@ -72,4 +72,4 @@ bool WorldImpl::onlyCameraRays() const {
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

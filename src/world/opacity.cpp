@@ -3,7 +3,7 @@
 #include "world/surfaces.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
     mediaOverrule_ = std::any_of(media_.begin(), media_.end(), [&](const Medium& m) { return m.priority != media_[0].priority; });
@@ -25,7 +25,7 @@ void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
         seen.push_back(visibility[i]);
         byOpacity_.numbers.push_back(uint32_t(i));
     }
-    if (triangles > kFew || fades_ || accel_->hasSolids() || unmade_) return;
+    if (triangles > kFew || fades_ || accel_->hasSolids() || deferred_) return;
     Diagnostics said; // messages come from the complete shader
     byOpacity_.few = std::make_unique<accel::Accel>(shapes, seen, said);
     if (!byOpacity_.few->takesRows()) byOpacity_.few.reset();
@@ -111,4 +111,4 @@ bool SurfaceBinder::vanishes(const SurfaceBinding& b) const {
     return nothing;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,7 +3,7 @@
 #include "world/cloudstore.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -151,4 +151,4 @@ void WorldImpl::measureOutputs() {
         }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

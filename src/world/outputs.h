@@ -2,7 +2,7 @@
 #pragma once
 #include "world/bound.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Whether a shader or its co-shaders have an output of that name ("list[1]" is an element of "list").
 bool gives(const ShaderInstance&, const rsl::OutputName&);
@@ -17,4 +17,4 @@ void addOutput(const ShaderInstance&, const rsl::OutputName&, std::vector<std::s
 /// Returns false if the shader could have written this output at the point, and did not.
 bool givenAt(const shading::Batch&, const rsl::OutputName&, int point);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

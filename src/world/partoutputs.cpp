@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -129,4 +129,4 @@ LightOutput::Kernel SurfaceBinder::lightKernel(const SurfaceBinding& b, const Li
     return k;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,7 +3,7 @@
 #include "scene/network.h"
 #include "world/bound.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 class WorldImpl;
 
@@ -19,4 +19,4 @@ void connect(ShaderInstance&, const scene::Connection&, Diagnostics&);
 void addPatterns(WorldImpl&, const ShaderInstance&, const std::map<std::string, scene::ShaderRef>& coshaders,
                  std::vector<std::pair<std::string, scene::ShaderRef>>& to, Diagnostics&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

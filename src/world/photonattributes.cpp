@@ -1,7 +1,7 @@
 #include "world/photonattributes.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -45,7 +45,7 @@ PhotonBinding photonsOf(const scene::Attributes& a, Diagnostics& d) {
     if (const scene::Param* p = textOf(a, "photon:globalmap")) b.globalMap = p->strings[0];
     if (const scene::Param* p = textOf(a, "photon:causticmap")) b.causticMap = p->strings[0];
     if (const scene::Param* p = a.value("photon:estimator"); p && !p->numbers.empty())
-        b.estimator = int(std::clamp(p->numbers[0], 1.f, float(photons::PhotonMap::kMostAsked)));
+        b.estimator = int(std::clamp(p->numbers[0], 1.f, float(photonmap::PhotonMap::kMostAsked)));
     b.model = modelOf(a, d);
     return b;
 }
@@ -69,7 +69,7 @@ void WorldImpl::bindPhotons(std::span<const uint32_t> visibility) {
         PhotonBinding& b = bindings_[size_t(bindingOf_[i])].photons;
         const uint32_t traced = visibility[i] & (accel::kDiffuse | accel::kSpecular);
         b.meets = seenByPhotons(shapes_[i]->attributes()).value_or(traced != 0);
-        b.meetsBoth = traced == (accel::kDiffuse | accel::kSpecular);
+        b.intersectsBoth = traced == (accel::kDiffuse | accel::kSpecular);
         globalMaps_ |= photons_->asksGlobal && !b.globalMap.empty();
     }
 }
@@ -118,4 +118,4 @@ std::optional<bool> emitsPhotons(const BoundLight& l) {
     return p->numbers[0] != 0;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -2,9 +2,9 @@
 #pragma once
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
-/// Reads Attribute "photon" of a surface; reports unknown names. WorldImpl::bindPhotons() sets `meets` and `meetsBoth`.
+/// Reads Attribute "photon" of a surface; reports unknown names. WorldImpl::bindPhotons() sets `meets` and `intersectsBoth`.
 PhotonBinding photonsOf(const scene::Attributes&, Diagnostics&);
 
 /// A key that differs for surfaces with different photonsOf() or visibility; "" without photon attributes.
@@ -16,4 +16,4 @@ std::shared_ptr<const PhotonSite> photonSite(const SiteInfo&, const rsl::Compile
 /// Attribute "light" "emitphotons": whether a light emits photons; nothing: not set.
 std::optional<bool> emitsPhotons(const BoundLight&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,7 +1,7 @@
 #include "world/photonstore.h"
-#include "photons/photonfile.h"
+#include "photonmap/photonfile.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -20,24 +20,24 @@ bool PhotonStore::has(const std::string& name) const {
     return maps_.count(name) > 0 || lookUpMap(name, files_, kKind, &outside);
 }
 
-const photons::PhotonMap* PhotonStore::find(const std::string& name, const SourcePlace& place) {
+const photonmap::PhotonMap* PhotonStore::find(const std::string& name, const SourcePlace& place) {
     if (name.empty()) return nullptr;
     std::lock_guard lock(mutex_);
     const auto [at, fresh] = maps_.try_emplace(name);
     if (!fresh) return at->second.get();
     if (const auto path = findMap(name, files_, kKind, diagnostics_, place))
-        at->second = photons::loadPhotons(*path, worldToCamera_, diagnostics_, place);
+        at->second = photonmap::loadPhotons(*path, worldToCamera_, diagnostics_, place);
     return at->second.get();
 }
 
-void PhotonStore::set(const std::string& name, std::shared_ptr<const photons::PhotonMap> map) {
+void PhotonStore::set(const std::string& name, std::shared_ptr<const photonmap::PhotonMap> map) {
     std::lock_guard lock(mutex_);
     maps_[name] = std::move(map);
 }
 
-void PhotonStore::setPasses(uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>> passes) {
+void PhotonStore::setPasses(uint32_t first, std::vector<std::unique_ptr<photonmap::PhotonGrid>> passes) {
     firstPass_ = first;
     passes_ = std::move(passes);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,15 +1,15 @@
 // Photon maps that the shaders of a frame read, and the photons of progressive passes.
 #pragma once
 #include "base/matrix.h"
-#include "photons/photongrid.h"
-#include "photons/photonmap.h"
+#include "photonmap/photongrid.h"
+#include "photonmap/photonmap.h"
 #include "world/mapfiles.h"
 #include <map>
 #include <mutex>
 #include <set>
 #include <string>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 class CausticGuide;
 
@@ -29,19 +29,19 @@ public:
 
     /// The map of a name: from set(), or from a file that is read at first use. Returns null if it does not exist, which is
     /// reported once. Thread safe; the map lives as long as the store.
-    const photons::PhotonMap* find(const std::string& name, const SourcePlace&);
+    const photonmap::PhotonMap* find(const std::string& name, const SourcePlace&);
     /// Whether such a file or map exists; reads nothing.
     bool has(const std::string& name) const;
     /// Adds a map made for this frame. Call while no thread looks maps up.
-    void set(const std::string& name, std::shared_ptr<const photons::PhotonMap>);
+    void set(const std::string& name, std::shared_ptr<const photonmap::PhotonMap>);
 
     /// The photons for one sample of every pixel; null: none. Passes change only while no thread traces.
-    const photons::PhotonGrid* pass(uint32_t sample) const {
+    const photonmap::PhotonGrid* pass(uint32_t sample) const {
         return sample - firstPass_ < passes_.size() ? passes_[sample - firstPass_].get() : nullptr;
     }
     /// Sets the passes for samples from `first` on and removes earlier ones. lights: by light, whether the passes contain its
     /// photons.
-    void setPasses(uint32_t first, std::vector<std::unique_ptr<photons::PhotonGrid>> passes);
+    void setPasses(uint32_t first, std::vector<std::unique_ptr<photonmap::PhotonGrid>> passes);
     std::vector<uint8_t> lightsOfPasses;
     /// Null: paths find caustics by chance only. Changes only while no thread traces.
     std::shared_ptr<const CausticGuide> guide;
@@ -52,10 +52,10 @@ private:
     Matrix worldToCamera_;
     Diagnostics& diagnostics_;
     std::mutex mutex_;
-    std::map<std::string, std::shared_ptr<const photons::PhotonMap>> maps_; ///< null: does not exist
+    std::map<std::string, std::shared_ptr<const photonmap::PhotonMap>> maps_; ///< null: does not exist
     std::map<std::string, SourcePlace> asked_;
     uint32_t firstPass_ = 0;
-    std::vector<std::unique_ptr<photons::PhotonGrid>> passes_;
+    std::vector<std::unique_ptr<photonmap::PhotonGrid>> passes_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,7 +1,7 @@
 // What must be known about points of hits and emitters: what kernels and the integrator read.
 #include "world/emitterfootprint.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -46,4 +46,4 @@ void WorldImpl::setPointNeeds() {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,11 +1,11 @@
 #include "world/pointsite.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
-clouds::DiskSides diskSides(const std::string& word) {
-    if (word == "front") return clouds::DiskSides::Front;
-    return word == "back" || word == "reversed" ? clouds::DiskSides::Back : clouds::DiskSides::Both;
+pointcloud::DiskSides diskSides(const std::string& word) {
+    if (word == "front") return pointcloud::DiskSides::Front;
+    return word == "back" || word == "reversed" ? pointcloud::DiskSides::Back : pointcloud::DiskSides::Both;
 }
 
 bool readsPoints(const SiteInfo& i) {
@@ -71,4 +71,4 @@ std::shared_ptr<const PointSite> pointSite(const SiteInfo& i, const rsl::Compile
     return p;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,9 +1,9 @@
 // Arguments of a point-based occlusion(), indirectdiffuse() or subsurface(), resolved when the kernel is bound.
 #pragma once
-#include "clouds/hemisphere.h"
+#include "pointcloud/hemisphere.h"
 #include "world/sites.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Argument rows, or -1; from `value` on: result rows, or -1.
 struct PointSite {
@@ -15,7 +15,7 @@ struct PointSite {
     int cone = -1, axis = -1, maxDistance = -1, maxHit = -1, bias = -1, solidAngle = -1, clamp = -1, sort = -1;
     FadeSite fade;
     int sidesRow = -1;
-    clouds::DiskSides sides = clouds::DiskSides::Both;
+    pointcloud::DiskSides sides = pointcloud::DiskSides::Both;
     bool uniform = false;
     bool blocks = false;           ///< occlusion()
     texture::Handle map = nullptr; ///< "environmentmap"
@@ -28,6 +28,6 @@ struct PointSite {
 bool readsPoints(const SiteInfo&);
 std::shared_ptr<const PointSite> pointSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
 /// "front", "back", "both" or "reversed".
-clouds::DiskSides diskSides(const std::string& word);
+pointcloud::DiskSides diskSides(const std::string& word);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

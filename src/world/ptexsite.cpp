@@ -2,7 +2,7 @@
 #include "world/impl.h"
 #include "world/ptexstore.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 std::shared_ptr<const PtexSite> ptexSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
     auto p = std::make_shared<PtexSite>();
@@ -48,4 +48,4 @@ std::shared_ptr<const PtexSite> ptexSite(const SiteInfo& i, const rsl::CompiledK
     return p;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

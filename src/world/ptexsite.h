@@ -3,7 +3,7 @@
 #include "ptex/filter.h"
 #include "world/sites.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Argument rows, or -1.
 struct PtexSite {
@@ -18,4 +18,4 @@ struct PtexSite {
 
 std::shared_ptr<const PtexSite> ptexSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

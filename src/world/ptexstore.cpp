@@ -1,7 +1,7 @@
 #include "world/ptexstore.h"
 #include "ptex/limits.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 PtexStore::PtexStore(MapFiles files, Diagnostics& d)
     : files_(std::move(files)), diagnostics_(d), cache_(ptex::makeCache(limits::kPtexCacheBytes)) {}
@@ -17,4 +17,4 @@ const ptex::Texture* PtexStore::find(const std::string& name, const SourcePlace&
     return at->second.get();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 class PtexStore {
 public:
@@ -22,4 +22,4 @@ private:
     std::map<std::string, std::shared_ptr<const ptex::Texture>> textures_; ///< null: does not exist
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using shading::HitMode;
 
@@ -142,4 +142,4 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
     return r;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,7 +3,7 @@
 #include "world/impl.h"
 #include <optional>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// The first string of an attribute; "" if not set.
 std::string attributeText(const scene::Attributes&, const char* key);
@@ -16,4 +16,4 @@ RayType rayTypeOf(const std::string& word);
 /// Reads the optional parameters of a call; reports unknown words.
 std::shared_ptr<const RaySite> raySite(const SiteInfo&, WorldImpl&, const SourcePlace&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

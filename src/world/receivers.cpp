@@ -2,7 +2,7 @@
 #include "world/gathersite.h"
 #include "world/surfaces.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 void SurfaceBinder::findGathers() {
     std::map<const rsl::Program*, bool> seen; // whether names of its gather() statements are made from texts
@@ -44,4 +44,4 @@ SurfaceBinder::Names SurfaceBinder::receive(const geometry::Shape& shape, Instan
     return gathered_.withSent(varyingOf(shape, *shader), *shader, to);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -1,10 +1,10 @@
 #include "world/records.h"
-#include "lobes/sampling.h"
+#include "bsdf/sampling.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -191,4 +191,4 @@ size_t LightRecords::keep() {
     return records_.size();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,6 +5,7 @@
 // bit.
 #pragma once
 #include "base/vec.h"
+#include "world/names.h"
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Irradiance at a point, with gradients. Camera space.
 struct LightRecord {
@@ -59,4 +60,4 @@ private:
     std::vector<int> levels_;                                         ///< levels in use, ascending
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

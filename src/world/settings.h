@@ -4,12 +4,13 @@
 #include "base/readlog.h"
 #include "base/stopflag.h"
 #include "scene/lightpaths.h"
+#include "world/names.h"
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 enum class Hider { Hidden, Raytrace, Path };
 
@@ -52,4 +53,4 @@ struct Settings {
     std::vector<int> outputWidths; ///< floats of each AOV if a display declares it; 0 or missing: the shaders decide
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -15,7 +15,7 @@
 #include <optional>
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -362,4 +362,4 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     return bindKernel(std::move(k), mixed, path, this);
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

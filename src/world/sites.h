@@ -1,16 +1,17 @@
 // Meaning of a kernel's call sites, resolved when the kernel is bound, so that no name is compared at run time.
 #pragma once
 #include "accel/accel.h"
+#include "bsdf/lobe.h"
 #include "lanes/blocks.h"
-#include "lobes/lobe.h"
 #include "rsl/compiler.h"
 #include "rsl/front/protocol.h"
 #include "shading/batch.h"
 #include "texture/texture.h"
+#include "world/names.h"
 #include <atomic>
 #include <mutex>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using shading::RayType;
 using shading::ShadePoint;
@@ -156,7 +157,7 @@ enum class SiteKind : uint8_t {
     Transform,
     Random,
     Text,
-    GatherTurn,
+    GatherIteration,
     Photons,
     SkySamples,
     Bake,
@@ -189,7 +190,7 @@ struct SiteInfo {
     std::shared_ptr<const struct TraceSite> trace;    ///< Trace: what only some calls use; Diffuse: null, or `apart`
     std::shared_ptr<const OcclusionSite> occlusion;   ///< Occlusion, which has `trace` for its map, too
     std::shared_ptr<const SubsurfaceSite> subsurface; ///< Subsurface
-    std::shared_ptr<const GatherSite> gather;         ///< Gather, GatherTurn
+    std::shared_ptr<const GatherSite> gather;         ///< Gather, GatherIteration
     std::shared_ptr<const RaySite> rays;              ///< Trace, Transmission, Occlusion, Gather
     std::shared_ptr<const TextureSite> map;           ///< Texture, Environment
     std::shared_ptr<const PhotonSite> photons;        ///< Photons
@@ -248,4 +249,4 @@ struct BoundKernel {
 SourcePlace placeOf(const rsl::ir::Site&, const rsl::CompiledKernel&);
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 constexpr texture::LatLong kCells; // z is the pole
@@ -164,4 +164,4 @@ void WorldImpl::tabulateSkies(Evaluator& evaluator) {
     }
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -2,9 +2,10 @@
 // projection, or arithmetic.
 #pragma once
 #include "texture/texture.h"
+#include "world/names.h"
 #include <vector>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Cells of latitude and longitude (poles along z of current space). A cell is sampled in proportion to its weight times its
 /// solid angle, a direction within it uniformly by solid angle. Sampling preserves the stratification of its numbers.
@@ -33,4 +34,4 @@ private:
     std::vector<float> columns_;  ///< cumulative within a row: row after row, width + 1 each
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,7 +5,7 @@
 #include "world/lightobjects.h"
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -122,4 +122,4 @@ bool WorldImpl::matrix(const std::string& from, const std::string& to, Matrix& o
     return known && knownTo;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

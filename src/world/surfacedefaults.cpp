@@ -1,10 +1,10 @@
 // Surface defaults: how derivatives are computed, and the headlight of scenes without light.
+#include "scene/deferred.h"
 #include "scene/scene.h"
-#include "scene/unmade.h"
 #include "world/surfaces.h"
 #include <algorithm>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 bool SurfaceBinder::differences(const geometry::Shape& shape, bool byDefault) {
     const scene::Param* p = shape.attributes().value("shade:derivatives");
@@ -38,4 +38,4 @@ bool SurfaceBinder::needsHeadlight() {
     return true;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

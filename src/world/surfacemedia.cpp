@@ -1,9 +1,9 @@
 // Volume shaders of surfaces: atmospheres, interiors and exteriors, with overrides by primitive variables.
+#include "world/shadervalue.h"
 #include "world/surfaces.h"
-#include "world/told.h"
 #include <limits>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using rsl::OutputName;
 
@@ -65,11 +65,11 @@ InstanceRef SurfaceBinder::volumeOf(const scene::ShaderRef& call, const geometry
                  {}});
             continue;
         }
-        const std::optional<Told> value = primitiveVariable(shape, {}, p.name);
+        const std::optional<ShaderValue> value = primitiveVariable(shape, {}, p.name);
         const auto number = own.numbers.find(p.name);
         const auto text = own.strings.find(p.name);
         if (value->kind == rsl::ir::Kind::String && !value->elements && text != own.strings.end()) text->second = value->texts[0];
-        else if (value->kind != Told::kindOf(p.type.base) || number == own.numbers.end()) continue;
+        else if (value->kind != ShaderValue::kindOf(p.type.base) || number == own.numbers.end()) continue;
         else if (number->second.size() != value->numbers.size()) continue;
         else number->second = value->numbers;
         key += p.name + '\1' + (value->texts.empty() ? "" : value->texts[0]);
@@ -109,4 +109,4 @@ int SurfaceBinder::mediumOf(const InstanceRef& shader, const geometry::Shape& sh
     return int(world_.media_.size()) - 1;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

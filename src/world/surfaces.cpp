@@ -4,10 +4,10 @@
 #include "shading/faceindex.h"
 #include "world/gathersite.h"
 #include "world/photonattributes.h"
-#include "world/told.h"
+#include "world/shadervalue.h"
 #include <set>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 using rsl::OutputName;
 
@@ -118,7 +118,7 @@ bool SurfaceBinder::bindAll() {
         if (b < 0) return false;
         world_.bindingOf_.push_back(b);
         if (path_ && world_.bindings_[size_t(b)].atmosphere.shader && shape->attributes().areaLight >= 0)
-            world_.hazyEmitters_[shape.get()] = b;
+            world_.emittersInAtmosphere_[shape.get()] = b;
     }
     return bindMixed() && bindEntering() && bindHitModes();
 }
@@ -369,7 +369,7 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
         if (const auto open = given.find(rsl::lengthParameter(p.name)); p.open && open != given.end())
             length = std::atoi(open->second.c_str());
         told->parameters.strings[rsl::InputName::displacement(p.name).text()] =
-            rsl::HeardOutput{int(Told::kindOf(p.type.base)), length, p.storage == rsl::Storage::Varying}.text();
+            rsl::HeardOutput{int(ShaderValue::kindOf(p.type.base)), length, p.storage == rsl::Storage::Varying}.text();
     }
     if (outputs.size() == left.size()) return;
     bindDisplacement(b, displacementVarying, outputs);
@@ -497,4 +497,4 @@ void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
     world_.listed_ += list.sampled.size();
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,7 +5,7 @@
 #include "world/outputs.h"
 #include <map>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// The first number of an attribute, or `fallback` if it is not set.
 float attributeNumber(const scene::Attributes&, const std::string& key, float fallback);
@@ -98,4 +98,4 @@ private:
     std::vector<Asked> asked_;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 /// A lamp farther than so many of its radii is sampled by area, as the solid angle is then almost uniform over it.
@@ -129,4 +129,4 @@ FlatEmitter TriangleLamp::inBlocks(const geometry::Shape& s) const {
     return e;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

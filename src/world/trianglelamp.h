@@ -2,9 +2,10 @@
 #pragma once
 #include "geometry/shape.h"
 #include "lanes/blocks.h"
+#include "world/names.h"
 #include <array>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 class TriangleLamp {
 public:
@@ -34,4 +35,4 @@ private:
     double radius2_ = 0; ///< squared radius of a bounding sphere
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -3,8 +3,9 @@
 #pragma once
 #include "scene/solids.h"
 #include "shading/point.h"
+#include "world/names.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 /// Whether the displacement shader must see the opposite of the shape's normals.
 inline bool turnedOver(const geometry::Shape& s) { return scene::solidTakenAway(s.attributes()); }
@@ -19,4 +20,4 @@ inline void turnOver(shading::ShadePoint& p) {
     for (Vec3* v : {&p.N, &s.N, &s.dNdu, &s.dNdv}) *v = -*v;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

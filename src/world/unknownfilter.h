@@ -1,10 +1,11 @@
 // The warning about a texture() call with an unknown filter.
 #pragma once
 #include "base/diagnostics.h"
+#include "world/names.h"
 #include <string>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 Diagnostic unknownFilter(const std::string& name, const std::string& op, const SourcePlace&);
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -5,16 +5,16 @@
 #include "geometry/build.h"
 #include "geometry/placed.h"
 #include "rsl/front/headers.h"
+#include "scene/deferred.h"
 #include "scene/numbers.h"
 #include "scene/scene.h"
-#include "scene/unmade.h"
 #include "world/cloudstore.h"
 #include "world/surfaces.h"
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 namespace {
 
@@ -122,21 +122,21 @@ void WorldImpl::numberShapes() {
 }
 
 void WorldImpl::findProcedurals() {
-    std::vector<Unmade::Bound> bounds;
+    std::vector<DeferredBounds::Bound> bounds;
     const Matrix toCamera = scene::at(frame_->options.worldToCamera, scene::Shutter(frame_->options).open);
     for (const scene::PrimitiveRef& p : frame_->primitives) {
         if (!p || !scene::isProcedural(*p)) continue;
-        Unmade::Bound b;
+        DeferredBounds::Bound b;
         for (const Matrix& m : scene::overShutter(p->toWorld, scene::Shutter(frame_->options)).keys)
             for (int k = 0; k < 8; ++k) {
                 const Vec3d corner(p->numbers[k & 1 ? 1 : 0], p->numbers[k & 2 ? 3 : 2], p->numbers[k & 4 ? 5 : 4]);
                 b.box.add(Vec3(transformPoint(m * toCamera, corner)));
             }
-        b.number = scene::unmadeNumber(*p);
+        b.number = scene::deferredNumber(*p);
         procedurals_.add(b.box);
-        if (scene::isUnmade(*p)) bounds.push_back(b);
+        if (scene::isDeferred(*p)) bounds.push_back(b);
     }
-    if (!bounds.empty()) unmade_ = std::make_unique<Unmade>(std::move(bounds));
+    if (!bounds.empty()) deferred_ = std::make_unique<DeferredBounds>(std::move(bounds));
 }
 
 /// Finds the samples that see a shape that fades between levels of detail.
@@ -261,7 +261,7 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     w->countLightTraces();
     w->measureLights(*evaluator, d);
     w->placeLights(*evaluator);
-    for (const auto& [shape, binding] : w->hazyEmitters_) {
+    for (const auto& [shape, binding] : w->emittersInAtmosphere_) {
         w->lights_[size_t(shape->attributes().areaLight)].hazy = true;
         for (int part : w->lights_[size_t(shape->attributes().areaLight)].parts) w->lights_[size_t(part)].hazy = true;
     }
@@ -273,4 +273,4 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     return w;
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -6,7 +6,7 @@
 #include "world/settings.h"
 #include <span>
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 class WorldImpl;
 class Evaluator;
@@ -46,12 +46,12 @@ public:
     virtual std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const { return {}; }
     /// Calls of occlusion(), indirectdiffuse() and gather() with everything occluded behind normals that face away, on entire
     /// primitives.
-    struct TurnedAwayCall {
+    struct FlippedNormalsCall {
         SourcePlace call, primitive; ///< first affected primitive in order of file and line
         std::string shadeop;
         size_t primitives = 0;
     };
-    virtual std::vector<TurnedAwayCall> callsTurnedAway() const { return {}; }
+    virtual std::vector<FlippedNormalsCall> callsTurnedAway() const { return {}; }
     /// The photon maps of the frame (photonstore.h).
     virtual PhotonStore* photons() const { return nullptr; }
     /// Valid output names for suggestions: predefined variables and outputs of the frame's shaders.
@@ -71,4 +71,4 @@ public:
                            Diagnostics&, const StopFlag* stop = nullptr) const = 0;
 };
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

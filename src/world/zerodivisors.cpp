@@ -4,7 +4,7 @@
 #include "rsl/compiler.h"
 #include "world/impl.h"
 
-namespace alpenglow::transport {
+namespace alpenglow::world {
 
 void WorldImpl::sayZeroDivisions(const ShaderInstance& i, const rsl::KernelOptions& o, Diagnostics& d) {
     const rsl::Program& program = i.program->program();
@@ -24,4 +24,4 @@ void WorldImpl::sayZeroDivisions(const ShaderInstance& i, const rsl::KernelOptio
                       {}});
 }
 
-} // namespace alpenglow::transport
+} // namespace alpenglow::world

@@ -207,7 +207,7 @@ TEST(Agreement, TheTreeAndTheLoopOverEverythingGiveTheSameHit) {
             for (uint32_t t = 0; t < m.triangles(); ++t) {
                 double at, b1, b2, outside;
                 const uint32_t* v = &m.index[3 * size_t(t)];
-                if (!accel::meetTriangle(r.org, r.dir, m.P[v[0]], m.P[v[1]], m.P[v[2]], at, b1, b2, outside)) continue;
+                if (!accel::intersectTriangle(r.org, r.dir, m.P[v[0]], m.P[v[1]], m.P[v[2]], at, b1, b2, outside)) continue;
                 if (outside == 0 && at > 0 && at < best) best = at, shape = k, prim = t;
             }
         }

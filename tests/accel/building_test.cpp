@@ -1,9 +1,9 @@
 // What trees are built by: groups of references, halves of quads, pieces of curves, the order of children; and a tree of several
 // levels of groups.
 #include "../geometry/make.h"
+#include "accel/bvh_cut.h"
+#include "accel/bvh_groups.h"
 #include "accel/impl.h"
-#include "accel/tree_cut.h"
-#include "accel/tree_groups.h"
 #include "geometry/bernstein.h"
 #include "geometry/curve_pieces.h"
 #include <cmath>
@@ -178,14 +178,14 @@ TEST(Building, WhatFillsItsBoxIsTheLastChild) {
         corners.insert(corners.begin() + 12, v);
     Diagnostics diag;
     const ShapeRef s = build(trianglesOf(corners), Matrix(), diag);
-    Tree tree;
+    Bvh tree;
     tree.build({&s, 1});
-    const Tree::Node& root = tree.nodes()[0];
-    Tree::Child last = Tree::kNothing;
-    for (const Tree::Child c : root.child)
-        if (c != Tree::kNothing) last = c;
-    ASSERT_TRUE(last & Tree::kLeaf);
-    const Tree::Leaf& leaf = tree.leaves()[last & Tree::kIndex];
+    const Bvh::Node& root = tree.nodes()[0];
+    Bvh::Child last = Bvh::kNothing;
+    for (const Bvh::Child c : root.child)
+        if (c != Bvh::kNothing) last = c;
+    ASSERT_TRUE(last & Bvh::kLeaf);
+    const Bvh::Leaf& leaf = tree.leaves()[last & Bvh::kIndex];
     for (uint32_t t = 0; t < leaf.size(); ++t) EXPECT_TRUE(leaf.id[t] == 4 || leaf.id[t] == 5) << leaf.id[t];
 }
 

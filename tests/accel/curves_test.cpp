@@ -73,8 +73,8 @@ Hit slowly(const Accel::Impl& in, const Ray& r) {
         if (p) EXPECT_TRUE(p->toGeometry(r.time, to));
         const Accel::Impl::Inside at{p ? &in.geometryAt(s) : nullptr, p, s, to.point(Vec3d(r.org)), to.vector(Vec3d(r.dir))};
         for (uint32_t k = 0, n = p ? p->geometry()->exactPrims() : in.shapes[s]->exactPrims(); k < n; ++k)
-            if (p) in.meetInside(q, at, k);
-            else in.meetExact(q, s, k);
+            if (p) in.intersectInside(q, at, k);
+            else in.intersectExact(q, s, k);
     }
     return {float(q.best.t), q.best.shape, q.best.prim, r.time, q.best.b1, q.best.b2, q.best.t};
 }
@@ -202,8 +202,8 @@ TEST(CurveRays, TheNearestIsTheFirstOfAll) {
         const double lo = i % 3 ? 0 : uniform(rng, -1, 1), hi = i % 5 ? 1e38 : uniform(rng, 0, 2);
         const CurveRay ray(aim - d * uniform(rng, 0, 2), d, g.p[1], lo, hi);
         CurveHit all[6], nearest[6], plain[6];
-        const int n = meetTube(g, 0, 1, ray, all), few = meetTube(g, 0, 1, ray, nearest, true),
-                  same = meetTube(g, 0, 1, ray, plain, true, true);
+        const int n = intersectTube(g, 0, 1, ray, all), few = intersectTube(g, 0, 1, ray, nearest, true),
+                  same = intersectTube(g, 0, 1, ray, plain, true, true);
         const auto before = [](const CurveHit& a, const CurveHit& b) { return a.t < b.t; };
         ASSERT_EQ(n > 0, few > 0) << i;
         ASSERT_EQ(few, same) << i;

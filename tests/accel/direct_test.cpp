@@ -47,7 +47,7 @@ TEST(DirectTriangles, NoneIsOverlooked) {
             uint32_t found = triangles.candidates(r, near);
             for (size_t i = 0; i < n; ++i) {
                 double at, b1, b2, outside;
-                bool hit = meetTriangle(r.org, r.dir, triangles[i].a, triangles[i].b, triangles[i].c, at, b1, b2, outside) &&
+                bool hit = intersectTriangle(r.org, r.dir, triangles[i].a, triangles[i].b, triangles[i].c, at, b1, b2, outside) &&
                            outside <= 0 && at > r.tnear && at < r.tfar;
                 ++asked;
                 met += hit;

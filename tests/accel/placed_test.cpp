@@ -344,7 +344,7 @@ Hit slowly(const Accel::Impl& in, const Ray& r) {
             Vec3d c[3];
             for (size_t k = 0; k < 3; ++k) c[k] = Vec3d(mesh->P[mesh->index[3 * size_t(t) + k]]);
             if (d) d->corners(t, r.time, c);
-            if (p) in.meetInside(q, at, t, c[0], c[1], c[2]);
+            if (p) in.intersectInside(q, at, t, c[0], c[1], c[2]);
             else in.meetOne(q, s, t, Vec3(c[0]), Vec3(c[1]), Vec3(c[2]));
         }
     }

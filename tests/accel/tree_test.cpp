@@ -2,8 +2,8 @@
 // answers depends neither on the processor's instructions nor on which rays are followed together.
 #include "../geometry/make.h"
 #include "accel/accel.h"
+#include "accel/bvh.h"
 #include "accel/impl.h"
-#include "accel/tree.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -70,7 +70,7 @@ std::shared_ptr<scene::Primitive> ball(int rows, int around) {
 } // namespace
 
 // Where nothing lies within the sides of a window no ray through it meets anything; and that is found where there is room.
-TEST(Tree, WindowsThatSeeNothing) {
+TEST(Bvh, WindowsThatSeeNothing) {
     Rng rng(12);
     size_t empty = 0, open = 0;
     for (const int triangles : {12, 500}) { // looked at one by one, and in a tree
@@ -104,7 +104,7 @@ TEST(Tree, WindowsThatSeeNothing) {
 
 // Rays that go about the same way, as from an eye through a window, or side by side: the hits are those that each has alone, with
 // the instructions of every processor. Every fifth bundle is too wide for that, and a few rays have no length or no end.
-TEST(Tree, RaysTogetherMeetWhatTheyMeetAlone) {
+TEST(Bvh, RaysTogetherMeetWhatTheyMeetAlone) {
     Rng rng(11);
     size_t met = 0;
     for (int scene = 0; scene < 12; ++scene) {
@@ -153,7 +153,7 @@ TEST(Tree, RaysTogetherMeetWhatTheyMeetAlone) {
     EXPECT_GT(met, 2000u);
 }
 
-TEST(Tree, NothingIsOverlooked) {
+TEST(Bvh, NothingIsOverlooked) {
     Rng rng(3);
     size_t met = 0;
     for (int scene = 0; scene < 24; ++scene) {
@@ -196,7 +196,7 @@ TEST(Tree, NothingIsOverlooked) {
             Query q{&rays[i], {INFINITY, kNone, kNone, 0, 0}, false}; // everything, by the same rule
             for (uint32_t k = 0; k < shapes.size(); ++k) {
                 if (shapes[k]->exact()) {
-                    inside.meetExact(q, k, 0);
+                    inside.intersectExact(q, k, 0);
                     continue;
                 }
                 const geometry::TriMesh& m = shapes[k]->mesh();
@@ -222,29 +222,29 @@ TEST(Tree, NothingIsOverlooked) {
 }
 
 // The parts that a tree is opened into hold each triangle once, within their boxes.
-TEST(Tree, PartsHoldAllOfIt) {
+TEST(Bvh, PartsHoldAllOfIt) {
     Rng rng(8);
     Diagnostics diag;
     const ShapeRef shape = build(soup(rng, 3000, {3, -2, 8}, 4), Matrix(), diag);
     ASSERT_TRUE(shape);
-    Tree tree;
+    Bvh tree;
     tree.build({&shape, 1});
     for (const size_t most : {size_t(1), size_t(8), size_t(60), size_t(100000)}) {
         const auto parts = tree.opened(most);
         EXPECT_LE(parts.size(), most);
-        EXPECT_GT(parts.size() * Tree::kWide, std::min<size_t>(most, 500));
+        EXPECT_GT(parts.size() * Bvh::kWidth, std::min<size_t>(most, 500));
         std::vector<int> held(shape->mesh().triangles());
         for (const auto& [start, box] : parts) {
-            std::vector<Tree::Child> left{start};
+            std::vector<Bvh::Child> left{start};
             while (!left.empty()) {
-                const Tree::Child c = left.back();
+                const Bvh::Child c = left.back();
                 left.pop_back();
-                if (!(c & Tree::kLeaf)) {
-                    for (const Tree::Child k : tree.nodes()[c].child)
-                        if (k != Tree::kNothing) left.push_back(k);
+                if (!(c & Bvh::kLeaf)) {
+                    for (const Bvh::Child k : tree.nodes()[c].child)
+                        if (k != Bvh::kNothing) left.push_back(k);
                     continue;
                 }
-                const Tree::Leaf& leaf = tree.leaves()[c & Tree::kIndex];
+                const Bvh::Leaf& leaf = tree.leaves()[c & Bvh::kIndex];
                 for (uint32_t t = 0; t < leaf.size(); ++t) {
                     ++held[leaf.id[t]];
                     for (int k = 0; k < 3; ++k)
@@ -280,19 +280,19 @@ ShapeRef dicedNet(Diagnostics& diag, float far = 0) {
 }
 
 /// By triangle, in how many leaves it is; leaves: how many there are.
-std::vector<int> heldBy(const Tree& tree, uint32_t triangles, size_t& leaves) {
+std::vector<int> heldBy(const Bvh& tree, uint32_t triangles, size_t& leaves) {
     std::vector<int> held(triangles);
-    std::vector<Tree::Child> left{0};
+    std::vector<Bvh::Child> left{0};
     for (leaves = 0; !left.empty();) {
-        const Tree::Child c = left.back();
+        const Bvh::Child c = left.back();
         left.pop_back();
-        if (!(c & Tree::kLeaf)) {
-            for (const Tree::Child k : tree.nodes()[c].child)
-                if (k != Tree::kNothing) left.push_back(k);
+        if (!(c & Bvh::kLeaf)) {
+            for (const Bvh::Child k : tree.nodes()[c].child)
+                if (k != Bvh::kNothing) left.push_back(k);
             continue;
         }
         ++leaves;
-        const Tree::Leaf& leaf = tree.leaves()[c & Tree::kIndex];
+        const Bvh::Leaf& leaf = tree.leaves()[c & Bvh::kIndex];
         for (uint32_t t = 0; t < leaf.size(); ++t) ++held[leaf.id[t]];
     }
     return held;
@@ -301,31 +301,31 @@ std::vector<int> heldBy(const Tree& tree, uint32_t triangles, size_t& leaves) {
 } // namespace
 
 // Rows of quads become full leaves: six triangles with eight corners.
-TEST(Tree, QuickOverAGridIsMadeOfItsLeaves) {
+TEST(Bvh, QuickOverAGridIsMadeOfItsLeaves) {
     Diagnostics diag;
     const ShapeRef net = dicedNet(diag);
     const uint32_t n = net->mesh().triangles();
     ASSERT_GT(n, 40'000u);
-    Tree quick;
+    Bvh quick;
     quick.build({&net, 1}, {}, {}, {}, Building::Quick);
     size_t leaves = 0;
     const std::vector<int> held = heldBy(quick, n, leaves);
     EXPECT_EQ(std::count(held.begin(), held.end(), 1), long(n));
     EXPECT_LT(double(leaves), double(n) / 4.5); // the borders of blocks and ends of rows have fewer
-    Tree best;
+    Bvh best;
     best.build({&net, 1});
     size_t others = 0;
     heldBy(best, n, others);
     EXPECT_LT(leaves, others);
     // Neighbours of what reaches too far are there.
     const ShapeRef wide = dicedNet(diag, 1e31f);
-    Tree quickWide;
+    Bvh quickWide;
     quickWide.build({&wide, 1}, {}, {}, {}, Building::Quick);
     const std::vector<int> some = heldBy(quickWide, wide->mesh().triangles(), leaves);
     long far = 0;
     for (uint32_t t = 0; t < wide->mesh().triangles(); ++t) {
         bool reaches = false;
-        for (uint32_t k = 0; k < 3; ++k) reaches |= Tree::reaches(wide->mesh().P[wide->mesh().index[3 * t + k]]);
+        for (uint32_t k = 0; k < 3; ++k) reaches |= Bvh::reaches(wide->mesh().P[wide->mesh().index[3 * t + k]]);
         ASSERT_EQ(some[t], reaches ? 0 : 1) << t;
         far += reaches;
     }
@@ -333,7 +333,7 @@ TEST(Tree, QuickOverAGridIsMadeOfItsLeaves) {
     EXPECT_EQ(quickWide.beyond(), size_t(far));
 }
 
-TEST(Tree, QuickMeetsTheSame) {
+TEST(Bvh, QuickMeetsTheSame) {
     Rng rng(11);
     Diagnostics diag;
     const ShapeRef net = dicedNet(diag);
@@ -365,7 +365,7 @@ TEST(Tree, QuickMeetsTheSame) {
 }
 
 // Whether anything is met, of rays that end or begin about where the only triangle is: as the triangle itself has it.
-TEST(Tree, AnyHitAtTheEndsOfRays) {
+TEST(Bvh, AnyHitAtTheEndsOfRays) {
     Rng rng(5);
     for (int k = 0; k < 3000; ++k) {
         const float size = std::pow(10.f, uniform(rng, -3, 4));
@@ -402,7 +402,7 @@ TEST(Tree, AnyHitAtTheEndsOfRays) {
 }
 
 // Triangles at the end of all floats have no boxes that rays could pass by. They are left out, all else is met as without them.
-TEST(Tree, TrianglesThatReachTooFarAreLeftOut) {
+TEST(Bvh, TrianglesThatReachTooFarAreLeftOut) {
     for (const int n : {5, 3000}) { // without a tree, and with one
         Rng rng(4);
         Diagnostics quiet, diag;
@@ -438,7 +438,7 @@ TEST(Tree, TrianglesThatReachTooFarAreLeftOut) {
     }
 }
 
-TEST(Tree, RaysAtCornersAndEdgesDoNotSlipThrough) {
+TEST(Bvh, RaysAtCornersAndEdgesDoNotSlipThrough) {
     for (double scale : {1e-3, 1.0, 1e5}) {
         Diagnostics diag;
         const Matrix m =
@@ -467,7 +467,7 @@ TEST(Tree, RaysAtCornersAndEdgesDoNotSlipThrough) {
     }
 }
 
-TEST(Tree, AlikeShapesInOnePlaceEndInLeaves) {
+TEST(Bvh, AlikeShapesInOnePlaceEndInLeaves) {
     // A thousand equal triangles and spheres: nothing divides them, and the first counts.
     Diagnostics diag;
     std::vector<ShapeRef> shapes;

@@ -72,8 +72,8 @@ TEST(Libm, NothingThatDecidesBitsCallsIt) {
     const fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
     int files = 0;
     // All rooms but the command line.
-    for (const char* room : {"base", "shadeops", "rsl", "ri", "scene", "geometry", "accel", "texture", "shading", "lobes",
-                             "lanes", "world", "answers", "integrator", "render", "display"})
+    for (const char* room : {"base", "shadeops", "rsl", "ri", "scene", "geometry", "accel", "texture", "shading", "bsdf", "lanes",
+                             "world", "services", "integrator", "render", "display"})
         for (const auto& e : fs::recursive_directory_iterator(src / room)) {
             const auto ext = e.path().extension();
             if (ext != ".cpp" && ext != ".h" && ext != ".inc") continue;

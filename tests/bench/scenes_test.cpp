@@ -101,7 +101,7 @@ TEST(SceneParts, Rooms) {
     EXPECT_EQ(partOfSymbol("_ZNK9alpenglow7texture5Level11addBilinearEffNS0_4WrapES2_iifPfb"), kTextures);
     EXPECT_EQ(partOfSymbol("_ZNK9alpenglow5accel5Accel4Impl12intersectOneERKNS0_3RayERNS0_3HitE"), kTraversal);
     EXPECT_EQ(partOfSymbol("_ZNK9alpenglow8geometry11PolygonMesh9makePlaneEj"), kPoints);
-    EXPECT_EQ(partOfSymbol("_ZN9alpenglow9transport7Answers10lightFetchERNS0_12BatchContextEiimiPf"), kLights);
+    EXPECT_EQ(partOfSymbol("_ZN9alpenglow8services8Services10lightFetchERNS0_12BatchContextEiimiPf"), kLights);
     EXPECT_EQ(partOfSymbol("[libc.so.6]"), kMemory);
     EXPECT_EQ(partOfSymbol("[kernel code]"), kKernels);
     EXPECT_EQ(partOfSymbol("[libz.so.1]"), kOther);
@@ -111,11 +111,11 @@ TEST(SceneParts, Stages) {
     EXPECT_EQ(stageOfSymbol("_ZN9alpenglow7shading9SchedulerINS0_7PathRayEE5spawnEiiRKS2_"), kQueues);
     EXPECT_EQ(stageOfSymbol("_ZN9alpenglow7shading9SchedulerINS0_7PathRayEE3addEiRKNS_4Vec3E"), kAccumulate);
     EXPECT_EQ(stageOfSymbol("_ZNK9alpenglow5accel5Accel4Impl14nearestInBlockERKNS0_10DirectRaysEjPKfPNS0_3HitE"), kSearch);
-    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport10RowShading3runERNS0_12BatchContextE"), kSurfaces);
-    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport13BlockVertices6selectERKNS0_12BatchContextE"), kChoose);
-    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport13BlockVertices14placeOnEmitterEmRKNS0_7EmitterE"), kLightSamples);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator10RowShading3runERNS0_12BatchContextE"), kSurfaces);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator13BlockVertices6selectERKNS0_12BatchContextE"), kChoose);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator13BlockVertices14placeOnEmitterEmRKNS0_7EmitterE"), kLightSamples);
     EXPECT_EQ(stageOfSymbol("_ZN9alpenglow6render4Film3addEiRKNS_4Vec3E"), kCamera);
-    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow9transport12Transparency11passThroughERKNS0_14SurfaceBindingE"), kElsewhere);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator12Transparency14continueBehindERKNS0_14SurfaceBindingE"), kElsewhere);
     EXPECT_EQ(stageOfSymbol("[kernel code]"), kShade);
 }
 

@@ -310,7 +310,7 @@ TEST_F(Said, LoopsWithoutEnd) {
         EXPECT_EQ(run(std::string("eval --lanes ") + lanes + " --setup 'float n = 0;\nwhile (1 < 2) n += 1;' n"), "1e+07\n");
         EXPECT_EQ(status, 1);
         EXPECT_EQ(times("expression:3:"), 1) << errors();
-        EXPECT_TRUE(says("this loop is left after " + std::to_string(alpenglow::limits::kLoopTurns) + " turns at one point"))
+        EXPECT_TRUE(says("this loop is left after " + std::to_string(alpenglow::limits::kLoopIterations) + " turns at one point"))
             << errors();
     }
     EXPECT_EQ(run("eval --setup 'float n = 0; while (n < 9999999) n += 1;' n"), "9999999\n");

@@ -6,7 +6,7 @@ namespace turnedaway_test {
 
 namespace {
 
-class TurnedAway : public alpenglow::cli::testing::CommandFolder {
+class FlippedNormals : public alpenglow::cli::testing::CommandFolder {
 protected:
     const std::string ball = "Sphere 1 -1 1 360\n";
     std::string said(const std::string& hider, const std::string& normal, const std::string& world) {
@@ -30,7 +30,7 @@ protected:
     }
 };
 
-TEST_F(TurnedAway, ThatIsBlackIsSaidAtItsCall) {
+TEST_F(FlippedNormals, ThatIsBlackIsSaidAtItsCall) {
     for (const char* hider : {"hidden", "raytrace", "path"}) {
         const std::string one = said(hider, "normalize(N)", "ReverseOrientation\n" + ball);
         EXPECT_EQ(times(one), 1u) << hider << one;
@@ -42,7 +42,7 @@ TEST_F(TurnedAway, ThatIsBlackIsSaidAtItsCall) {
     }
 }
 
-TEST_F(TurnedAway, WhatIsRightOrNotBlackIsNotSaid) {
+TEST_F(FlippedNormals, WhatIsRightOrNotBlackIsNotSaid) {
     const std::string wall = "Polygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]\n";
     for (const char* hider : {"hidden", "raytrace", "path"})
         for (const auto& [normal, world] : {std::pair<std::string, std::string>{"normalize(N)", ball},
@@ -58,7 +58,7 @@ TEST_F(TurnedAway, WhatIsRightOrNotBlackIsNotSaid) {
 
 // A ball that looks into itself is black under the brightest sky, which is not what its author meant. What faces the viewer, lies
 // open or refracts is told nothing.
-TEST_F(TurnedAway, WhatLooksForLightInsideOfItself) {
+TEST_F(FlippedNormals, WhatLooksForLightInsideOfItself) {
     const std::string sky = "LightSource \"envlight\" 1\n", turned = sky + "ReverseOrientation\n" + ball;
     const std::string gathers = "float deep = 0; rayinfo(\"depth\", deep); if (deep == 0) { gather(\"illuminance\", P, n, PI / "
                                 "2, 8, \"surface:Ci\", h) sum += h / 8; else sum += .1; }";

@@ -1,12 +1,12 @@
 // Point clouds, brick maps, baked values, Ptex files, photon maps and deep shadow maps: seeds, check sums, and what reads them.
 #include "base/file.h"
-#include "clouds/bakefile.h"
-#include "clouds/brickmap.h"
-#include "clouds/cloudfile.h"
-#include "clouds/hemisphere.h"
 #include "display/imageio.h"
 #include "mutate.h"
-#include "photons/photonfile.h"
+#include "photonmap/photonfile.h"
+#include "pointcloud/bakefile.h"
+#include "pointcloud/brickmap.h"
+#include "pointcloud/cloudfile.h"
+#include "pointcloud/hemisphere.h"
 #include "ptex/filter.h"
 #include "targets.h"
 #include <algorithm>
@@ -19,10 +19,11 @@ namespace {
 
 const OutputPolicy kHere{".", true};
 
-clouds::PointCloud someCloud(int n) {
-    clouds::PointCloud c;
-    c.channels = {
-        {"_area", clouds::ChannelType::Float}, {"_radiosity", clouds::ChannelType::Color}, {"m", clouds::ChannelType::Matrix}};
+pointcloud::PointCloud someCloud(int n) {
+    pointcloud::PointCloud c;
+    c.channels = {{"_area", pointcloud::ChannelType::Float},
+                  {"_radiosity", pointcloud::ChannelType::Color},
+                  {"m", pointcloud::ChannelType::Matrix}};
     for (int i = 0; i < n; ++i) {
         std::vector<float> v(20, float(i));
         v[0] = .01f;
@@ -47,17 +48,17 @@ void sum(Bytes& b, size_t from, size_t to, size_t at) {
 void makeClouds() {
     Diagnostics d;
     for (int n : {0, 1, 40}) {
-        clouds::saveCloud(std::to_string(n) + ".ptc", someCloud(n), kHere, d);
-        clouds::savePly(std::to_string(n) + ".ply", someCloud(n), kHere, d, {});
-        clouds::saveBrickMap(std::to_string(n) + ".bkm", someCloud(n), kHere, d);
+        pointcloud::saveCloud(std::to_string(n) + ".ptc", someCloud(n), kHere, d);
+        pointcloud::savePly(std::to_string(n) + ".ply", someCloud(n), kHere, d, {});
+        pointcloud::saveBrickMap(std::to_string(n) + ".bkm", someCloud(n), kHere, d);
     }
-    clouds::Baked baked;
-    baked.type = clouds::ChannelType::Color;
+    pointcloud::Baked baked;
+    baked.type = pointcloud::ChannelType::Color;
     for (int i = 0; i < 100; ++i) baked.rows.push_back(float(i % 10) / 10);
-    clouds::saveBaked("t.bake", baked, kHere, d);
-    clouds::saveBaked("b.bake&binary", baked, kHere, d);
-    std::vector<photons::Photon> some(20);
-    photons::savePhotons("a.photons", some, 100, Matrix(), kHere, d);
+    pointcloud::saveBaked("t.bake", baked, kHere, d);
+    pointcloud::saveBaked("b.bake&binary", baked, kHere, d);
+    std::vector<photonmap::Photon> some(20);
+    photonmap::savePhotons("a.photons", some, 100, Matrix(), kHere, d);
 }
 
 void makePtexFiles() {
@@ -104,17 +105,17 @@ Bytes summed(Bytes b) {
 Outcome readCloud(const Bytes& b) {
     putFile("in.map", b);
     Diagnostics d;
-    const auto map = clouds::openMap("in.map", d);
+    const auto map = pointcloud::openMap("in.map", d);
     if (!map) return d.errors() ? Outcome::Refused : Outcome::Mute;
     std::vector<float> out(static_cast<size_t>(map->width()));
     for (const float x : {0.f, 2.f, -1e30f})
         for (const float radius : {0.f, .5f, 1e18f}) map->lookup({{x, 1, 0}, {0, 0, 1}, radius, -1}, out);
-    if (clouds::isBrickMap("in.map")) return Outcome::Ok;
-    const auto cloud = clouds::loadCloud("in.map", d);
+    if (pointcloud::isBrickMap("in.map")) return Outcome::Ok;
+    const auto cloud = pointcloud::loadCloud("in.map", d);
     if (!cloud || cloud->size() > 10000) return Outcome::Ok;
-    const clouds::PointOctree octree(*cloud, "_radiosity");
-    clouds::Hemisphere h;
-    clouds::HemisphereQuery q;
+    const pointcloud::PointOctree octree(*cloud, "_radiosity");
+    pointcloud::Hemisphere h;
+    pointcloud::HemisphereQuery q;
     q.N = {0, 0, 1};
     h.begin(q);
     h.add(octree);
@@ -125,9 +126,9 @@ Outcome readCloud(const Bytes& b) {
 Outcome readBaked(const Bytes& b) {
     putFile("in.bake", b);
     Diagnostics d;
-    const auto baked = clouds::loadBaked("in.bake", d);
+    const auto baked = pointcloud::loadBaked("in.bake", d);
     if (!baked) return d.errors() ? Outcome::Refused : Outcome::Mute;
-    if (baked->size() < 10000) clouds::pictureOf(*baked);
+    if (baked->size() < 10000) pointcloud::pictureOf(*baked);
     return Outcome::Ok;
 }
 
@@ -149,7 +150,7 @@ Outcome readPtex(const Bytes& b) {
 Outcome readPhotons(const Bytes& b) {
     putFile("in.photons", b);
     Diagnostics d;
-    return photons::loadPhotons("in.photons", Matrix(), d) ? Outcome::Ok : d.errors() ? Outcome::Refused : Outcome::Mute;
+    return photonmap::loadPhotons("in.photons", Matrix(), d) ? Outcome::Ok : d.errors() ? Outcome::Refused : Outcome::Mute;
 }
 
 void makeDeepMaps() {

@@ -297,9 +297,9 @@ TEST(Curves, RibbonsWithNormalsAgreeWithTheirTessellation) {
             std::vector<double> expected;
             for (size_t i = 0; i < kAlong; ++i) {
                 const Vec3 a(side[0][i]), b(side[1][i]), c(side[1][i + 1]), e(side[0][i + 1]);
-                double t, b1, b2, outside;
+                double t, b1, b2, off;
                 for (const auto& [x, y, z] : {std::tuple(a, b, c), std::tuple(a, c, e)})
-                    if (accel::meetTriangle(Vec3(o), Vec3(d), x, y, z, t, b1, b2, outside) && outside == 0) expected.push_back(t);
+                    if (accel::intersectTriangle(Vec3(o), Vec3(d), x, y, z, t, b1, b2, off) && off == 0) expected.push_back(t);
             }
             std::vector<std::pair<uint32_t, ExactHit>> hits;
             allHits(*s, Vec3d(Vec3(o)), Vec3d(Vec3(d)), hits);

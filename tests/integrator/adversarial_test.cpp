@@ -8,8 +8,8 @@
 namespace adversarial_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -78,7 +78,7 @@ void runSurfaces(const std::string& name, std::span<const Case> cases) {
             writeShader(shader, "surface " + shader + "() {\n" + kFunctions +
                                     "    Oi = 1; Ci = 0; vector up = vector \"world\" (0, 1, 0); uniform float i, j;\n    " +
                                     c.body + "\n}\n");
-            const Shown s = shown(world(lamps() + "Surface \"" + shader + "\" " + kFloor), h);
+            const Shown s = shown(inWorld(lamps() + "Surface \"" + shader + "\" " + kFloor), h);
             ASSERT_TRUE(s.built) << c.body << s.messages;
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(s.colour[k], c.want, 1e-4f * std::max(1.f, std::fabs(c.want))) << c.body << s.messages;
@@ -194,7 +194,7 @@ TEST(Adversarial, Lights) {
                                   "float bad = (xcomp(Ps) > 1e9) ? 1 : 1e38 * 1e38 - 1e38 * 1e38;\n"
                                   "    void lampOf(float x;) { extern point from; illuminate(from) Cl = x; }\n    " +
                                   c.body + "\n}\n");
-            const Shown s = shown(world("LightSource \"" + name + "\" 1\nSurface \"evilsum\" " + kFloor), h);
+            const Shown s = shown(inWorld("LightSource \"" + name + "\" 1\nSurface \"evilsum\" " + kFloor), h);
             ASSERT_TRUE(s.built) << c.body << s.messages;
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(s.colour[k], c.want, 1e-4f * std::max(1.f, std::fabs(c.want))) << c.body << "\n" << s.messages;
@@ -223,7 +223,7 @@ TEST(Adversarial, Refused) {
         source.replace(source.find("NAME"), 4, name);
         writeShader(name, source + "\n");
         const Shown s = shown(
-            world(lamps() + (source.rfind("displacement", 0) == 0 ? "Displacement \"" : "Surface \"") + name + "\" " + kFloor),
+            inWorld(lamps() + (source.rfind("displacement", 0) == 0 ? "Displacement \"" : "Surface \"") + name + "\" " + kFloor),
             Hider::Hidden);
         EXPECT_NE(s.messages.find("error"), std::string::npos) << text << s.messages;
         EXPECT_NE(s.messages.find(says), std::string::npos) << text << s.messages;
@@ -233,7 +233,7 @@ TEST(Adversarial, Refused) {
                              "illuminate() Cl = 1;", "illuminate(from, down) Cl = 1;"}) {
         const std::string name = "evilno" + std::to_string(n++);
         writeShader(name, "light " + name + "() { point from = 0; vector down = 1; " + body + " }\n");
-        const Shown s = shown(world("LightSource \"" + name + "\" 1\nSurface \"matte\" " + kFloor), Hider::Hidden);
+        const Shown s = shown(inWorld("LightSource \"" + name + "\" 1\nSurface \"matte\" " + kFloor), Hider::Hidden);
         EXPECT_NE(s.messages.find("error"), std::string::npos) << body << s.messages;
         for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(s.colour[k])) << body;
     }
@@ -247,7 +247,7 @@ TEST(Adversarial, TooManyBlocks) {
         std::string body;
         for (size_t k = 0; k < calls; ++k) body += " lamp();";
         writeShader(name, "light " + name + "() { void lamp() { illuminate(point \"world\" (0, 2, 0)) Cl = 1; }" + body + " }\n");
-        const Shown s = shown(world("LightSource \"" + name + "\" 1\nSurface \"evilsum\" " + kFloor), Hider::Hidden);
+        const Shown s = shown(inWorld("LightSource \"" + name + "\" 1\nSurface \"evilsum\" " + kFloor), Hider::Hidden);
         const bool few = calls <= limits::kLightBlocks;
         EXPECT_EQ(s.messages.find("has no more than " + std::to_string(limits::kLightBlocks)) == std::string::npos, few)
             << s.messages;
@@ -272,12 +272,13 @@ TEST(Adversarial, CallsOfCalls) {
         "float f0(float x) { return gridmin(x); }\n" + chain +
             "surface evilgrid() { uniform float most = 0; if (xcomp(P) > 1e6) most = f39(xcomp(P)); Oi = 1; Ci = 1 + most; }\n");
     writeShader("evilsum", "surface evilsum() { Oi = 1; Ci = 0; illuminance(P) Ci += Cl; }\n");
-    EXPECT_NEAR(shown(world(std::string("LightSource \"evildark\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden).colour[0],
+    EXPECT_NEAR(shown(inWorld(std::string("LightSource \"evildark\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden).colour[0],
                 1, 1e-5);
-    const Shown blocks = shown(world(std::string("LightSource \"evilblocks\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden);
+    const Shown blocks =
+        shown(inWorld(std::string("LightSource \"evilblocks\" 1\nSurface \"evilsum\" ") + kFloor), Hider::Hidden);
     EXPECT_NE(blocks.messages.find("has no more than " + std::to_string(limits::kLightBlocks)), std::string::npos)
         << blocks.messages;
-    EXPECT_NEAR(shown(world(std::string("Surface \"evilgrid\" ") + kFloor), Hider::Hidden).colour[0], 1, 1e-5);
+    EXPECT_NEAR(shown(inWorld(std::string("Surface \"evilgrid\" ") + kFloor), Hider::Hidden).colour[0], 1, 1e-5);
 }
 
 // More lights than a strip remembers, each with its turn; more samples than anybody wants.
@@ -285,7 +286,7 @@ TEST(Adversarial, Many) {
     writeShader("evilsum", "surface evilsum() { Oi = 1; Ci = 0; illuminance(P) Ci += Cl; illuminance(P) Ci += Cl; }\n");
     std::string many = lamps();
     for (int k = 0; k < 300; ++k) many += "LightSource \"evillamp\" " + std::to_string(10 + k) + " \"h\" 2\n";
-    EXPECT_NEAR(shown(world(many + "Surface \"evilsum\" " + kFloor), Hider::Hidden).colour[0], 2 * 411, 1e-3);
+    EXPECT_NEAR(shown(inWorld(many + "Surface \"evilsum\" " + kFloor), Hider::Hidden).colour[0], 2 * 411, 1e-3);
     writeShader("evilarea", "light evilarea() { illuminate(P, N, PI / 2) Cl = 1; }\n");
     const std::string area =
         "AttributeBegin Attribute \"light\" \"samples\" [1000000000] Attribute \"light\" \"string units\" \"radiance\" "
@@ -293,7 +294,7 @@ TEST(Adversarial, Many) {
     // Of a ball that ends a sixteenth of the sky: its radiance 1 has Cl cos = 1 / 16 in the mean.
     writeShader("evilcos",
                 "surface evilcos() { Oi = 1; Ci = 0; illuminance(P, N, PI / 2) Ci += Cl * (normalize(N) . normalize(L)); }\n");
-    const Shown s = shown(world(area + "Illuminate 1 1 Surface \"evilcos\" " + kFloor), Hider::Hidden);
+    const Shown s = shown(inWorld(area + "Illuminate 1 1 Surface \"evilcos\" " + kFloor), Hider::Hidden);
     EXPECT_NEAR(s.colour[0], 1. / 16, .01) << s.messages;
 }
 

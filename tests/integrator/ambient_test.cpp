@@ -7,8 +7,8 @@
 namespace ambient_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -21,7 +21,7 @@ const double kOpen = 1 - (1 - .5 / std::sqrt(1.25)) / 2;
 const CameraRay kAbove = rayTo({.2f, .4f, -.3f}, {0, 0, 0});
 
 Color seen(const std::string& inside, Hider h = Hider::Path) {
-    Scene s(world(kLights + inside), withShaders(h));
+    Scene s(inWorld(kLights + inside), withShaders(h));
     return s.one(kAbove);
 }
 void near(const Color& a, const Color& b, const std::string& what) {
@@ -42,9 +42,9 @@ TEST(Ambient, IsWeighedByWhatItIsMultipliedWith) {
 
 // As VTK writes its files: an ambient light of 1, surfaces with Ka 0, and a headlight.
 TEST(Ambient, OfIntensityOneAndKaZero) {
-    Scene s(world("LightSource \"ambientlight\" 1\nLightSource \"distantlight\" 2 \"intensity\" .5 \"from\" [0 1 0] \"to\" "
-                  "[0 0 0]\nSurface \"plastic\" \"Ka\" 0 \"Kd\" 1 \"Ks\" 0\n" +
-                  std::string(kFloor)),
+    Scene s(inWorld("LightSource \"ambientlight\" 1\nLightSource \"distantlight\" 2 \"intensity\" .5 \"from\" [0 1 0] \"to\" "
+                    "[0 0 0]\nSurface \"plastic\" \"Ka\" 0 \"Kd\" 1 \"Ks\" 0\n" +
+                    std::string(kFloor)),
             withShaders(Hider::Path));
     expectMean(s.estimate(kAbove, 200), .5, 1e-6, "the headlight alone");
 }
@@ -64,7 +64,7 @@ TEST(Ambient, IsNotFoundByRays) {
 }
 
 TEST(Ambient, BesideAWall) {
-    Scene s(world(kLights + std::string("Surface \"matte\" \"Ka\" 1 \"Kd\" 0\n") + kFloor + kWall), withShaders(Hider::Path));
+    Scene s(inWorld(kLights + std::string("Surface \"matte\" \"Ka\" 1 \"Kd\" 0\n") + kFloor + kWall), withShaders(Hider::Path));
     expectMean(s.estimate(kAbove, samples(20000)), .75 * kOpen, .01, "beside a wall");
     near(seen(std::string("Surface \"matte\" \"Ka\" 1 \"Kd\" 0\n") + kFloor + kWall, Hider::Hidden), {.75f, .625f, .5f},
          "hidden has no occlusion");
@@ -73,8 +73,8 @@ TEST(Ambient, BesideAWall) {
 TEST(Ambient, ComesToTheSideThatIsSeen) {
     for (const char* orientation : {"", "ReverseOrientation\n"})
         for (const char* normals : {"", " \"N\" [0 1 0 0 1 0 0 1 0 0 1 0]", " \"N\" [0 -1 0 0 -1 0 0 -1 0 0 -1 0]"}) {
-            Scene s(world(kLights + std::string("Surface \"matte\" \"Ka\" 1 \"Kd\" 0\n") + orientation +
-                          "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]" + normals + "\nTranslate 0 -3 0\n" + kFloor),
+            Scene s(inWorld(kLights + std::string("Surface \"matte\" \"Ka\" 1 \"Kd\" 0\n") + orientation +
+                            "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]" + normals + "\nTranslate 0 -3 0\n" + kFloor),
                     withShaders(Hider::Path));
             near(s.one(kAbove), {.75f, .625f, .5f}, std::string("above") + orientation + normals);
         }
@@ -92,13 +92,13 @@ TEST(Ambient, IsReflected) {
         "AttributeBegin\nSurface \"matte\" \"Ka\" 1 \"Kd\" 0\nTranslate 0 3 0\n" + std::string(kFloor) + "AttributeEnd\n";
     // From below the ceiling sees the floor: its ambient light is in the gap between them, which is narrow and far away, nearly
     // 0.
-    Scene s(world("LightSource \"ambientlight\" 1\nSurface \"matte\" \"Ka\" 0 \"Kd\" .5\n" + std::string(kFloor) + ceiling),
+    Scene s(inWorld("LightSource \"ambientlight\" 1\nSurface \"matte\" \"Ka\" 0 \"Kd\" .5\n" + std::string(kFloor) + ceiling),
             withShaders(Hider::Path));
     EXPECT_LT(s.estimate(kAbove, 2000).mean(), .01);
     // A wall that shines instead hides a part of the hemisphere, of which the floor gives half.
     writeShader("ambalways", "surface ambalways() { Oi = 1; Ci = 1; }\n");
-    Scene wall(world("LightSource \"ambientlight\" 1\nSurface \"matte\" \"Ka\" 0 \"Kd\" .5\n" + std::string(kFloor) +
-                     "Surface \"ambalways\"\nPolygon \"P\" [.5 0 -9000  .5 0 9000  .5 1 9000  .5 1 -9000]\n"),
+    Scene wall(inWorld("LightSource \"ambientlight\" 1\nSurface \"matte\" \"Ka\" 0 \"Kd\" .5\n" + std::string(kFloor) +
+                       "Surface \"ambalways\"\nPolygon \"P\" [.5 0 -9000  .5 0 9000  .5 1 9000  .5 1 -9000]\n"),
                withShaders(Hider::Path));
     expectMean(wall.estimate(kAbove, samples(20000)), .5 * (1 - kOpen), .02, "a wall that shines");
 }
@@ -112,7 +112,7 @@ TEST(Ambient, InPartsOfCi) {
     Ci = a + d;
 }
 )");
-    const std::string rib = world(kLights + std::string("LightSource \"envlight\" 3\nSurface \"ambparts\"\n") + kFloor + kWall);
+    const std::string rib = inWorld(kLights + std::string("LightSource \"envlight\" 3\nSurface \"ambparts\"\n") + kFloor + kWall);
     std::vector<CameraRay> rays;
     for (int i = 0; i < 64; ++i) {
         rays.push_back(kAbove);

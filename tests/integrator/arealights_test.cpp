@@ -5,8 +5,8 @@
 namespace arealights_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -25,7 +25,7 @@ Moments under(const std::string& name, const std::string& body, Hider h, const s
     const std::string light =
         "AttributeBegin\n" + attributes + "AreaLightSource \"" + name +
         "\" 7\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 2 -1  1 2 -1  1 2 1  -1 2 1]\nAttributeEnd\nIlluminate 7 1\n";
-    Scene s(world(light + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor), transport::testing::under(h));
+    Scene s(inWorld(light + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor), integrator::testing::under(h));
     EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     return s.estimate(kView, n);
 }
@@ -69,10 +69,10 @@ TEST(AreaLights, OneSidedFromBehind) {
         const std::string light = std::string("AttributeBegin\nSides 1\n") + (turned ? "ReverseOrientation\n" : "") +
                                   "AreaLightSource \"plainarea\" 7\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [-1 2 -1  1 "
                                   "2 -1  1 2 1  -1 2 1]\nAttributeEnd\nIlluminate 7 1\n";
-        Settings all = transport::testing::under(Hider::Path), lights = all, rays = all;
+        Settings all = integrator::testing::under(Hider::Path), lights = all, rays = all;
         lights.lightOnly = true;
         rays.bsdfOnly = true;
-        const std::string rib = world(light + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor);
+        const std::string rib = inWorld(light + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor);
         const Moments a = Scene(rib, all).estimate(kView, 20000), b = Scene(rib, lights).estimate(kView, 20000),
                       c = Scene(rib, rays).estimate(kView, 20000);
         seen[turned] = a.mean();

@@ -4,8 +4,8 @@
 namespace backgrounds_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -22,7 +22,7 @@ TEST(Backgrounds, OfCameraRaysLieOverThePicture) {
     const std::string corners = "\"color bottomleft\" [1 0 0] \"color bottomright\" [0 1 0] \"color topleft\" [0 0 1] \"color "
                                 "topright\" [1 1 1] \"color bgcolor\" [.5 .5 1]";
     for (const Hider h : kHiders) {
-        Scene s(kCamera + world(background(corners)), withShaders(h));
+        Scene s(kCamera + inWorld(background(corners)), withShaders(h));
         for (const Vec3& to : {Vec3(0, 0, 1), Vec3(-.8f, .6f, 1), Vec3(.9f, -.5f, 1), Vec3(-1, -1, 1)}) {
             const float x = .5f + to.x / 2, y = .5f + to.y / 2; // from the lower left
             const Color want((1 - x) * (1 - y) + x * y, x * (1 - y) + x * y, (1 - x) * y + x * y);
@@ -31,9 +31,9 @@ TEST(Backgrounds, OfCameraRaysLieOverThePicture) {
             EXPECT_EQ(r.opacity, Color(0)); // it is behind everything, and covers nothing
         }
         // Behind a pane that lets three quarters through.
-        Scene pane(kCamera + world(background(corners) +
-                                   "Surface \"constant\"\nOpacity .25 .25 .25\nColor 0 0 0\nPolygon \"P\" [-9 -9 2 -9 9 2 "
-                                   "9 9 2 9 -9 2]\n"),
+        Scene pane(kCamera + inWorld(background(corners) +
+                                     "Surface \"constant\"\nOpacity .25 .25 .25\nColor 0 0 0\nPolygon \"P\" [-9 -9 2 -9 9 2 "
+                                     "9 9 2 9 -9 2]\n"),
                    withShaders(h));
         expectColour(pane.one(rayTo({0, 0, 0}, {-1, 1, 1})), {0, 0, .75}, "behind a pane");
     }
@@ -49,9 +49,9 @@ TEST(Backgrounds, OfOtherRaysLieByDirection) {
     for (const Hider h : kHiders)
         for (const auto& w : ways) {
             Scene s(
-                world(background("\"color bottomleft\" [1 0 0] \"color bottomright\" [1 0 0] \"color topleft\" [0 0 1] \"color "
-                                 "topright\" [0 0 1]") +
-                      "Surface \"mirrors\" \"vector way\" [" + w.way + "]\n" + kFloor),
+                inWorld(background("\"color bottomleft\" [1 0 0] \"color bottomright\" [1 0 0] \"color topleft\" [0 0 1] \"color "
+                                   "topright\" [0 0 1]") +
+                        "Surface \"mirrors\" \"vector way\" [" + w.way + "]\n" + kFloor),
                 withShaders(h));
             expectColour(s.one(kView), w.want, w.way);
         }
@@ -59,7 +59,7 @@ TEST(Backgrounds, OfOtherRaysLieByDirection) {
 
 TEST(Backgrounds, LightUnderPathOnly) {
     const std::string scene =
-        world(background("\"color bgcolor\" [.5 .5 .5]") + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor);
+        inWorld(background("\"color bgcolor\" [.5 .5 .5]") + "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n" + kFloor);
     for (const Hider h : {Hider::Hidden, Hider::Raytrace}) {
         Scene s(scene, withShaders(h));
         EXPECT_EQ(s.one(kView), Color(0));
@@ -72,9 +72,9 @@ TEST(Backgrounds, LightUnderPathOnly) {
 TEST(Backgrounds, OfAnySky) {
     const std::string sky = "LightSource \"envlight\" 1 \"float intensity\" .25\n";
     for (const Hider h : {Hider::Hidden, Hider::Raytrace}) {
-        Scene all(kCamera + world(sky), withShaders(h));
+        Scene all(kCamera + inWorld(sky), withShaders(h));
         EXPECT_EQ(all.one(rayTo({0, 0, 0}, {0, 0, 1})), Color(0));
-        Scene rays(kCamera + world("Attribute \"light\" \"string samplingstrategy\" \"trace\"\n" + sky), withShaders(h));
+        Scene rays(kCamera + inWorld("Attribute \"light\" \"string samplingstrategy\" \"trace\"\n" + sky), withShaders(h));
         expectColour(rays.one(rayTo({0, 0, 0}, {0, 0, 1})), Color(.25), "for rays");
     }
 }

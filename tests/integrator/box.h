@@ -4,7 +4,7 @@
 #include "oracle/box_oracle.h"
 #include <random>
 
-namespace alpenglow::transport::testing {
+namespace alpenglow::integrator::testing {
 
 inline std::string boxRib(bool spheres) {
     std::string s = readText(ALPENGLOW_SOURCE_DIR "/examples/muttenzer_box.rib");
@@ -113,4 +113,4 @@ inline void expectSame(const Technique& a, const Technique& b, int n, double dec
     }
 }
 
-} // namespace alpenglow::transport::testing
+} // namespace alpenglow::integrator::testing

@@ -7,7 +7,7 @@
 namespace depthpasses_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 

@@ -1,17 +1,17 @@
 // The distributions that trace() has in common with bsdf(): what is drawn against what the functions say, and traced scenes
 // against integrals.
+#include "bsdf/lobe.h"
+#include "bsdf/sampling.h"
 #include "integrator/harness.h"
 #include "integrator/maps.h"
-#include "lobes/lobe.h"
-#include "lobes/sampling.h"
 #include "shadeops/descriptor.h"
 #include <random>
 
 namespace distributions_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 

@@ -6,15 +6,15 @@
 namespace edges_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
 /// What comes straight down through the pane to the floor at (x, 0, z), of a light of one.
 float through(const std::string& pane, float x, float z) {
-    Scene s(world("LightSource \"distantlight\" 1 \"point from\" [0 1 0] \"point to\" [0 0 0]\nAttributeBegin\n" + pane +
-                  "AttributeEnd\nSurface \"matte\"\n" + kFloor),
+    Scene s(inWorld("LightSource \"distantlight\" 1 \"point from\" [0 1 0] \"point to\" [0 0 0]\nAttributeBegin\n" + pane +
+                    "AttributeEnd\nSurface \"matte\"\n" + kFloor),
             withShaders(Hider::Path));
     return s.one(rayTo({x + .3f, .2f, z - .4f}, {x, 0, z}))[0];
 }
@@ -67,10 +67,10 @@ TEST(Edges, SmallThingsFarAwayHaveTwoSides) {
     const double h = 1. / 4096;
     for (int k = 0; k < 8; ++k)
         corners += fmt::format("{:.17g} {:.17g} {:.17g} ", 1000 + (k & 1 ? h : -h), 1000 + (k & 2 ? h : -h), k & 4 ? h : -h);
-    Scene s(world("LightSource \"distantlight\" 1 \"point from\" [1 1 0] \"point to\" [0 0 0]\nAttributeBegin\nSurface "
-                  "\"lets\"\nSides 2\n"
-                  "PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" [" +
-                  corners + "]\nAttributeEnd\nSurface \"matte\"\n" + kFloor),
+    Scene s(inWorld("LightSource \"distantlight\" 1 \"point from\" [1 1 0] \"point to\" [0 0 0]\nAttributeBegin\nSurface "
+                    "\"lets\"\nSides 2\n"
+                    "PointsPolygons [4 4 4 4 4 4] [0 1 3 2  4 6 7 5  0 4 5 1  2 3 7 6  0 2 6 4  1 5 7 3] \"P\" [" +
+                    corners + "]\nAttributeEnd\nSurface \"matte\"\n" + kFloor),
             withShaders(Hider::Path));
     for (const float x : {2.4e-4f, -2.4e-4f})
         for (const float z : {1e-4f, -1e-4f})

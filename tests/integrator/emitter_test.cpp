@@ -7,8 +7,8 @@
 // sign of 22 % is found at 30,000, of 4 % at 1e6 (noncentrality sum delta^2 n/2 per cell / r^2 against 7.1 sqrt(2 * 100), r^2
 // about 1).
 #include "accel/accel.h"
+#include "bsdf/sampling.h"
 #include "geometry/make.h"
-#include "lobes/sampling.h"
 #include "statistics/agreement.h"
 #include "world/arealight.h"
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace emitter_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::integrator;
 using namespace alpenglow::geometry::test;
 using teststat::samples, teststat::seedBase, teststat::kAlpha;
 
@@ -191,7 +191,7 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
             // T2: what is drawn agrees with itself and with the density of a hit there.
             ASSERT_TRUE(s.pdf > 0 && std::isfinite(s.pdf)) << what;
             ASSERT_NEAR(length(s.direction), 1, 1e-5) << what;
-            ASSERT_LE(length(from + s.direction * s.distance - meetsAt(point)), 1e-4f * (1 + s.distance)) << what;
+            ASSERT_LE(length(from + s.direction * s.distance - intersectsAt(point)), 1e-4f * (1 + s.distance)) << what;
             double pdf = m.emitter->pdf(s.shape, point, from);
             // Nearly edge-on the cosine is lost in rounding, the same on both sides of the comparison but for the direction
             // drawn.

@@ -9,7 +9,7 @@
 namespace emitterlanes_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::integrator;
 using namespace alpenglow::geometry::test;
 
 namespace {

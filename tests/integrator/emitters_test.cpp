@@ -8,8 +8,8 @@
 namespace emitters_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -26,7 +26,7 @@ std::string lamp(const std::string& light, const std::string& shapes) {
            "\"radiance\"\nAreaLightSource " +
            light + "\n" + shapes + "AttributeEnd\nIlluminate 1 1\n";
 }
-std::string lit(const std::string& lights) { return world(lights + kLambert + kFloor); }
+std::string lit(const std::string& lights) { return inWorld(lights + kLambert + kFloor); }
 
 /// All three ways agree with a value that is known to `known` of it. So many rays alone as a small lamp needs, unless it is a
 /// large one.

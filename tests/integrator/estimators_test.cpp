@@ -5,8 +5,8 @@
 namespace estimators_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -41,7 +41,7 @@ std::string shell(double colour, double radius = 20) {
 const CameraRay kNear = rayTo({.2f, .3f, -.1f}, {0, 0, 0});
 
 Moments of(const std::string& surface, const std::string& others, Settings s, int n) {
-    return Scene(world(others + surface + kFloor), std::move(s)).estimate(kNear, n);
+    return Scene(inWorld(others + surface + kFloor), std::move(s)).estimate(kNear, n);
 }
 Settings traced(Hider h, bool suspend = false) {
     Settings s = withShaders(h);

@@ -9,8 +9,8 @@
 namespace examples_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -121,7 +121,7 @@ TEST(Examples, ThoseThatNeedAScene) {
             }
             Settings settings = withShaders(Hider::Raytrace);
             settings.texturePaths.push_back(shaderFolder());
-            Scene s(stage.before + world(inside + stage.shape), settings);
+            Scene s(stage.before + inWorld(inside + stage.shape), settings);
             ASSERT_TRUE(s.world);
             const Color got = s.one(stage.ray);
             Color want(1);

@@ -3,7 +3,7 @@
 #pragma once
 #include "integrator/harness.h"
 
-namespace alpenglow::transport::testing {
+namespace alpenglow::integrator::testing {
 
 inline Settings under(Hider h, bool suspend = false) {
     Settings s;
@@ -17,10 +17,10 @@ inline Settings withShaders(Hider h) {
     s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders");
     return s;
 }
-inline std::string world(const std::string& inside) { return "WorldBegin\nSides 2\n" + inside + "WorldEnd\n"; }
+inline std::string inWorld(const std::string& inside) { return "WorldBegin\nSides 2\n" + inside + "WorldEnd\n"; }
 /// The plane y = 0, up to 60 from the origin.
 inline const char* const kFloor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n";
 /// Meets the floor at the origin from above.
 inline const CameraRay kView = rayTo({.3f, .8f, -.4f}, {0, 0, 0});
 
-} // namespace alpenglow::transport::testing
+} // namespace alpenglow::integrator::testing

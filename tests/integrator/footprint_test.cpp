@@ -6,8 +6,8 @@
 namespace footprint_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -119,9 +119,10 @@ Scene underSquare(const std::string& light, double a, const std::string& surface
     set.lightOnly = lightOnly;
     set.bsdfOnly = bsdfOnly;
     const auto corner = [&](int x, int z) { return std::to_string(a * x) + " 2 " + std::to_string(a * z) + " "; };
-    return Scene(world("AttributeBegin\nAreaLightSource \"" + light +
-                       "\" 7\nSurface \"constant\"\nColor 0 0 0\nPatch \"bilinear\" \"P\" [" + corner(-1, -1) + corner(1, -1) +
-                       corner(-1, 1) + corner(1, 1) + "]\nAttributeEnd\nIlluminate 7 1\nSurface \"" + surface + "\"\n" + kFloor),
+    return Scene(inWorld("AttributeBegin\nAreaLightSource \"" + light +
+                         "\" 7\nSurface \"constant\"\nColor 0 0 0\nPatch \"bilinear\" \"P\" [" + corner(-1, -1) + corner(1, -1) +
+                         corner(-1, 1) + corner(1, 1) + "]\nAttributeEnd\nIlluminate 7 1\nSurface \"" + surface + "\"\n" +
+                         kFloor),
                  set);
 }
 void writeEmitters() {

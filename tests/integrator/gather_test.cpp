@@ -6,9 +6,9 @@
 namespace gather_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
-using namespace alpenglow::transport::gatherscene;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
+using namespace alpenglow::integrator::gatherscene;
 
 namespace {
 
@@ -24,7 +24,7 @@ std::string wall(double height) {
 double ofWall(double x, double h) { return (1 - x / std::sqrt(x * x + h * h)) / 2; }
 
 Moments of(const std::string& surface, const std::string& scene, Hider h = Hider::Path, int n = 1) {
-    Scene s(world(kSeen + surface + scene), withShaders(h));
+    Scene s(inWorld(kSeen + surface + scene), withShaders(h));
     return s.estimate(kNear, n);
 }
 
@@ -158,8 +158,8 @@ TEST(Gather, RunsShadersOnlyWhereAsked) {
     writeShader("gprints", "surface gprints() { printf(\"ran\\n\"); Ci = 1; Oi = 1; }\n");
     const std::string scene = kSmall + std::string("AttributeBegin Surface \"gprints\" Sphere 2 -2 2 360 AttributeEnd\n");
     for (const char* pair : {"\"ray:length\", f", "\"primitive:Cs\", c", "\"surface:Ci\", c"}) {
-        Scene s(world(kSeen + runs("gshade", std::string("gather(\"\", P, up, 1, 8, ") + pair + ") hits += 1;", "color(hits)") +
-                      scene),
+        Scene s(inWorld(kSeen + runs("gshade", std::string("gather(\"\", P, up, 1, 8, ") + pair + ") hits += 1;", "color(hits)") +
+                        scene),
                 withShaders(Hider::Path));
         Counters n;
         const CameraRay ray = kNear;
@@ -177,7 +177,7 @@ TEST(Gather, TellsAllOfHitsWhoseLightIsNotFollowed) {
                            "\"surface:Oi\", o) { hits += f / 8; sum += o / 8; }"
                            "Ci = color(hits, comp(sum, 0), 0); Oi = 1; }\n");
     const std::string shell = "AttributeBegin Surface \"gdeeper\" Sphere 2 -2 2 360 AttributeEnd\n";
-    Scene told(world(kSeen + "Surface \"gsends\"\n" + kSmall + shell),
+    Scene told(inWorld(kSeen + "Surface \"gsends\"\n" + kSmall + shell),
                withShaders(Hider::Path)); // elsewhere 8 to the depth are followed
     const Moments n = told.estimate(kNear, 4);
     EXPECT_NEAR(n.mean(0), 4, 1e-4);
@@ -186,7 +186,7 @@ TEST(Gather, TellsAllOfHitsWhoseLightIsNotFollowed) {
     // Light is followed by chance, and right in the mean.
     writeShader("glit", "surface glit() { color c = 0, sum = 0; float lit = .25; rayinfo(\"depth\", lit); gather(\"\", P, -P, "
                         ".5, 8, \"surface:Ci\", c) sum += c / 8; Ci = (lit < 2) ? sum : color(.25); Oi = 1; }\n");
-    Scene s(world(kSeen + "Surface \"gsends\"\n" + kSmall + "AttributeBegin Surface \"glit\" Sphere 2 -2 2 360 AttributeEnd\n"),
+    Scene s(inWorld(kSeen + "Surface \"gsends\"\n" + kSmall + "AttributeBegin Surface \"glit\" Sphere 2 -2 2 360 AttributeEnd\n"),
             withShaders(Hider::Path));
     expectMean(s.estimate(kNear, 4000), .25, .02, "light behind the second hit");
 }
@@ -209,8 +209,8 @@ TEST(Gather, GathersForOutputsStayLinear) {
                 ", \"ray:direction\", d, \"surface:bright\", f) { hits += 1; sum += (depth == 1) ? f : 2 * step(0, d . aside); }"
                 "bright = sum / " +
                 count + "; Ci = color(bright, hits / " + count + ", 0); Oi = 1; }\n");
-        Scene s(world(kSeen + "Surface \"gsends\"\n" + kSmall + "AttributeBegin Surface \"" + name +
-                      "\" Sphere 2 -2 2 360 AttributeEnd\n"),
+        Scene s(inWorld(kSeen + "Surface \"gsends\"\n" + kSmall + "AttributeBegin Surface \"" + name +
+                        "\" Sphere 2 -2 2 360 AttributeEnd\n"),
                 withShaders(Hider::Path));
         Counters c;
         const Moments m = s.estimate(kNear, 1000, &c);
@@ -240,7 +240,7 @@ TEST(Gather, RaysOfWaitingKernelsEnd) {
             writeShader(called, "vector direct(float k) { return -P + .4 * vector(sin(k), cos(k), sin(2 * k)); }\n"
                                 "surface " +
                                     called + "() { color c = 0, sum = 0; " + text + " Ci = .3 + .4 * sum; Oi = 1; }\n");
-            Scene s(world(kSeen + "Surface \"" + called + "\" Sphere 2 -2 2 360\n"), withShaders(Hider::Path));
+            Scene s(inWorld(kSeen + "Surface \"" + called + "\" Sphere 2 -2 2 360\n"), withShaders(Hider::Path));
             Counters counters;
             const Moments m = s.estimate(rayTo({0, 0, 0}, {.7f, .5f, .3f}), 400, &counters);
             expectMean(m, .5, .02, called);
@@ -298,8 +298,8 @@ TEST(Gather, CountsThatMakeNoSense) {
     const std::string scene = kSmall + ball(2, "");
     for (const auto& [count, turns] :
          {std::pair<const char*, double>{"0", 0}, {"-1", 0}, {"sqrt(-1) * 0 / 0", 0}, {"1.9", 1}, {"1e9", 4096}}) {
-        Scene s(world(kSeen + runs("gcounts", std::string("gather(\"\", P, up, 1, ") + count + ") hits += 1;", "color(hits)") +
-                      scene),
+        Scene s(inWorld(kSeen + runs("gcounts", std::string("gather(\"\", P, up, 1, ") + count + ") hits += 1;", "color(hits)") +
+                        scene),
                 withShaders(Hider::Path));
         EXPECT_EQ(s.one(kNear).x, turns) << count;
         EXPECT_EQ(s.messages().find("4096") != std::string::npos, turns == 4096) << s.messages();
@@ -375,9 +375,9 @@ TEST(Gather, NestedWithoutEndStaysSmall) {
         "surface gdeep() { color c = 0, sum = 0; normal n = faceforward(normalize(N), I); gather(\"illuminance\", P, n, PI / 2, "
         "256, \"surface:Ci\", c, \"distribution\", \"cosine\") sum += c / 256; else sum += .5; Ci = .5 * sum + .1; Oi = 1; }\n");
     for (const Hider h : {Hider::Path}) {
-        Scene s(world(kSeen +
-                      "Attribute \"trace\" \"integer maxdiffusedepth\" 3 \"integer maxspeculardepth\" 3\nSurface \"gdeep\"\n" +
-                      std::string(kFloor) + "Sphere 1 -1 1 360\n"),
+        Scene s(inWorld(kSeen +
+                        "Attribute \"trace\" \"integer maxdiffusedepth\" 3 \"integer maxspeculardepth\" 3\nSurface \"gdeep\"\n" +
+                        std::string(kFloor) + "Sphere 1 -1 1 360\n"),
                 withShaders(h));
         Counters n;
         const CameraRay ray = rayTo({3, 4, -5}, {0, 0, 0});
@@ -394,7 +394,7 @@ TEST(Gather, InALight) {
                 "\"distribution\", \"cosine\") { } else open += 1 / 256; solar(-up, 0) { Cl = open; } }\n");
     Settings direct = withShaders(Hider::Path);
     direct.indirect = false;
-    Scene s(world(kSeen + "LightSource \"glightopen\" 1\nSurface \"matte\" \"Ka\" 0\n" + kFloor + wall(1)), direct);
+    Scene s(inWorld(kSeen + "LightSource \"glightopen\" 1\nSurface \"matte\" \"Ka\" 0\n" + kFloor + wall(1)), direct);
     EXPECT_NEAR(s.estimate(kNear, 50).mean(), 1 - ofWall(.5, 1), .01);
 }
 
@@ -411,7 +411,7 @@ TEST(Gather, OfALightThatIsMeasured) {
                       std::to_string(i + 1) + " \"open\" " + open + " TransformEnd\n";
         Settings direct = withShaders(Hider::Path);
         direct.indirect = false;
-        return Scene(world(kSeen + lights + "Surface \"matte\" \"Ka\" 0\n" + kFloor), direct).estimate(kNear, 2000);
+        return Scene(inWorld(kSeen + lights + "Surface \"matte\" \"Ka\" 0\n" + kFloor), direct).estimate(kNear, 2000);
     };
     const Moments gathered = lit("0"), known = lit("1");
     EXPECT_GT(known.mean(), 0);
@@ -429,7 +429,7 @@ TEST(Gather, AsksShadersFromALight) {
     for (const Hider h : kAll) {
         Settings direct = withShaders(h);
         direct.indirect = false;
-        Scene s(world(kSeen + "LightSource \"glightasks\" 1\nSurface \"matte\" \"Ka\" 0\n" + kSmall + shell), direct);
+        Scene s(inWorld(kSeen + "LightSource \"glightasks\" 1\nSurface \"matte\" \"Ka\" 0\n" + kSmall + shell), direct);
         const Moments m = s.estimate(kNear, 4);
         EXPECT_NEAR(m.mean(0), .25, 1e-4) << int(h) << s.messages();
         EXPECT_NEAR(m.mean(1), 4, 1e-3);
@@ -438,19 +438,20 @@ TEST(Gather, AsksShadersFromALight) {
 }
 
 TEST(Gather, WhatIsNotKnownIsSaid) {
-    Scene s(world(kSeen +
-                  runs("gwords", "gather(\"sideways\", P, up, 1, 2, \"distribution\", \"odd\", \"friend:x\", f) hits += 1;",
-                       "color(hits)") +
-                  kSmall + ball(2, "")),
+    Scene s(inWorld(kSeen +
+                    runs("gwords", "gather(\"sideways\", P, up, 1, 2, \"distribution\", \"odd\", \"friend:x\", f) hits += 1;",
+                         "color(hits)") +
+                    kSmall + ball(2, "")),
             withShaders(Hider::Path));
     EXPECT_EQ(s.one(kNear).x, 2);
     for (const char* word : {"sideways", "odd", "friend:x"})
         EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
-    Scene t(world(kSeen +
-                  runs("gtypes", "gather(\"\", P, up, 1, 2, \"surface:Ci\", f, \"ray:length\", c, \"ray:origin\", o) hits += 1;",
-                       "color(hits) + f + c") +
-                  kSmall + ball(2, "")),
-            withShaders(Hider::Path));
+    Scene t(
+        inWorld(kSeen +
+                runs("gtypes", "gather(\"\", P, up, 1, 2, \"surface:Ci\", f, \"ray:length\", c, \"ray:origin\", o) hits += 1;",
+                     "color(hits) + f + c") +
+                kSmall + ball(2, "")),
+        withShaders(Hider::Path));
     EXPECT_EQ(t.one(kNear).x, 2) << "the variables stay";
     for (const char* word : {"\"surface:Ci\" has another type", "\"ray:length\" has another type"})
         EXPECT_NE(t.messages().find(word), std::string::npos) << t.messages();

@@ -2,7 +2,7 @@
 #pragma once
 #include "integrator/floorscene.h"
 
-namespace alpenglow::transport::gatherscene {
+namespace alpenglow::integrator::gatherscene {
 
 inline constexpr Hider kAll[] = {Hider::Hidden, Hider::Raytrace, Hider::Path};
 inline const std::string kSeen =
@@ -22,4 +22,4 @@ inline std::string runs(const std::string& name, const std::string& body, const 
     return "Surface \"" + name + "\"\n";
 }
 
-} // namespace alpenglow::transport::gatherscene
+} // namespace alpenglow::integrator::gatherscene

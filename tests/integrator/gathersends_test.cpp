@@ -4,14 +4,14 @@
 namespace gathersends_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
-using namespace alpenglow::transport::gatherscene;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
+using namespace alpenglow::integrator::gatherscene;
 
 namespace {
 
 Moments of(const std::string& surface, const std::string& scene, Hider h = Hider::Path, int n = 1) {
-    Scene s(world(kSeen + surface + scene), withShaders(h));
+    Scene s(inWorld(kSeen + surface + scene), withShaders(h));
     return s.estimate(kNear, n);
 }
 

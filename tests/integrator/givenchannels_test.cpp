@@ -5,8 +5,8 @@
 namespace givenchannels_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -16,7 +16,7 @@ using Floats = std::vector<float>;
 std::vector<Floats> sides(const std::string& rib, Hider h, const std::vector<std::string>& outputs) {
     Settings set = under(h);
     set.outputs = outputs;
-    Scene s(world(rib + kFloor), set);
+    Scene s(inWorld(rib + kFloor), set);
     EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     std::vector<Floats> all;
     for (const auto& r : s.trace(std::vector<CameraRay>{rayTo({-1, 2, 0}, {-1, 0, 0}), rayTo({1, 2, 0}, {1, 0, 0})}))

@@ -2,7 +2,7 @@
 #pragma once
 #include "integrator/floorscene.h"
 
-namespace alpenglow::transport::testing {
+namespace alpenglow::integrator::testing {
 
 inline constexpr int kSide = 32;
 inline constexpr float kPixel = 2.f / kSide;
@@ -54,4 +54,4 @@ inline const std::vector<std::string> kShapes = {
     "ObjectBegin 1\nSphere .4 -.4 .4 360\nObjectEnd\nTranslate -.5 0 5\nObjectInstance 1\nTranslate 1 0 0\nObjectInstance 1",
 };
 
-} // namespace alpenglow::transport::testing
+} // namespace alpenglow::integrator::testing

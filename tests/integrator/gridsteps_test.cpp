@@ -8,8 +8,8 @@
 namespace gridsteps_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 

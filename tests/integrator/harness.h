@@ -12,7 +12,7 @@
 #include <sstream>
 #include <unistd.h>
 
-namespace alpenglow::transport::testing {
+namespace alpenglow::integrator::testing {
 
 inline constexpr double kZ = teststat::kZ;
 
@@ -143,4 +143,4 @@ inline std::string readText(const std::string& path) {
     return s.str();
 }
 
-} // namespace alpenglow::transport::testing
+} // namespace alpenglow::integrator::testing

@@ -5,8 +5,8 @@
 namespace information_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -20,7 +20,7 @@ TEST(Information, IncidentAndOpposite) {
         return std::string("AttributeBegin\nInterior \"thick\" \"density\" ") + in + "\nExterior \"thick\" \"density\" " + out +
                "\nTranslate " + x + " 0 4\nSphere 1 -1 1 360\nAttributeEnd\n";
     };
-    Scene s(world("Surface \"sides\"\n" + ball("-2", "3", "5") + ball("2", "7", "9")), under(Hider::Hidden));
+    Scene s(inWorld("Surface \"sides\"\n" + ball("-2", "3", "5") + ball("2", "7", "9")), under(Hider::Hidden));
     const CameraRay rays[] = {rayTo({-2, 0, 0}, {-2, 0, 4}), rayTo({2, 0, 0}, {2, 0, 4}), rayTo({-2, 0, 4}, {-2, 0, 9})};
     const auto r = s.trace(rays);
     EXPECT_EQ(r[0].color, Color(5, 3, 0));
@@ -31,7 +31,7 @@ TEST(Information, IncidentAndOpposite) {
 TEST(Information, NoVolumes) {
     writeShader("sides", "surface sides() { float a = -1, b = -1; incident(\"density\", a); opposite(\"density\", b); Oi = 1; Ci "
                          "= color(a, b, 0); }\n");
-    Scene s(world(std::string("Surface \"sides\"\n") + kFloor), under(Hider::Hidden));
+    Scene s(inWorld(std::string("Surface \"sides\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(s.one(kView), Color(-1, -1, 0));
 }
 TEST(Information, AttributesAsTheyAreWhenUnset) {
@@ -50,16 +50,17 @@ TEST(Information, AttributesAsTheyAreWhenUnset) {
                          Row{"trace:maxspeculardepth", 1, 2, 32}, Row{"trace:bias", 1, -1, -1},
                          Row{"visibility:diffuse", 1, 0, 1}, Row{"light:samples", 1, 1, 1}, Row{"user:nobody", 0, -1, -1}})
         for (Hider h : {Hider::Hidden, Hider::Path}) {
-            Scene s(world("Surface \"asks\" \"what\" \"" + std::string(r.name) + "\"\n" + kFloor), under(h));
+            Scene s(inWorld("Surface \"asks\" \"what\" \"" + std::string(r.name) + "\"\n" + kFloor), under(h));
             EXPECT_EQ(s.one(kView), Color(r.found, h == Hider::Path ? r.path : r.hidden, 0)) << r.name;
         }
     writeShader("asksunits", "surface asksunits() { string v = \"?\"; float found = attribute(\"light:units\", v); Oi = 1; Ci = "
                              "color(found, v == \"radiance\", v == \"samples\"); }\n");
     for (Hider h : {Hider::Hidden, Hider::Path}) // what an area light would give
-        EXPECT_EQ(Scene(world(std::string("Surface \"asksunits\"\n") + kFloor), under(h)).one(kView),
+        EXPECT_EQ(Scene(inWorld(std::string("Surface \"asksunits\"\n") + kFloor), under(h)).one(kView),
                   h == Hider::Path ? Color(1, 1, 0) : Color(1, 0, 1));
     Scene given(
-        world(std::string("Attribute \"user\" \"uniform float nobody\" 4\nSurface \"asks\" \"what\" \"user:nobody\"\n") + kFloor),
+        inWorld(std::string("Attribute \"user\" \"uniform float nobody\" 4\nSurface \"asks\" \"what\" \"user:nobody\"\n") +
+                kFloor),
         under(Hider::Hidden));
     EXPECT_EQ(given.one(kView), Color(1, 4, 0));
 }
@@ -67,7 +68,7 @@ TEST(Information, AttributesAsTheyAreWhenUnset) {
 TEST(Information, DepthBetweenThePlanesOfClipping) {
     writeShader("deep", "surface deep() { Oi = 1; Ci = depth(P); }\n");
     for (Hider h : {Hider::Hidden, Hider::Raytrace}) {
-        Scene s("Clipping 1 11\n" + world("Surface \"deep\"\nPolygon \"P\" [-9 -9 3  -9 9 3  9 9 3  9 -9 3]\n"), under(h));
+        Scene s("Clipping 1 11\n" + inWorld("Surface \"deep\"\nPolygon \"P\" [-9 -9 3  -9 9 3  9 9 3  9 -9 3]\n"), under(h));
         EXPECT_NEAR(s.one(rayTo({0, 0, 1}, {.1f, 0, 3})).x, .2, 1e-6);
     }
 }
@@ -75,7 +76,7 @@ TEST(Information, DepthBetweenThePlanesOfClipping) {
 TEST(Information, StringsDoNotDoubleForEver) {
     writeShader("doubles", "surface doubles(string start = \"xy\";) { string a = start; float i; for (i = 0; i < 200; i += 1) a "
                            "+= a; Oi = 1; Ci = a == start ? 0 : 1; }\n");
-    Scene s(world(std::string("Surface \"doubles\"\n") + kFloor), under(Hider::Hidden));
+    Scene s(inWorld(std::string("Surface \"doubles\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(s.one(kView), Color(1, 1, 1));
     EXPECT_NE(s.messages().find("65536 characters"), std::string::npos);
 }
@@ -83,7 +84,7 @@ TEST(Information, StringsDoNotDoubleForEver) {
 TEST(Information, AMethodAsksItsOwnShader) {
     writeShader("asksown", "class asksown(float Kd = .5;) { public void surface(output color Ci, Oi) { float k = 0; float found "
                            "= surface(\"Kd\", k); Ci = color(found, k, 0); Oi = 1; } }\n");
-    Scene s(world(std::string("Surface \"asksown\" \"Kd\" .25\n") + kFloor), under(Hider::Hidden));
+    Scene s(inWorld(std::string("Surface \"asksown\" \"Kd\" .25\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(s.one(kView), Color(1, .25f, 0));
 }
 // A ray's label reaches the shader that it meets; the camera's have none.
@@ -100,7 +101,7 @@ TEST(Information, LabelsOfRays) {
     const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"labelled\"\nPolygon \"P\" [-9 1 -9 "
                              " -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
     for (Hider h : {Hider::Raytrace, Hider::Path}) {
-        Scene s(world(card + "Surface \"labels\"\n" + kFloor), under(h));
+        Scene s(inWorld(card + "Surface \"labels\"\n" + kFloor), under(h));
         EXPECT_EQ(s.one(kView), Color(1, .5f, .25f));
         EXPECT_EQ(s.one(rayTo({0, 3, 0}, {0, 1, 0})), Color(.25f));
     }
@@ -132,7 +133,7 @@ TEST(Information, RaysOfBmrt) {
                              "1\nSurface \"constant\"\nColor .5 .25 1\n"
                              "Polygon \"P\" [-9 2 -9  -9 2 9  9 2 9  9 2 -9]\nAttributeEnd\n";
     auto of = [&](const std::string& surface) {
-        return Scene(world(card + "Surface " + surface + "\n" + kFloor), under(Hider::Raytrace)).one(kView);
+        return Scene(inWorld(card + "Surface " + surface + "\n" + kFloor), under(Hider::Raytrace)).one(kView);
     };
     auto near = [](const Color& c, const Color& want, const char* what) {
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], want[k], 1e-4) << what << " " << k;
@@ -158,7 +159,7 @@ TEST(Information, OutputsOfLights) {
     auto aovs = [&](Hider h, const char* surface) {
         Settings set = under(h);
         set.outputs = {"far", "tint", "mine"};
-        Scene s(world("LightSource \"tells\" 1\nSurface \"" + std::string(surface) + "\"\n" + kFloor), set);
+        Scene s(inWorld("LightSource \"tells\" 1\nSurface \"" + std::string(surface) + "\"\n" + kFloor), set);
         EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
         return s.trace(std::vector<CameraRay>{kView})[0].aovs;
     };
@@ -187,7 +188,7 @@ TEST(Information, ArraysOfLights) {
 }
 )");
     auto of = [&](const std::string& surface) {
-        return Scene(world("LightSource \"weights\" 1\nSurface " + surface + "\n" + kFloor), under(Hider::Hidden));
+        return Scene(inWorld("LightSource \"weights\" 1\nSurface " + surface + "\n" + kFloor), under(Hider::Hidden));
     };
     EXPECT_EQ(of("\"sends\" \"send\" 0").one(kView), Color(6, 1, 3));
     Scene s = of("\"sends\"");
@@ -209,7 +210,7 @@ TEST(Information, ArraysGoToArraysOfTheirClass) {
     illuminance(P, "send:light:one", two, "send:light:three", four, "light:three", back) Ci += Cl + 100 * back[2];
 }
 )");
-    EXPECT_EQ(Scene(world(std::string("LightSource \"classes\" 1\nSurface \"sendsother\"\n") + kFloor), under(Hider::Hidden))
+    EXPECT_EQ(Scene(inWorld(std::string("LightSource \"classes\" 1\nSurface \"sendsother\"\n") + kFloor), under(Hider::Hidden))
                   .one(kView),
               Color(616));
 }
@@ -227,13 +228,13 @@ TEST(Information, SamplesOfAreaLights) {
                         "Cl * (normalize(L) . Nf); Oi = 1; Ci = c; }\n");
     for (const char* name : {"samples", "nsamples"}) {
         const std::string attribute = std::string("Attribute \"light\" \"integer ") + name + "\" 5\n";
-        EXPECT_EQ(Scene(world(disk(attribute) + "Surface \"turns\"\n" + kFloor), under(Hider::Hidden)).one(kView).x, 5 / 8.f)
+        EXPECT_EQ(Scene(inWorld(disk(attribute) + "Surface \"turns\"\n" + kFloor), under(Hider::Hidden)).one(kView).x, 5 / 8.f)
             << name;
         expectMean(
-            Scene(world(disk(attribute) + "Surface \"sums\"\n" + kFloor), under(Hider::Hidden)).estimate(kView, samples(4000)),
+            Scene(inWorld(disk(attribute) + "Surface \"sums\"\n" + kFloor), under(Hider::Hidden)).estimate(kView, samples(4000)),
             5 * .49 / 4.49, .01, name);
     }
-    EXPECT_EQ(Scene(world(disk("") + "Surface \"turns\"\n" + kFloor), under(Hider::Hidden)).one(kView).x, 1 / 8.f);
+    EXPECT_EQ(Scene(inWorld(disk("") + "Surface \"turns\"\n" + kFloor), under(Hider::Hidden)).one(kView).x, 1 / 8.f);
 }
 // Outside of path an area light is shadowed where its attribute says so.
 TEST(Information, ShadowsOfAreaLights) {
@@ -241,15 +242,16 @@ TEST(Information, ShadowsOfAreaLights) {
                              "[-9 1 -9  -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
     const std::string floor = std::string("Surface \"matte\" \"Ka\" 0 \"Kd\" 1\n") + kFloor;
     const double want = 5 * .49 / 4.49;
-    expectMean(Scene(world(disk("") + card + floor), under(Hider::Hidden)).estimate(kView, samples(4000)), want, .01, "without");
-    EXPECT_EQ(Scene(world(disk("Attribute \"light\" \"string shadows\" \"on\"\n") + card + floor), under(Hider::Hidden))
+    expectMean(Scene(inWorld(disk("") + card + floor), under(Hider::Hidden)).estimate(kView, samples(4000)), want, .01,
+               "without");
+    EXPECT_EQ(Scene(inWorld(disk("Attribute \"light\" \"string shadows\" \"on\"\n") + card + floor), under(Hider::Hidden))
                   .estimate(kView, 300)
                   .mean(),
               0);
-    expectMean(Scene(world(disk("Attribute \"light\" \"string shadows\" \"on\"\n") + floor), under(Hider::Hidden))
+    expectMean(Scene(inWorld(disk("Attribute \"light\" \"string shadows\" \"on\"\n") + floor), under(Hider::Hidden))
                    .estimate(kView, samples(4000)),
                want, .01, "nothing in the way");
-    expectMean(Scene(world(disk("Attribute \"light\" \"string shadows\" \"off\"\n") + card + floor), under(Hider::Hidden))
+    expectMean(Scene(inWorld(disk("Attribute \"light\" \"string shadows\" \"off\"\n") + card + floor), under(Hider::Hidden))
                    .estimate(kView, samples(4000)),
                want, .01, "off");
 }
@@ -260,11 +262,11 @@ TEST(Information, CategoriesOfLightsWithoutTheParameter) {
                 " illuminance(\"-key\", P) other += Cl; illuminance(P) all += Cl; Ci = color(key[0], other[0], all[0]); }\n");
     const std::string down = " \"from\" [0 1 0] \"to\" [0 0 0] \"string __category\" ";
     for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
-        Scene s(world("LightSource \"distantlight\" 1 \"intensity\" .25" + down +
-                      "[\"warm,key\"]\nLightSource \"distantlight\" 2 \"intensity\" .5" + down +
-                      "\"fill\"\nLightSource \"distantlight\" 3 \"intensity\" 2 \"from\" [0 1 0] \"to\" [0 0 0]\nSurface "
-                      "\"bycategory\"\n" +
-                      kFloor),
+        Scene s(inWorld("LightSource \"distantlight\" 1 \"intensity\" .25" + down +
+                        "[\"warm,key\"]\nLightSource \"distantlight\" 2 \"intensity\" .5" + down +
+                        "\"fill\"\nLightSource \"distantlight\" 3 \"intensity\" 2 \"from\" [0 1 0] \"to\" [0 0 0]\nSurface "
+                        "\"bycategory\"\n" +
+                        kFloor),
                 withShaders(h));
         EXPECT_EQ(s.one(kView), Color(.25f, 2.5f, 2.75f));
         EXPECT_EQ(s.messages(), "");

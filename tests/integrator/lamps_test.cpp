@@ -9,8 +9,8 @@
 namespace lamps_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -152,8 +152,8 @@ const Lamp kLamps[] = {
 
 enum Change { Still, Moved, Deformed, Displaced };
 constexpr const char* kChanges[] = {"still", "moved", "deformed", "displaced"};
-constexpr float kWhen = .5f;  ///< of the shutter
-constexpr double kAside = .3; ///< then, of what moves
+constexpr float kWhen = .5f;        ///< of the shutter
+constexpr double kLightOutput = .3; ///< then, of what moves
 
 /// The lamp at its place. Between keys numbers and points are linear.
 std::string placed(const Lamp& l, Change c) {
@@ -174,7 +174,7 @@ std::string placed(const Lamp& l, Change c) {
     return s + "MotionBegin [0 1]\n" + first + last.substr(last.rfind('\n', last.size() - 2) + 1) + "MotionEnd\n";
 }
 double wanted(const Lamp& l, Change c) {
-    const double light = l.light(c == Deformed ? (l.from + l.to) / 2 : l.from, c == Moved ? kAside : 0);
+    const double light = l.light(c == Deformed ? (l.from + l.to) / 2 : l.from, c == Moved ? kLightOutput : 0);
     return light == kUnknown ? kUnknown : kRadiance * light;
 }
 

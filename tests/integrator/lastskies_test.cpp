@@ -4,8 +4,8 @@
 namespace lastskies_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 Settings depth(int most) {
@@ -25,13 +25,13 @@ const CameraRay kFlat = rayTo({2.5f, .4f, -.4f}, {0, 0, 0}); ///< beside the dis
 TEST(LastSkies, AtEveryDepth) {
     const std::string sky = "LightSource \"envlight\" 1 \"float intensity\" 2\n";
     for (const int most : {0, 1, 4}) {
-        const Moments m = Scene(world(sky + kLambert + kFloor), depth(most)).estimate(kView, 500);
+        const Moments m = Scene(inWorld(sky + kLambert + kFloor), depth(most)).estimate(kView, 500);
         EXPECT_NEAR(m.mean(), 2, 1e-4) << most;
         // What the disc sends back is black: the same light at any depth.
-        const Moments half = Scene(world(sky + disc("1") + kLambert + kFloor), depth(most)).estimate(kFlat, samples(8000));
+        const Moments half = Scene(inWorld(sky + disc("1") + kLambert + kFloor), depth(most)).estimate(kFlat, samples(8000));
         EXPECT_NEAR(half.mean(), 1, kZ * half.se()) << most;
         EXPECT_LE(half.se(), .02);
-        const Moments thin = Scene(world(sky + disc(".5") + kLambert + kFloor), depth(most)).estimate(kFlat, samples(8000));
+        const Moments thin = Scene(inWorld(sky + disc(".5") + kLambert + kFloor), depth(most)).estimate(kFlat, samples(8000));
         EXPECT_NEAR(thin.mean(), 1.5, kZ * thin.se()) << most;
     }
 }
@@ -43,8 +43,8 @@ TEST(LastSkies, EachBounceOnce) {
                       half = "Surface \"matte\" \"float Ka\" 0 \"float Kd\" .5\n";
     const std::string cup = "AttributeBegin\n" + half + "Rotate -90 1 0 0\nSphere 1 0 .8 360\nAttributeEnd\n";
     const CameraRay view = rayTo({.05f, 1.6f, .02f}, {0, 0, 0});
-    const Moments first = Scene(world(sky + cup + half + kFloor), depth(0)).estimate(view, samples(60'000)),
-                  second = Scene(world(sky + cup + half + kFloor), depth(1)).estimate(view, samples(60'000));
+    const Moments first = Scene(inWorld(sky + cup + half + kFloor), depth(0)).estimate(view, samples(60'000)),
+                  second = Scene(inWorld(sky + cup + half + kFloor), depth(1)).estimate(view, samples(60'000));
     EXPECT_NEAR(first.mean(), .5 * .36, kZ * first.se());
     EXPECT_LE(first.se(), .01);
     EXPECT_GT(second.mean(), first.mean() + kZ * (first.se() + second.se()));
@@ -52,7 +52,7 @@ TEST(LastSkies, EachBounceOnce) {
 }
 
 TEST(LastSkies, AmbientLightAndTrace) {
-    Scene ambient(world(std::string("LightSource \"ambientlight\" 1 \"float intensity\" .75\nSurface \"matte\"\n") + kFloor),
+    Scene ambient(inWorld(std::string("LightSource \"ambientlight\" 1 \"float intensity\" .75\nSurface \"matte\"\n") + kFloor),
                   depth(0));
     EXPECT_NEAR(ambient.estimate(kView, 200).mean(), .75, 1e-4);
     writeShader("lasttrace",
@@ -60,11 +60,11 @@ TEST(LastSkies, AmbientLightAndTrace) {
                 "vector(n), \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"samplearealights\", lights); }\n");
     const std::string sky = "LightSource \"envlight\" 1 \"float intensity\" 2\n";
     // As lamps are: where lights are asked for.
-    EXPECT_NEAR(Scene(world(sky + "Surface \"lasttrace\" \"float lights\" 1\n" + kFloor), depth(0)).estimate(kView, 200).mean(),
+    EXPECT_NEAR(Scene(inWorld(sky + "Surface \"lasttrace\" \"float lights\" 1\n" + kFloor), depth(0)).estimate(kView, 200).mean(),
                 2, 1e-4);
-    EXPECT_EQ(Scene(world(sky + "Surface \"lasttrace\"\n" + kFloor), depth(0)).estimate(kView, 200).mean(), 0);
+    EXPECT_EQ(Scene(inWorld(sky + "Surface \"lasttrace\"\n" + kFloor), depth(0)).estimate(kView, 200).mean(), 0);
     // A sky that is off brings nothing.
-    EXPECT_EQ(Scene(world(sky + "Illuminate 1 0\n" + kLambert + kFloor), depth(0)).estimate(kView, 200).mean(), 0);
+    EXPECT_EQ(Scene(inWorld(sky + "Illuminate 1 0\n" + kLambert + kFloor), depth(0)).estimate(kView, 200).mean(), 0);
 }
 
 } // namespace lastskies_test

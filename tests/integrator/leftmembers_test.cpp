@@ -5,8 +5,8 @@
 namespace leftmembers_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -21,7 +21,7 @@ const Hider kHiders[] = {Hider::Hidden, Hider::Raytrace, Hider::Path};
 Color seen(const std::string& inside, Hider hider, float u, float v, bool mixed = false) {
     Settings settings = withShaders(hider);
     settings.mixedOnly = mixed;
-    Scene s(world(inside), settings);
+    Scene s(inWorld(inside), settings);
     const Vec3 at{4 * u - 2, 4 * v - 2, 0};
     return s.one(rayTo(at, at + Vec3(0, 0, 5)));
 }
@@ -95,7 +95,7 @@ TEST(LeftMembers, OpacityStopsRaysByThem) {
                               kPatch +
                               "AttributeEnd\nSurface \"through\"\nPatch \"bilinear\" \"P\" [-2 -2 9  2 -2 9  -2 2 9  2 2 9]\n";
     for (const Hider h : kHiders) {
-        Scene s(world(scene), withShaders(h));
+        Scene s(inWorld(scene), withShaders(h));
         const Vec3 at{4 * .6f - 2, 0, 6};
         expectColor(s.one(rayTo(at, at + Vec3(0, 0, 3))), Color(.5f * .6f * .6f), "hider " + std::to_string(int(h)));
     }

@@ -4,8 +4,8 @@
 namespace levels_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -19,7 +19,7 @@ TEST(FadingLevels, EverySampleSeesOne) {
     const CameraRay above = rayTo({.3f, 3, -.4f}, {0, 1, 0}), below = rayTo({.3f, .4f, -.4f}, {0, 0, 0});
     writeShader("looksup", "surface looksup() { Oi = 1; vector up = vector \"world\" (0, 1, 0); Ci = trace(P, up) + color(0, 1, "
                            "0) * transmission(P, P + 5 * up); }\n");
-    Scene s(world(panes + std::string("Surface \"looksup\" ") + kFloor), withShaders(Hider::Raytrace));
+    Scene s(inWorld(panes + std::string("Surface \"looksup\" ") + kFloor), withShaders(Hider::Raytrace));
     const int n = samples(4000);
     const Moments seen = s.estimate(above, n), reflected = s.estimate(below, n);
     EXPECT_NEAR(seen.mean(0), .75, 5 * std::sqrt(.75 * .25 / n));
@@ -28,7 +28,7 @@ TEST(FadingLevels, EverySampleSeesOne) {
     // A ray from below sees what the camera would see with the same sample; a shadow ray is always stopped by one of them.
     for (int k = 0; k < 3; ++k) EXPECT_EQ(reflected.mean(k), seen.mean(k)) << k;
     // One level alone covers its part.
-    Scene one(world(pane("0 .25", "1 1 1")), withShaders(Hider::Hidden));
+    Scene one(inWorld(pane("0 .25", "1 1 1")), withShaders(Hider::Hidden));
     EXPECT_NEAR(one.estimate(above, n).mean(), .25, 5 * std::sqrt(.75 * .25 / n));
 }
 

@@ -6,8 +6,8 @@
 namespace lightadversary_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -16,7 +16,7 @@ Color shows(const std::string& name, const std::string& functions, const std::st
             const std::string& others = "", Hider h = Hider::Hidden) {
     writeShader(name, "surface " + name + "(output varying float told = 1;) {\n" + functions +
                           "\n    Oi = 1; Ci = 0; vector up = vector \"world\" (0, 1, 0);\n    " + body + "\n}\n");
-    return Scene(world(lamps + "AttributeBegin Surface \"" + name + "\" " + kFloor + "AttributeEnd\n" + others), withShaders(h))
+    return Scene(inWorld(lamps + "AttributeBegin Surface \"" + name + "\" " + kFloor + "AttributeEnd\n" + others), withShaders(h))
         .one(rayTo({.3f, .4f, -.4f}, {0, 0, 0}));
 }
 /// Lamps straight above at heights 2, 3 and 5 with Cl of 1, 10 and 100, and categories.

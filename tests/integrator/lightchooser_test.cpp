@@ -10,8 +10,8 @@
 namespace lightchooser_test {
 
 using namespace alpenglow;
-using transport::LightBound;
-using transport::LightChooser;
+using world::LightBound;
+using world::LightChooser;
 
 namespace {
 
@@ -78,28 +78,28 @@ LightChooser::Chosen sorted(LightChooser::Chosen c) {
 TEST(LightChooser, BlocksChooseAsPointsDo) {
     std::mt19937 rng(8);
     std::uniform_real_distribution<float> one(0, 1);
-    std::vector<transport::ChosenLight> found(transport::kBlock * transport::LightTree::kMostChosen);
+    std::vector<lanes::ChosenLight> found(lanes::kBlock * lanes::LightTree::kMostChosen);
     for (const char* kind : {"plain", "spheres", "dark", "uneven", "one place", "line", "some far", "broken", "facing"})
         for (const int n : {1, 9, 33, 1000})
             for (const int wanted : {1, 3, 8, 64}) {
                 const auto lights = lightsOf(n, 3, kind);
                 const LightChooser chooser(lights, wanted);
-                alignas(64) transport::Row P[3], u;
-                for (int i = 0; i < transport::kBlock; ++i) {
+                alignas(64) lanes::Row P[3], u;
+                for (int i = 0; i < lanes::kBlock; ++i) {
                     const Vec3 near(one(rng) * 20 - 10, one(rng) * 4, one(rng) * 20 - 10);
                     const Vec3 at = i == 0 ? lights[size_t(n / 2)].centre : i == 1 ? near * 1e4f : i == 2 ? near * 1e30f : near;
                     for (int q = 0; q < 3; ++q) P[q][i] = at[q];
                     u[i] = i == 3 ? 0 : i == 4 ? 0x1.fffffep-1f : one(rng);
                 }
-                const transport::Lanes asked = uint32_t(rng()) & 0xffffu;
+                const lanes::Lanes asked = uint32_t(rng()) & 0xffffu;
                 for (const int lanes : {4, 8, 16}) {
-                    const transport::Stages* s = transport::stages(lanes);
+                    const lanes::Stages* s = lanes::stages(lanes);
                     if (!s) continue;
-                    std::vector<LightChooser::Chosen> chosen(transport::kBlock);
+                    std::vector<LightChooser::Chosen> chosen(lanes::kBlock);
                     const int count = s->chooseLights(chooser.tree(), P, u, asked, found.data());
                     for (int k = 0; k < count; ++k)
                         chosen[size_t(found[size_t(k)].lane)].emplace_back(found[size_t(k)].light, found[size_t(k)].chance);
-                    for (int i = 0; i < transport::kBlock; ++i) {
+                    for (int i = 0; i < lanes::kBlock; ++i) {
                         LightChooser::Chosen single;
                         if (asked >> i & 1) chooser.choose({P[0][i], P[1][i], P[2][i]}, u[i], single);
                         EXPECT_EQ(sorted(chosen[size_t(i)]), sorted(single)) << kind << n << " " << wanted << " " << i;
@@ -157,13 +157,12 @@ TEST(LightChooser, LightsThatFaceAway) {
 
 // What holds two cones holds every direction in them, and is no wider than it must be.
 TEST(LightChooser, ConesAroundCones) {
-    using transport::Cone;
+    using world::Cone;
     std::mt19937 rng(6);
     std::normal_distribution<float> one;
     const auto unit = [&] { return normalize(Vec3(one(rng), one(rng), one(rng))); };
     for (int i = 0; i < 200; ++i) {
-        const Cone a{unit(), std::cos(.01f * float(i % 50))}, b{unit(), std::cos(.02f * float(i % 40))},
-            c = transport::around(a, b);
+        const Cone a{unit(), std::cos(.01f * float(i % 50))}, b{unit(), std::cos(.02f * float(i % 40))}, c = world::around(a, b);
         const double apart = std::acos(std::clamp(double(dot(a.axis, b.axis)), -1., 1.)), ra = std::acos(double(a.cosine)),
                      rb = std::acos(double(b.cosine)), must = std::max({ra, rb, (ra + rb + apart) / 2});
         if (must >= kPi) {
@@ -175,7 +174,7 @@ TEST(LightChooser, ConesAroundCones) {
             EXPECT_LE(std::acos(std::clamp(double(dot(k.axis, c.axis)), -1., 1.)) + std::acos(double(k.cosine)),
                       std::acos(double(c.cosine)) + 2e-3);
     }
-    EXPECT_TRUE(transport::around({}, {Vec3(1, 0, 0), 1}).all());
+    EXPECT_TRUE(world::around({}, {Vec3(1, 0, 0), 1}).all());
 }
 
 TEST(LightChooser, NoLights) {

@@ -4,8 +4,8 @@
 namespace lightdisplacement_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -27,7 +27,8 @@ protected:
                     "light " + name +
                         "() { float v = -1, k = -1; color c = -1; string told = (xcomp(Ps) > 1e9) ? \"x\" : \"told\";\n    " +
                         body + "\n    illuminate(point \"world\" (0, 2, 0)) Cl = color(v, k, comp(c, 2)); }\n");
-        Scene s(world("LightSource \"" + name + "\" 1\nSurface \"" + surface + "\" " + displacement + kTile), under(GetParam()));
+        Scene s(inWorld("LightSource \"" + name + "\" 1\nSurface \"" + surface + "\" " + displacement + kTile),
+                under(GetParam()));
         return s.one(kView);
     }
 };
@@ -59,11 +60,11 @@ TEST(LightDisplacementPath, EmittersThatAreMet) {
     writeShader("tells", "displacement tells(float k = 1; output varying float told = 0; output varying color tint = 0;) { told "
                          "= 7 + k; tint = color(1, k, 3); }\n");
     writeShader("glows", "light glows() { float v = 0; displacement(\"told\", v); illuminate(P, N, PI / 2) Cl = v; }\n");
-    const std::string rib =
-        world("AttributeBegin Surface \"constant\" Color 0 0 0 Attribute \"light\" \"string units\" \"radiance\" AreaLightSource "
-              "\"glows\" 1 Translate 0 2 0 Sphere .5 -.5 .5 360 AttributeEnd\nIlluminate 1 1\n"
-              "Surface \"matte\" Displacement \"tells\" " +
-              std::string(kTile));
+    const std::string rib = inWorld(
+        "AttributeBegin Surface \"constant\" Color 0 0 0 Attribute \"light\" \"string units\" \"radiance\" AreaLightSource "
+        "\"glows\" 1 Translate 0 2 0 Sphere .5 -.5 .5 360 AttributeEnd\nIlluminate 1 1\n"
+        "Surface \"matte\" Displacement \"tells\" " +
+        std::string(kTile));
     for (const bool only : {false, true}) {
         Settings s = withShaders(Hider::Path);
         s.bsdfOnly = only;

@@ -5,8 +5,8 @@
 namespace lightnormals_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -16,7 +16,7 @@ TEST(LightNormals, ShadingNormalInALight) {
                 "#include \"normals.h\"\nlight alongnormal(output float __nonspecular = 1;) {\n"
                 "    normal n = shadingnormal(N);\n    illuminate(Ps + n) { Cl = color(1, .5, .25) * length(n); }\n}\n");
     for (const char* turned : {"", "ReverseOrientation\n"}) {
-        Scene s(world(std::string("LightSource \"alongnormal\" 1\nSurface \"matte\" \"Ka\" 0\n") + turned + kFloor),
+        Scene s(inWorld(std::string("LightSource \"alongnormal\" 1\nSurface \"matte\" \"Ka\" 0\n") + turned + kFloor),
                 under(Hider::Hidden));
         const Color c = s.one(kView);
         EXPECT_EQ(s.diagnostics.errors() + s.diagnostics.warnings(), 0) << s.messages();

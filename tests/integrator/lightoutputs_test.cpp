@@ -7,8 +7,8 @@
 namespace lightoutputs_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -128,7 +128,7 @@ std::vector<Moments> underASky(const std::string& surface, const std::vector<std
     Settings set = withShaders(h);
     set.outputs = outputs;
     set.suspend = suspend;
-    Scene s(world("LightSource \"envlight\" 1\n" + surface + kFloor), set);
+    Scene s(inWorld("LightSource \"envlight\" 1\n" + surface + kFloor), set);
     std::vector<CameraRay> rays(size_t(n), kView);
     for (int i = 0; i < n; ++i) rays[size_t(i)].px = i;
     std::vector<Moments> m;
@@ -213,8 +213,8 @@ TEST(LightOutputs, LoopsAndArrays) {
     for (Hider h : {Hider::Hidden, Hider::Path}) {
         Settings set = withShaders(h);
         set.outputs = {"list"};
-        Scene s(world("LightSource \"pointlight\" 1 \"point from\" [0 2 0] \"intensity\" 8\nSurface \"loops\"\n" +
-                      std::string(kFloor)),
+        Scene s(inWorld("LightSource \"pointlight\" 1 \"point from\" [0 2 0] \"intensity\" 8\nSurface \"loops\"\n" +
+                        std::string(kFloor)),
                 set);
         const SampleResult r = s.trace(std::vector<CameraRay>{kView})[0];
         EXPECT_EQ(s.messages(), "");

@@ -1,5 +1,5 @@
-// Lobes in lanes (lobes/lobelanes.h): every width gives the bits of one lobe alone, whoever shares its block.
-#include "lobes/lobe.h"
+// Lobes in lanes (bsdf/lobelanes.h): every width gives the bits of one lobe alone, whoever shares its block.
+#include "bsdf/lobe.h"
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace lobelanes_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::integrator;
 
 namespace {
 
@@ -35,12 +35,12 @@ LobeParams lobeOf(Draws& d, const LobeKind& k) {
     return p;
 }
 /// What a lobe gives for a direction and for a pair of numbers.
-struct Answers {
+struct Services {
     LobeValue value;
     Vec3 w;
     float drawn, albedo, spread, delta;
 };
-void expectSame(const Answers& a, const Answers& b, std::string_view kind, int width, int lane) {
+void expectSame(const Services& a, const Services& b, std::string_view kind, int width, int lane) {
     const bool same = sameBits(a.value.colour, b.value.colour) && sameBits(a.value.fcos, b.value.fcos) &&
                       sameBits(a.value.pdf, b.value.pdf) && sameBits(a.drawn, b.drawn) && (a.drawn == 0 || sameBits(a.w, b.w)) &&
                       sameBits(a.albedo, b.albedo) && sameBits(a.spread, b.spread) && sameBits(a.delta, b.delta);
@@ -68,7 +68,7 @@ void give(Block& b, int lane, const LobeParams& p) {
     b.rows[kRowCount][lane] = float(count);
     for (int i = 0; i < count; ++i) b.rows[kRowLobes + i][lane] = p.more->lobes[size_t(i)];
 }
-Answers answersOf(const Block& b, int lane) {
+Services answersOf(const Block& b, int lane) {
     return {{{b.value[0][lane], b.value[1][lane], b.value[2][lane]}, b.value[kRowFcos][lane], b.value[kRowPdf][lane]},
             {b.drawn[0][lane], b.drawn[1][lane], b.drawn[2][lane]},
             b.drawn[kRowDrawn][lane],
@@ -91,15 +91,15 @@ TEST_P(LobeLanesOf, EveryWidthGivesTheBitsOfOne) {
         for (int round = 0; round < 40; ++round) {
             Block b;
             const uint32_t mask = round % 3 ? 0xffff : uint32_t(d.random()) & 0xffff;
-            std::vector<Answers> want;
+            std::vector<Services> want;
             for (int lane = 0; lane < kLobeBlock; ++lane) {
                 const LobeParams p = lobeOf(d, k);
                 const Vec3 w = d.unit();
                 const Vec2 u{d.one(), d.one()};
                 give(b, lane, p);
                 b.from[0][lane] = w.x, b.from[1][lane] = w.y, b.from[2][lane] = w.z, b.u[0][lane] = u.x, b.u[1][lane] = u.y;
-                const OneLobe one(k, p);
-                Answers a{one.value(w), {}, 0, one.albedo(), one.spread(), one.delta() ? 1.f : 0.f};
+                const Bsdf one(k, p);
+                Services a{one.value(w), {}, 0, one.albedo(), one.spread(), one.delta() ? 1.f : 0.f};
                 a.drawn = one.sample(u, a.w) ? 1.f : 0.f;
                 want.push_back(a);
             }
@@ -118,14 +118,14 @@ INSTANTIATE_TEST_SUITE_P(Kinds, LobeLanesOf, ::testing::ValuesIn(lobeKinds().beg
 });
 
 // Lobes of all kinds mixed, some of them asked, in rounds; columns are used again after clear().
-TEST(LobeColumns, AnswersAreThoseOfOneLobe) {
+TEST(BsdfBatch, AnswersAreThoseOfOneLobe) {
     Draws d;
-    LobeColumns columns;
+    BsdfBatch columns;
     for (int again = 0; again < 3; ++again) {
         columns.clear();
         std::vector<LobeParams> params;
         std::vector<const LobeKind*> kinds;
-        std::vector<LobeColumns::Place> places;
+        std::vector<BsdfBatch::Place> places;
         for (int i = 0; i < 300; ++i) {
             kinds.push_back(lobeKinds()[d.random() % lobeKinds().size()]);
             params.push_back(lobeOf(d, *kinds.back()));
@@ -141,7 +141,7 @@ TEST(LobeColumns, AnswersAreThoseOfOneLobe) {
             for (size_t i = 0; i < params.size(); ++i)
                 if (asked[i]) columns.ask(places[i], from[i]);
             columns.evaluate();
-            std::vector<Answers> got(params.size());
+            std::vector<Services> got(params.size());
             for (size_t i = 0; i < params.size(); ++i)
                 got[i] = {columns.value(places[i]),
                           {},
@@ -155,8 +155,8 @@ TEST(LobeColumns, AnswersAreThoseOfOneLobe) {
             for (size_t i = 0; i < params.size(); ++i) {
                 if (!asked[i]) continue;
                 got[i].drawn = columns.drawn(places[i], got[i].w) ? 1.f : 0.f;
-                const OneLobe one(*kinds[i], params[i]);
-                Answers want{one.value(from[i]), {}, 0, one.albedo(), one.spread(), one.delta() ? 1.f : 0.f};
+                const Bsdf one(*kinds[i], params[i]);
+                Services want{one.value(from[i]), {}, 0, one.albedo(), one.spread(), one.delta() ? 1.f : 0.f};
                 want.drawn = one.sample(u[i], want.w) ? 1.f : 0.f;
                 expectSame(got[i], want, kinds[i]->name, 0, int(i));
             }
@@ -166,7 +166,7 @@ TEST(LobeColumns, AnswersAreThoseOfOneLobe) {
 
 // A draw's density is that of its direction, and what is drawn where one lane of a value is wanted is the code of bsdf():
 // Lambert's law, the closed form of a uniform cone, and a mirror-like exponent's peak.
-TEST(LobeColumns, ClosedForms) {
+TEST(BsdfBatch, ClosedForms) {
     LobeParams p{{0, 0, 1}, {0, 0, 1}, {}, 0, false, {}};
     const Vec3 w = normalize(Vec3(.6f, 0, .8f));
     EXPECT_NEAR(findLobe("diffuse")->fcos(p, w), .8 / kPi, 1e-7);

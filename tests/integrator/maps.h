@@ -3,7 +3,7 @@
 #include "display/imageio.h"
 #include "integrator/harness.h"
 
-namespace alpenglow::transport::testing {
+namespace alpenglow::integrator::testing {
 
 /// An EXR file of three channels; value(x, y, c) is channel c of the pixel in column x and row y. `wrap`: modes in s and t, as
 /// textures carry them ("" none). The result is the path in the quotes of a RIB.
@@ -27,4 +27,4 @@ inline std::string writeMap(const std::string& name, int width, int height, Colo
     return writeMap(name, width, height, [&](int, int, int c) { return colour[c]; });
 }
 
-} // namespace alpenglow::transport::testing
+} // namespace alpenglow::integrator::testing

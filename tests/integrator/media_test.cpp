@@ -4,8 +4,8 @@
 namespace media_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -232,14 +232,14 @@ TEST(MediaLight, LoopsThatWouldRunInThemselves) {
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
         // The floor below the middle: through both sides of the veil and two units of the volume.
         const auto at = [&](const std::string& ball) {
-            return Scene(world(seen + floor + ball), withShaders(h)).one(rayTo({2, 0, 4.5}, {0, 0, 6})).x;
+            return Scene(inWorld(seen + floor + ball), withShaders(h)).one(rayTo({2, 0, 4.5}, {0, 0, 6})).x;
         };
         const double without = at("");
         EXPECT_GT(without, .01);
         EXPECT_NEAR(at(ball(1, "Translate 0 0 3 " + veil + "Interior \"litvolume\" ")) / without, .75 * .75 * std::exp(-.5 * 2),
                     .02)
             << int(h);
-        Scene lit(world(seen + lamp + "Atmosphere \"litvolume\" " + floor), withShaders(h));
+        Scene lit(inWorld(seen + lamp + "Atmosphere \"litvolume\" " + floor), withShaders(h));
         EXPECT_GT(lit.one(rayTo({2, 0, 4.5}, {0, 0, 6})).x, 0) << int(h);
     }
 }
@@ -251,7 +251,7 @@ TEST(MediaLight, TheWayToEmitters) {
     Settings set = withShaders(Hider::Path);
     set.roulette = false;
     const auto seen = [&](const std::string& inside) {
-        return Scene(world("Attribute \"trace\" \"maxspeculardepth\" 9 Translate 0 0 5\n" + inside), set)
+        return Scene(inWorld("Attribute \"trace\" \"maxspeculardepth\" 9 Translate 0 0 5\n" + inside), set)
             .one(rayTo({0, 0, 0}, {0, 0, 1}))
             .x;
     };

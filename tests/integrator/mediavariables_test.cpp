@@ -6,8 +6,8 @@
 namespace mediavariables_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -119,7 +119,7 @@ TEST(ShaderLists, CategoriesMadeWhenTheShaderRuns) {
         } keeper;
         settings.shaderPaths.push_back(shaderFolder());
         ri::RibReader reader({}, keeper, d);
-        reader.readMemory(world(parts + "Surface \"" + name + "\" " + kFloor), "test.rib");
+        reader.readMemory(inWorld(parts + "Surface \"" + name + "\" " + kFloor), "test.rib");
         const auto built = buildWorld(keeper.frame, settings, d);
         std::vector<SampleResult> out(1);
         Integrator i(built, d);

@@ -3,10 +3,9 @@
 #include <functional>
 
 namespace medium_test {
-
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -24,7 +23,7 @@ std::string wall(const std::string& colour = "1 1 1") {
 /// Along z, so far beside the axis.
 CameraRay along(float x = 0) { return rayTo({x, 0, 0}, {x, 0, 1}); }
 /// The origin is 5 before the eye, which is in no ball about it.
-std::string at5(const std::string& inside) { return world("Translate 0 0 5\n" + inside); }
+std::string at5(const std::string& inside) { return inWorld("Translate 0 0 5\n" + inside); }
 constexpr Hider kHiders[] = {Hider::Hidden, Hider::Raytrace, Hider::Path};
 
 TEST(Medium, AbsorptionIsExactUnderEveryHider) {
@@ -69,7 +68,7 @@ TEST(Medium, DimsWhatFades) {
         const std::string ball = walls ? inside(clear + " \"priority\" 2") +
                                              inside("\"color scattering\" [0 0 0] \"priority\" 1", "Sphere .6 -.6 .6 360\n")
                                        : inside(clear);
-        Scene s(world(scene + ball), withShaders(Hider::Path));
+        Scene s(inWorld(scene + ball), withShaders(Hider::Path));
         const Moments m = s.estimate(along(), samples(4000));
         int k = 0;
         for (const double a : {.2, .5, 1.1}) {
@@ -85,10 +84,10 @@ TEST(Medium, DimsWhatFades) {
 TEST(Medium, DepthsOfWhatMovesBesideSuchWalls) {
     writeShader("shine", "surface shine() { Oi = 1; Ci = Cs; }\n");
     const std::string clear = "\"color scattering\" [0 0 0] \"priority\" ";
-    Scene s("Shutter 0 1\n" + world("AttributeBegin Surface \"shine\" MotionBegin [0 1] Translate 0 0 9 Translate 0 0 10 "
-                                    "MotionEnd Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0] AttributeEnd\n" +
-                                    inside(clear + "2", "Sphere 50 -50 50 360\n") + "Translate -2 0 5\n" +
-                                    inside(clear + "1", "Sphere .5 -.5 .5 360\n", "shine")),
+    Scene s("Shutter 0 1\n" + inWorld("AttributeBegin Surface \"shine\" MotionBegin [0 1] Translate 0 0 9 Translate 0 0 10 "
+                                      "MotionEnd Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0] AttributeEnd\n" +
+                                      inside(clear + "2", "Sphere 50 -50 50 360\n") + "Translate -2 0 5\n" +
+                                      inside(clear + "1", "Sphere .5 -.5 .5 360\n", "shine")),
             withShaders(Hider::Hidden));
     std::vector<CameraRay> rays;
     for (int i = 0; i < 40; ++i) {
@@ -223,10 +222,10 @@ TEST(Medium, SurfacesSeeTheFogAboutALampWithoutOutliers) {
         set.mediumSampling = k ? MediumSampling::Distance : MediumSampling::Both;
         const std::string fog = "\"color scattering\" [.1 .1 .1]",
                           floor = "Polygon \"P\" [-.01 0 -.01  -.01 0 .01  .01 0 .01  .01 0 -.01]\n";
-        Scene s(world("LightSource \"pointlight\" 1 \"from\" [" + std::to_string(aside) + " 1 0]\n" +
-                      "AttributeBegin Attribute \"trace\" \"integer maxdiffusedepth\" 0\n" + inside(fog, "Sphere 2 -2 2 360\n") +
-                      "AttributeEnd\n" + "AttributeBegin Illuminate 1 0 Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + floor +
-                      "AttributeEnd\n"),
+        Scene s(inWorld("LightSource \"pointlight\" 1 \"from\" [" + std::to_string(aside) + " 1 0]\n" +
+                        "AttributeBegin Attribute \"trace\" \"integer maxdiffusedepth\" 0\n" +
+                        inside(fog, "Sphere 2 -2 2 360\n") + "AttributeEnd\n" +
+                        "AttributeBegin Illuminate 1 0 Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + floor + "AttributeEnd\n"),
                 set);
         m[k] = s.estimate(rayTo({.002f, .005f, 0}, {0, 0, 0}), samples(40000));
         EXPECT_NEAR(m[k].mean(), want, kZ * m[k].se() + .002 * want) << k << s.messages();
@@ -416,7 +415,7 @@ TEST(Medium, OverlapsBelongToTheHigherPriority) {
 
 TEST(Medium, TheEyeInside) {
     for (const Hider h : kHiders) {
-        Scene s(world(wall() + inside("\"color scattering\" [0 0 0] \"color absorption\" [.6 .6 .6]", "Sphere 3 -3 3 360\n")),
+        Scene s(inWorld(wall() + inside("\"color scattering\" [0 0 0] \"color absorption\" [.6 .6 .6]", "Sphere 3 -3 3 360\n")),
                 withShaders(h));
         EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {0, 0, 1})).x, std::exp(-.6 * 3), 3e-6) << int(h);
     }
@@ -502,15 +501,16 @@ TEST(Slfog, ItsThreeModesAreExact) {
     const double fog[] = {.2, .5, .9}, seen[] = {.8, .3, .6};
     for (const Hider h : kHiders)
         for (const Mode& m : modes) {
-            Scene s(world("Atmosphere \"slfog\" " + std::string(m.given) + " \"color fogcolor\" [.2 .5 .9]\n" + wall(".8 .3 .6")),
-                    withShaders(h));
+            Scene s(
+                inWorld("Atmosphere \"slfog\" " + std::string(m.given) + " \"color fogcolor\" [.2 .5 .9]\n" + wall(".8 .3 .6")),
+                withShaders(h));
             const Color c = s.one(rayTo({0, 0, 0}, {0, 0, 1})); // the wall is 9 away
             const double f = m.f(9);
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(c[k], std::clamp(f * seen[k] + (1 - f) * fog[k], 0., 1.), 2e-6) << int(h) << " " << m.given;
         }
     // The far plane of Clipping is where it ends by itself.
-    Scene s("Clipping 1 4\n" + world("Atmosphere \"slfog\" \"mode\" 1 \"density\" .1 \"color fogcolor\" [0 0 0]\n" + wall()),
+    Scene s("Clipping 1 4\n" + inWorld("Atmosphere \"slfog\" \"mode\" 1 \"density\" .1 \"color fogcolor\" [0 0 0]\n" + wall()),
             withShaders(Hider::Raytrace));
     EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {0, 0, 1})).x, std::exp(-.4), 2e-6);
 }

@@ -5,8 +5,8 @@
 namespace messages_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -16,7 +16,7 @@ const CameraRay kMiddle = rayTo({0, 0, 0}, {.2f, .3f, 2});
 
 /// Large micropolygons: it stays flat, and fine ones of a picture of 640 pixels took nearly all the time.
 std::string displaced(const std::string& shaders) {
-    return world("ShadingRate 64\nAttribute \"displacementbound\" \"float sphere\" [1]\n" + shaders + kSquare);
+    return inWorld("ShadingRate 64\nAttribute \"displacementbound\" \"float sphere\" [1]\n" + shaders + kSquare);
 }
 
 void expectNear(const Color& c, const Color& want, float tolerance, const std::string& what) {
@@ -162,8 +162,8 @@ TEST_P(Hiders, TheAtmosphereAsksTheOthers) {
 TEST_P(Hiders, ParametersThatThePrimitiveOverrides) {
     writeShader("bump", "displacement bump(varying float height = 1;) { P += 0 * N; }\n");
     writeShader("asksbump", "surface asksbump() { float h = 0; displacement(\"height\", h); Oi = 1; Ci = h; }\n");
-    Scene s(world("Displacement \"bump\"\nSurface \"asksbump\"\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2] \"varying float "
-                  "height\" [0 2 2 0]\n"),
+    Scene s(inWorld("Displacement \"bump\"\nSurface \"asksbump\"\nPolygon \"P\" [-1 -1 2  1 -1 2  1 1 2  -1 1 2] \"varying float "
+                    "height\" [0 2 2 0]\n"),
             under(GetParam()));
     EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {.5f, .1f, 2})).x, 1.5f, 1e-5); // 0 at x = -1, 2 at x = 1
 }
@@ -179,7 +179,7 @@ TEST(Messages, OpacityHearsTheDisplacement) {
         "AttributeBegin\nShadingRate 64\nAttribute \"visibility\" \"transmission\" 1\nAttribute \"displacementbound\" "
         "\"float sphere\" [.1]\nDisplacement \"veil\"\nSurface \"veiled\"\n"
         "Polygon \"P\" [-1 5 19  -1 5 21  1 5 21  1 5 19]\nAttributeEnd\n";
-    Scene s(world("LightSource \"sun\" 1\n" + card + "Surface \"sums1\"\n" + kFloor), under(Hider::Raytrace));
+    Scene s(inWorld("LightSource \"sun\" 1\n" + card + "Surface \"sums1\"\n" + kFloor), under(Hider::Raytrace));
     expectNear(s.one(rayTo({.3f, .8f, 19.6f}, {0, 0, 20})), Color(.25f), 1e-5f, "shadow");
 }
 

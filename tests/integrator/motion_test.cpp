@@ -6,8 +6,8 @@
 namespace motion_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -24,7 +24,7 @@ double coverage(Scene& s, const CameraRay& ray, int n = 1000) {
     for (const SampleResult& r : s.trace(rays)) sum += r.opacity.x;
     return sum / n;
 }
-std::string shutter(const std::string& inside) { return "Shutter 0 1\n" + world(inside); }
+std::string shutter(const std::string& inside) { return "Shutter 0 1\n" + inWorld(inside); }
 std::string moving(const std::string& first, const std::string& last) {
     return "MotionBegin [0 1]\n" + first + "\n" + last + "\nMotionEnd\n";
 }
@@ -83,9 +83,9 @@ TEST(Motion, PointsTimesAndSpaces) {
                          "  else if (what == \"mark\") Ci = color(mark); else Ci = color(transform(what, P)); }\n");
     const auto scene = [](const std::string& what, const std::string& before = "") {
         return "Shutter 1 3\n" + before +
-               world("Translate 0 0 5\nMotionBegin [0 4]\nTranslate -2 0 0\nTranslate 6 0 0\nMotionEnd\nSurface \"tells\" "
-                     "\"what\" \"" +
-                     what + "\"\n" + kSquare);
+               inWorld("Translate 0 0 5\nMotionBegin [0 4]\nTranslate -2 0 0\nTranslate 6 0 0\nMotionEnd\nSurface \"tells\" "
+                       "\"what\" \"" +
+                       what + "\"\n" + kSquare);
     };
     // At shutter s the middle lies at x = 4 s.
     for (float s : {0.f, .25f, 1.f}) {
@@ -131,8 +131,8 @@ TEST(Motion, EachPointOfABatchHasItsTimeAndItsEye) {
             EXPECT_EQ(shown(times[i], 1), 2 * rays[i].time) << i;
             EXPECT_EQ(shown(times[i], 2), rays[i].time > .5f ? 1 : 0) << i;
         }
-        Scene eyes(world("AttributeBegin Surface \"tellseye\" Translate 0 5 0 " + std::string(kFloor) +
-                         "AttributeEnd\nSurface \"looksup\"\n" + kFloor),
+        Scene eyes(inWorld("AttributeBegin Surface \"tellseye\" Translate 0 5 0 " + std::string(kFloor) +
+                           "AttributeEnd\nSurface \"looksup\"\n" + kFloor),
                    under(h));
         for (size_t i = 0; i < rays.size(); ++i) rays[i] = rayTo({0, 1, 0}, {.25f + float(i), 0, .5f});
         const std::vector<SampleResult> from = eyes.trace(rays);

@@ -4,8 +4,8 @@
 namespace moving_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -18,7 +18,7 @@ std::string square(const std::string& shaders, const std::string& x = "0") {
 TEST(SurfaceMovesP, OnceAndForRays) {
     writeShader("nearer", "surface nearer(float by = .5;) { P -= vector \"world\" (0, 0, by); Oi = 1; Ci = color(zcomp(P)); }\n");
     for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
-        Scene s(world(square("Surface \"nearer\"")), under(h));
+        Scene s(inWorld(square("Surface \"nearer\"")), under(h));
         const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
         const SampleResult r = s.trace({&ray, 1})[0];
         EXPECT_NEAR(r.z, 2.5, 1e-5);
@@ -34,7 +34,7 @@ TEST(SurfaceMovesP, OnceAndForRays) {
 TEST(SurfaceMovesP, ASphereGrows) {
     writeShader("grows", "surface grows(float by = .2;) { P += by * normalize(N); N = calculatenormal(P); Oi = 1; Ci = "
                          "color(length(P - point \"object\" (0, 0, 0))); }\n");
-    Scene s(world("Translate 0 0 4\nSurface \"grows\"\nSphere 1 -1 1 360\n"), under(Hider::Path));
+    Scene s(inWorld("Translate 0 0 4\nSurface \"grows\"\nSphere 1 -1 1 360\n"), under(Hider::Path));
     auto height = [](float y) { return rayTo({0, y, 0}, {0, y, 4}); };
     EXPECT_NEAR(s.one(height(1.15f)).x, 1.2, 1e-3);
     EXPECT_EQ(s.one(height(1.22f)).x, 0);
@@ -58,8 +58,8 @@ TEST(SurfaceMovesP, LightMeetsTheMovedSurface) {
         "AttributeBegin\nSurface \"constant\"\nPolygon \"P\" [-2 .5 -2  -2 .5 2  2 .5 2  2 .5 -2]\nAttributeEnd\n";
     for (const char* name : {"lifted", "liftedloop"})
         for (Hider h : {Hider::Hidden, Hider::Path}) {
-            Scene s(world(lights + card + "Surface \"" + name +
-                          "\"\nShadingRate 9\nPolygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n"),
+            Scene s(inWorld(lights + card + "Surface \"" + name +
+                            "\"\nShadingRate 9\nPolygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n"),
                     under(h));
             EXPECT_NEAR(s.one(rayTo({.3f, 2.5f, -.4f}, {0, 1, 0})).x, 3, 1e-4) << name;
         }
@@ -69,9 +69,9 @@ TEST(SurfaceMovesP, OpacityOfShadows) {
     writeShader("veil", "surface veil() { P += vector \"world\" (0, 1, 0); Oi = abs(ycomp(transform(\"world\", P)) - 1) < .001 ? "
                         "color(.25) : color(1); Ci = 0; }\n");
     Scene s(
-        world("LightSource \"pointlight\" 1 \"intensity\" 4 \"from\" [0 2 0]\n"
-              "AttributeBegin\nSurface \"veil\"\nShadingRate 9\nPolygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\nAttributeEnd\n"
-              "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\nPolygon \"P\" [-2 .5 -2  -2 .5 2  2 .5 2  2 .5 -2]\n"),
+        inWorld("LightSource \"pointlight\" 1 \"intensity\" 4 \"from\" [0 2 0]\n"
+                "AttributeBegin\nSurface \"veil\"\nShadingRate 9\nPolygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\nAttributeEnd\n"
+                "Surface \"matte\" \"Ka\" 0 \"Kd\" 1\nPolygon \"P\" [-2 .5 -2  -2 .5 2  2 .5 2  2 .5 -2]\n"),
         under(Hider::Path));
     EXPECT_NEAR(s.one(rayTo({.1f, .9f, -.1f}, {0, .5f, 0})).x, .75 * 4 / (1.5 * 1.5), 1e-3);
 }
@@ -93,7 +93,7 @@ TEST(SurfaceMovesP, NotByRays) {
     for (const Case& k : {Case{"byrays", sun, Hider::Hidden}, Case{"bylight", sun, Hider::Path},
                           Case{"bylight", "LightSource \"seen\" 1\n", Hider::Hidden},
                           Case{"bylight", "Attribute \"light\" \"string shadows\" \"on\"\n" + sun, Hider::Hidden}}) {
-        Scene s(world(k.lights + square("Surface \"" + std::string(k.shader) + "\"")), under(k.hider));
+        Scene s(inWorld(k.lights + square("Surface \"" + std::string(k.shader) + "\"")), under(k.hider));
         const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
         const SampleResult r = s.trace({&ray, 1})[0];
         EXPECT_NEAR(r.z, 3, 1e-5) << k.shader << k.lights;
@@ -113,14 +113,14 @@ TEST(SurfaceMovesP, ByLightsThatAreKnown) {
                                "LightSource \"pointlight\" 2 \"intensity\" .5 \"from\" [0 0 0]\n"
                                "LightSource \"spotlight\" 3 \"intensity\" 1 \"from\" [9 0 0] \"to\" [9 0 3] \"coneangle\" .1\n";
     for (Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
-        Scene s(world(lights + square("Surface \"bysource\"")), under(h));
+        Scene s(inWorld(lights + square("Surface \"bysource\"")), under(h));
         const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
         const SampleResult r = s.trace({&ray, 1})[0];
         EXPECT_NEAR(r.z, 2.25, 1e-5) << int(h);
         EXPECT_NEAR(r.color.x, 2.25, 1e-5) << int(h);
         EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     }
-    Scene s(world("LightSource \"distantlight\" 1 \"intensity\" .5 \"to\" [0 0 1]\n" + square("Surface \"bylight\"")),
+    Scene s(inWorld("LightSource \"distantlight\" 1 \"intensity\" .5 \"to\" [0 0 1]\n" + square("Surface \"bylight\"")),
             under(Hider::Hidden));
     const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
     EXPECT_NEAR(s.trace({&ray, 1})[0].z, 2.75, 1e-5);
@@ -128,11 +128,11 @@ TEST(SurfaceMovesP, ByLightsThatAreKnown) {
 // Assigning P what it was moves nothing, and light may decide about what is not P.
 TEST(SurfaceMovesP, OnlyWhereItMoves) {
     writeShader("same", "surface same() { P = P; if (u > 2 && 1 > 2) P += N; Oi = 1; Ci = diffuse(N); }\n");
-    Scene s(world(square("Surface \"same\"")), under(Hider::Hidden));
+    Scene s(inWorld(square("Surface \"same\"")), under(Hider::Hidden));
     EXPECT_EQ(s.messages(), "");
     writeShader("talkslifted", "surface talkslifted() { P -= vector \"world\" (0, 0, .5); printf(\"once\\n\"); illuminance(P, N, "
                                "PI) Ci += Cl; Oi = 1; }\n");
-    Scene t(world(square("Surface \"talkslifted\"")), under(Hider::Hidden));
+    Scene t(inWorld(square("Surface \"talkslifted\"")), under(Hider::Hidden));
     t.one(rayTo({0, 0, 0}, {.3f, .2f, 3}));
     ::testing::internal::CaptureStdout();
     t.world->flushPrints(true);
@@ -142,7 +142,7 @@ TEST(SurfaceMovesP, OnlyWhereItMoves) {
 TEST(SurfaceMovesP, NotBesideADisplacement) {
     writeShader("push", "displacement push(float by = .25;) { P -= vector \"world\" (0, 0, by); }\n");
     writeShader("nearer", "surface nearer(float by = .5;) { P -= vector \"world\" (0, 0, by); Oi = 1; Ci = color(zcomp(P)); }\n");
-    Scene s(world(square("Displacement \"push\"\nSurface \"nearer\"")), under(Hider::Hidden));
+    Scene s(inWorld(square("Displacement \"push\"\nSurface \"nearer\"")), under(Hider::Hidden));
     const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
     EXPECT_NEAR(s.trace({&ray, 1})[0].z, 2.75, 1e-5);
 }
@@ -153,7 +153,7 @@ TEST(Displacement, OfAClass) {
     public void surface(output color Ci, Oi) { Oi = 1; Ci = color(zcomp(P)); }
 }
 )");
-    Scene s(world(square("Surface \"both\"")), under(Hider::Hidden));
+    Scene s(inWorld(square("Surface \"both\"")), under(Hider::Hidden));
     const CameraRay ray = rayTo({0, 0, 0}, {.3f, .2f, 3});
     const SampleResult r = s.trace({&ray, 1})[0];
     EXPECT_NEAR(r.z, 2.5, 1e-5);
@@ -164,7 +164,7 @@ TEST(Displacement, SharedByTwoSurfaces) {
     writeShader("push", "displacement push(float by = .25;) { P -= vector \"world\" (0, 0, by); }\n");
     writeShader("first", "surface first() { Oi = 1; Ci = .25; }\n");
     writeShader("second", "surface second() { Oi = 1; Ci = .75; }\n");
-    Scene s(world("Displacement \"push\"\n" + square("Surface \"first\"", "-1.5") + square("Surface \"second\"", "1.5")),
+    Scene s(inWorld("Displacement \"push\"\n" + square("Surface \"first\"", "-1.5") + square("Surface \"second\"", "1.5")),
             under(Hider::Hidden));
     const CameraRay rays[] = {rayTo({0, 0, 0}, {-1.5f, 0, 3}), rayTo({0, 0, 0}, {1.5f, 0, 3})};
     const auto r = s.trace(rays);
@@ -177,7 +177,7 @@ TEST(Displacement, ObjectSpaceOfEachShape) {
     writeShader("shownormal", "surface shownormal() { Oi = 1; Ci = color(xcomp(N), ycomp(N), zcomp(N)); }\n");
     const std::string shapes = std::string("TransformBegin\nTranslate -1.5 0 0\n") + kSquare +
                                "TransformEnd\nTransformBegin\nTranslate 1.5 0 0\n" + kSquare + "TransformEnd\n";
-    Scene s(world("Displacement \"objectnormal\"\nSurface \"shownormal\"\n" + shapes), under(Hider::Hidden));
+    Scene s(inWorld("Displacement \"objectnormal\"\nSurface \"shownormal\"\n" + shapes), under(Hider::Hidden));
     const CameraRay rays[] = {rayTo({0, 0, 0}, {-1.25f, .5f, 3}), rayTo({0, 0, 0}, {1.75f, .5f, 3})};
     const auto r = s.trace(rays);
     for (int k : {0, 1}) {
@@ -198,12 +198,12 @@ TEST(Displacement, PrimitiveVariables) {
                " 0 0\nPatch \"bilinear\" \"P\" [-1 -1 3  1 -1 3  -1 1 3  1 1 3] " + more + "\nTransformEnd\n";
     };
     const CameraRay rays[] = {rayTo({0, 0, 0}, {-1.5f, 0, 3}), rayTo({0, 0, 0}, {1.5f, 0, 3})};
-    Scene a(declared + world("Displacement \"push\"\nSurface \"depth\"\n" + with("-1.5", "\"by\" [.5]") + with("1.5", "")),
+    Scene a(declared + inWorld("Displacement \"push\"\nSurface \"depth\"\n" + with("-1.5", "\"by\" [.5]") + with("1.5", "")),
             under(Hider::Hidden));
     auto r = a.trace(rays);
     EXPECT_NEAR(r[0].color.x, 2.5, 1e-5);
     EXPECT_NEAR(r[1].color.x, 2.75, 1e-5);
-    Scene b(declared + world("Displacement \"pushvar\"\nSurface \"depth\"\n" + with("-1.5", "\"far\" [1]") + with("1.5", "")),
+    Scene b(declared + inWorld("Displacement \"pushvar\"\nSurface \"depth\"\n" + with("-1.5", "\"far\" [1]") + with("1.5", "")),
             under(Hider::Hidden));
     r = b.trace(rays);
     EXPECT_NEAR(r[0].color.x, 2, 1e-5);
@@ -219,9 +219,9 @@ TEST(Volumes, AskThePrimitive) {
                " 0 0\nPatch \"bilinear\" \"P\" [-1 -1 3  1 -1 3  -1 1 3  1 1 3] " + more + "\nTransformEnd\n";
     };
     const CameraRay rays[] = {rayTo({0, 0, 0}, {-1.5f, 0, 3}), rayTo({0, 0, 0}, {1.5f, 0, 3})};
-    Scene s(
-        world("Atmosphere \"asksvolume\"\nSurface \"constant\"\n" + with("-1.5", "\"uniform float far\" [1]") + with("1.5", "")),
-        under(Hider::Hidden));
+    Scene s(inWorld("Atmosphere \"asksvolume\"\nSurface \"constant\"\n" + with("-1.5", "\"uniform float far\" [1]") +
+                    with("1.5", "")),
+            under(Hider::Hidden));
     auto r = s.trace(rays);
     EXPECT_EQ(r[0].color, Color(1, 1, 0));
     EXPECT_EQ(r[1].color, Color(0, .125f, 0));

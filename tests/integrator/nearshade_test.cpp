@@ -5,8 +5,8 @@
 namespace nearshade_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -77,11 +77,11 @@ TEST(NearShade, TakesAll) {
                 if (byTrace && (!l.area || h == Hider::Hidden)) continue; // trace() meets what has a surface
                 const std::string what = std::string(l.name) + " " + look + " hider " + std::to_string(int(h));
                 const std::string floor = std::string("Surface \"") + look + "\"\n" + kFloor;
-                EXPECT_GT(Scene(world(l.rib + floor), under(h)).estimate(kView, 400).mean(), .1) << what << " without a card";
-                EXPECT_EQ(Scene(world(l.rib + card(1.998) + floor), under(h)).estimate(kView, 400).mean(), 0) << what;
+                EXPECT_GT(Scene(inWorld(l.rib + floor), under(h)).estimate(kView, 400).mean(), .1) << what << " without a card";
+                EXPECT_EQ(Scene(inWorld(l.rib + card(1.998) + floor), under(h)).estimate(kView, 400).mean(), 0) << what;
                 if (h == Hider::Path && std::string(l.name) == "asks itself") continue; // path takes a quarter once more
-                Moments half = Scene(world(l.rib + card(1.998, ".25 .25 .25") + floor), under(h)).estimate(kView, 4000);
-                Moments open = Scene(world(l.rib + floor), under(h)).estimate(kView, 4000);
+                Moments half = Scene(inWorld(l.rib + card(1.998, ".25 .25 .25") + floor), under(h)).estimate(kView, 4000);
+                Moments open = Scene(inWorld(l.rib + floor), under(h)).estimate(kView, 4000);
                 EXPECT_NEAR(half.mean(), .75 * open.mean(), kZ * std::hypot(half.se(), open.se()) + 1e-5)
                     << what << " behind a card that takes a quarter";
             }
@@ -95,8 +95,8 @@ TEST(NearShade, ALampInABall) {
     for (Hider h : {Hider::Path, Hider::Raytrace, Hider::Hidden})
         for (const char* look : {"bydiffuse", "byloop"})
             for (const Light& l : {lights()[0], lights()[1], lights()[5]})
-                EXPECT_EQ(Scene(world(l.rib + ball + "Surface \"" + look + "\"\n" + kFloor), under(h)).estimate(kView, 16).mean(),
-                          0)
+                EXPECT_EQ(
+                    Scene(inWorld(l.rib + ball + "Surface \"" + look + "\"\n" + kFloor), under(h)).estimate(kView, 16).mean(), 0)
                     << l.name << " " << look << " hider " << int(h);
 }
 // "maxdist" ends the ray before what lies beyond; where it meets nothing until then it has met nothing, and shows the sky (under
@@ -105,7 +105,7 @@ TEST(TraceMaxDistance, TheSkyIsBehindIt) {
     const std::string sky = "LightSource \"envlight\" 1 \"intensity\" 1\n", wall = card(10);
     auto shows = [&](const char* name, const std::string& things, const std::string& pairs, int n) {
         writeShader(name, std::string("surface ") + name + "() { Oi = 1; Ci = trace(P, vector(0, 1, 0)" + pairs + "); }\n");
-        return Scene(world(things + "Surface \"" + name + "\"\n" + kFloor), under(Hider::Path)).estimate(kView, n);
+        return Scene(inWorld(things + "Surface \"" + name + "\"\n" + kFloor), under(Hider::Path)).estimate(kView, n);
     };
     EXPECT_NEAR(shows("maxdist1", sky, ", \"maxdist\", 5", 4).mean(), 1, 1e-6);
     EXPECT_NEAR(shows("maxdist2", sky + wall, ", \"maxdist\", 5", 4).mean(), 1, 1e-6) << "a wall beyond it is not met";

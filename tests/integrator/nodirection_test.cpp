@@ -5,8 +5,8 @@
 namespace nodirection_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -18,7 +18,7 @@ Color shown(const std::string& name, const std::string& body, Hider h, const std
     writeShader(name, "surface " + name +
                           "() { vector none = refract(normalize(vector(1, 0.01, 0)), normal(0, -1, 0), 1.5), up = " +
                           "vector \"world\" (0, 1, 0); color c = 0; float d = 0; Ci = 0; Oi = 1; " + body + " }\n");
-    Scene s(world("Attribute \"visibility\" \"int trace\" 1\n" + around + kCard + "Surface \"" + name + "\"\n" + kFloor),
+    Scene s(inWorld("Attribute \"visibility\" \"int trace\" 1\n" + around + kCard + "Surface \"" + name + "\"\n" + kFloor),
             withShaders(h));
     return s.one(kView);
 }
@@ -48,9 +48,9 @@ TEST(NoDirection, NoLengthIsTooLongOrTooShort) {
                               body + " }\n");
         for (const Hider h : kAll) {
             const auto of = [&](const char* size) {
-                Scene s(world("Attribute \"visibility\" \"int trace\" 1 \"int diffuse\" 1\nLightSource \"distantlight\" 1 "
-                              "\"from\" [.3 1 1.5] \"to\" [0 0 0]\n" +
-                              beside + "Surface \"" + name + "\" \"size\" [" + size + "]\n" + kFloor),
+                Scene s(inWorld("Attribute \"visibility\" \"int trace\" 1 \"int diffuse\" 1\nLightSource \"distantlight\" 1 "
+                                "\"from\" [.3 1 1.5] \"to\" [0 0 0]\n" +
+                                beside + "Surface \"" + name + "\" \"size\" [" + size + "]\n" + kFloor),
                         withShaders(h));
                 return s.one(kView);
             };

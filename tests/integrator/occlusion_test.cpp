@@ -7,8 +7,8 @@
 namespace occlusion_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -40,7 +40,7 @@ const std::string kSmall = "Polygon \"P\" [-.01 0 -.01  -.01 0 .01  .01 0 .01  .
 const CameraRay kNear = rayTo({.03f, .08f, -.04f}, {0, 0, 0});
 
 Moments of(const std::string& surface, const std::string& scene, Hider h, int n = 400) {
-    Scene s(world(kSeen + surface + scene), withShaders(h));
+    Scene s(inWorld(kSeen + surface + scene), withShaders(h));
     return s.estimate(kNear, n);
 }
 
@@ -56,7 +56,7 @@ TEST(Occlusion, OfAWall) {
 }
 
 TEST(Occlusion, NeedsNoWaitingKernel) {
-    Scene s(world(kSeen + shows("occaffine", "Cs * (1 - occlusion(P, up, 16))") + kFloor), withShaders(Hider::Path));
+    Scene s(inWorld(kSeen + shows("occaffine", "Cs * (1 - occlusion(P, up, 16))") + kFloor), withShaders(Hider::Path));
     EXPECT_EQ(s.world->facts().suspending, 0);
     EXPECT_EQ(s.one(kNear), Color(1));
 }
@@ -149,8 +149,8 @@ TEST(Occlusion, SamplesAreThoseOfTheAttribute) {
     for (const Case& c : {Case{"occlusion(P, up)", 23}, Case{"occlusion(P, up, 0)", 23}, Case{"occlusion(P, up, -1)", 23},
                           Case{"occlusion(P, up, 5)", 5}, Case{"occlusion(P, up, \"samples\", 6)", 6},
                           Case{"occlusion(P, up, sqrt(-1) * 0 / 0)", 23}, Case{"occlusion(P, up, 1e9)", 4096}}) {
-        Scene s(world(kSeen + "Attribute \"irradiance\" \"integer nsamples\" 23\n" +
-                      shows("occcount", std::string("color ") + c.call) + kFloor),
+        Scene s(inWorld(kSeen + "Attribute \"irradiance\" \"integer nsamples\" 23\n" +
+                        shows("occcount", std::string("color ") + c.call) + kFloor),
                 withShaders(Hider::Path));
         Counters n;
         const CameraRay ray = kNear;
@@ -158,7 +158,7 @@ TEST(Occlusion, SamplesAreThoseOfTheAttribute) {
         EXPECT_EQ(n.shadow, c.rays) << c.call;
         EXPECT_EQ(s.messages().find("4096") != std::string::npos, c.rays == 4096) << s.messages();
     }
-    Scene s(world(kSeen + shows("occcount2", "color occlusion(P, up)") + kFloor), withShaders(Hider::Path));
+    Scene s(inWorld(kSeen + shows("occcount2", "color occlusion(P, up)") + kFloor), withShaders(Hider::Path));
     Counters n;
     const CameraRay ray = kNear;
     s.trace({&ray, 1}, &n);
@@ -185,11 +185,11 @@ TEST(Occlusion, InALight) {
         "occlight",
         "light occlight() { vector up = vector \"world\" (0, 1, 0); solar(-up, 0) { Cl = 1 - occlusion(Ps, up, 64); } }\n");
     for (const Hider h : kAll) {
-        Scene s(world(kSeen + "LightSource \"occlight\" 1\nSurface \"matte\" \"Ka\" 0\n" + kFloor + wall(1)), withShaders(h));
+        Scene s(inWorld(kSeen + "LightSource \"occlight\" 1\nSurface \"matte\" \"Ka\" 0\n" + kFloor + wall(1)), withShaders(h));
         s.world->facts();
         Settings direct = withShaders(h);
         direct.indirect = false;
-        Scene d(world(kSeen + "LightSource \"occlight\" 1\nSurface \"matte\" \"Ka\" 0\n" + kFloor + wall(1)), direct);
+        Scene d(inWorld(kSeen + "LightSource \"occlight\" 1\nSurface \"matte\" \"Ka\" 0\n" + kFloor + wall(1)), direct);
         expectMean(d.estimate(kNear, 400), 1 - ofWall(.5, 1), .01, "hider " + std::to_string(int(h)));
     }
 }
@@ -258,7 +258,7 @@ TEST(IndirectDiffuse, AloneFallsOff) {
 
 TEST(Occlusion, SendsFewerRaysWhereTheyAgree) {
     const auto rays = [](const std::string& scene, const std::string& pairs, double want) {
-        Scene s(world(kSeen + shows("occadapt", "color occlusion(P, up, 64" + pairs + ")") + scene), withShaders(Hider::Path));
+        Scene s(inWorld(kSeen + shows("occadapt", "color occlusion(P, up, 64" + pairs + ")") + scene), withShaders(Hider::Path));
         Counters n;
         const CameraRay ray = kNear;
         const float got = s.trace({&ray, 1}, &n)[0].color.x;

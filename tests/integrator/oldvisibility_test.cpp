@@ -4,8 +4,8 @@
 namespace oldvisibility_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 TEST(OldVisibility, ScenesThatSayNothingMeanEverything) {
     writeShader("upwards", "surface upwards() { Oi = 1; Ci = trace(P, vector(0, 1, 0)); }\n");

@@ -5,8 +5,8 @@
 namespace outputs_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -15,7 +15,7 @@ std::vector<float> aovs(const std::string& rib, Hider h, const std::vector<std::
     Settings set = under(h);
     set.outputs = outputs;
     set.outputWidths = widths;
-    Scene s(world(rib + kFloor), set);
+    Scene s(inWorld(rib + kFloor), set);
     EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     return s.trace(std::vector<CameraRay>{kView})[0].aovs;
 }
@@ -156,7 +156,7 @@ TEST(Outputs, WhatTheRendererSaysOfItself) {
 }
 )");
     for (Hider h : {Hider::Hidden, Hider::Path}) {
-        Scene s(world("Surface \"whoami\"\n" + std::string(kFloor)), under(h));
+        Scene s(inWorld("Surface \"whoami\"\n" + std::string(kFloor)), under(h));
         EXPECT_EQ(s.one(kView), Color(7, 5, 1)) << s.messages();
     }
 }
@@ -174,7 +174,7 @@ TEST(Outputs, AnImagerSeesTheAttributesAtWorldBegin) {
     Scene s(
         "Imager \"seesattributes\"\nAttribute \"user\" \"uniform float lens\" 2\n"
         "Attribute \"identifier\" \"name\" \"camera\"\nShadingRate 4\nColor .25 .5 .75\n" +
-            world(std::string("Attribute \"user\" \"uniform float lens\" 7 \"uniform float later\" 8\nColor 1 1 1\n") + kFloor),
+            inWorld(std::string("Attribute \"user\" \"uniform float lens\" 7 \"uniform float later\" 8\nColor 1 1 1\n") + kFloor),
         under(Hider::Hidden));
     const float x[1] = {.5f}, y[1] = {.5f};
     float r[1] = {1}, g[1] = {1}, b[1] = {1}, a[1] = {1};
@@ -188,7 +188,7 @@ TEST(Outputs, AnImagerSeesTheAttributesAtWorldBegin) {
 TEST(Outputs, AFileWithShadersOfSeveralKinds) {
     writeShader("pair", "surface first() { Oi = 1; Ci = diffuse(faceforward(N, I)); }\nlight second() { solar(vector \"world\" "
                         "(0, -1, 0), 0) { Cl = color(1, 2, 3); } }\n");
-    Scene s(world(std::string("LightSource \"pair\" 1\nSurface \"pair\"\n") + kFloor), under(Hider::Hidden));
+    Scene s(inWorld(std::string("LightSource \"pair\" 1\nSurface \"pair\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
     EXPECT_EQ(s.one(kView), Color(1, 2, 3));
 }
@@ -218,7 +218,7 @@ TEST(Outputs, ArraysOfCoShaders) {
     const std::string two =
         "Shader \"table\" \"one\" \"float tab[3]\" [4 5 6] \"color tones[2]\" [1 1 1 .1 .2 .3]\nShader \"table\" \"two\"\n";
     auto of = [&](const char* what) {
-        Scene s(world(two + "Surface \"readstable\" \"what\" " + what + "\n" + kFloor), under(Hider::Hidden));
+        Scene s(inWorld(two + "Surface \"readstable\" \"what\" " + what + "\n" + kFloor), under(Hider::Hidden));
         EXPECT_EQ(s.diagnostics.warnings(), 0) << s.messages();
         return s.one(kView);
     };
@@ -252,9 +252,9 @@ surface asksrows() {
     Ci = color(found, w[2] + 10 * arraylength(more) + 100 * out[1], h[0] + 10 * v[1]);
 }
 )");
-    Scene s(
-        world(std::string("LightSource \"rows\" 1 \"float w[3]\" [5 6 7]\nExterior \"dense\"\nSurface \"asksrows\"\n") + kFloor),
-        under(Hider::Hidden));
+    Scene s(inWorld(std::string("LightSource \"rows\" 1 \"float w[3]\" [5 6 7]\nExterior \"dense\"\nSurface \"asksrows\"\n") +
+                    kFloor),
+            under(Hider::Hidden));
     EXPECT_EQ(s.one(kView), Color(3 + 1 + 3, 7 + 30 + 4500, 5 + 60));
 }
 
@@ -280,7 +280,8 @@ TEST(Outputs, VariablesOfThePrimitive) {
     const std::string floor = "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60] \"uniform string label\" [\"here\"] "
                               "\"constant float weight\" [4] \"constant float[2] pair\" [2 3] \"st\" [0 0 0 1 1 1 1 0]\n";
     auto of = [&](const char* what) {
-        return Scene(world(std::string("Surface \"asksvars\" \"what\" ") + what + "\n" + floor), under(Hider::Hidden)).one(kView);
+        return Scene(inWorld(std::string("Surface \"asksvars\" \"what\" ") + what + "\n" + floor), under(Hider::Hidden))
+            .one(kView);
     };
     EXPECT_EQ(of("0"), Color(6 + 10 + 100, 1, 4));
     EXPECT_EQ(of("1"), Color(32, 2 + 30, 0));
@@ -306,7 +307,7 @@ TEST(Outputs, ImagersHaveCoShaders) {
 }
 )");
     Scene s("Format 40 30 1\nShader \"grade\" \"look\" \"color by\" [2 3 5]\nImager \"graded\"\n" +
-                world(std::string("Shader \"grade\" \"later\"\n") + kFloor),
+                inWorld(std::string("Shader \"grade\" \"later\"\n") + kFloor),
             under(Hider::Hidden));
     const float x[1] = {.5f}, y[1] = {.5f};
     float r[1] = {1}, g[1] = {1}, b[1] = {1}, a[1] = {1};
@@ -326,7 +327,7 @@ TEST(Outputs, ImagersHaveDerivatives) {
     alpha = sizes;
 }
 )");
-    Scene s("Format 40 30 1\nImager \"stepped\"\n" + world(kFloor), under(Hider::Hidden));
+    Scene s("Format 40 30 1\nImager \"stepped\"\n" + inWorld(kFloor), under(Hider::Hidden));
     const float x[3] = {9.75f, 10.25f, 30.5f}, y[3] = {15.25f, 14.5f, 3.5f};
     float r[3] = {1, 1, 1}, g[3] = {1, 1, 1}, b[3] = {1, 1, 1}, a[3] = {1, 1, 1};
     ASSERT_TRUE(s.world->runImager(3, x, y, r, g, b, a, s.diagnostics));
@@ -345,7 +346,7 @@ TEST(Outputs, AClassIsAnImager) {
     writeShader("grade", "class grade(color by = color(1, 2, 4);) { public void tone(output color c) { c *= by; } }\n");
     writeShader("classed", "class classed(float gain = 2;) { public void imager(output varying color Ci, Oi) { shader g = "
                            "getshader(\"look\"); g->tone(Ci); Ci *= gain; } }\n");
-    Scene s("Shader \"grade\" \"look\"\nImager \"classed\" \"gain\" 3\n" + world(kFloor), under(Hider::Hidden));
+    Scene s("Shader \"grade\" \"look\"\nImager \"classed\" \"gain\" 3\n" + inWorld(kFloor), under(Hider::Hidden));
     const float x[1] = {.5f}, y[1] = {.5f};
     float r[1] = {1}, g[1] = {1}, b[1] = {1}, a[1] = {1};
     ASSERT_TRUE(s.world->runImager(1, x, y, r, g, b, a, s.diagnostics));
@@ -369,7 +370,7 @@ TEST(Outputs, WhatAnImagerMakesOpaqueHasAlpha) {
                                                                    {"neither", {.25f, .75f}},
                                                                    {"someopaque", {.25f, 1}}};
     for (const auto& [name, wanted] : all) {
-        Scene s("Imager \"" + std::string(name) + "\"\n" + world(kFloor), under(Hider::Hidden));
+        Scene s("Imager \"" + std::string(name) + "\"\n" + inWorld(kFloor), under(Hider::Hidden));
         const float x[2] = {.5f, 1.5f}, y[2] = {.5f, .5f};
         float r[2] = {.5f, .5f}, g[2] = {0, 0}, b[2] = {0, 0}, a[2] = {.25f, .75f};
         ASSERT_TRUE(s.world->runImager(2, x, y, r, g, b, a, s.diagnostics)) << name;
@@ -390,7 +391,7 @@ TEST(Outputs, AttributesOfAnotherTypeAreNotTold) {
     Oi = 1; Ci = color(found * 10 + right, f, s == "kept" ? comp(c, 1) : -1);
 }
 )");
-    Scene s(world(std::string("Color .25 .5 1\nSurface \"askswrong\"\n") + kFloor), under(Hider::Hidden));
+    Scene s(inWorld(std::string("Color .25 .5 1\nSurface \"askswrong\"\n") + kFloor), under(Hider::Hidden));
     EXPECT_EQ(s.one(kView), Color(2, 5, .5f));
 }
 

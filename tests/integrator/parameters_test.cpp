@@ -6,8 +6,8 @@
 namespace parameters_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -39,7 +39,7 @@ TEST(Parameters, OfTexture) {
 )");
     const std::string map = plain("parameters_wood.exr", 16, {.5f, .25f, .125f});
     for (int form = 0; form < 4; ++form) {
-        Scene s(world("Surface \"alltexture\" " + map + " \"form\" " + std::to_string(form) + "\n" + kFloor),
+        Scene s(inWorld("Surface \"alltexture\" " + map + " \"form\" " + std::to_string(form) + "\n" + kFloor),
                 under(Hider::Hidden));
         near(s.one(kView), {.75f, .25f, .125f}, 1e-5, "form " + std::to_string(form));
     }
@@ -52,7 +52,7 @@ TEST(Parameters, FillOfTexture) {
     Ci = color(texture(map[7], s, t, "fill", 0.9), texture(map[7], s, t), texture(map[2], s, t, "fill", 0.9));
 }
 )");
-    Scene s(world("Surface \"filled\" " + plain("parameters_wood.exr", 16, {.5f, .25f, .125f}) + "\n" + kFloor),
+    Scene s(inWorld("Surface \"filled\" " + plain("parameters_wood.exr", 16, {.5f, .25f, .125f}) + "\n" + kFloor),
             under(Hider::Hidden));
     near(s.one(kView), {.9f, 0, .125f}, 1e-5, "fill");
 }
@@ -77,7 +77,7 @@ TEST(Parameters, OfEnvironment) {
 )");
     const std::string map = plain("parameters_sky.exr", 32, {.5f, .25f, .125f});
     for (int form = 0; form < 3; ++form) {
-        Scene s(world("Surface \"allsky\" " + map + " \"form\" " + std::to_string(form) + "\n" + kFloor), under(Hider::Hidden));
+        Scene s(inWorld("Surface \"allsky\" " + map + " \"form\" " + std::to_string(form) + "\n" + kFloor), under(Hider::Hidden));
         near(s.one(kView), {.75f, .25f, .125f}, 1e-5, "form " + std::to_string(form));
     }
 }
@@ -91,7 +91,7 @@ TEST(Parameters, OfBump) {
     Ci = color(length(vector(a)), length(vector(b)), length(vector(c)));
 }
 )");
-    Scene s(world("Surface \"allbump\" " + plain("parameters_bump.exr", 16, Color(.5f)) + "\n" + kFloor), under(Hider::Hidden));
+    Scene s(inWorld("Surface \"allbump\" " + plain("parameters_bump.exr", 16, Color(.5f)) + "\n" + kFloor), under(Hider::Hidden));
     near(s.one(kView), Color(0), 1e-4, "bump");
 }
 
@@ -109,7 +109,7 @@ TEST(Parameters, SlopesOfBump) {
     const std::string wave = writeMap(
         "parameters_wave.exr", 256, 256, [](int x, int, int) { return float(std::sin(2 * kPi * (x + .5) / 256)); },
         "periodic,periodic");
-    Scene s(world("Attribute \"shade\" \"derivatives\" \"exact\"\nSurface \"slopebump\" \"map\" " + wave + "\n" + kFloor),
+    Scene s(inWorld("Attribute \"shade\" \"derivatives\" \"exact\"\nSurface \"slopebump\" \"map\" " + wave + "\n" + kFloor),
             under(Hider::Hidden));
     // Slopes of .36 at most, two texels of phase off (2 pi / 256 each): .018.
     for (int i = 0; i < 16; ++i)
@@ -119,9 +119,9 @@ TEST(Parameters, SlopesOfBump) {
 
 /// A room of brightness 1 around a floor.
 std::string room(const std::string& surface) {
-    return world("AttributeBegin\nAttribute \"visibility\" \"trace\" 1 \"transmission\" 1\nSurface \"constant\"\nSphere 50 -50 "
-                 "50 360\nAttributeEnd\nSurface " +
-                 surface + "\nPolygon \"P\" [-1 0 -1  -1 0 1  1 0 1  1 0 -1]\n");
+    return inWorld("AttributeBegin\nAttribute \"visibility\" \"trace\" 1 \"transmission\" 1\nSurface \"constant\"\nSphere 50 -50 "
+                   "50 360\nAttributeEnd\nSurface " +
+                   surface + "\nPolygon \"P\" [-1 0 -1  -1 0 1  1 0 1  1 0 -1]\n");
 }
 
 TEST(Parameters, OfTrace) {
@@ -211,19 +211,19 @@ TEST(Parameters, CategoriesOfLights) {
     Ci = color(arraylength(keys), arraylength(all), mine);
 }
 )");
-    Scene s(world("LightSource \"lampof\" 1 \"__category\" \"key\" \"bright\" 3\nLightSource \"lampof\" 2 \"__category\" "
-                  "\"fill,key\" \"bright\" 4\n"
-                  "LightSource \"lampof\" 3 \"__category\" \"fill\" \"bright\" 8\nSurface \"asksall\"\n" +
-                  std::string(kFloor)),
+    Scene s(inWorld("LightSource \"lampof\" 1 \"__category\" \"key\" \"bright\" 3\nLightSource \"lampof\" 2 \"__category\" "
+                    "\"fill,key\" \"bright\" 4\n"
+                    "LightSource \"lampof\" 3 \"__category\" \"fill\" \"bright\" 8\nSurface \"asksall\"\n" +
+                    std::string(kFloor)),
             under(Hider::Hidden));
     near(s.one(kView), {2, 3, 7}, 1e-6, "categories");
 }
 
 TEST(Parameters, AmbientLight) {
     writeShader("onlyambient", "surface onlyambient() { Oi = 1; Ci = ambient(); }\n");
-    Scene s(world("LightSource \"ambientlight\" 1 \"intensity\" .25\nLightSource \"ambientlight\" 2 \"intensity\" .5 "
-                  "\"lightcolor\" [1 0 0]\nSurface \"onlyambient\"\n" +
-                  std::string(kFloor)),
+    Scene s(inWorld("LightSource \"ambientlight\" 1 \"intensity\" .25\nLightSource \"ambientlight\" 2 \"intensity\" .5 "
+                    "\"lightcolor\" [1 0 0]\nSurface \"onlyambient\"\n" +
+                    std::string(kFloor)),
             withShaders(Hider::Hidden));
     near(s.one(kView), {.75f, .25f, .25f}, 1e-6, "ambient");
 }

@@ -6,8 +6,8 @@
 namespace raysets_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -26,7 +26,7 @@ Color shows(const std::string& name, const std::string& expression, const std::s
             const std::string& floor = "") {
     writeShader(name, "surface " + name + "() { vector up = vector \"world\" (0, 1, 0); point far = P + 50 * up; Oi = 1; " +
                           expression + " }\n");
-    Scene s(world("AttributeBegin " + floor + " Surface \"" + name + "\" " + kFloor + "AttributeEnd\n" + others),
+    Scene s(inWorld("AttributeBegin " + floor + " Surface \"" + name + "\" " + kFloor + "AttributeEnd\n" + others),
             withShaders(hider));
     return s.one(kLow);
 }
@@ -182,7 +182,7 @@ TEST(RaySets, EnvironmentWithEveryParameter) {
             + environment("raytrace", up, "bsdf", "cosine", "samplecone", .2, "samplelights", 1);
         Ci += 0 * (a + b + c + d + e + color(n)); Oi = 1; })");
     for (const Hider h : {Hider::Hidden, Hider::Path}) {
-        Scene s(world("Surface \"envevery\" " + std::string(kFloor) + pane(1, "Color .25 .5 .75")), withShaders(h));
+        Scene s(inWorld("Surface \"envevery\" " + std::string(kFloor) + pane(1, "Color .25 .5 .75")), withShaders(h));
         const Color c = s.one(kLow);
         EXPECT_TRUE(std::isfinite(c.x) && c.y > 0) << c.x;
         EXPECT_EQ(s.messages().find("has no parameter"), std::string::npos) << s.messages();
@@ -229,7 +229,7 @@ TEST(RaySets, ConesOfRays) {
     const auto mean = [&](const char* name, const std::string& ci, const std::string& what) {
         writeShader(name,
                     std::string("surface ") + name + "() { vector up = vector \"world\" (0, 1, 0); Oi = 1; Ci = " + ci + "; }\n");
-        Scene s(world(std::string("AttributeBegin Surface \"") + name + "\" " + kFloor + "AttributeEnd\n" + what),
+        Scene s(inWorld(std::string("AttributeBegin Surface \"") + name + "\" " + kFloor + "AttributeEnd\n" + what),
                 withShaders(Hider::Raytrace));
         return s.estimate(kLow, samples(2000));
     };
@@ -252,9 +252,9 @@ TEST(RaySets, MapsThatAreRays) {
                 "filters of maps");
     expectColor(shows("env4", "Ci = environment(\"raytrace\", -up);", wall), Color(0), "nothing there");
     writeShader("mirrors", "surface mirrors(string map = \"\") { Oi = 1; Ci = environment(map, vector \"world\" (0, 1, 0)); }\n");
-    Scene s(
-        world(std::string("AttributeBegin Surface \"mirrors\" \"string map\" \"raytrace\" ") + kFloor + "AttributeEnd\n" + wall),
-        withShaders(Hider::Raytrace));
+    Scene s(inWorld(std::string("AttributeBegin Surface \"mirrors\" \"string map\" \"raytrace\" ") + kFloor + "AttributeEnd\n" +
+                    wall),
+            withShaders(Hider::Raytrace));
     expectColor(s.one(kLow), {.25f, .5f, .75f}, "parameter");
     EXPECT_EQ(s.messages(), "");
 }
@@ -270,9 +270,9 @@ TEST(RaySets, ShadowsThatAreRays) {
             const std::string name = "shadowed" + std::to_string(n++);
             writeShader(name, "light " + name + "(string map = \"\") { " + begin + take + " } }\n");
             const auto of = [&](const std::string& over) {
-                return Scene(world("LightSource \"" + name +
-                                   "\" 1 \"string map\" \"raytrace\" AttributeBegin Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " +
-                                   kFloor + "AttributeEnd\n" + over),
+                return Scene(inWorld("LightSource \"" + name +
+                                     "\" 1 \"string map\" \"raytrace\" AttributeBegin Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " +
+                                     kFloor + "AttributeEnd\n" + over),
                              withShaders(Hider::Hidden))
                     .one(kLow)
                     .x;
@@ -286,7 +286,7 @@ TEST(RaySets, ShadowsThatAreRays) {
     writeShader("looped",
                 "surface looped() { Oi = 1; Ci = 0; illuminance(P, N, PI) Ci += Cl * (1 - shadow(\"raytrace\", P)); }\n");
     const auto of = [&](const std::string& over) {
-        return Scene(world(lamp + "AttributeBegin Surface \"looped\" " + kFloor + "AttributeEnd\n" + over),
+        return Scene(inWorld(lamp + "AttributeBegin Surface \"looped\" " + kFloor + "AttributeEnd\n" + over),
                      withShaders(Hider::Hidden))
             .one(kLow)
             .x;
@@ -302,8 +302,8 @@ TEST(RaySets, LightsThatTrace) {
         writeShader(name, "light " + name +
                               "() { vector up = vector \"world\" (0, 1, 0); illuminate(point \"world\" (0, 1, 0)) { " + body +
                               " } }\n");
-        return Scene(world("LightSource \"" + name + "\" 1 AttributeBegin Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + kFloor +
-                           "AttributeEnd\n" + wall),
+        return Scene(inWorld("LightSource \"" + name + "\" 1 AttributeBegin Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + kFloor +
+                             "AttributeEnd\n" + wall),
                      withShaders(Hider::Hidden))
             .one(kLow);
     };
@@ -316,8 +316,8 @@ TEST(RaySets, LightsThatTrace) {
     // Lights that trace are seen by rays that lights send: the wall is matte and lit by the same lamp, one bounce deeper.
     writeShader("above5", "light above5() { illuminate(point \"world\" (0, 1, 0)) Cl = .5 + trace(Ps, vector \"world\" (0, 1, "
                           "0), \"maxdist\", 3); }\n");
-    Scene deep(world(std::string("LightSource \"above5\" 1 Surface \"matte\" \"Ka\" 0 \"Kd\" 1 ") + kFloor +
-                     "Polygon \"P\" [-9 2 -9  -9 2 9  9 2 9  9 2 -9]\n"),
+    Scene deep(inWorld(std::string("LightSource \"above5\" 1 Surface \"matte\" \"Ka\" 0 \"Kd\" 1 ") + kFloor +
+                       "Polygon \"P\" [-9 2 -9  -9 2 9  9 2 9  9 2 -9]\n"),
                withShaders(Hider::Hidden));
     expectColor(deep.one(kLow), Color(1), "two bounces: .5 of the lamp, and .5 that it gives to the wall");
 }

@@ -7,8 +7,8 @@
 namespace records_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -107,9 +107,9 @@ TEST(Records, DoNotDependOnTheirOrder) {
 struct Interpolated {
     Scene scene;
     explicit Interpolated(const std::string& name, const std::string& value, Hider h, bool backwards = false)
-        : scene(world((writeShader(name, "surface " + name + "() { vector up = vector \"world\" (0, 1, 0); Ci = " + value +
-                                             "; Oi = 1; }\n"),
-                       kSeen + "Surface \"" + name + "\"\n" + kFloor + kWall)),
+        : scene(inWorld((writeShader(name, "surface " + name + "() { vector up = vector \"world\" (0, 1, 0); Ci = " + value +
+                                               "; Oi = 1; }\n"),
+                         kSeen + "Surface \"" + name + "\"\n" + kFloor + kWall)),
                 withShaders(h)) {
         for (int step = 4; step >= 1; step /= 2) {
             std::vector<CameraRay> rays;
@@ -194,9 +194,9 @@ TEST(Records, AreOfTheRaysThatTheirSurfacesSend) {
         return "AttributeBegin Attribute \"grouping\" \"string tracesubset\" \"" + std::string(subset) +
                "\" Surface \"recgroups\" Polygon \"P\" [" + x + "] AttributeEnd\n";
     };
-    Scene s(world(kSeen + half("walls", "-60 0 -60  -60 0 0  60 0 0  60 0 -60") +
-                  half("others", "-60 0 0  -60 0 60  60 0 60  60 0 0") +
-                  "Attribute \"grouping\" \"string membership\" \"walls\"\n" + kWall),
+    Scene s(inWorld(kSeen + half("walls", "-60 0 -60  -60 0 0  60 0 0  60 0 -60") +
+                    half("others", "-60 0 0  -60 0 60  60 0 60  60 0 0") +
+                    "Attribute \"grouping\" \"string membership\" \"walls\"\n" + kWall),
             withShaders(Hider::Raytrace));
     for (int step = 4; step >= 1; step /= 2) {
         for (int y = 0; y < 16; y += step)

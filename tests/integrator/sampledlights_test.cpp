@@ -6,8 +6,8 @@
 namespace sampledlights_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -80,12 +80,12 @@ TEST_P(SampledLights, PointLight) {
     writeWhite();
     const std::string light = above("LightSource \"onepoint\" 1 \"intensity\" 9.42477796 \"lightcolor\" [1 .5 0]\n");
     for (const char* surface : {"white", "loops"}) {
-        const Color c = Scene(world(light + "Surface \"" + surface + "\"\n" + kFloor), under(GetParam())).one(kView);
+        const Color c = Scene(inWorld(light + "Surface \"" + surface + "\"\n" + kFloor), under(GetParam())).one(kView);
         EXPECT_NEAR(c[0], .75, 1e-5) << surface;
         EXPECT_NEAR(c[1], .375, 1e-5) << surface;
         EXPECT_EQ(c[2], 0) << surface;
     }
-    const Color c = Scene(world(light + std::string("Surface \"answers\"\n") + kFloor), under(GetParam())).one(kView);
+    const Color c = Scene(inWorld(light + std::string("Surface \"answers\"\n") + kFloor), under(GetParam())).one(kView);
     EXPECT_NEAR(c[0], .75, 1e-5);
     EXPECT_NEAR(c[1], .1875, 1e-5);
 }
@@ -96,10 +96,10 @@ TEST_P(SampledLights, SquareOfSeveralSamples) {
     writeWhite();
     const double a = .25, r = std::sqrt(1 + a * a), factor = 4 / (2 * M_PI) * 2 * (a / r) * std::atan(a / r);
     // More samples than have turns share those.
-    for (const std::string& n : {std::string("1"), std::string("4"), std::to_string(limits::kLightTurns + 36)})
+    for (const std::string& n : {std::string("1"), std::string("4"), std::to_string(limits::kLightIterations + 36)})
         for (const char* surface : {"white", "loops"}) {
-            Scene s(world(facingDown(std::string("LightSource \"shape\" 1 \"n\" ") + n + "\n") + "Surface \"" + surface + "\"\n" +
-                          kFloor),
+            Scene s(inWorld(facingDown(std::string("LightSource \"shape\" 1 \"n\" ") + n + "\n") + "Surface \"" + surface +
+                            "\"\n" + kFloor),
                     under(GetParam()));
             expectMean(s.estimate(kView, samples(n.size() > 1 ? 4000 : 16000)), factor, .01, std::string(surface) + " " + n);
         }
@@ -109,7 +109,7 @@ TEST_P(SampledLights, SquareOfSeveralSamples) {
 // sends.
 TEST_P(SampledLights, SphereOfSeveralSamples) {
     writeWhite();
-    Scene s(world(above("LightSource \"shape\" 1 \"n\" 8 \"shape\" \"sphere\"\n") + kWhite + kFloor), under(GetParam()));
+    Scene s(inWorld(above("LightSource \"shape\" 1 \"n\" 8 \"shape\" \"sphere\"\n") + kWhite + kFloor), under(GetParam()));
     expectMean(s.estimate(kView, samples(10000)), 1. / 16, .01, "sphere");
 }
 
@@ -118,7 +118,7 @@ TEST_P(SampledLights, TurnsOfTheLoop) {
     writeWhite();
     for (int n : {1, 5}) {
         const std::string light = facingDown("LightSource \"shape\" 1 \"n\" " + std::to_string(n) + "\n");
-        const Color c = Scene(world(light + "Surface \"turns\"\n" + kFloor), under(GetParam())).one(kView);
+        const Color c = Scene(inWorld(light + "Surface \"turns\"\n" + kFloor), under(GetParam())).one(kView);
         EXPECT_EQ(c[0], n);
         EXPECT_GE(c[1], 2 * n * (1 - 1e-6));
         EXPECT_LE(c[1], std::sqrt(4.5) * n);
@@ -132,11 +132,11 @@ TEST_P(SampledLights, ThatSayZeroLightDirectlightingAlone) {
     const double a = .25, r = std::sqrt(1 + a * a), factor = 4 / (2 * M_PI) * 2 * (a / r) * std::atan(a / r);
     const std::string light = facingDown("LightSource \"zero\" 1 \"n\" 4\n");
     for (const char* surface : {"white", "loops"}) {
-        Scene s(world(light + "Surface \"" + surface + "\"\n" + kFloor), under(GetParam()));
+        Scene s(inWorld(light + "Surface \"" + surface + "\"\n" + kFloor), under(GetParam()));
         if (GetParam() == Hider::Path) expectMean(s.estimate(kView, samples(4000)), factor, .01, surface);
         else EXPECT_EQ(s.one(kView), Color(0)) << surface;
     }
-    Scene s(world(light + "Surface \"answers\"\n" + kFloor), under(GetParam()));
+    Scene s(inWorld(light + "Surface \"answers\"\n" + kFloor), under(GetParam()));
     expectMean(s.estimate(kView, samples(4000)), factor, .01, "directlighting()");
 }
 
@@ -155,7 +155,7 @@ TEST_P(SampledLights, ByTheirHandles) {
     }
 )");
     const double a = .25, r = std::sqrt(1 + a * a), factor = 4 / (2 * M_PI) * 2 * (a / r) * std::atan(a / r);
-    Scene s(world(facingDown("LightSource \"shape\" 1 \"n\" 4\n") + "Surface \"called\"\n" + kFloor), under(GetParam()));
+    Scene s(inWorld(facingDown("LightSource \"shape\" 1 \"n\" 4\n") + "Surface \"called\"\n" + kFloor), under(GetParam()));
     expectMean(s.estimate(kView, samples(10000)), factor, .01, "handle");
 }
 
@@ -166,10 +166,10 @@ TEST_P(SampledLights, Shadows) {
     const std::string card =
         "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nAttribute \"visibility\" \"camera\" 0 \"transmission\" \"opaque\"\n"
         "Polygon \"P\" [-5 1 -5  -5 1 5  5 1 5  5 1 -5]\nAttributeEnd\n";
-    Scene s(world(facingDown("LightSource \"shape\" 1 \"n\" 4\n") + card + kWhite + kFloor), withShaders(GetParam()));
+    Scene s(inWorld(facingDown("LightSource \"shape\" 1 \"n\" 4\n") + card + kWhite + kFloor), withShaders(GetParam()));
     EXPECT_EQ(s.one(kView), Color(0));
     const std::string light = above("LightSource \"onepoint\" 1 \"intensity\" 9.42477796\n");
-    Scene open(world(light + card + kWhite + kFloor), withShaders(GetParam()));
+    Scene open(inWorld(light + card + kWhite + kFloor), withShaders(GetParam()));
     EXPECT_NEAR(open.one(kView)[0], GetParam() == Hider::Path ? 0 : .75, 1e-5);
 }
 
@@ -191,7 +191,7 @@ TEST_P(SampledLights, RejectedSamples) {
     }
 )");
     // Densities 1 and 3: (1 + 1/3) / 2.
-    EXPECT_NEAR(Scene(world(above("LightSource \"some\" 1\n") + std::string("Surface \"loops\"\n") + kFloor), under(GetParam()))
+    EXPECT_NEAR(Scene(inWorld(above("LightSource \"some\" 1\n") + std::string("Surface \"loops\"\n") + kFloor), under(GetParam()))
                     .one(kView)[0],
                 2. / 3, 1e-5);
 }
@@ -207,7 +207,7 @@ TEST_P(SampledLights, LightsThatAreNoSuch) {
         }
     }
 )");
-    EXPECT_NEAR(Scene(world(above("LightSource \"two\" 1\n") + kWhite + kFloor), under(GetParam())).one(kView)[0], 1, 1e-5);
+    EXPECT_NEAR(Scene(inWorld(above("LightSource \"two\" 1\n") + kWhite + kFloor), under(GetParam())).one(kView)[0], 1, 1e-5);
 }
 
 // A layer of a material has methods of these names, too.
@@ -219,7 +219,7 @@ TEST_P(SampledLights, LayersAreNoLights) {
 )");
     writeShader("layered", "class layered() { public void surface(output color Ci, Oi) { shader l = getshader(\"one\"); Oi = 1; "
                            "Ci = l->gives(); } }\n");
-    EXPECT_EQ(Scene(world("Shader \"layer\" \"one\" \"k\" .25\nSurface \"layered\"\n" + std::string(kFloor)), under(GetParam()))
+    EXPECT_EQ(Scene(inWorld("Shader \"layer\" \"one\" \"k\" .25\nSurface \"layered\"\n" + std::string(kFloor)), under(GetParam()))
                   .one(kView)[0],
               .25f);
 }

@@ -5,8 +5,8 @@
 namespace samplelights_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -36,15 +36,15 @@ TEST(SampleLights, EachLightOnce) {
                 const std::string what =
                     std::string(h == Hider::Path ? "path" : "raytrace") + (suspend ? ", waiting" : "") + more;
                 const std::string surface = look("samplelights", more);
-                Scene both(world(std::string(kPoint) + kSun + surface + kFloor), s);
+                Scene both(inWorld(std::string(kPoint) + kSun + surface + kFloor), s);
                 EXPECT_NEAR(both.one(kView).x, kPointValue + kSunValue, 2e-5) << what;
-                Scene none(world(std::string(kPoint) + kSun + look("samplearealights", more) + kFloor), s);
+                Scene none(inWorld(std::string(kPoint) + kSun + look("samplearealights", more) + kFloor), s);
                 EXPECT_EQ(none.one(kView).x, 0) << what;
             }
-    Scene sky(world(std::string(kPoint) + kSun + kSky + look("samplelights") + kFloor), under(Hider::Path));
+    Scene sky(inWorld(std::string(kPoint) + kSun + kSky + look("samplelights") + kFloor), under(Hider::Path));
     expectMean(sky.estimate(kView, samples(2000)), kPointValue + kSunValue + .25, .01, "with a sky");
 }
-// Beside diffuse() each has its own part, and a sphere that shines is seen by both techniques.
+// LightDirected diffuse() each has its own part, and a sphere that shines is seen by both techniques.
 TEST(SampleLights, AreaLightsAsBefore) {
     const std::string lamp =
         "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"slrect\" 7 \"intensity\" 3\n"
@@ -53,7 +53,7 @@ TEST(SampleLights, AreaLightsAsBefore) {
         Settings s = withShaders(Hider::Path);
         s.bsdfOnly = mode == 1;
         s.lightOnly = mode == 2;
-        Scene scene(world(lamp + look("samplelights") + kFloor), s);
+        Scene scene(inWorld(lamp + look("samplelights") + kFloor), s);
         expectMean(scene.estimate(kView, samples(mode == 1 ? 60000 : 8000)), 3 * .0625, .02, "mode " + std::to_string(mode));
     }
 }
@@ -61,7 +61,7 @@ TEST(SampleLights, AreaLightsAsBefore) {
 // sees no point.
 TEST(SampleLights, WhatIsLeftOut) {
     const std::string surface = look("samplelights");
-    const auto value = [](const std::string& scene) { return Scene(world(scene), under(Hider::Path)).one(kView).x; };
+    const auto value = [](const std::string& scene) { return Scene(inWorld(scene), under(Hider::Path)).one(kView).x; };
     EXPECT_EQ(value("Attribute \"light\" \"string samplingstrategy\" \"illuminance\"\n" + std::string(kPoint) + surface + kFloor),
               0);
     EXPECT_EQ(value(kPoint + look("samplelights", ", \"maxdist\", 2") + kFloor), 0);
@@ -81,8 +81,8 @@ TEST(SampleLights, FacetsAsOfTheLoop) {
                         "(normal(0, 1, 0), V, .3, .15, u, eta[0], eta[1]);\nelse Ci = trace(P, vector(0, 1, 0), "
                         "\"distribution\", \"" +
                         op + "\", \"wo\", V, \"udir\", u, " + pairs + ", \"eta\", eta, \"samplelights\", 1);\n}\n");
-        Scene loop(world(std::string(kPoint) + kSun + "Surface \"facetlook\" \"which\" 0\n" + kFloor), under(Hider::Raytrace));
-        Scene traced(world(std::string(kPoint) + kSun + "Surface \"facetlook\" \"which\" 1\n" + kFloor), under(Hider::Path));
+        Scene loop(inWorld(std::string(kPoint) + kSun + "Surface \"facetlook\" \"which\" 0\n" + kFloor), under(Hider::Raytrace));
+        Scene traced(inWorld(std::string(kPoint) + kSun + "Surface \"facetlook\" \"which\" 1\n" + kFloor), under(Hider::Path));
         const Color a = loop.one(kView), b = traced.one(kView);
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 2e-5 * (1 + a[k])) << op;
         EXPECT_GT(a.x, .05);

@@ -6,8 +6,8 @@
 namespace shadowmaps_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -44,7 +44,8 @@ CameraRay at(float x, float z = 0) { return rayTo({x, 3, z}, {x, 0, z}); }
 
 Scene floorOf(const std::string& name, const std::string& body, const std::string& before = "", Hider h = Hider::Hidden) {
     writeShader(name, "surface " + name + "(string map = \"\") { Oi = 1; " + body + " }\n");
-    return Scene(before + world("Surface \"" + name + "\" \"string map\" " + lampMap("lamp.shd") + " " + kFloor), withShaders(h));
+    return Scene(before + inWorld("Surface \"" + name + "\" \"string map\" " + lampMap("lamp.shd") + " " + kFloor),
+                 withShaders(h));
 }
 
 TEST(ShadowMaps, TheShadowOfASquare) {
@@ -107,7 +108,7 @@ TEST(ShadowMaps, FourPointsSpanTheFilter) {
         "four",
         "surface four(string map = \"\") { vector a = vector \"world\" (1, 0, 0), b = vector \"world\" (0, 0, 1); Oi = 1;"
         " float f = shadow(map, P - a - b, P + a - b, P - a + b, P + a + b, \"bias\", .01, \"samples\", 1024); Ci = f; }\n");
-    Scene s(world("Surface \"four\" \"string map\" " + lampMap("lamp.shd") + " " + kFloor), withShaders(Hider::Hidden));
+    Scene s(inWorld("Surface \"four\" \"string map\" " + lampMap("lamp.shd") + " " + kFloor), withShaders(Hider::Hidden));
     for (float x = .9f; x < 3.2f; x += .1f) EXPECT_NEAR(s.one(at(x)).x, std::clamp((3 - x) / 2, 0.f, 1.f), 1 / 32. + 1e-3) << x;
 }
 
@@ -141,7 +142,7 @@ TEST(ShadowMaps, OfLights) {
                           "shadow(map, Ps, \"bias\", .01)); }\n");
     const std::string inside =
         "LightSource \"mapped\" 1 \"string map\" " + lampMap("lamp.shd") + " Surface \"matte\" \"Ka\" 0 \"Kd\" 1 " + kFloor;
-    Scene hidden(world(inside), withShaders(Hider::Hidden)), path(world(inside), withShaders(Hider::Path));
+    Scene hidden(inWorld(inside), withShaders(Hider::Hidden)), path(inWorld(inside), withShaders(Hider::Path));
     for (const float x : {0.f, 1.9f, 2.1f, 3.f}) {
         const double lit = std::pow(16 / (16 + double(x) * x), 1.5);
         EXPECT_NEAR(hidden.one(at(x)).x, x < 2 ? 0 : lit, 1e-5) << x;
@@ -163,7 +164,7 @@ TEST(ShadowMaps, OfShippedLights) {
     for (const std::string& name : names)
         for (const std::string& map : {lampMap("lamp.shd"), std::string("\"none\"")})
             for (const Hider h : {Hider::Hidden, Hider::Path}) {
-                Scene s(world("LightSource " + name + map + " \"bias\" .01\nSurface \"matte\" \"Ka\" 0 \"Kd\" 1 " + kFloor),
+                Scene s(inWorld("LightSource " + name + map + " \"bias\" .01\nSurface \"matte\" \"Ka\" 0 \"Kd\" 1 " + kFloor),
                         withShaders(h));
                 const bool dark = h == Hider::Hidden && map != "\"none\"";
                 for (const float x : {0.f, -1.9f}) EXPECT_EQ(s.one(at(x, .5f)).x == 0, dark) << name << map << x;
@@ -174,7 +175,7 @@ TEST(ShadowMaps, OfShippedLights) {
 
 TEST(ShadowMaps, AMissingMapIsSaidOnceAndLit) {
     writeShader("nomap", "surface nomap() { Ci = shadow(\"none.shd\", P); Oi = 1; }\n");
-    Scene s(world("Surface \"nomap\" " + std::string(kFloor)), withShaders(Hider::Hidden));
+    Scene s(inWorld("Surface \"nomap\" " + std::string(kFloor)), withShaders(Hider::Hidden));
     EXPECT_EQ(s.one(at(0)).x, 0);
     EXPECT_EQ(s.one(at(1)).x, 0);
     EXPECT_EQ(s.diagnostics.errors(), 1) << s.messages();
@@ -182,7 +183,7 @@ TEST(ShadowMaps, AMissingMapIsSaidOnceAndLit) {
 
 TEST(ShadowMaps, APictureIsNoShadowMap) {
     writeShader("picturemap", "surface picturemap(string map = \"\") { Ci = shadow(map, P); Oi = 1; }\n");
-    Scene s(world("Surface \"picturemap\" \"string map\" " + writeMap("picture.exr", 4, 4, Color(1)) + " " + kFloor),
+    Scene s(inWorld("Surface \"picturemap\" \"string map\" " + writeMap("picture.exr", 4, 4, Color(1)) + " " + kFloor),
             withShaders(Hider::Hidden));
     EXPECT_EQ(s.one(at(0)).x, 0);
     EXPECT_NE(s.messages().find("is not a shadow map"), std::string::npos) << s.messages();
@@ -205,13 +206,13 @@ TEST(ShadowMaps, SamplesOfClassLights) {
     const std::string card = "AttributeBegin\nSurface \"constant\"\nAttribute \"visibility\" \"camera\" 0 \"transmission\" "
                              "\"opaque\"\nPolygon \"P\" [-90 1 -90  -90 1 90  90 1 90  90 1 -90]\nAttributeEnd\n";
     for (const Hider h : {Hider::Hidden, Hider::Raytrace}) { // under path lights trace their shadows
-        Scene s(world(light + kFloor), withShaders(h));
+        Scene s(inWorld(light + kFloor), withShaders(h));
         EXPECT_EQ(s.one(at(0)).x, 0);
         EXPECT_EQ(s.one(at(-1.9f)).y, 0);
         EXPECT_NEAR(s.one(at(2.5f)).x, 1, 1e-5);
         EXPECT_NEAR(s.one(at(2.5f)).z, .25, 1e-5);
         EXPECT_EQ(s.messages(), "");
-        EXPECT_NEAR(Scene(world(light + card + kFloor), withShaders(h)).one(at(2.5f)).x, 1, 1e-5);
+        EXPECT_NEAR(Scene(inWorld(light + card + kFloor), withShaders(h)).one(at(2.5f)).x, 1, 1e-5);
     }
 }
 

@@ -6,8 +6,8 @@
 namespace sides_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -24,8 +24,8 @@ std::string sheet(bool up, const std::string& sides = "Sides 1\n") {
 bool upIsBack() {
     static const bool back = [] {
         writeShader("sidewhite", "surface sidewhite() { Oi = 1; Ci = 1; }\n");
-        Scene s(world("AttributeBegin\nSurface \"sidewhite\"\nSides 1\nPatch \"bilinear\" \"P\" [-9 1 -9  9 1 -9  -9 1 9  9 1 "
-                      "9]\nAttributeEnd\n"),
+        Scene s(inWorld("AttributeBegin\nSurface \"sidewhite\"\nSides 1\nPatch \"bilinear\" \"P\" [-9 1 -9  9 1 -9  -9 1 9  9 1 "
+                        "9]\nAttributeEnd\n"),
                 withShaders(Hider::Path));
         return s.one(rayTo({0, 0, 0}, {.1f, 1, 0})).x == 0;
     }();
@@ -59,17 +59,17 @@ void shaders() {
 TEST(SidesOne, EveryWayOfFindingALamp) {
     shaders();
     for (const int mode : {0, 1, 2}) {
-        Scene seen(world(kLamp + open() + kLambert + kFloor), of(Hider::Path, mode));
+        Scene seen(inWorld(kLamp + open() + kLambert + kFloor), of(Hider::Path, mode));
         const Moments m = seen.estimate(kBelow, samples(mode == 1 ? 12'000 : 3000));
         EXPECT_NEAR(m.mean(), underLamp(), kZ * m.se()) << mode;
         EXPECT_LE(m.se(), .03 * underLamp()) << mode;
-        Scene dark(world(kLamp + closed() + kLambert + kFloor), of(Hider::Path, mode));
+        Scene dark(inWorld(kLamp + closed() + kLambert + kFloor), of(Hider::Path, mode));
         EXPECT_EQ(dark.estimate(kBelow, 500).mean(), 0) << mode;
     }
-    Scene loop(world(kLamp + open() + "Surface \"sideloop\"\n" + kFloor), of(Hider::Path));
+    Scene loop(inWorld(kLamp + open() + "Surface \"sideloop\"\n" + kFloor), of(Hider::Path));
     const Moments m = loop.estimate(kBelow, samples(3000));
     EXPECT_NEAR(m.mean(), underLamp(), kZ * m.se());
-    EXPECT_EQ(Scene(world(kLamp + closed() + "Surface \"sideloop\"\n" + kFloor), of(Hider::Path)).estimate(kBelow, 500).mean(),
+    EXPECT_EQ(Scene(inWorld(kLamp + closed() + "Surface \"sideloop\"\n" + kFloor), of(Hider::Path)).estimate(kBelow, 500).mean(),
               0);
 }
 
@@ -77,12 +77,12 @@ TEST(SidesOne, PointLightsAndSkies) {
     const std::string point = "Attribute \"light\" \"string shadows\" \"on\"\nLightSource \"pointlight\" 1 \"float intensity\" 9 "
                               "\"point from\" [0 3 0]\n";
     for (const Hider h : {Hider::Path, Hider::Hidden, Hider::Raytrace}) {
-        EXPECT_NEAR(Scene(world(point + open() + kLambert + kFloor), of(h)).one(kBelow).x, 1, 1e-5);
-        EXPECT_EQ(Scene(world(point + closed() + kLambert + kFloor), of(h)).one(kBelow).x, 0);
-        EXPECT_EQ(Scene(world(point + sheet(upIsBack(), "") + kLambert + kFloor), of(h)).one(kBelow).x, 0);
+        EXPECT_NEAR(Scene(inWorld(point + open() + kLambert + kFloor), of(h)).one(kBelow).x, 1, 1e-5);
+        EXPECT_EQ(Scene(inWorld(point + closed() + kLambert + kFloor), of(h)).one(kBelow).x, 0);
+        EXPECT_EQ(Scene(inWorld(point + sheet(upIsBack(), "") + kLambert + kFloor), of(h)).one(kBelow).x, 0);
     }
     const std::string sky = "LightSource \"envlight\" 1 \"float intensity\" 1\n";
-    const Moments m = Scene(world(sky + open() + kLambert + kFloor), of(Hider::Path)).estimate(kBelow, 400);
+    const Moments m = Scene(inWorld(sky + open() + kLambert + kFloor), of(Hider::Path)).estimate(kBelow, 400);
     EXPECT_NEAR(m.mean(), 1, kZ * m.se() + .02); // beside the sheet at flat angles, too
 }
 
@@ -98,16 +98,16 @@ TEST(SidesOne, Transmission) {
     for (const Hider h : {Hider::Path, Hider::Hidden}) {
         for (const char* back : {"0", "1"}) {
             const std::string way = "Surface \"sideway\" \"float back\" " + std::string(back) + "\n" + kFloor;
-            EXPECT_NEAR(Scene(world(open() + way), of(h)).one(kBelow).x, 1, 1e-6) << back;
-            EXPECT_EQ(Scene(world(closed() + way), of(h)).one(kBelow).x, 0) << back;
+            EXPECT_NEAR(Scene(inWorld(open() + way), of(h)).one(kBelow).x, 1, 1e-6) << back;
+            EXPECT_EQ(Scene(inWorld(closed() + way), of(h)).one(kBelow).x, 0) << back;
             const std::string light = "LightSource \"sideray\" 1 \"float back\" " + std::string(back) + "\n";
-            EXPECT_NEAR(Scene(world(light + open() + kLambert + kFloor), of(h)).one(kBelow).x, 1, 1e-5) << back;
-            EXPECT_EQ(Scene(world(light + closed() + kLambert + kFloor), of(h)).one(kBelow).x, 0) << back;
+            EXPECT_NEAR(Scene(inWorld(light + open() + kLambert + kFloor), of(h)).one(kBelow).x, 1, 1e-5) << back;
+            EXPECT_EQ(Scene(inWorld(light + closed() + kLambert + kFloor), of(h)).one(kBelow).x, 0) << back;
         }
         for (const auto& [sides, openIs, closedIs] : {std::tuple{"front", 1, 0}, {"back", 0, 1}, {"both", 0, 0}}) {
             const std::string way = "Surface \"sideway\" \"string sides\" \"" + std::string(sides) + "\"\n" + kFloor;
-            EXPECT_EQ(Scene(world(open() + way), of(h)).one(kBelow).x, float(openIs)) << sides;
-            EXPECT_EQ(Scene(world(closed() + way), of(h)).one(kBelow).x, float(closedIs)) << sides;
+            EXPECT_EQ(Scene(inWorld(open() + way), of(h)).one(kBelow).x, float(openIs)) << sides;
+            EXPECT_EQ(Scene(inWorld(closed() + way), of(h)).one(kBelow).x, float(closedIs)) << sides;
         }
     }
 }
@@ -119,7 +119,7 @@ TEST(SidesOne, Photons) {
                               "\"\nSides 1\n" + kLambert +
                               "Patch \"bilinear\" \"P\" [-9 1 -9  9 1 -9  -9 1 9  9 1 9]\nAttributeEnd\n";
     const auto landed = [](const std::string& rib, float height) { // as diffuse() would have it, near the axis
-        Scene s(world(rib), of(Hider::Path));
+        Scene s(inWorld(rib), of(Hider::Path));
         PhotonEmission emission(s.world, {}, s.diagnostics);
         PhotonEmission::Thread thread(emission, s.diagnostics);
         std::vector<StoredPhoton> all;

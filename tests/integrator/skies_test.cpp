@@ -8,8 +8,8 @@
 namespace skies_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -48,7 +48,7 @@ Settings of(int mode) {
     return s;
 }
 std::string lit(const std::string& lights, const std::string& floor = kLambert, const std::string& more = "") {
-    return world(lights + more + floor + kFloor);
+    return inWorld(lights + more + floor + kFloor);
 }
 const char* const kSunny = "LightSource \"sunny\" 1\n";
 

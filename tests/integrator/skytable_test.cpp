@@ -11,7 +11,7 @@
 namespace skytable_test {
 
 using namespace alpenglow;
-using transport::SkyTable;
+using world::SkyTable;
 
 namespace {
 

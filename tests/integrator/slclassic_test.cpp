@@ -4,8 +4,8 @@
 namespace slclassic_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -41,7 +41,7 @@ TEST(SlClassic, LightAndItsHighlight) {
     for (const double exponent : {1., 10., 60., 700.})
         for (const Hider h : {Hider::Raytrace, Hider::Hidden}) {
             Scene s(
-                world(
+                inWorld(
                     lamp +
                     floor(
                         "\"color diffusecolor\" [.2 .4 .6] \"color specularcolor\" [.3 .2 .1] \"color ambientcolor\" [.1 .2 .3] "
@@ -55,14 +55,14 @@ TEST(SlClassic, LightAndItsHighlight) {
                 "exponent " + std::to_string(exponent));
         }
     // Ambient lights; a light below the horizon; more than white is white.
-    Scene ambient(world("LightSource \"ambientlight\" 1 \"float intensity\" .25\n" +
-                        floor("\"color ambientcolor\" [.4 .8 1] \"color diffusecolor\" [0 0 0]")),
+    Scene ambient(inWorld("LightSource \"ambientlight\" 1 \"float intensity\" .25\n" +
+                          floor("\"color ambientcolor\" [.4 .8 1] \"color diffusecolor\" [0 0 0]")),
                   withShaders(Hider::Raytrace));
     expectColour(ambient.one(kView), {.1, .2, .25}, "ambient");
-    Scene below(world("LightSource \"slpoint\" 1 \"point from\" [0 -1 0]\n" + floor("\"float shininess\" 1")),
+    Scene below(inWorld("LightSource \"slpoint\" 1 \"point from\" [0 -1 0]\n" + floor("\"float shininess\" 1")),
                 withShaders(Hider::Raytrace));
     expectColour(below.one(kView), {0, 0, 0}, "below");
-    Scene bright(world(lamp + floor("\"color diffusecolor\" [90 90 90]")), withShaders(Hider::Raytrace));
+    Scene bright(inWorld(lamp + floor("\"color diffusecolor\" [90 90 90]")), withShaders(Hider::Raytrace));
     expectColour(bright.one(kView), {1, 1, 1}, "cut at 1");
 }
 
@@ -71,7 +71,7 @@ TEST(SlClassic, Shadows) {
     const std::string lamp = "Attribute \"light\" \"string shadows\" \"on\"\nLightSource \"slpoint\" 1 \"float intensity\" .5 "
                              "\"point from\" [0 2 0]\n";
     for (const bool blocked : {false, true}) {
-        Scene s(world(lamp + (blocked ? wall : "") + floor("\"color specularcolor\" [0 0 0] \"color diffusecolor\" [1 1 1]")),
+        Scene s(inWorld(lamp + (blocked ? wall : "") + floor("\"color specularcolor\" [0 0 0] \"color diffusecolor\" [1 1 1]")),
                 withShaders(Hider::Raytrace));
         Counters c;
         const Moments m = s.estimate(rayTo({.3f, .5f, -.4f}, {0, 0, 0}), 4, &c);
@@ -86,9 +86,9 @@ TEST(SlClassic, Mirrors) {
     for (const char* fresnel : {"0", "1"}) {                      // Schlick's formula is for what lets light through
         Scene s(
             kRays +
-                world(card(3) +
-                      floor("\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"float kr\" .4 \"float fresnel\" " +
-                            std::string(fresnel))),
+                inWorld(card(3) +
+                        floor("\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"float kr\" .4 \"float fresnel\" " +
+                              std::string(fresnel))),
             withShaders(Hider::Raytrace));
         Counters c;
         const Moments m = s.estimate(kView, 8, &c);
@@ -109,7 +109,7 @@ TEST(SlClassic, GlassBySnellAndSchlick) {
     const std::string glass = "\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"float kn\" 1.5 \"float kr\" .1 "
                               "\"float kt\" .7 \"float fresnel\" ";
     for (const bool fresnel : {false, true}) {
-        Scene s(kRays + world(card(3) + card(-2) + floor(glass + (fresnel ? "1" : "0"))), withShaders(Hider::Raytrace));
+        Scene s(kRays + inWorld(card(3) + card(-2) + floor(glass + (fresnel ? "1" : "0"))), withShaders(Hider::Raytrace));
         Counters c;
         const Moments m = s.estimate(kView, 8, &c);
         const double F = kr + (1 - kr) * std::pow(1 - cosine, 5), through = fresnel ? 1 - F : kt, back = fresnel ? F : kr;
@@ -124,7 +124,7 @@ TEST(SlClassic, GlassBySnellAndSchlick) {
     // From inside: out below the critical angle, all back beyond it.
     const std::string inside = "\"color diffusecolor\" [0 0 0] \"color ambientcolor\" [0 0 0] \"float kn\" 1.5 \"float kr\" 0 "
                                "\"float kt\" 1 \"float fresnel\" 0";
-    Scene s(kRays + world(card(3) + card(-2) + floor(inside)), withShaders(Hider::Raytrace));
+    Scene s(kRays + inWorld(card(3) + card(-2) + floor(inside)), withShaders(Hider::Raytrace));
     for (const double x : {.3, .85, .95, 3.}) { // the critical tangent is 1 / sqrt(1.25) = .894
         const double sin1 = x / std::sqrt(1 + x * x), sin2 = 1.5 * sin1;
         const Color c = s.one(rayTo({float(-x), -1, 0}, {0, 0, 0}));
@@ -154,7 +154,7 @@ TEST(SlClassic, ContributionIsCut) {
                  {" \"float mincontribution\" 1", 0},
                  {" \"float mincontribution\" 0", 20}};
     for (const auto& c : cases) {
-        Scene s(kRays + world(floor(looks + c.more) + upper), withShaders(Hider::Raytrace));
+        Scene s(kRays + inWorld(floor(looks + c.more) + upper), withShaders(Hider::Raytrace));
         Counters count;
         const Moments m = s.estimate(rayTo({0, .5f, 0}, {0, 0, 0}), 1, &count);
         double want = 0;
@@ -170,7 +170,7 @@ TEST(SlClassic, ContributionIsCut) {
     writeShader("weightless", "surface weightless() { float w = 0; rayinfo(\"weight\", w); Oi = 1; Ci = w + .5 * trace(P, N, "
                               "\"weight\", color(.5, .25, 0)); }\n");
     Scene s("Option \"trace\" \"int maxdepth\" 3\n" +
-                world("Attribute \"trace\" \"int maxspeculardepth\" 3\nSurface \"weightless\"\n" + std::string(kFloor) + upper),
+                inWorld("Attribute \"trace\" \"int maxspeculardepth\" 3\nSurface \"weightless\"\n" + std::string(kFloor) + upper),
             withShaders(Hider::Raytrace));
     EXPECT_NEAR(s.one(rayTo({0, .5f, 0}, {0, 0, 0})).x, 1 + .25 + .0625 + .015625,
                 1e-6); // (1/2 of the sum) times (1/2 of the weight)

@@ -6,8 +6,8 @@
 namespace slproject_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -84,7 +84,7 @@ TEST(SlProject, WrapModesAndFilters) {
                                    c.wrapv + "\", \"" + filter + "\");",
                                map),
                        texel(c.column, c.row), std::string(c.wrapu) + c.wrapv + filter);
-    // Beside the middles: the texel, or a mean of two of a row.
+    // LightDirected the middles: the texel, or a mean of two of a row.
     const double u = 3.9 / 8, v = 4.5 / 8;
     expectNear(valueOf("Ci = slTexture2D(map, " + number(u) + ", " + number(v) + ", \"repeat\", \"repeat\", \"nearest\");", map),
                texel(3, 4), "nearest");

@@ -5,8 +5,8 @@
 namespace softshadows_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -41,7 +41,7 @@ std::string lampText(const char* call, const std::string& radius = ".5", int n =
            " \"point from\" [0 2 0] \"float radius\" " + radius + " \"float samples\" " + std::to_string(n) + "\n";
 }
 const std::string kMatte = "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + std::string(kFloor);
-const CameraRay kBeside = rayTo({-.3f, .5f, -.4f}, {0, 0, 0});
+const CameraRay kLightDirected = rayTo({-.3f, .5f, -.4f}, {0, 0, 0});
 
 void writeLambert() {
     writeShader("sums", "surface sums() { Oi = 1; illuminance(P, N, PI/2) Ci += Cl * (normalize(L) . normalize(N)); }\n");
@@ -59,10 +59,10 @@ TEST(SoftShadows, BehindAnEdgeUnderPath) {
             for (const char* surface : {"matte\" \"float Ka\" 0 \"float Kd\" 1 \"", "sums", "waits"}) {
                 const std::string s(surface), shader = s.substr(0, s.find('"'));
                 const std::string floor = shader == "matte" ? kMatte : "Surface \"" + shader + "\"\n" + kFloor;
-                Scene scene(world(lampText(lamp.call) + floor + half(edge)), withShaders(Hider::Path));
+                Scene scene(inWorld(lampText(lamp.call) + floor + half(edge)), withShaders(Hider::Path));
                 Counters c;
                 const int n = 4096;
-                const Moments m = scene.estimate(kBeside, n, &c);
+                const Moments m = scene.estimate(kLightDirected, n, &c);
                 expectMean(m, lamp.open * seen(edge), .05, lamp.call + shader + std::to_string(edge));
                 EXPECT_EQ(c.shadow, uint64_t(n)) << lamp.call << shader;
             }
@@ -73,22 +73,23 @@ TEST(SoftShadows, AllSamplesUnderTheOthers) {
     for (const Lamp& lamp : kLamps)
         for (const Hider h : {Hider::Raytrace, Hider::Hidden})
             for (const double edge : {-.05, .1}) {
-                Scene scene(world(lampText(lamp.call, ".5", 256) + kMatte + half(edge)), withShaders(h));
+                Scene scene(inWorld(lampText(lamp.call, ".5", 256) + kMatte + half(edge)), withShaders(h));
                 Counters c;
                 // 256 points of a net: each cell of 16 x 16 has one, and the edge cuts at most 2 * 16 of them in u and 16 more.
-                EXPECT_NEAR(scene.estimate(kBeside, 1, &c).mean(), lamp.open * seen(edge), lamp.open * 48 / 256) << lamp.call;
+                EXPECT_NEAR(scene.estimate(kLightDirected, 1, &c).mean(), lamp.open * seen(edge), lamp.open * 48 / 256)
+                    << lamp.call;
                 EXPECT_EQ(c.shadow, 256u) << lamp.call;
-                Scene many(world(lampText(lamp.call, ".5", 4) + kMatte + half(edge)), withShaders(h));
-                expectMean(many.estimate(kBeside, 2048), lamp.open * seen(edge), .03, lamp.call);
+                Scene many(inWorld(lampText(lamp.call, ".5", 4) + kMatte + half(edge)), withShaders(h));
+                expectMean(many.estimate(kLightDirected, 2048), lamp.open * seen(edge), .03, lamp.call);
             }
 }
 
 TEST(SoftShadows, OfRadiusZeroAreThoseOfThePoint) {
     for (const Hider h : {Hider::Raytrace, Hider::Path})
         for (const double edge : {-.05, .1}) {
-            Scene scene(world(lampText(kLamps[0].call, "0", 9) + kMatte + half(edge)), withShaders(h));
+            Scene scene(inWorld(lampText(kLamps[0].call, "0", 9) + kMatte + half(edge)), withShaders(h));
             Counters c;
-            const Moments m = scene.estimate(kBeside, 16, &c);
+            const Moments m = scene.estimate(kLightDirected, 16, &c);
             EXPECT_NEAR(m.mean(), edge > 0 ? .5 : 0, 1e-6);
             EXPECT_EQ(c.shadow, 16u);
         }
@@ -97,7 +98,7 @@ TEST(SoftShadows, OfRadiusZeroAreThoseOfThePoint) {
 // What is lit wholly has no noise: only the shadow knows the disk.
 TEST(SoftShadows, TheGeometryIsThatOfTheCentre) {
     for (const Hider h : {Hider::Raytrace, Hider::Path}) {
-        Scene scene(world(lampText(kLamps[0].call, "1.5", 4) + kMatte), withShaders(h));
+        Scene scene(inWorld(lampText(kLamps[0].call, "1.5", 4) + kMatte), withShaders(h));
         const Moments m = scene.estimate(rayTo({1.f, .5f, 0}, {1.5f, 0, 0}), 64);
         const double d2 = 1.5 * 1.5 + 4;
         EXPECT_NEAR(m.mean(), 2 / d2 * 2 / std::sqrt(d2), 2e-6);
@@ -111,9 +112,9 @@ TEST(SoftShadows, WhatIsBelowTheHorizonIsNotSeen) {
                              "\"point from\" [2 .01 0] \"float radius\" .5 \"float samples\" 4\n";
     const double d2 = 4 + 1e-4, open = .01 / std::sqrt(d2) / d2;
     for (const Hider h : {Hider::Raytrace, Hider::Path}) {
-        Scene scene(world(lamp + kMatte), withShaders(h));
+        Scene scene(inWorld(lamp + kMatte), withShaders(h));
         // The disk stands almost upright: what is above the floor is .5 + 2 (.01 / .5) / pi of it.
-        expectMean(scene.estimate(kBeside, 4096), open * partOfDisk(.02), .02, "low");
+        expectMean(scene.estimate(kLightDirected, 4096), open * partOfDisk(.02), .02, "low");
     }
 }
 
@@ -123,9 +124,9 @@ TEST(SoftShadows, NestedLoops) {
                 "surface product() { Oi = 1; illuminance(P, N, PI/2) { color outer = Cl; illuminance(P, N, PI/2) Ci += "
                 "Cl * outer; } }\n");
     for (const Hider h : {Hider::Raytrace, Hider::Path}) {
-        Scene scene(world(lampText("\"pointlight\" 1 \"float intensity\" 4") + "Surface \"product\"\n" + kFloor + half(.1)),
+        Scene scene(inWorld(lampText("\"pointlight\" 1 \"float intensity\" 4") + "Surface \"product\"\n" + kFloor + half(.1)),
                     withShaders(h));
-        expectMean(scene.estimate(kBeside, 8192), seen(.1) * seen(.1), .03, "product");
+        expectMean(scene.estimate(kLightDirected, 8192), seen(.1) * seen(.1), .03, "product");
     }
 }
 
@@ -138,21 +139,21 @@ TEST(SoftShadows, OfAnyShaderAndByHandles) {
     for (const char* surface : {"matte", "byhandle"}) {
         const std::string looks = std::string("Surface \"") + surface + "\"" +
                                   (std::string(surface) == "matte" ? " \"float Ka\" 0 \"float Kd\" 1\n" : "\n") + kFloor;
-        Scene scene(world("LightSource \"ownsoft\" 1\n" + looks + half(.1)), withShaders(Hider::Path));
-        expectMean(scene.estimate(kBeside, 4096), seen(.1), .03, surface);
+        Scene scene(inWorld("LightSource \"ownsoft\" 1\n" + looks + half(.1)), withShaders(Hider::Path));
+        expectMean(scene.estimate(kLightDirected, 4096), seen(.1), .03, surface);
     }
 }
 
 TEST(SoftShadows, NonsenseIsSaid) {
-    Scene negative(world(lampText(kLamps[0].call, "-1") + kMatte + half(.1)), withShaders(Hider::Path));
-    EXPECT_NEAR(negative.estimate(kBeside, 4).mean(), .5, 1e-6);
+    Scene negative(inWorld(lampText(kLamps[0].call, "-1") + kMatte + half(.1)), withShaders(Hider::Path));
+    EXPECT_NEAR(negative.estimate(kLightDirected, 4).mean(), .5, 1e-6);
     EXPECT_NE(negative.messages().find("the shadows of a point"), std::string::npos) << negative.messages();
-    Scene scene(world(lampText(kLamps[0].call, ".1", 0) + kMatte), withShaders(Hider::Raytrace));
-    EXPECT_NEAR(scene.estimate(kBeside, 4).mean(), .5, 1e-6);
+    Scene scene(inWorld(lampText(kLamps[0].call, ".1", 0) + kMatte), withShaders(Hider::Raytrace));
+    EXPECT_NEAR(scene.estimate(kLightDirected, 4).mean(), .5, 1e-6);
     EXPECT_NE(scene.messages().find("1 is used"), std::string::npos) << scene.messages();
-    Scene many(world(lampText(kLamps[0].call, ".1", 5000) + kMatte), withShaders(Hider::Raytrace));
+    Scene many(inWorld(lampText(kLamps[0].call, ".1", 5000) + kMatte), withShaders(Hider::Raytrace));
     Counters c;
-    EXPECT_NEAR(many.estimate(kBeside, 1, &c).mean(), .5, 1e-6);
+    EXPECT_NEAR(many.estimate(kLightDirected, 1, &c).mean(), .5, 1e-6);
     EXPECT_EQ(c.shadow, 4096u);
     EXPECT_NE(many.messages().find("4096"), std::string::npos) << many.messages();
 }

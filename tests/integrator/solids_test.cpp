@@ -9,8 +9,8 @@
 namespace solids_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -127,8 +127,8 @@ void expectLight(const std::string& rib, double want, double known, const std::s
     }
 }
 std::string onFloor(const std::string& lights, const std::string& on = "Illuminate 1 1\n") {
-    return world("AttributeBegin\nSurface \"constant\"\nColor 0 0 0\n" + lights + "AttributeEnd\n" + on +
-                 "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor);
+    return inWorld("AttributeBegin\nSurface \"constant\"\nColor 0 0 0\n" + lights + "AttributeEnd\n" + on +
+                   "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" + kFloor);
 }
 /// Irradiance over pi under a disc of radiance 1, of radius a at height d over a floor that it is parallel to, b beside its axis:
 /// Howell's catalogue of configuration factors, B-13.
@@ -152,11 +152,12 @@ TEST(SolidParts, EachBoundaryHasItsShader) {
     const std::string red = part(kRed + ball(-.5, 0, 5, 1)), green = part("Surface \"ours\"\n" + ball(.5, 0, 5, 1)),
                       blue = part(kBlue + ball(0, 0, 4, .8));
     const auto balls = [](const CameraRay&) { return Three{{{{-.5, 0, 5}, 1}, {{.5, 0, 5}, 1}, {{0, 0, 4}, .8}}}; };
-    expectColours(world("Surface \"mine\"\n" + block("difference", block("union", red + green) + blue)), balls, kCut, 1e-6,
+    expectColours(inWorld("Surface \"mine\"\n" + block("difference", block("union", red + green) + blue)), balls, kCut, 1e-6,
                   {Hider::Hidden, Hider::Raytrace, Hider::Path});
     // What is in both of the first and not in the third.
     expectColours(
-        world("Surface \"mine\"\n" + block("difference", block("intersection", red + green) + part(kBlue + ball(0, 0, 4.1, .8)))),
+        inWorld("Surface \"mine\"\n" +
+                block("difference", block("intersection", red + green) + part(kBlue + ball(0, 0, 4.1, .8)))),
         [](const CameraRay&) { return Three{{{{-.5, 0, 5}, 1}, {{.5, 0, 5}, 1}, {{0, 0, 4.1}, .8}}}; },
         [](const bool* in) { return in[0] && in[1] && !in[2]; }, 1e-6, {Hider::Hidden, Hider::Raytrace, Hider::Path});
 }
@@ -170,8 +171,8 @@ TEST(SolidParts, MoveOnTheirOwn) {
     const auto centre = [](const CameraRay& r, Vec3d a, Vec3d b) { return a + (b - a) * double(r.shutter); };
     expectColours(
         "Shutter 0 1\n" +
-            world("Surface \"constant\"\n" +
-                  block("difference", block("union", parts) + part(kBlue + goes("Translate -1 0 4", "Translate 1 0 4", .8)))),
+            inWorld("Surface \"constant\"\n" +
+                    block("difference", block("union", parts) + part(kBlue + goes("Translate -1 0 4", "Translate 1 0 4", .8)))),
         [&](const CameraRay& r) {
             return Three{{{centre(r, {-.5, 0, 5}, {-.3, .2, 5}), 1}, {{.5, 0, 5}, 1}, {centre(r, {-1, 0, 4}, {1, 0, 4}), .8}}};
         },
@@ -180,7 +181,7 @@ TEST(SolidParts, MoveOnTheirOwn) {
     const std::string grows =
         "TransformBegin\nTranslate 0 0 4\n" + moving("Sphere .4 -.4 .4 360", "Sphere 1 -1 1 360") + "TransformEnd\n";
     expectColours(
-        "Shutter 0 1\n" + world("Surface \"constant\"\n" + block("difference", block("union", parts) + part(kBlue + grows))),
+        "Shutter 0 1\n" + inWorld("Surface \"constant\"\n" + block("difference", block("union", parts) + part(kBlue + grows))),
         [&](const CameraRay& r) {
             return Three{{{centre(r, {-.5, 0, 5}, {-.3, .2, 5}), 1}, {{.5, 0, 5}, 1}, {{0, 0, 4}, .4 + .6 * double(r.shutter)}}};
         },
@@ -197,10 +198,10 @@ TEST(SolidParts, MoveTogether) {
         const Vec3d o = Vec3d(-.6, 0, 5) + Vec3d(1.2, .2, .5) * double(r.shutter);
         return Three{{{o + Vec3d(-.5, 0, 0), 1}, {o + Vec3d(.5, 0, 0), 1}, {o + Vec3d(0, 0, -1), .8}}};
     };
-    expectColours("Shutter 0 1\n" + world("Surface \"constant\"\n" + goes + solid), balls, kCut, 2e-6,
+    expectColours("Shutter 0 1\n" + inWorld("Surface \"constant\"\n" + goes + solid), balls, kCut, 2e-6,
                   {Hider::Hidden, Hider::Raytrace, Hider::Path});
     const std::string object = "ObjectBegin 1\n" + solid + "ObjectEnd\n";
-    expectColours("Shutter 0 1\n" + world(object + "Surface \"constant\"\n" + goes + "ObjectInstance 1\n"), balls, kCut, 2e-6,
+    expectColours("Shutter 0 1\n" + inWorld(object + "Surface \"constant\"\n" + goes + "ObjectInstance 1\n"), balls, kCut, 2e-6,
                   {Hider::Hidden, Hider::Raytrace, Hider::Path});
 }
 
@@ -212,7 +213,7 @@ TEST(SolidParts, AreDisplaced) {
                "\n" + body;
     };
     for (const bool all : {false, true}) {
-        const std::string rib = world(
+        const std::string rib = inWorld(
             "ShadingRate 16\nSurface \"constant\"\n" +
             block("difference", block("union", part(kRed + (all ? swollen(".2", ball(-.5, 0, 5, .8)) : ball(-.5, 0, 5, 1))) +
                                                    part(kGreen + swollen(".4", ball(.5, 0, 5, .6)))) +
@@ -225,7 +226,7 @@ TEST(SolidParts, AreDisplaced) {
     writeShader("normals", "surface normals() { Oi = 1; Ci = color(normalize(N)); }\n");
     for (const char* by : {"0", ".3"}) {
         const std::string hole = *by == '0' ? ball(0, 0, 4, .8) : swollen(by, ball(0, 0, 4, .5));
-        Scene s(world("ShadingRate 16\nSurface \"normals\"\n" + block("difference", part(ball(0, 0, 5, 1)) + part(hole))),
+        Scene s(inWorld("ShadingRate 16\nSurface \"normals\"\n" + block("difference", part(ball(0, 0, 5, 1)) + part(hole))),
                 withShaders(Hider::Path));
         for (const CameraRay& ray : raysFrom({0, 0, 0}, {0, 0, 4}, .4f, 100, 5)) {
             const SampleResult r = s.trace({&ray, 1})[0];
@@ -243,7 +244,7 @@ TEST(SolidParts, AreTransparent) {
     const Color opacity[2] = {{.5f, .2f, .1f}, {.1f, .3f, .6f}};
     const auto whole = [](const bool* in) { return in[0] && !in[1]; };
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
-        Scene s(world("Surface \"constant\"\n" + solid), withShaders(h));
+        Scene s(inWorld("Surface \"constant\"\n" + solid), withShaders(h));
         int most = 0;
         for (const CameraRay& ray : raysFrom({0, 0, 0}, {0, 0, 5}, 1.2f, 1000, 8)) {
             std::vector<Boundary> want;
@@ -263,17 +264,18 @@ TEST(SolidParts, AreTransparent) {
         EXPECT_EQ(most, 4); // in, into the hole, out of it, out
     }
     // The shadow on a floor straight under the middle: in above, through the hole, out below.
-    Scene shade(world("LightSource \"pointlight\" 1 \"intensity\" 100 \"from\" [0 10 0]\nAttributeBegin\nSurface \"constant\"\n"
-                      "TransformBegin\nTranslate 0 3 0\nRotate 30 1 0 0\nTranslate 0 0 -5\n" +
-                      solid +
-                      "TransformEnd\nAttributeEnd\n"
-                      "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" +
-                      kFloor),
+    Scene shade(inWorld("LightSource \"pointlight\" 1 \"intensity\" 100 \"from\" [0 10 0]\nAttributeBegin\nSurface \"constant\"\n"
+                        "TransformBegin\nTranslate 0 3 0\nRotate 30 1 0 0\nTranslate 0 0 -5\n" +
+                        solid +
+                        "TransformEnd\nAttributeEnd\n"
+                        "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1\n" +
+                        kFloor),
                 withShaders(Hider::Path));
-    Scene bare(world("LightSource \"pointlight\" 1 \"intensity\" 100 \"from\" [0 10 0]\nSurface \"matte\" \"float Ka\" 0 \"float "
-                     "Kd\" 1\n" +
-                     std::string(kFloor)),
-               withShaders(Hider::Path));
+    Scene bare(
+        inWorld("LightSource \"pointlight\" 1 \"intensity\" 100 \"from\" [0 10 0]\nSurface \"matte\" \"float Ka\" 0 \"float "
+                "Kd\" 1\n" +
+                std::string(kFloor)),
+        withShaders(Hider::Path));
     // In the space of the solid the ray goes along -y turned by -30 degrees about x, through its middle.
     CameraRay inside;
     const double a = kPi / 6;

@@ -5,8 +5,8 @@
 namespace standard_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -24,7 +24,7 @@ void expectFurnace(const Furnace& f, int n = 3000) {
     const std::string shape = f.closed ? "Translate 0 -1 0\nSphere 1 -1 1 360\n" : kFloor;
     Settings s = withShaders(Hider::Path);
     s.unbiased = true;
-    Scene scene(world(std::string(kSky) + "Surface " + f.surface + "\n" + shape), s);
+    Scene scene(inWorld(std::string(kSky) + "Surface " + f.surface + "\n" + shape), s);
     for (const double angle : {0., 45., 75.}) {
         const Moments m = scene.estimate(viewAt(angle), samples(n));
         for (int k = 0; k < 3; ++k) {
@@ -146,7 +146,7 @@ TEST(Standard, LamaOfNodes) {
     for (const auto& c : all) {
         Settings s = withShaders(Hider::Path);
         s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders/ris");
-        Scene scene(world(std::string(kSky) + c.nodes + kFloor), s);
+        Scene scene(inWorld(std::string(kSky) + c.nodes + kFloor), s);
         const Moments m = scene.estimate(viewAt(30), samples(2000));
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), c.want[k], c.within + kZ * m.se(k)) << c.nodes;
     }
@@ -160,18 +160,19 @@ TEST(Standard, PointLightOverLambertAndFacets) {
     const double want = cl * (albedo * below * l.y + kPi * facets(a, 1.5, l, eye));
     const std::string light = "LightSource \"pointlight\" 1 \"intensity\" 7 \"point from\" [-.5 1 .3]\n";
     for (const Hider h : {Hider::Path, Hider::Raytrace}) {
-        Scene s(world(light + "Surface \"standard\" \"base_color\" [.6 .6 .6] \"specular_roughness\" .5\n" + kFloor),
+        Scene s(inWorld(light + "Surface \"standard\" \"base_color\" [.6 .6 .6] \"specular_roughness\" .5\n" + kFloor),
                 withShaders(h));
         EXPECT_NEAR(s.one(rayTo({.6f, .8f, 0}, {0, 0, 0})).x, want, cl * albedo * .008);
     }
     // The highlight alone is exact.
-    Scene shine(world(light + "Surface \"standard\" \"base\" 0 \"specular_roughness\" .5\n" + kFloor), withShaders(Hider::Path));
+    Scene shine(inWorld(light + "Surface \"standard\" \"base\" 0 \"specular_roughness\" .5\n" + kFloor),
+                withShaders(Hider::Path));
     EXPECT_NEAR(shine.one(rayTo({.6f, .8f, 0}, {0, 0, 0})).x, cl * kPi * facets(a, 1.5, l, eye), 2e-4 * want);
     // PxrSurface adds its lobes up.
-    Scene sum(world(light +
-                    "Surface \"ris/PxrSurface\" \"diffuseColor\" [.6 .6 .6] \"specularFresnelMode\" 1 \"specularEdgeColor\" "
-                    "[1 1 1] \"specularModelType\" 1 \"specularRoughness\" .5\n" +
-                    kFloor),
+    Scene sum(inWorld(light +
+                      "Surface \"ris/PxrSurface\" \"diffuseColor\" [.6 .6 .6] \"specularFresnelMode\" 1 \"specularEdgeColor\" "
+                      "[1 1 1] \"specularModelType\" 1 \"specularRoughness\" .5\n" +
+                      kFloor),
               withShaders(Hider::Path));
     EXPECT_NEAR(sum.one(rayTo({.6f, .8f, 0}, {0, 0, 0})).x, cl * (albedo * l.y + kPi * facets(a, 1.5, l, eye)), 2e-4 * want);
 }
@@ -185,7 +186,7 @@ TEST(Standard, ClearGlassAndDepth) {
         "\"transmission_depth\" 2\n"
         "Polygon \"P\" [-60 0 -60  -60 0 60  60 0 60  60 0 -60]\n"
         "Polygon \"P\" [-60 -1 -60  60 -1 -60  60 -1 60  -60 -1 60]\n";
-    Scene s(world(lamp + slab), withShaders(Hider::Path));
+    Scene s(inWorld(lamp + slab), withShaders(Hider::Path));
     const double r = .04;
     const Moments m = s.estimate(rayTo({0, 2, 0}, {0, 0, 0}), samples(20000));
     const double kept[3] = {std::sqrt(.5), .5, std::sqrt(.8)}; // of one way through the slab

@@ -1,15 +1,15 @@
 // subsurface(): walks below surfaces against the half space of Chandrasekhar, furnaces, and the closed forms of the diffusion
 // models.
+#include "bsdf/dipole.h"
 #include "integrator/floorscene.h"
 #include "integrator/subsurface.h"
-#include "lobes/dipole.h"
 #include <random>
 
 namespace subsurface_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -75,10 +75,10 @@ TEST_F(Subsurface, TheHalfSpaceOfTheTableIsThatOfACount) {
     for (const double index : {1., 1.3, 1.5, .8})
         for (const double albedo : {.3, .9}) {
             const int n = samples(40000, 400000); // finds .01, nightly .003
-            EXPECT_NEAR(HalfSpace(index).reflectance(albedo), counted(albedo, index, n), 3.5 * .5 / std::sqrt(double(n)))
+            EXPECT_NEAR(AlbedoInversion(index).reflectance(albedo), counted(albedo, index, n), 3.5 * .5 / std::sqrt(double(n)))
                 << index << " " << albedo;
         }
-    const HalfSpace h(1.3);
+    const AlbedoInversion h(1.3);
     for (const double r : {.01, .2, .5, .8, .97}) EXPECT_NEAR(h.reflectance(h.albedo(r)), r, 1e-9);
     EXPECT_EQ(h.albedo(0), 0);
     EXPECT_EQ(h.reflectance(1), 1);
@@ -99,7 +99,7 @@ TEST_F(Subsurface, WithoutABoundaryItIsChandrasekhars) {
         }
         double first = 0;
         for (int i = 0; i < n; ++i) first += (i + .5) / n * h[size_t(i)] / n;
-        EXPECT_NEAR(HalfSpace(1).reflectance(w), 1 - 2 * std::sqrt(1 - w) * first, 2e-4) << w;
+        EXPECT_NEAR(AlbedoInversion(1).reflectance(w), 1 - 2 * std::sqrt(1 - w) * first, 2e-4) << w;
     }
 }
 
@@ -107,7 +107,7 @@ TEST_F(Subsurface, AFurnaceGivesWhatComesIn) {
     for (const char* ior : {"1", "1.3"})
         for (const char* shape : {"Sphere 1 -1 1 360\n", "Rotate 20 1 2 0 Torus .8 .3 0 360 360\n"}) {
             Scene s(
-                world(kSky + "Translate 0 0 5 Surface \"skin\" \"color sc\" [3 2 5] \"ior\" " + std::string(ior) + " " + shape),
+                inWorld(kSky + "Translate 0 0 5 Surface \"skin\" \"color sc\" [3 2 5] \"ior\" " + std::string(ior) + " " + shape),
                 withShaders(Hider::Path));
             const Moments m = s.estimate(rayTo({.7f, .1f, 0}, {.7f, .1f, 5}), samples(20000));
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), 1, kZ * m.se(k) + 1e-4) << ior << shape << k;
@@ -118,12 +118,12 @@ TEST_F(Subsurface, AFurnaceGivesWhatComesIn) {
 TEST_F(Subsurface, AHalfSpaceReflectsAsTheClosedFormHasIt) {
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
         for (const char* ior : {"1", "1.375"}) {
-            Scene s(world(kAbove + "Surface \"skin\" \"color sc\" [.3 .8 .99] \"color ab\" [.7 .2 .01] \"sc_\" 20 \"ior\" " +
-                          std::string(ior) + " " + kFloor),
+            Scene s(inWorld(kAbove + "Surface \"skin\" \"color sc\" [.3 .8 .99] \"color ab\" [.7 .2 .01] \"sc_\" 20 \"ior\" " +
+                            std::string(ior) + " " + kFloor),
                     withShaders(h));
             const Moments m = s.estimate(kView, h == Hider::Path ? samples(20000) : 1500); // of 16 walks each
             int k = 0;
-            const HalfSpace half(std::atof(ior));
+            const AlbedoInversion half(std::atof(ior));
             for (const double albedo : {.3, .8, .99}) {
                 const double want = .5 * half.reflectance(albedo);
                 EXPECT_NEAR(m.mean(k), want, kZ * m.se(k) + 1e-5) << int(h) << " " << ior << " " << k;
@@ -136,7 +136,7 @@ TEST_F(Subsurface, AHalfSpaceReflectsAsTheClosedFormHasIt) {
 TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
     for (const char* shader : {"coloured", "waits"})
         for (const Hider h : {Hider::Hidden, Hider::Path}) {
-            Scene s(world(kAbove + "Surface \"" + std::string(shader) + "\" \"color r\" [.2 .5 .9] " + kFloor), withShaders(h));
+            Scene s(inWorld(kAbove + "Surface \"" + std::string(shader) + "\" \"color r\" [.2 .5 .9] " + kFloor), withShaders(h));
             const Moments m = s.estimate(kView, h == Hider::Path ? samples(4000) : 600);
             int k = 0;
             for (const double r : {.2, .5, .9}) {
@@ -145,11 +145,12 @@ TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
             }
         }
     // The same by attributes.
-    Scene s(world(kAbove +
-                  "Attribute \"subsurface\" \"color reflectance\" [.2 .5 .9] \"color meanfreepath\" [.1 .1 .1] \"float scale\" 2 "
-                  "\"float refractionindex\" 1.5 Surface \"plain\" " +
-                  kFloor),
-            withShaders(Hider::Path));
+    Scene s(
+        inWorld(kAbove +
+                "Attribute \"subsurface\" \"color reflectance\" [.2 .5 .9] \"color meanfreepath\" [.1 .1 .1] \"float scale\" 2 "
+                "\"float refractionindex\" 1.5 Surface \"plain\" " +
+                kFloor),
+        withShaders(Hider::Path));
     const Moments m = s.estimate(kView, samples(4000));
     int k = 0;
     for (const double r : {.2, .5, .9}) {
@@ -161,8 +162,8 @@ TEST_F(Subsurface, AReflectanceThatIsAskedForIsSeen) {
 TEST_F(Subsurface, TheDiffusionModelsAreTheirIntegrals) {
     for (const char* shader : {"dipole", "better"})
         for (const char* ior : {"1", "1.3"}) {
-            Scene s(world(kAbove + "Surface \"" + std::string(shader) +
-                          "\" \"color r\" [.2 .5 .8] \"color mfp\" [.1 .05 .2] \"ior\" " + ior + " " + kFloor),
+            Scene s(inWorld(kAbove + "Surface \"" + std::string(shader) +
+                            "\" \"color r\" [.2 .5 .8] \"color mfp\" [.1 .05 .2] \"ior\" " + ior + " " + kFloor),
                     withShaders(Hider::Path));
             const Moments m = s.estimate(kView, samples(30000));
             int k = 0;
@@ -174,7 +175,7 @@ TEST_F(Subsurface, TheDiffusionModelsAreTheirIntegrals) {
         }
     // The total is the integral over the plane.
     for (const bool better : {false, true}) {
-        const Dipole d(HalfSpace(1.3), better, .1, .9);
+        const Dipole d(AlbedoInversion(1.3), better, .1, .9);
         double sum = 0, chosen = 0;
         const int n = 400000;
         for (int i = 0; i < n; ++i) {
@@ -187,7 +188,8 @@ TEST_F(Subsurface, TheDiffusionModelsAreTheirIntegrals) {
     }
     // Jensen's reflectance (2001, equation 5, summed up): a' / 2 (1 + exp(-4/3 A sqrt(3 (1 - a')))) exp(-sqrt(3 (1 - a'))).
     const double a = .9, root = std::sqrt(3 * (1 - a));
-    EXPECT_NEAR(Dipole(HalfSpace(1), false, .1, .9).total(), a / 2 * (1 + std::exp(-4 / 3. * root)) * std::exp(-root), 1e-12);
+    EXPECT_NEAR(Dipole(AlbedoInversion(1), false, .1, .9).total(), a / 2 * (1 + std::exp(-4 / 3. * root)) * std::exp(-root),
+                1e-12);
 }
 
 // Where nothing is scattered in one colour the others are as bright as without it.
@@ -201,10 +203,10 @@ TEST_F(Subsurface, TheDiffusionModelsOfSomeColoursAlone) {
         char text[200];
         std::snprintf(text, sizeof text, "Surface \"some\" \"color sc\" [%g %g %g] \"color ab\" [%g %g %g] ", scatters[0],
                       scatters[1], scatters[2], absorbs[0], absorbs[1], absorbs[2]);
-        Scene s(world(kAbove + text + kFloor), withShaders(Hider::Path));
+        Scene s(inWorld(kAbove + text + kFloor), withShaders(Hider::Path));
         const Moments m = s.estimate(kView, samples(20000));
         for (int k = 0; k < 3; ++k) {
-            const double want = k == dark ? 0 : .5 * Dipole(HalfSpace(1), false, absorbs[k], scatters[k]).total();
+            const double want = k == dark ? 0 : .5 * Dipole(AlbedoInversion(1), false, absorbs[k], scatters[k]).total();
             EXPECT_NEAR(m.mean(k), want, kZ * m.se(k) + 1e-5) << dark << k;
             EXPECT_LE(m.se(k), .03 * want) << dark << k;
         }
@@ -220,22 +222,22 @@ TEST_F(Subsurface, GroupsBoundOneInside) {
                "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 -1 0 360 AttributeEnd\n";
     };
     const CameraRay ray = rayTo({.3f, .1f, 0}, {.3f, .1f, 5});
-    Scene one(world(kSky + halves("Attribute \"subsurface\" \"string groupname\" \"ball\" ")), withShaders(Hider::Path));
+    Scene one(inWorld(kSky + halves("Attribute \"subsurface\" \"string groupname\" \"ball\" ")), withShaders(Hider::Path));
     const Moments m = one.estimate(ray, samples(5000));
     EXPECT_NEAR(m.mean(), 1, kZ * m.se() + 1e-3); // a walk may slip through where both end
-    Scene apart(world(kSky + halves("")), withShaders(Hider::Path));
+    Scene apart(inWorld(kSky + halves("")), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(apart.estimate(ray, 2000).mean()));
     // What comes out of a half whose own shader asks for no light is lit there all the same.
     const std::string group = "Attribute \"subsurface\" \"string groupname\" \"ball\" ";
-    Scene mute(world(kSky + "Translate 0 0 5 AttributeBegin " + group +
-                     "Surface \"constant\" Sphere 1 0 1 360 AttributeEnd AttributeBegin " + group +
-                     "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 -1 0 360 AttributeEnd\n"),
+    Scene mute(inWorld(kSky + "Translate 0 0 5 AttributeBegin " + group +
+                       "Surface \"constant\" Sphere 1 0 1 360 AttributeEnd AttributeBegin " + group +
+                       "Surface \"skin\" \"color sc\" [.5 .5 .5] Sphere 1 -1 0 360 AttributeEnd\n"),
                withShaders(Hider::Path));
     const Moments half = mute.estimate(ray, samples(5000));
     EXPECT_NEAR(half.mean(), 1, kZ * half.se() + 1e-3);
     // Balls that overlap in a group are one.
-    Scene both(world(kSky + "Attribute \"subsurface\" \"string groupname\" \"pair\" Surface \"skin\" \"color sc\" [.7 .7 .7] "
-                            "Translate -.4 0 5 Sphere 1 -1 1 360 Translate .8 0 0 Sphere 1 -1 1 360\n"),
+    Scene both(inWorld(kSky + "Attribute \"subsurface\" \"string groupname\" \"pair\" Surface \"skin\" \"color sc\" [.7 .7 .7] "
+                              "Translate -.4 0 5 Sphere 1 -1 1 360 Translate .8 0 0 Sphere 1 -1 1 360\n"),
                withShaders(Hider::Path));
     const Moments b = both.estimate(rayTo({.2f, .1f, 0}, {.2f, .1f, 5}), samples(5000));
     EXPECT_NEAR(b.mean(), 1, kZ * b.se() + 1e-3);
@@ -243,8 +245,8 @@ TEST_F(Subsurface, GroupsBoundOneInside) {
 
 TEST_F(Subsurface, ScaleIsMillimetresInAUnit) {
     const auto seen = [](const std::string& values) {
-        Scene s(world("LightSource \"pointlight\" 1 \"from\" [0 2 3] Translate 0 0 5 Surface \"skin\" " + values +
-                      " Sphere 1 -1 1 360\n"),
+        Scene s(inWorld("LightSource \"pointlight\" 1 \"from\" [0 2 3] Translate 0 0 5 Surface \"skin\" " + values +
+                        " Sphere 1 -1 1 360\n"),
                 withShaders(Hider::Path));
         return s.estimate(rayTo({.3f, .1f, 0}, {.3f, .1f, 5}), 300).mean();
     };
@@ -260,7 +262,7 @@ TEST_F(Subsurface, OtherNamesOfParameters) {
     writeShader("diffusely", "surface diffusely() { Oi = 1; Ci = subsurface(P, N, \"model\", \"jensen\", \"albedo\", color(.5), "
                              "\"diffusemeanfreepath\", .2, \"ior\", 1.3); }\n");
     const auto seen = [](const std::string& shader) {
-        return Scene(world(kAbove + "Surface \"" + shader + "\" " + kFloor), withShaders(Hider::Path)).estimate(kView, 4000);
+        return Scene(inWorld(kAbove + "Surface \"" + shader + "\" " + kFloor), withShaders(Hider::Path)).estimate(kView, 4000);
     };
     for (const auto& [a, b] : {std::pair("named", "coloured"), std::pair("diffusely", "dipole")}) {
         const Moments x = seen(a), y = seen(b);
@@ -279,18 +281,18 @@ TEST_F(Subsurface, WhatIsAskedForInVainIsSaid) {
                 "\"scattering\", color(1, 2, 3), \"absorption\", color(1, 2, 3), \"meanfreepath\", color(1, 2, 3), "
                 "\"reflectance\", color(1, 2, 3), \"albedo\", color(1, 2, 3), \"diffusemeanfreepath\", color(1, 2, 3), \"ior\", "
                 "1, \"refractionindex\", 1, \"scale\", 1, \"groupname\", \"s1\", \"unitlength\", 1, \"anisotropy\", .5); }\n");
-    Scene every(world(kAbove + "Surface \"everyword\" " + kFloor), withShaders(Hider::Path));
+    Scene every(inWorld(kAbove + "Surface \"everyword\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(every.one(kView).x));
     EXPECT_NE(every.messages().find("unknown type \"s1\""), std::string::npos) << every.messages();
     writeShader("odd", "surface odd() { Oi = 1; Ci = subsurface(P, N, \"model\", \"mirror\", \"irradiance\", color(1)) + "
                        "subsurface(\"pointcloud\", P, N, \"samples\", 1e9); }\n");
-    Scene s(world(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
+    Scene s(inWorld(kAbove + "Surface \"odd\" " + kFloor), withShaders(Hider::Path));
     EXPECT_TRUE(std::isfinite(s.one(kView).x));
     for (const char* word : {"unknown model \"mirror\"", "name a point cloud by \"filename\""})
         EXPECT_NE(s.messages().find(word), std::string::npos) << s.messages();
     for (const char* bad : {"\"color sc\" [0 0 0]", "\"color sc\" [-1 -1 -1]", "\"sc_\" 0", "\"ior\" 0", "\"ior\" 1e9",
                             "\"color sc\" [1e30 1e30 1e30] \"color ab\" [1e30 1e30 1e30]"}) {
-        Scene b(world(kAbove + "Surface \"skin\" " + std::string(bad) + " " + kFloor), withShaders(Hider::Path));
+        Scene b(inWorld(kAbove + "Surface \"skin\" " + std::string(bad) + " " + kFloor), withShaders(Hider::Path));
         const double v = b.estimate(kView, 50).mean();
         EXPECT_TRUE(std::isfinite(v) && v >= 0) << bad;
     }
@@ -324,7 +326,7 @@ TEST_F(Subsurface, ItBeginsAtItsPointAndAboutItsNormal) {
                           Case{"\"at\" 1", std::exp(-.7)}, // from the middle
                           Case{"\"at\" 3.5", chords(0)},   // above the surface: it is put onto it
                           Case{"\"at\" -1", chords(0)}}) { // on the other side: n points inward there
-        Scene s(world(kSky + "Translate 0 0 5 Surface \"begins\" " + std::string(k.given) + " Sphere 1 -1 1 360\n"),
+        Scene s(inWorld(kSky + "Translate 0 0 5 Surface \"begins\" " + std::string(k.given) + " Sphere 1 -1 1 360\n"),
                 withShaders(Hider::Path));
         const Moments m = s.estimate(rayTo({.3f, .1f, 0}, {.3f, .1f, 5}), samples(6000));
         EXPECT_NEAR(m.mean(), k.want, kZ * m.se() + 1e-4) << k.given;
@@ -342,13 +344,13 @@ TEST_F(Subsurface, ItBeginsOnAnotherPrimitiveOfTheGroup) {
                              "\"absorption\", .2, \"scale\", 20, \"ior\", 1.3); }\n");
     for (const char* shader : {"there", "thereflat"})
         for (const Hider h : {Hider::Hidden, Hider::Path}) {
-            Scene s(world("LightSource \"distantlight\" 1 \"intensity\" .5 \"from\" [-1 0 0] \"to\" [0 0 0] Attribute "
-                          "\"subsurface\" \"string groupname\" \"all\" Surface \"" +
-                          std::string(shader) + "\" " + kFloor + "Polygon \"P\" [-70 -9 -9  -70 -9 9  -70 13 9  -70 13 -9]\n"),
+            Scene s(inWorld("LightSource \"distantlight\" 1 \"intensity\" .5 \"from\" [-1 0 0] \"to\" [0 0 0] Attribute "
+                            "\"subsurface\" \"string groupname\" \"all\" Surface \"" +
+                            std::string(shader) + "\" " + kFloor + "Polygon \"P\" [-70 -9 -9  -70 -9 9  -70 13 9  -70 13 -9]\n"),
                     withShaders(h));
             const Moments m = s.estimate(kView, h == Hider::Path ? samples(8000) : 600);
-            const double whole = shader == std::string("there") ? HalfSpace(1.3).reflectance(.8)
-                                                                : Dipole(HalfSpace(1.3), false, .2 * 20, .8 * 20).total();
+            const double whole = shader == std::string("there") ? AlbedoInversion(1.3).reflectance(.8)
+                                                                : Dipole(AlbedoInversion(1.3), false, .2 * 20, .8 * 20).total();
             EXPECT_NEAR(m.mean(), .5 * whole, kZ * m.se() + 1e-5) << shader << int(h);
             EXPECT_LT(m.se(), .03 * whole) << shader << int(h);
         }
@@ -365,7 +367,7 @@ TEST_F(Subsurface, WhatEntersIsWhatShadersSay) {
                 "zcomp(w));\n    Ci = subsurface(P, N, \"model\", \"jensen\", \"scale\", 1, \"irradiance\", color(r < .8 ? "
                 "1 : 0), " +
                     tail);
-    const HalfSpace half(1.3);
+    const AlbedoInversion half(1.3);
     const Dipole dipole(half, false, .2, .8);
     double within = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -375,14 +377,14 @@ TEST_F(Subsurface, WhatEntersIsWhatShadersSay) {
     EXPECT_LT(within, .7 * dipole.total());
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
         const int n = h == Hider::Path ? samples(20000) : 1500;
-        const Moments even = Scene(world("Surface \"even\" " + std::string(kFloor)), withShaders(h)).estimate(kView, n);
+        const Moments even = Scene(inWorld("Surface \"even\" " + std::string(kFloor)), withShaders(h)).estimate(kView, n);
         int k = 0;
         for (const double irradiance : {.2, .5, 2.}) {
             const double want = irradiance * half.reflectance(.8);
             EXPECT_NEAR(even.mean(k), want, kZ * even.se(k) + 1e-5) << int(h);
             EXPECT_LT(even.se(k++), .03 * want);
         }
-        const Moments spot = Scene(world("Surface \"spot\" " + std::string(kFloor)), withShaders(h)).estimate(kView, n);
+        const Moments spot = Scene(inWorld("Surface \"spot\" " + std::string(kFloor)), withShaders(h)).estimate(kView, n);
         EXPECT_NEAR(spot.mean(), within, kZ * spot.se() + 1e-5) << int(h);
         EXPECT_LT(spot.se(), .03 * within);
     }
@@ -409,11 +411,11 @@ TEST_F(Subsurface, WhatEntersMayBeMadeOfLight) {
         const char* shader;
         Color factor, more{0};
     };
-    const double whole = HalfSpace(1.3).reflectance(.8);
+    const double whole = AlbedoInversion(1.3).reflectance(.8);
     for (const Case& k : {Case{"lit", Color(1)}, Case{"tinted", {1, .5f, .25f}, {0, .1f, .2f}}, Case{"summed", {.75f, .5f, 1}},
                           Case{"output", Color(.5f)}})
         for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
-            Scene s(world(kAbove + "Surface \"" + k.shader + "\" " + kFloor), withShaders(h));
+            Scene s(inWorld(kAbove + "Surface \"" + k.shader + "\" " + kFloor), withShaders(h));
             const Moments m = s.estimate(kView, h == Hider::Path ? samples(8000) : 600);
             for (int c = 0; c < 3; ++c) {
                 EXPECT_NEAR(m.mean(c), (.5 * k.factor[c] + k.more[c]) * whole, kZ * m.se(c) + 1e-5) << k.shader << int(h) << c;
@@ -422,7 +424,7 @@ TEST_F(Subsurface, WhatEntersMayBeMadeOfLight) {
             EXPECT_EQ(s.messages(), "") << k.shader << int(h);
         }
     // A sky of 1 that rays find: diffuse() is 1.
-    Scene s(world(kSky + "Surface \"tinted\" " + kFloor), withShaders(Hider::Path));
+    Scene s(inWorld(kSky + "Surface \"tinted\" " + kFloor), withShaders(Hider::Path));
     const Moments m = s.estimate(kView, samples(8000));
     const double want[] = {whole, .6 * whole, .45 * whole};
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.mean(c), want[c], kZ * m.se(c) + 1e-5) << c;
@@ -434,17 +436,17 @@ TEST_F(Subsurface, WhatEntersDoesNotWait) {
     writeShader("squared", "surface squared() { Oi = 1; color d = diffuse(normalize(N));\n"
                            "    Ci = subsurface(P, N, \"scattering\", .8, \"absorption\", .2, \"ior\", 1.3, \"scale\", 20,\n"
                            "        \"irradiance\", d * d); }\n");
-    Scene s(world(kAbove + "Surface \"squared\" " + kFloor), withShaders(Hider::Path));
+    Scene s(inWorld(kAbove + "Surface \"squared\" " + kFloor), withShaders(Hider::Path));
     const Moments m = s.estimate(kView, samples(8000));
-    EXPECT_NEAR(m.mean(), .5 * HalfSpace(1.3).reflectance(.8), kZ * m.se() + 1e-5);
+    EXPECT_NEAR(m.mean(), .5 * AlbedoInversion(1.3).reflectance(.8), kZ * m.se() + 1e-5);
     EXPECT_NE(s.messages().find("its \"irradiance\" waits for rays (lightvisibility()"), std::string::npos) << s.messages();
 }
 
 TEST_F(Subsurface, NoBitDependsOnWhoSharesABatch) {
     const std::string rib =
-        world("LightSource \"pointlight\" 1 \"from\" [1 2 0] LightSource \"envlight\" 2 \"intensity\" .3\nTranslate 0 0 5 "
-              "Surface \"coloured\" \"color r\" [.3 .6 .9] Sphere 1 -1 1 360 AttributeBegin Surface \"dipole\" Translate .8 0 "
-              "-.8 Sphere .5 -.5 .5 360 AttributeEnd\n");
+        inWorld("LightSource \"pointlight\" 1 \"from\" [1 2 0] LightSource \"envlight\" 2 \"intensity\" .3\nTranslate 0 0 5 "
+                "Surface \"coloured\" \"color r\" [.3 .6 .9] Sphere 1 -1 1 360 AttributeBegin Surface \"dipole\" Translate .8 0 "
+                "-.8 Sphere .5 -.5 .5 360 AttributeEnd\n");
     std::vector<CameraRay> rays;
     for (int i = 0; i < 100; ++i) {
         rays.push_back(rayTo({0, 0, 0}, {float(i) * .02f - .7f, .1f, 4.5f}));

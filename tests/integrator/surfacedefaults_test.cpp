@@ -4,13 +4,13 @@
 namespace surfacedefaults_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
 float seen(const std::string& inside, Hider h, const CameraRay& from = kView, std::string* said = nullptr) {
-    Scene s(world(inside), withShaders(h));
+    Scene s(inWorld(inside), withShaders(h));
     if (said) *said = s.messages();
     return s.one(from).x;
 }
@@ -46,7 +46,7 @@ TEST(GivenNormals, SayWhichSideIsTheFront) {
             for (const char* n : {" 0 1 0", " 0 -1 0"})
                 for (const Hider h : {Hider::Path, Hider::Hidden}) {
                     const std::string normals = std::string("\"N\" [") + n + n + n + n + "]\n";
-                    Scene s(world("Surface \"frontlit\"\n" + std::string(request) + shape + normals), withShaders(h));
+                    Scene s(inWorld("Surface \"frontlit\"\n" + std::string(request) + shape + normals), withShaders(h));
                     const Color c = s.one(kView);
                     for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], 1, 1e-5) << k << " " << request << shape << normals;
                 }
@@ -76,10 +76,11 @@ TEST(GivenNormals, OfInstances) {
 
 // Half of the faces wind one way, half the other: that cannot be put right, and is said.
 TEST(GivenNormals, OnBothSidesAreTold) {
-    Scene s(world("Surface \"constant\"\nPointsPolygons [3 3] [0 1 2 0 1 2] \"P\" [-1 0 -1  -1 0 1  1 0 1] \"facevarying normal "
-                  "N\" [0 1 0 0 "
-                  "1 0 0 1 0  0 -1 0 0 -1 0 0 -1 0]\n"),
-            withShaders(Hider::Path));
+    Scene s(
+        inWorld("Surface \"constant\"\nPointsPolygons [3 3] [0 1 2 0 1 2] \"P\" [-1 0 -1  -1 0 1  1 0 1] \"facevarying normal "
+                "N\" [0 1 0 0 "
+                "1 0 0 1 0  0 -1 0 0 -1 0 0 -1 0]\n"),
+        withShaders(Hider::Path));
     EXPECT_NE(s.messages().find("on the front of some faces and on the back of others (1 of 2 places"), std::string::npos)
         << s.messages();
 }

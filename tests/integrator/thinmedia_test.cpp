@@ -5,8 +5,8 @@
 namespace thinmedia_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -32,10 +32,10 @@ TEST(ThinMedia, EveryTechniqueHasTheSameMean) {
             for (int k = 0; k < 3; ++k) {
                 Settings set = withShaders(Hider::Path);
                 set.mediumSampling = MediumSampling(k);
-                Scene s(world("Translate 0 0 5\n" + lamp(at, ".2") +
-                              box("\"color scattering\" [" + std::string(sigma) +
-                                  "] \"color absorption\" [.05 .05 .05] "
-                                  "\"anisotropy\" .4")),
+                Scene s(inWorld("Translate 0 0 5\n" + lamp(at, ".2") +
+                                box("\"color scattering\" [" + std::string(sigma) +
+                                    "] \"color absorption\" [.05 .05 .05] "
+                                    "\"anisotropy\" .4")),
                         set);
                 m[k] = s.estimate(along(.2f, -.3f), samples(20000));
                 EXPECT_GT(m[k].mean(), 10 * m[k].se()) << k;
@@ -64,7 +64,7 @@ TEST(ThinMedia, FewBoundariesChangeNoBit) {
     const std::string few = "Translate 0 0 5\n" + lamp("0 .9 0", ".2") +
                             "LightSource \"pointlight\" 2 \"from\" [.3 2 .2] \"intensity\" 3\n" + floor + pane +
                             box("\"color scattering\" [.3 .4 .9]");
-    Scene a(world(few), withShaders(Hider::Path)), b(world(few + far), withShaders(Hider::Path));
+    Scene a(inWorld(few), withShaders(Hider::Path)), b(inWorld(few + far), withShaders(Hider::Path));
     ASSERT_TRUE(std::static_pointer_cast<const WorldImpl>(a.world)->byOpacity_.few);
     ASSERT_FALSE(std::static_pointer_cast<const WorldImpl>(b.world)->byOpacity_.few);
     const auto one = a.trace(rays), other = b.trace(rays);

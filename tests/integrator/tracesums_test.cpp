@@ -4,8 +4,8 @@
 namespace tracesums_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -21,7 +21,7 @@ TEST(TraceSums, AreLightInAColor) {
                              "color held = clamp(trace(P, up), 0, 1); more += held - trace(P, up); Ci = sum + many + more + 10 * "
                              "(1 - color(step(79.9, far), step(79.9, far), step(far, 80.1))); Oi = 1; }\n");
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path}) {
-        Scene s(world("Surface \"tracesums\"\n" + std::string(kFloor) + ball), withShaders(h));
+        Scene s(inWorld("Surface \"tracesums\"\n" + std::string(kFloor) + ball), withShaders(h));
         const Color c = s.one(kView);
         const float of = 1 + 2 * (.5f + .25f + .0625f) + 1;
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], of * .25f * float(k + 1), 1e-4) << "hider " << int(h);

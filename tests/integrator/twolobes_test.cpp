@@ -6,8 +6,8 @@
 namespace twolobes_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -71,7 +71,7 @@ TEST(TwoLobes, UnderASky) {
         for (int part = 0; part < 3; ++part) { // both, the first alone, the second alone
             const double first = part != 2, second = part != 1;
             const std::string parts = " \"first\" " + std::to_string(first) + " \"second\" " + std::to_string(second) + "\n";
-            Scene s(world(sky + "Surface \"twolobes\"" + parts + kFloor), mode(0, suspend));
+            Scene s(inWorld(sky + "Surface \"twolobes\"" + parts + kFloor), mode(0, suspend));
             double want[3];
             for (int k = 0; k < 3; ++k)
                 want[k] = .8 * (first * kDiffuse[k] * diffusePart(0) + second * kSpecular[k] * specularPart(0));
@@ -88,7 +88,7 @@ TEST(TwoLobes, UnderANearDisk) {
     for (int k = 0; k < 3; ++k) want[k] = 3 * (kDiffuse[k] * diffusePart(c) + kSpecular[k] * specularPart(c));
     for (bool suspend : {false, true})
         for (int which = 0; which < 3; ++which) {
-            Scene s(world(disk(height) + "Surface \"twolobes\"\n" + kFloor), mode(which, suspend));
+            Scene s(inWorld(disk(height) + "Surface \"twolobes\"\n" + kFloor), mode(which, suspend));
             expectColour(s.estimate(rayTo({.2f, .3f, -.1f}, {0, 0, 0}), samples(100000)), want, which ? .004 : .002,
                          std::string(kModes[which]) + (suspend ? ", waiting" : ""));
         }
@@ -100,7 +100,7 @@ TEST(TwoLobes, OfTrace) {
     double want[3];
     for (int k = 0; k < 3; ++k) want[k] = 3 * (kDiffuse[k] * diffusePart(c) + kSpecular[k] * (1 - c) / (1 - std::cos(1.2)));
     for (int which = 0; which < 3; ++which) {
-        Scene s(world(disk(height) + "Surface \"twotraces\"\n" + kFloor), mode(which, false));
+        Scene s(inWorld(disk(height) + "Surface \"twotraces\"\n" + kFloor), mode(which, false));
         expectColour(s.estimate(rayTo({.2f, .3f, -.1f}, {0, 0, 0}), samples(100000)), want, which ? .004 : .002, kModes[which]);
     }
 }
@@ -128,8 +128,8 @@ TEST(TwoLobes, APanelCutIntoThirtyTwoLights) {
     const CameraRay view = rayTo({.2f, .3f, -.1f}, {0, 0, 0});
     for (int which = 0; which < 3; ++which) {
         const int n = samples(which == 1 ? 60000 : 100000);
-        Scene whole(world(panel(1, 1) + "Surface \"plainfloor\"\n" + kFloor), mode(which, false));
-        Scene cut(world(panel(8, 4) + "Surface \"plainfloor\"\n" + kFloor), mode(which, false));
+        Scene whole(inWorld(panel(1, 1) + "Surface \"plainfloor\"\n" + kFloor), mode(which, false));
+        Scene cut(inWorld(panel(8, 4) + "Surface \"plainfloor\"\n" + kFloor), mode(which, false));
         expectMean(whole.estimate(view, n), want, nightly() ? .0015 : .005, std::string("one panel, ") + kModes[which]);
         const double precision = nightly() ? (which ? .0012 : .0005) : which ? .004 : .00155;
         expectMean(cut.estimate(view, n), want, precision, std::string("thirty-two, ") + kModes[which]);

@@ -6,8 +6,8 @@
 namespace unshadowed_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -27,7 +27,7 @@ Moments told(const std::string& what, const std::string& from, const std::string
     writeShader(name, "surface " + name + "() { vector up = vector \"world\" (0, 1, 0); color v = 0; color c = trace(" + from +
                           ", up, \"samplearealights\", 1, \"environmentmap\", " + map + more + ", \"" + what +
                           "\", v); Oi = 1; Ci = v; }\n");
-    return Scene(world(kLamp + others + "Surface \"" + name + "\"\n" + kFloor), withShaders(h)).estimate(kBelow, n);
+    return Scene(inWorld(kLamp + others + "Surface \"" + name + "\"\n" + kFloor), withShaders(h)).estimate(kBelow, n);
 }
 const std::string kCosine = ", \"distribution\", \"cosine\", \"samplecone\", PI / 2, \"type\", \"diffuse\"";
 constexpr double kPart = .8 * .8 / (.8 * .8 + 4); ///< of the hemisphere that the disc takes

@@ -2,7 +2,7 @@
 #include "integrator/harness.h"
 #include <cstring>
 
-namespace alpenglow::transport::testing::vertices_test {
+namespace alpenglow::integrator::testing::vertices_test {
 namespace {
 
 Settings path() {
@@ -92,4 +92,4 @@ TEST(Vertices, RareShaders) {
 }
 
 } // namespace
-} // namespace alpenglow::transport::testing::vertices_test
+} // namespace alpenglow::integrator::testing::vertices_test

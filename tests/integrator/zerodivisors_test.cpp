@@ -4,8 +4,8 @@
 namespace zerodivisors_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 namespace {
 
@@ -28,7 +28,7 @@ TEST(ZeroDivisors, AreSaidAtTheDivision) {
                            {1.375f, 1.25f, 1.5f},
                            "divides.sl:3:21: warning: a division by 0, which gives 0: \"tint\" is 0 at "}})
         for (const Hider h : {Hider::Hidden, Hider::Path}) {
-            Scene s(world("Surface \"divides\" " + std::string(c.given) + "\n" + kFloor), withShaders(h));
+            Scene s(inWorld("Surface \"divides\" " + std::string(c.given) + "\n" + kFloor), withShaders(h));
             const Moments m = s.estimate(kView, 4);
             for (int k = 0; k < 3; ++k) EXPECT_EQ(float(m.mean(k)), c.want[k]) << c.given << int(h);
             if (*c.said) EXPECT_NE(s.messages().find(c.said), std::string::npos) << s.messages();

@@ -1,9 +1,9 @@
 // Stages over blocks (lanes/stages.h): every width gives the same bits, those of functions of one point.
-#include "answers/random.h"
 #include "base/direction.h"
+#include "bsdf/sampling.h"
 #include "geometry/shape.h"
 #include "lanes/stages.h"
-#include "lobes/sampling.h"
+#include "services/random.h"
 #include <bit>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace stages_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::lanes;
 
 namespace {
 
@@ -299,7 +299,7 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
                     continue;
                 }
                 const LobeBlock& l = lobes[size_t(picked)];
-                EXPECT_EQ(to.vertex[i], childVertex(v.vertex[i], keys[picked], 0));
+                EXPECT_EQ(to.vertex[i], services::childVertex(v.vertex[i], keys[picked], 0));
                 const bool single = l.lobe[kRowDelta][i] != 0;
                 const float pdf = value[kRowPdf][i];
                 const Color f = single    ? Color(l.lobe[kRowAlbedo][i])

@@ -1,7 +1,7 @@
-// Random programs, the same for ever (fixed seeds): machine code against the tree-walking evaluator of tests/rslir, which runs
+// Random programs, the same for ever (fixed seeds): machine code against the tree-walking evaluator of tests/rsl/ir, which runs
 // the IR as it was before any pass, one point at a time. The bits must agree at every point. Each program is compiled in two of
 // all configurations, which take their turns. Nightly there are twice as many programs.
-#include "../rslir/evaluator.h"
+#include "../rsl/ir/evaluator.h"
 #include "../sanitized.h"
 #include "points.h"
 #include "rsl/ir/build.h"

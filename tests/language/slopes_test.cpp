@@ -115,10 +115,10 @@ const std::map<std::string, std::string>& elsewhere() {
         {"generateSamplesEnv", "samples are drawn"},
         {"evaluateSamplesEnv", "what a map of the sky shows counts as constant"},
         {"generateSamplesAS", "samples are drawn"},
-        {"evaluateSamplesAS", "takes an array of structures: tests/integrator/plausiblesamples_test.cpp"},
-        {"directlighting", "asks lights and another shader: tests/integrator/plausible_test.cpp"},
-        {"diffuselighting", "asks lights and another shader: tests/integrator/plausible_test.cpp"},
-        {"specularlighting", "asks lights and another shader: tests/integrator/plausible_test.cpp"},
+        {"evaluateSamplesAS", "takes an array of structures: tests/integrator/radiancesamples_test.cpp"},
+        {"directlighting", "asks lights and another shader: tests/integrator/materialresponse_test.cpp"},
+        {"diffuselighting", "asks lights and another shader: tests/integrator/materialresponse_test.cpp"},
+        {"specularlighting", "asks lights and another shader: tests/integrator/materialresponse_test.cpp"},
         {"indirectspecular", "what rays bring counts as constant"},
     };
     return all;

@@ -90,7 +90,7 @@ TEST(LocalArrays, SumOverTheLimit) {
 
 TEST(LocalArrays, OfAKernelThatWaits) {
     // min() of what a ray brings is not affine: the kernel is a coroutine, and its arrays live across the wait.
-    using namespace alpenglow::transport::testing;
+    using namespace alpenglow::integrator::testing;
     writeShader("glow", "surface glow() { Ci = 2; Oi = 1; }\n");
     writeShader("waits", "surface waits() { uniform float i; varying float a[16384], b[16384];"
                          " for (i = 0; i < 16384; i += 1) { a[i] = i + u * 0; b[i] = 2 * i + u * 0; }"
@@ -99,7 +99,7 @@ TEST(LocalArrays, OfAKernelThatWaits) {
     Scene scene("WorldBegin\nSurface \"waits\"\nSides 2\nTransformBegin Translate 0 0 3 Disk 0 1 360 TransformEnd\n"
                 "Surface \"glow\"\nSphere 50 -50 50 360\nWorldEnd\n");
     ASSERT_TRUE(scene.world);
-    alpenglow::transport::CameraRay rays[] = {rayTo({0, 0, 0}, {0.1f, 0.1f, 3}), rayTo({0, 0, 0}, {0.2f, 0.1f, 3})};
+    alpenglow::integrator::CameraRay rays[] = {rayTo({0, 0, 0}, {0.1f, 0.1f, 3}), rayTo({0, 0, 0}, {0.2f, 0.1f, 3})};
     const auto results = scene.trace(rays);
     for (const auto& r : results) EXPECT_EQ(r.color.x, 1.5f * 19);
 }

@@ -5,8 +5,8 @@
 namespace path_limits_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
-using namespace alpenglow::transport::testing;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
 
 TEST(PathLimits, DepthThatTheSceneAsksFor) {
     // Between mirrors a path ends only where it must. 2^31 - 1 is no float: it becomes 2^31, which no int holds.

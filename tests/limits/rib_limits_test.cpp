@@ -51,8 +51,8 @@ TEST(RibLimits, InflatedBytes) {
 TEST(RibLimits, NestingOfConditions) {
     // The comparison inside counts as one: the innermost number is at depth n + 1.
     auto condition = [](int n) {
-        return world("IfBegin \"" + std::string(size_t(n), '(') + "1" + std::string(size_t(n), ')') +
-                     "\"\nSphere 1 -1 1 360\nIfEnd");
+        return inWorld("IfBegin \"" + std::string(size_t(n), '(') + "1" + std::string(size_t(n), ')') +
+                       "\"\nSphere 1 -1 1 360\nIfEnd");
     };
     auto below = condition(limits::kConditionDepth - 1);
     EXPECT_EQ(below->count(), 0u) << below->messages();
@@ -76,7 +76,7 @@ TEST(RibLimits, Lights) {
 
 TEST(RibLimits, LightsInARow) {
     // Each kept the list of those before it: 30,000 took 2.3 GB.
-    auto c = world(repeat("LightSource \"pointlight\" 1\n", 1000) + "Sphere 1 -1 1 360\n");
+    auto c = inWorld(repeat("LightSource \"pointlight\" 1\n", 1000) + "Sphere 1 -1 1 360\n");
     size_t listed = 0;
     for (const scene::Light& l : c->frame().lights) listed += l.attributes->lights.size();
     EXPECT_EQ(listed, 0u);
@@ -88,7 +88,8 @@ TEST(RibLimits, CopiesOfObjectsInObjects) {
     const int spheres = 500, times = int(limits::kObjectCopies) / spheres;
     const std::string first = "ObjectBegin 1\n" + repeat("Sphere 1 -1 1 360\n", spheres) + "ObjectEnd\n";
     for (int extra : {0, 1}) {
-        auto c = world(first + "ObjectBegin 2\n" + repeat("ObjectInstance 1\n", times + extra) + "ObjectEnd\nObjectInstance 2\n");
+        auto c =
+            inWorld(first + "ObjectBegin 2\n" + repeat("ObjectInstance 1\n", times + extra) + "ObjectEnd\nObjectInstance 2\n");
         if (extra == 0) EXPECT_EQ(c->count(), 0u) << c->messages();
         else EXPECT_EQ(c->only().code, Rie::Limit);
         EXPECT_EQ(c->frame().instances.size(), 1u);

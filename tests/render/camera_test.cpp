@@ -123,14 +123,14 @@ TEST(Camera, PlainRaysTogetherHaveTheBitsOfOne) {
         ASSERT_TRUE(c.plain());
         std::vector<Vec2> raster;
         for (int i = 0; i < 37; ++i) raster.push_back({float(i) * 17.3f - 20, 600 - float(i) * 19.7f});
-        std::vector<transport::CameraRay> rays(raster.size());
+        std::vector<integrator::CameraRay> rays(raster.size());
         c.plainRays(raster, rays.data());
         for (size_t i = 0; i < raster.size(); ++i) {
-            const transport::CameraRay one = c.ray(double(raster[i].x), double(raster[i].y), kMiddle, 0);
+            const integrator::CameraRay one = c.ray(double(raster[i].x), double(raster[i].y), kMiddle, 0);
             EXPECT_EQ(rays[i].origin, one.origin);
             EXPECT_EQ(rays[i].direction, one.direction);
-            for (const auto part : {&transport::CameraRay::width, &transport::CameraRay::spread, &transport::CameraRay::cosine,
-                                    &transport::CameraRay::start, &transport::CameraRay::time})
+            for (const auto part : {&integrator::CameraRay::width, &integrator::CameraRay::spread, &integrator::CameraRay::cosine,
+                                    &integrator::CameraRay::start, &integrator::CameraRay::time})
                 EXPECT_EQ(rays[i].*part, one.*part);
         }
     }

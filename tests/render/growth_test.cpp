@@ -19,8 +19,8 @@ using namespace alpenglow::render;
 
 /// A wave that no two samples have the same of; 25 milliseconds a call.
 struct SlowTracer final : Tracer {
-    transport::Counters counts;
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
+    integrator::Counters counts;
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> out,
                const StopFlag* stop) override {
         std::this_thread::sleep_for(std::chrono::milliseconds(25));
         for (size_t i = 0; i < rays.size(); ++i) {
@@ -31,7 +31,7 @@ struct SlowTracer final : Tracer {
         }
         return !*stop;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 /// Keeps what it was shown.
@@ -96,7 +96,7 @@ size_t watch(const Case& c, Looker& looker) {
     RenderSettings s;
     s.threads = 3;
     s.watcher = &looker;
-    const Engine e = test::plainEngine([](const transport::World&) { return std::make_unique<SlowTracer>(); });
+    const Engine e = test::plainEngine([](const world::World&) { return std::make_unique<SlowTracer>(); });
     Diagnostics diags;
     Progress progress(ProgressMode::None);
     Renderer r(s, e, diags, progress);

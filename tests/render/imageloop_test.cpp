@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Slope final : Tracer {
-    transport::Counters counts;
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
+    integrator::Counters counts;
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> out,
                const StopFlag* stop) override {
         for (size_t i = 0; i < rays.size(); ++i) {
             const Vec3 p = rays[i].direction * (1 / rays[i].direction.z);
@@ -29,20 +29,20 @@ struct Slope final : Tracer {
         }
         return !*stop;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 /// Of each pixel x an edge of its own, white to its left: `speed` pixels while the shutter is open, `blur` pixels from the middle
 /// of the lens to its rim.
 struct Edges final : Tracer {
-    transport::Counters counts;
+    integrator::Counters counts;
     double speed, blur;
     Edges(double s, double b) : speed(s), blur(b) {}
     static double edgeOf(int x, double reach) { return -reach + (1 + 2 * reach) * (x + 0.5) / 400; }
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> out,
                const StopFlag* stop) override {
         for (size_t i = 0; i < rays.size(); ++i) {
-            const transport::CameraRay& r = rays[i];
+            const integrator::CameraRay& r = rays[i];
             // The lens has a radius of 1 and is in focus at 10, where fov 90 gives the 40 pixels of its height a side of 20.
             const Vec3 p = r.origin + r.direction * (10 / r.direction.z);
             const double x = 200 + 2 * double(p.x) - r.px, lens = r.origin.x;
@@ -52,30 +52,30 @@ struct Edges final : Tracer {
         }
         return !*stop;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 /// Leaves memory behind in the first result of a call, and counts the calls that find none.
 struct Keeper final : Tracer {
     int& fresh;
-    transport::Counters counts;
+    integrator::Counters counts;
     explicit Keeper(int& f) : fresh(f) {}
-    bool trace(std::span<const transport::CameraRay>, std::span<transport::SampleResult> out, const StopFlag*) override {
+    bool trace(std::span<const integrator::CameraRay>, std::span<integrator::SampleResult> out, const StopFlag*) override {
         fresh += out[0].aovs.capacity() < 100;
         out[0].aovs.reserve(100);
         return true;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 /// Counts its samples; each has a colour of its own.
 struct Marks final : Tracer {
     std::atomic<size_t>& samples;
-    transport::Counters counts;
+    integrator::Counters counts;
     explicit Marks(std::atomic<size_t>& n) : samples(n) {}
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out, const StopFlag*) override {
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> out, const StopFlag*) override {
         for (size_t i = 0; i < rays.size(); ++i) {
-            const transport::CameraRay& r = rays[i];
+            const integrator::CameraRay& r = rays[i];
             out[i].color = Color(float((r.px * 31 + r.py * 17 + int(r.sample)) % 101));
             out[i].opacity = Color(1.f);
             out[i].z = 1;
@@ -83,7 +83,7 @@ struct Marks final : Tracer {
         samples += rays.size();
         return true;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 struct World final : test::PlainWorld {};
@@ -138,8 +138,8 @@ TEST(ImageLoop, DisplaysOfOneFilterHaveDepthsOfTheirOwn) {
     s.allowWrite = true;
     Diagnostics diags;
     Progress progress{ProgressMode::None};
-    Renderer renderer(s, test::plainEngine<World>([](const transport::World&) { return std::make_unique<Slope>(); }), diags,
-                      progress, {});
+    Renderer renderer(s, test::plainEngine<World>([](const world::World&) { return std::make_unique<Slope>(); }), diags, progress,
+                      {});
     renderer.render(f);
     EXPECT_EQ(diags.errors(), 0);
     const display::Image least = read(dir / "min.exr"), most = read(dir / "max.exr"), mean = read(dir / "average.exr");
@@ -185,7 +185,7 @@ double errorOfEdges(double speed, double blur) {
     s.output = dir / "a.exr";
     Diagnostics diags;
     Progress progress{ProgressMode::None};
-    Renderer renderer(s, test::plainEngine<World>([&](const transport::World&) { return std::make_unique<Edges>(speed, blur); }),
+    Renderer renderer(s, test::plainEngine<World>([&](const world::World&) { return std::make_unique<Edges>(speed, blur); }),
                       diags, progress, {});
     renderer.render(f);
     const display::Image i = read(s.output);
@@ -216,8 +216,8 @@ TEST(ImageLoop, ResultsAreKeptFromTaskToTask) {
     Diagnostics diags;
     Progress progress{ProgressMode::None};
     int fresh = 0;
-    Renderer renderer(s, test::plainEngine<World>([&](const transport::World&) { return std::make_unique<Keeper>(fresh); }),
-                      diags, progress, {});
+    Renderer renderer(s, test::plainEngine<World>([&](const world::World&) { return std::make_unique<Keeper>(fresh); }), diags,
+                      progress, {});
     renderer.render(f);
     EXPECT_EQ(fresh, 1); // of the six tiles
 }
@@ -241,7 +241,7 @@ TEST(ImageLoop, BandsShareTheSamplesBetweenThem) {
         Diagnostics diags;
         Progress progress{ProgressMode::None};
         std::atomic<size_t> samples{0};
-        Renderer renderer(s, test::plainEngine<World>([&](const transport::World&) { return std::make_unique<Marks>(samples); }),
+        Renderer renderer(s, test::plainEngine<World>([&](const world::World&) { return std::make_unique<Marks>(samples); }),
                           diags, progress, {});
         renderer.render(f);
         EXPECT_EQ(samples, 66u * 302 * 36);

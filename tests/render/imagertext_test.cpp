@@ -37,8 +37,8 @@ scene::Frame graded() {
 
 TEST(ImagerText, ComesBackAsItWas) {
     const scene::Frame f = graded();
-    transport::Settings s;
-    s.hider = transport::Hider::Path;
+    world::Settings s;
+    s.hider = world::Hider::Path;
     s.lanes = 8;
     s.shaderPaths = {"/a/b/../c"};
     Diagnostics d;
@@ -57,7 +57,7 @@ TEST(ImagerText, ComesBackAsItWas) {
     EXPECT_EQ(o.attributes->values.at("user:x").numbers, (std::vector<float>{1, 2, 3}));
     EXPECT_EQ(o.attributes->coshaders.at("look")->name, "finish");
     EXPECT_TRUE(back->frame->coordinateSystems.at("stage").keys == f.coordinateSystems.at("stage").keys);
-    EXPECT_EQ(back->settings.hider, transport::Hider::Path);
+    EXPECT_EQ(back->settings.hider, world::Hider::Path);
     EXPECT_EQ(back->settings.lanes, 8);
     EXPECT_EQ(back->settings.shaderPaths, std::vector<std::string>{"/a/c"});
 }

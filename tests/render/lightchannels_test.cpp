@@ -94,7 +94,7 @@ TEST(LightChannels, PixelsOfAFilm) {
     ASSERT_FALSE(plan.lightParts[0].empty());
     const int key = plan.lightParts[0][0];
     for (uint32_t s = 0; s < 4; ++s) { // luminance 1 in one scramble, 3 in the other
-        transport::SampleResult r;
+        integrator::SampleResult r;
         r.color = Color(s % 2 ? 3 : 1);
         r.parts.assign(size_t(plan.parts), Color(0));
         r.parts[size_t(key)] = r.color * .25f;

@@ -7,11 +7,11 @@
 namespace alpenglow::render::test {
 
 /// Holds the frame and the settings it was built with. One number an output; an imager changes nothing.
-struct PlainWorld : transport::World {
+struct PlainWorld : world::World {
     std::shared_ptr<const scene::Frame> frame_;
-    transport::Settings settings_;
+    world::Settings settings_;
     const scene::Frame& frame() const override { return *frame_; }
-    const transport::Settings& settings() const override { return settings_; }
+    const world::Settings& settings() const override { return settings_; }
     Facts facts() const override { return {}; }
     void flushPrints(bool) const override {}
     std::vector<int> outputWidths() const override { return std::vector<int>(settings_.outputs.size(), 1); }
@@ -21,17 +21,16 @@ struct PlainWorld : transport::World {
     }
 };
 
-/// An engine of such worlds. `tracer`: makes the tracer of a world, std::unique_ptr<Tracer>(const transport::World&).
+/// An engine of such worlds. `tracer`: makes the tracer of a world, std::unique_ptr<Tracer>(const world::World&).
 template <class World = PlainWorld, class Make> Engine plainEngine(Make tracer) {
-    return {[](std::shared_ptr<const scene::Frame> f, const transport::Settings& s, Diagnostics&) {
-                auto w = std::make_shared<World>();
-                w->frame_ = std::move(f);
-                w->settings_ = s;
-                return w;
-            },
-            [tracer](const std::shared_ptr<const transport::World>& w, Diagnostics&) -> std::unique_ptr<Tracer> {
-                return tracer(*w);
-            }};
+    return {
+        [](std::shared_ptr<const scene::Frame> f, const world::Settings& s, Diagnostics&) {
+            auto w = std::make_shared<World>();
+            w->frame_ = std::move(f);
+            w->settings_ = s;
+            return w;
+        },
+        [tracer](const std::shared_ptr<const world::World>& w, Diagnostics&) -> std::unique_ptr<Tracer> { return tracer(*w); }};
 }
 
 } // namespace alpenglow::render::test

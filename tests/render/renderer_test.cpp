@@ -36,9 +36,9 @@ struct FakeWorld final : test::PlainWorld {
 
 /// Red: x of the image plane, green: y, blue: 7 on the left half, else 0. Depth 5, covered by a half.
 struct FakeTracer final : Tracer {
-    transport::Counters counts;
+    integrator::Counters counts;
     std::vector<std::string> outputs;
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> out,
                const StopFlag* stop) override {
         for (size_t i = 0; i < rays.size(); ++i) {
             Vec3 p = rays[i].direction * (1 / rays[i].direction.z);
@@ -53,11 +53,11 @@ struct FakeTracer final : Tracer {
         }
         return !*stop;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 Engine fakeEngine() {
-    return test::plainEngine<FakeWorld>([](const transport::World& w) {
+    return test::plainEngine<FakeWorld>([](const world::World& w) {
         auto t = std::make_unique<FakeTracer>();
         t->outputs = w.settings().outputs;
         return t;

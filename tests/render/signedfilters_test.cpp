@@ -177,8 +177,8 @@ namespace {
 
 /// One colour everywhere.
 struct EvenTracer final : Tracer {
-    transport::Counters counts;
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out,
+    integrator::Counters counts;
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> out,
                const StopFlag* stop) override {
         for (size_t i = 0; i < rays.size(); ++i) {
             out[i].color = {0.7f, 0.3f, 11};
@@ -188,7 +188,7 @@ struct EvenTracer final : Tracer {
         }
         return !*stop;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 } // namespace
@@ -211,8 +211,8 @@ TEST(SignedFilters, RendersOfAnEvenWorldAreEven) {
                 s.threads = threads;
                 Diagnostics diags;
                 Progress progress{ProgressMode::None};
-                Renderer renderer(s, test::plainEngine([](const transport::World&) { return std::make_unique<EvenTracer>(); }),
-                                  diags, progress, {});
+                Renderer renderer(s, test::plainEngine([](const world::World&) { return std::make_unique<EvenTracer>(); }), diags,
+                                  progress, {});
                 renderer.override(f->options);
                 renderer.render(f);
                 EXPECT_EQ(diags.errors(), 0);

@@ -80,7 +80,7 @@ TEST(Binary, RequestCodesAndArrays) {
     EXPECT_EQ(c->primitive().attributes->color, Color(1, .5f, 0));
 }
 
-TEST(Binary, EndOfDataByteIsNothing) { EXPECT_EQ(world(bytes({0377}))->count(), 0u); }
+TEST(Binary, EndOfDataByteIsNothing) { EXPECT_EQ(inWorld(bytes({0377}))->count(), 0u); }
 
 TEST(Binary, DamageIsReported) {
     EXPECT_EQ(read(bytes({0246, 9}))->only().code, Rie::BadFile); // not defined
@@ -91,8 +91,8 @@ TEST(Binary, DamageIsReported) {
     EXPECT_EQ(read("Color " + bytes({0313, 0xff, 0xff, 0xff, 0xff, 0}))->first().code, Rie::BadFile); // a length that lies
     EXPECT_EQ(read("Color " + bytes({0203, 1}))->first().code, Rie::BadFile);
     // NaN and infinity
-    EXPECT_EQ(world("Translate " + bytes({0244, 0x7f, 0xc0, 0, 0}) + " 0 0")->only().code, Rie::Range);
-    auto c = world("Polygon \"P\" " + bytes({0310, 9, 0x7f, 0x80, 0, 0}) + std::string(32, '\0'));
+    EXPECT_EQ(inWorld("Translate " + bytes({0244, 0x7f, 0xc0, 0, 0}) + " 0 0")->only().code, Rie::Range);
+    auto c = inWorld("Polygon \"P\" " + bytes({0310, 9, 0x7f, 0x80, 0, 0}) + std::string(32, '\0'));
     EXPECT_EQ(c->first().code, Rie::Range);
     EXPECT_TRUE(c->frame().primitives.empty());
 }

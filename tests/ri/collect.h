@@ -58,7 +58,7 @@ inline std::unique_ptr<Collected> read(std::string_view text, ReaderOptions opti
     return c;
 }
 /// `text` inside a world.
-inline std::unique_ptr<Collected> world(const std::string& text) { return read("WorldBegin\n" + text + "\nWorldEnd\n"); }
+inline std::unique_ptr<Collected> inWorld(const std::string& text) { return read("WorldBegin\n" + text + "\nWorldEnd\n"); }
 
 inline void expectMatrix(const Matrix& m, std::initializer_list<double> rows, double tolerance = 1e-12) {
     size_t i = 0;

@@ -10,13 +10,13 @@ using namespace alpenglow;
 using namespace alpenglow::ri;
 
 TEST(Grammar, Numbers) {
-    auto c = world("Sphere .5 -5. +1e-1 3.6E+2");
+    auto c = inWorld("Sphere .5 -5. +1e-1 3.6E+2");
     EXPECT_TRUE(c->ok) << c->messages();
     EXPECT_EQ(c->primitive().numbers, (std::vector<float>{.5f, -5.f, .1f, 360.f}));
 }
 
 TEST(Grammar, BadNumbersAreReportedInPlace) {
-    auto c = world("Sphere 1 -1 1 3x6");
+    auto c = inWorld("Sphere 1 -1 1 3x6");
     auto all = c->diagnostics.all();
     ASSERT_EQ(all.size(), 2u) << c->messages();
     EXPECT_EQ(all[0].code, Rie::Syntax);
@@ -24,10 +24,10 @@ TEST(Grammar, BadNumbersAreReportedInPlace) {
     EXPECT_EQ(all[0].place.column, 15); // "Sphere 1 -1 1 " has 14 bytes
     EXPECT_EQ(all[0].sourceLine, "Sphere 1 -1 1 3x6");
     EXPECT_EQ(all[1].code, Rie::MissingData);
-    EXPECT_EQ(world("Sphere 1e999 -1 1 360")->first().code, Rie::Range);
-    EXPECT_TRUE(world("Translate 1e-999 0 0")->ok);
+    EXPECT_EQ(inWorld("Sphere 1e999 -1 1 360")->first().code, Rie::Range);
+    EXPECT_TRUE(inWorld("Translate 1e-999 0 0")->ok);
     for (const char* bad : {"-", "+", ".", "1.2.3", "--1", "1e", "0x10", "nan", "-inf"})
-        EXPECT_FALSE(world(std::string("Translate 0 0 ") + bad)->ok) << bad;
+        EXPECT_FALSE(inWorld(std::string("Translate 0 0 ") + bad)->ok) << bad;
 }
 
 // What C libraries print of numbers that are none; exporters write it. The other numbers stay where they are.
@@ -35,7 +35,7 @@ TEST(Grammar, NotANumberIsSaidAndTaken) {
     const std::string none[] = {"nan", "-nan", "-NaN(ind)", "1.#QNAN", "-1.#IND00"},
                       endless[] = {"inf", "Infinity", "1.#INF00", "+INF"};
     for (const std::string& text : none) {
-        auto c = world("Polygon \"P\" [" + text + " 0 0 1 " + text + " 2 3 4 " + text + "] Sphere 1 -1 1 360");
+        auto c = inWorld("Polygon \"P\" [" + text + " 0 0 1 " + text + " 2 3 4 " + text + "] Sphere 1 -1 1 360");
         EXPECT_EQ(c->frame().primitives.size(), 2u) << c->messages();
         EXPECT_EQ(c->primitive().params[0].numbers, (std::vector<float>{0, 0, 0, 1, 0, 2, 3, 4, 0})) << text;
         EXPECT_EQ(c->only().code, Rie::Range) << "said once";
@@ -46,9 +46,9 @@ TEST(Grammar, NotANumberIsSaidAndTaken) {
         EXPECT_EQ(c->frame().options.clipFar, 1e38f) << text;
         EXPECT_EQ(c->only().code, Rie::Range);
     }
-    EXPECT_EQ(world("Polygon \"P\" [0 0 0 1 -inf 2 3 4 5]")->primitive().params[0].numbers[4], -1e38f);
-    EXPECT_TRUE(world("Color 1 1 1.#INFO\nSphere 1 -1 1 360")->ok) << "a comment";
-    EXPECT_EQ(world("Color 1 1 1 info")->first().code, Rie::BadToken) << "a request";
+    EXPECT_EQ(inWorld("Polygon \"P\" [0 0 0 1 -inf 2 3 4 5]")->primitive().params[0].numbers[4], -1e38f);
+    EXPECT_TRUE(inWorld("Color 1 1 1.#INFO\nSphere 1 -1 1 360")->ok) << "a comment";
+    EXPECT_EQ(inWorld("Color 1 1 1 info")->first().code, Rie::BadToken) << "a request";
 }
 
 TEST(Grammar, Utf16IsNamed) {
@@ -71,7 +71,7 @@ TEST(Grammar, StringEscapes) {
 }
 
 TEST(Grammar, UnterminatedStringIsReportedWhereItStarts) {
-    auto c = world("Surface \"plastic");
+    auto c = inWorld("Surface \"plastic");
     auto all = c->diagnostics.all();
     ASSERT_FALSE(all.empty());
     EXPECT_EQ(all[0].code, Rie::Syntax);
@@ -82,7 +82,7 @@ TEST(Grammar, UnterminatedStringIsReportedWhereItStarts) {
 
 TEST(Grammar, BracketsAreOptionalAroundCounts) {
     for (const char* text : {"Color 1 .5 0", "Color [1 .5 0]", "Color[1 .5 0]"}) {
-        auto c = world(std::string(text) + " Sphere 1 -1 1 360");
+        auto c = inWorld(std::string(text) + " Sphere 1 -1 1 360");
         EXPECT_TRUE(c->ok) << c->messages();
         EXPECT_EQ(c->primitive().attributes->color, Color(1, .5f, 0));
     }
@@ -125,14 +125,14 @@ TEST(Grammar, UnknownRequestHasAHint) {
 }
 
 TEST(Grammar, MissingBracket) {
-    auto c =
-        world("Polygon \"P\" [0 0 0 1 0 0 1 1 0 \"Cs\" [1 0 0 0 1 0 0 0 1]\nPolygon \"P\" [0 0 0 1 0 0 1 1 0\nSphere 1 -1 1 360");
+    auto c = inWorld(
+        "Polygon \"P\" [0 0 0 1 0 0 1 1 0 \"Cs\" [1 0 0 0 1 0 0 0 1]\nPolygon \"P\" [0 0 0 1 0 0 1 1 0\nSphere 1 -1 1 360");
     EXPECT_EQ(c->frame().primitives.size(), 3u) << c->messages();
     EXPECT_NE(scene::find(c->primitive(0).params, "Cs"), nullptr);
     ASSERT_EQ(c->count(), 2u) << c->messages();
     EXPECT_EQ(c->first().place.column, 13);
     EXPECT_EQ(c->first().code, Rie::Syntax);
-    EXPECT_EQ(world("Color 1 0 0 ] Sphere 1 -1 1 360")->only().code, Rie::Syntax);
+    EXPECT_EQ(inWorld("Color 1 0 0 ] Sphere 1 -1 1 360")->only().code, Rie::Syntax);
 }
 
 TEST(Grammar, IntegersMustBeWhole) {
@@ -152,16 +152,16 @@ TEST(Grammar, OldOddities) {
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->frame().options.pixelAspect, 1);
     EXPECT_EQ(c->primitive().strings, (std::vector<std::string>{"bilinear", "nonperiodic", "nonperiodic"}));
-    auto d = world("Translate [1 0 0 0 0 1 0 0 0 0 1 0 5 6 7 1] Sphere 1 -1 1 360");
+    auto d = inWorld("Translate [1 0 0 0 0 1 0 0 0 0 1 0 5 6 7 1] Sphere 1 -1 1 360");
     EXPECT_EQ(d->only().severity, Severity::Warning);
     EXPECT_EQ(transformPoint(d->primitive().toWorld.first(), {0, 0, 0}), Vec3d(5, 6, 7));
-    auto e = world("Polygon \"P\" [9 9 9 9 9 9 9 9 9] \"P\" [0 0 0 1 0 0 1 1 0]");
+    auto e = inWorld("Polygon \"P\" [9 9 9 9 9 9 9 9 9] \"P\" [0 0 0 1 0 0 1 1 0]");
     EXPECT_EQ(e->only().severity, Severity::Warning);
     EXPECT_EQ(scene::find(e->primitive().params, "P")->numbers[3], 1);
 }
 
 TEST(Grammar, TooManyNumbersAreNamed) {
-    auto c = world("Sphere 1 -1 1 360 7");
+    auto c = inWorld("Sphere 1 -1 1 360 7");
     EXPECT_EQ(c->only().severity, Severity::Warning);
     EXPECT_EQ(c->frame().primitives.size(), 1u);
 }
@@ -180,7 +180,7 @@ TEST(Grammar, LongArraysCrossTheBuffer) {
     const int n = 100000;
     std::string text = "Points \"P\" [";
     for (int i = 0; i < n; ++i) text += std::to_string(i) + " 0 0.5\n";
-    auto c = world(text + "]");
+    auto c = inWorld(text + "]");
     EXPECT_TRUE(c->ok) << c->messages();
     const auto& p = scene::find(c->primitive().params, "P")->numbers;
     ASSERT_EQ(p.size(), size_t(n) * 3);

@@ -49,7 +49,7 @@ TEST(KnownOptions, EverySampleIsReadWithoutAMessage) {
     for (const OptionDescription& d : known::knownAttributes()) {
         if (!d.settable()) continue;
         ASSERT_FALSE(d.sample.empty()) << d.name;
-        auto c = world(request("Attribute", d) + "Sphere 1 -1 1 360");
+        auto c = inWorld(request("Attribute", d) + "Sphere 1 -1 1 360");
         EXPECT_EQ(c->messages(), "") << d.name;
         EXPECT_NE(c->primitive().attributes->value(std::string(d.name)), nullptr) << d.name;
     }

@@ -51,7 +51,7 @@ TEST(Scopes, PrimitivesOutsideTheWorld) {
 }
 
 TEST(Nesting, CrossedBlocksAreMended) {
-    auto c = world("AttributeBegin TransformBegin Translate 1 0 0 AttributeEnd\nSphere 1 -1 1 360");
+    auto c = inWorld("AttributeBegin TransformBegin Translate 1 0 0 AttributeEnd\nSphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::Nesting);
     EXPECT_EQ(c->primitive().toWorld.first(), Matrix{});
     auto d = read("WorldBegin AttributeBegin Sphere 1 -1 1 360 WorldEnd WorldBegin WorldEnd");
@@ -71,7 +71,7 @@ TEST(Nesting, EndsWithoutBegin) {
         ASSERT_FALSE(c->diagnostics.all().empty()) << end;
         EXPECT_EQ(c->diagnostics.all().back().code, Rie::Nesting) << end;
     }
-    auto c = world("AttributeEnd TransformEnd Sphere 1 -1 1 360"); // do not close the world
+    auto c = inWorld("AttributeEnd TransformEnd Sphere 1 -1 1 360"); // do not close the world
     EXPECT_EQ(c->count(), 2u);
     EXPECT_EQ(c->frame().primitives.size(), 1u);
 }
@@ -85,11 +85,11 @@ TEST(Nesting, StreamEndsInsideAWorld) {
 
 TEST(Solids, PartsKeepTheWayToThem) {
     using Op = scene::SolidOperation;
-    auto c = world("SolidBegin \"difference\"\n SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 AttributeBegin Disk 1 1 "
-                   "360 AttributeEnd SolidEnd\n"
-                   "SolidBegin \"union\" SolidBegin \"primitive\" Sphere 2 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere 3 "
-                   "-1 1 360 SolidEnd SolidEnd\n"
-                   "SolidBegin \"primitive\" Sphere 4 -1 1 360 SolidEnd SolidEnd\nSphere 5 -1 1 360");
+    auto c = inWorld("SolidBegin \"difference\"\n SolidBegin \"primitive\" Color 1 0 0 Sphere 1 -1 1 360 AttributeBegin Disk 1 1 "
+                     "360 AttributeEnd SolidEnd\n"
+                     "SolidBegin \"union\" SolidBegin \"primitive\" Sphere 2 -1 1 360 SolidEnd SolidBegin \"primitive\" Sphere 3 "
+                     "-1 1 360 SolidEnd SolidEnd\n"
+                     "SolidBegin \"primitive\" Sphere 4 -1 1 360 SolidEnd SolidEnd\nSphere 5 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     ASSERT_EQ(c->frame().primitives.size(), 6u);
     const auto path = [&](size_t i) { return scene::solidPath(*c->primitive(i).attributes); };
@@ -110,12 +110,12 @@ TEST(Solids, PartsKeepTheWayToThem) {
     EXPECT_EQ(path(4)[1].child, 2);
     EXPECT_FALSE(scene::solidTakenAway(*c->primitive(0).attributes));
     EXPECT_TRUE(path(5).empty());
-    EXPECT_EQ(world("SolidBegin \"xor\" SolidEnd")->only().code, Rie::BadSolid);
+    EXPECT_EQ(inWorld("SolidBegin \"xor\" SolidEnd")->only().code, Rie::BadSolid);
 }
 
 TEST(Solids, WhatStandsBesidePartsIsOne) {
-    auto c = world("SolidBegin \"intersection\" Sphere 1 -1 1 360 Sphere 2 -1 1 360 SolidBegin \"primitive\" Sphere 3 -1 1 360 "
-                   "SolidEnd SolidEnd");
+    auto c = inWorld("SolidBegin \"intersection\" Sphere 1 -1 1 360 Sphere 2 -1 1 360 SolidBegin \"primitive\" Sphere 3 -1 1 360 "
+                     "SolidEnd SolidEnd");
     EXPECT_EQ(c->only().code, Rie::BadSolid);
     ASSERT_EQ(c->frame().primitives.size(), 3u);
     for (int i = 0; i < 3; ++i) {
@@ -125,15 +125,16 @@ TEST(Solids, WhatStandsBesidePartsIsOne) {
         EXPECT_EQ(path[1].operation, scene::SolidOperation::Part);
     }
     // A block inside a part belongs to it.
-    c = world("SolidBegin \"union\" SolidBegin \"primitive\" SolidBegin \"union\" Sphere 1 -1 1 360 SolidEnd SolidEnd SolidEnd");
+    c = inWorld(
+        "SolidBegin \"union\" SolidBegin \"primitive\" SolidBegin \"union\" Sphere 1 -1 1 360 SolidEnd SolidEnd SolidEnd");
     EXPECT_EQ(c->only().code, Rie::BadSolid);
     EXPECT_EQ(scene::solidPath(*c->primitive().attributes).size(), 2u);
 }
 
 TEST(Solids, InstancesKeepThePathOfTheirObject) {
-    auto c = world("ObjectBegin 1 SolidBegin \"difference\" SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd SolidBegin "
-                   "\"primitive\" Sphere .5 -1 1 360 "
-                   "SolidEnd SolidEnd ObjectEnd ObjectInstance 1 ObjectInstance 1");
+    auto c = inWorld("ObjectBegin 1 SolidBegin \"difference\" SolidBegin \"primitive\" Sphere 1 -1 1 360 SolidEnd SolidBegin "
+                     "\"primitive\" Sphere .5 -1 1 360 "
+                     "SolidEnd SolidEnd ObjectEnd ObjectInstance 1 ObjectInstance 1");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     for (const scene::PrimitiveRef& p : c->frame().objects[0].primitives) {
         EXPECT_TRUE(p->attributesInside); // so that instances take what differs
@@ -142,14 +143,14 @@ TEST(Solids, InstancesKeepThePathOfTheirObject) {
 }
 
 TEST(ForeignCode, IsNotRun) {
-    auto c = world("System \"ls\" Procedural \"RunProgram\" [\"p\" \"d\"] [-1 1 -1 1 -1 1] Procedural \"DynamicLoad\" [\"l\" "
-                   "\"d\"] [-1 1 -1 1 -1 1]");
+    auto c = inWorld("System \"ls\" Procedural \"RunProgram\" [\"p\" \"d\"] [-1 1 -1 1 -1 1] Procedural \"DynamicLoad\" [\"l\" "
+                     "\"d\"] [-1 1 -1 1 -1 1]");
     ASSERT_EQ(c->count(), 3u) << c->messages();
     for (const Diagnostic& d : c->diagnostics.all()) {
         EXPECT_EQ(d.code, Rie::Incapable);
         EXPECT_NE(d.message.find("--allow-exec"), std::string::npos);
     }
-    EXPECT_EQ(world("Procedural \"Magic\" [\"a\"] [-1 1 -1 1 -1 1]")->only().code, Rie::BadToken);
+    EXPECT_EQ(inWorld("Procedural \"Magic\" [\"a\"] [-1 1 -1 1 -1 1]")->only().code, Rie::BadToken);
 }
 
 TEST(Handler, UnknownStyles) { EXPECT_EQ(read("ErrorHandler \"shout\"")->only().code, Rie::BadToken); }
@@ -199,42 +200,43 @@ TEST(Conditions, Expressions) {
 
 TEST(Conditions, Branches) {
     auto color = [](const std::string& a, const std::string& b) {
-        return world("IfBegin \"" + a + "\" Color 1 0 0 ElseIf \"" + b +
-                     "\" Color 0 1 0 Else Color 0 0 1 IfEnd Sphere 1 -1 1 360")
+        return inWorld("IfBegin \"" + a + "\" Color 1 0 0 ElseIf \"" + b +
+                       "\" Color 0 1 0 Else Color 0 0 1 IfEnd Sphere 1 -1 1 360")
             ->primitive()
             .attributes->color;
     };
     EXPECT_EQ(color("1", "1"), Color(1, 0, 0));
     EXPECT_EQ(color("0", "1"), Color(0, 1, 0));
     EXPECT_EQ(color("0", "0"), Color(0, 0, 1));
-    auto c = world("IfBegin \"0\" IfBegin \"1\" Sphere 1 -1 1 360 Else Sphere 1 -1 1 360 IfEnd Else Sphere 2 -2 2 360 IfEnd");
+    auto c = inWorld("IfBegin \"0\" IfBegin \"1\" Sphere 1 -1 1 360 Else Sphere 1 -1 1 360 IfEnd Else Sphere 2 -2 2 360 IfEnd");
     EXPECT_EQ(c->primitive().numbers[0], 2);
     EXPECT_EQ(c->frame().primitives.size(), 1u);
     EXPECT_EQ(read("IfBegin \"1\"")->only().code, Rie::Nesting);
 }
 
 TEST(Hints, WrongBoundIsOnlyAWarning) {
-    auto c = world("Bound 1 -1 0 1 0 1 Sphere 1 -1 1 360");
+    auto c = inWorld("Bound 1 -1 0 1 0 1 Sphere 1 -1 1 360");
     EXPECT_TRUE(c->ok);
     EXPECT_EQ(c->only().code, Rie::Range);
     EXPECT_FALSE(c->primitive().attributes->bound);
 }
 
 TEST(Hints, VisibilityTakesNumbersAndWords) {
-    EXPECT_EQ(world("Attribute \"visibility\" \"transmission\" 1 Attribute \"visibility\" \"transmission\" \"Os\"")->count(), 0u);
+    EXPECT_EQ(inWorld("Attribute \"visibility\" \"transmission\" 1 Attribute \"visibility\" \"transmission\" \"Os\"")->count(),
+              0u);
 }
 
 TEST(Foreign, EachNameIsSaidOnce) {
-    auto c = world("Sphre 1\nSphre 2\nSphere 1 -1 1 360\nNotthis 1 2\nSphre 3\n");
+    auto c = inWorld("Sphre 1\nSphre 2\nSphere 1 -1 1 360\nNotthis 1 2\nSphre 3\n");
     EXPECT_EQ(c->count(), 2u) << c->messages();
     EXPECT_EQ(c->frame().primitives.size(), 1u);
     std::string many; // more different names than are told apart: the reporter's own bound holds
     for (int i = 0; i < 2 * limits::kUnknownNames; ++i) many += "Q" + std::to_string(i) + "x 1\nQ0x 1\n";
-    EXPECT_LE(world(many)->count(), size_t(3 * limits::kUnknownNames) + 1);
+    EXPECT_LE(inWorld(many)->count(), size_t(3 * limits::kUnknownNames) + 1);
 }
 
 TEST(Foreign, LaterNamesOfTheSameThings) {
-    auto c = world("VPAtmosphere \"fog\" VPInterior \"haze\" Sphere 1 -1 1 360");
+    auto c = inWorld("VPAtmosphere \"fog\" VPInterior \"haze\" Sphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(c->primitive().attributes->atmosphere->name, "fog");
     EXPECT_EQ(c->primitive().attributes->interior->name, "haze");

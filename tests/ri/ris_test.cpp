@@ -24,9 +24,9 @@ float valueOf(const scene::Primitive& p, const std::string& parameter) {
 }
 
 TEST(Ris, AHandleMeansThePatternThatItHasWhenTheBxdfStands) {
-    auto c = world("Pattern \"PxrMix\" \"m\" \"float mix\" .25\nBxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" "
-                   "[\"m:resultRGB\"]\nSphere 1 -1 1 360\nPattern \"PxrMix\" \"m\" \"float mix\" .75\nSphere 2 -2 2 360\n"
-                   "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"m:resultRGB\"]\nSphere 3 -3 3 360");
+    auto c = inWorld("Pattern \"PxrMix\" \"m\" \"float mix\" .25\nBxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" "
+                     "[\"m:resultRGB\"]\nSphere 1 -1 1 360\nPattern \"PxrMix\" \"m\" \"float mix\" .75\nSphere 2 -2 2 360\n"
+                     "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"m:resultRGB\"]\nSphere 3 -3 3 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(connectionOf(c->primitive(0)).parameter, "diffuseColor");
     EXPECT_EQ(connectionOf(c->primitive(0)).output, "resultRGB");
@@ -36,8 +36,8 @@ TEST(Ris, AHandleMeansThePatternThatItHasWhenTheBxdfStands) {
 }
 
 TEST(Ris, PatternsEndWithTheirBlock) {
-    auto c = world("AttributeBegin\nPattern \"PxrMix\" \"mine\"\nAttributeEnd\nPattern \"PxrMix\" \"mind\"\n"
-                   "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"mine:resultRGB\"]\nSphere 1 -1 1 360");
+    auto c = inWorld("AttributeBegin\nPattern \"PxrMix\" \"mine\"\nAttributeEnd\nPattern \"PxrMix\" \"mind\"\n"
+                     "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"mine:resultRGB\"]\nSphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::BadHandle);
     EXPECT_EQ(c->only().place.line, 6);
     EXPECT_NE(c->only().hint.find("mind"), std::string::npos);
@@ -45,8 +45,8 @@ TEST(Ris, PatternsEndWithTheirBlock) {
 }
 
 TEST(Ris, HandlesMayHaveColonsAndElementsMayBeConnected) {
-    auto c = world("Pattern \"PxrMix\" \"ns:m\"\nPattern \"PxrMix\" \"n\"\nBxdf \"X\" \"d\" \"reference float[2] w\" [\"\" "
-                   "\"ns:m:resultR\"]\nSphere 1 -1 1 360");
+    auto c = inWorld("Pattern \"PxrMix\" \"ns:m\"\nPattern \"PxrMix\" \"n\"\nBxdf \"X\" \"d\" \"reference float[2] w\" [\"\" "
+                     "\"ns:m:resultR\"]\nSphere 1 -1 1 360");
     const scene::Connection k = connectionOf(c->primitive());
     EXPECT_EQ(scene::plainHandle(k.handle), "ns:m");
     EXPECT_EQ(k.output, "resultR");
@@ -54,14 +54,14 @@ TEST(Ris, HandlesMayHaveColonsAndElementsMayBeConnected) {
 }
 
 TEST(Ris, CirclesAreErrorsAndTheRestIsConnected) {
-    auto c =
-        world("Pattern \"PxrMix\" \"a\" \"reference color color1\" [\"b:resultRGB\"]\nPattern \"PxrMix\" \"b\" \"reference color "
-              "color1\" [\"a:resultRGB\"]\nBxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"a:resultRGB\"]\n"
-              "Sphere 1 -1 1 360");
+    auto c = inWorld(
+        "Pattern \"PxrMix\" \"a\" \"reference color color1\" [\"b:resultRGB\"]\nPattern \"PxrMix\" \"b\" \"reference color "
+        "color1\" [\"a:resultRGB\"]\nBxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"a:resultRGB\"]\n"
+        "Sphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::BadHandle);
     EXPECT_NE(c->only().message.find("a > b > a"), std::string::npos) << c->messages();
     EXPECT_EQ(scene::plainHandle(connectionOf(c->primitive()).handle), "a");
-    auto own = world("Bxdf \"LamaLayer\" \"l\" \"reference bxdf materialTop\" [\"l:bxdf_out\"]\nSphere 1 -1 1 360");
+    auto own = inWorld("Bxdf \"LamaLayer\" \"l\" \"reference bxdf materialTop\" [\"l:bxdf_out\"]\nSphere 1 -1 1 360");
     EXPECT_NE(own->only().message.find("l > l"), std::string::npos) << own->messages();
 }
 
@@ -70,16 +70,16 @@ TEST(Ris, ChainsHaveABound) {
     for (size_t i = 1; i <= kNetworkDepth + 10; ++i)
         text += "Pattern \"PxrMix\" \"p" + std::to_string(i) + "\" \"reference color color1\" [\"p" + std::to_string(i - 1) +
                 ":resultRGB\"]\n";
-    auto c = world(text + "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"p" + std::to_string(kNetworkDepth + 10) +
-                   ":resultRGB\"]\nSphere 1 -1 1 360");
+    auto c = inWorld(text + "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"p" +
+                     std::to_string(kNetworkDepth + 10) + ":resultRGB\"]\nSphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::Limit) << c->messages();
 }
 
 TEST(Ris, LightsAreOnEverywhere) {
-    auto c =
-        world("Sphere 1 -1 1 360\nAttributeBegin\nLight \"PxrRectLight\" \"l\" \"float intensity\" 2\nAttributeEnd\n"
-              "AttributeBegin\nLight \"PxrDomeLight\" \"s\"\nAttributeEnd\nSphere 2 -2 2 360\nObjectBegin 1\nSphere 3 -3 3 360\n"
-              "ObjectEnd\nObjectInstance 1");
+    auto c = inWorld(
+        "Sphere 1 -1 1 360\nAttributeBegin\nLight \"PxrRectLight\" \"l\" \"float intensity\" 2\nAttributeEnd\n"
+        "AttributeBegin\nLight \"PxrDomeLight\" \"s\"\nAttributeEnd\nSphere 2 -2 2 360\nObjectBegin 1\nSphere 3 -3 3 360\n"
+        "ObjectEnd\nObjectInstance 1");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const scene::Frame& f = c->frame();
     ASSERT_EQ(f.lights.size(), 2u);
@@ -104,7 +104,7 @@ TEST(Ris, TheHiderIsPathUnlessTheSceneChoosesAnother) {
     const std::string ball = "WorldBegin\nBxdf \"PxrDiffuse\" \"d\"\nSphere 1 -1 1 360\nWorldEnd\n";
     EXPECT_EQ(read(ball)->frame().options.hider, "path");
     EXPECT_EQ(read("Hider \"hidden\"\n" + ball)->frame().options.hider, "hidden");
-    EXPECT_EQ(world("Sphere 1 -1 1 360")->frame().options.hider, "hidden");
+    EXPECT_EQ(inWorld("Sphere 1 -1 1 360")->frame().options.hider, "hidden");
     const auto traced = read("Hider \"raytrace\" \"int maxsamples\" 48 \"int incremental\" 1\n" + ball);
     EXPECT_EQ(traced->frame().options.hider, "path");
     EXPECT_EQ(traced->frame().options.pixelSamplesX * traced->frame().options.pixelSamplesY, 48);
@@ -133,7 +133,7 @@ TEST(Ris, WithoutLightsAndIntegratorTheEyeHasALamp) {
     EXPECT_TRUE(c->primitive().attributes->lights.contains(0));
     EXPECT_EQ(read("Integrator \"PxrDefault\" \"i\"\n" + ball)->frame().lights.size(), 1u);
     EXPECT_EQ(read("Integrator \"PxrPathTracer\" \"i\"\n" + ball)->frame().lights.size(), 0u);
-    EXPECT_EQ(world("Sphere 1 -1 1 360")->frame().lights.size(), 0u);
+    EXPECT_EQ(inWorld("Sphere 1 -1 1 360")->frame().lights.size(), 0u);
 }
 
 TEST(Ris, PxrOcclusionSeesOneSurfaceEverywhere) {
@@ -142,14 +142,14 @@ TEST(Ris, PxrOcclusionSeesOneSurfaceEverywhere) {
 }
 
 TEST(Ris, WhatIsLeftOutIsSaidOnce) {
-    auto c = world("LightFilter \"PxrBarn\" \"b\"\nLightFilter \"PxrBarn\" \"c\"\nSampleFilter \"PxrCryptomatte\" \"m\"\n"
-                   "EnableLightFilter \"l\" \"b\" 1\nSphere 1 -1 1 360");
+    auto c = inWorld("LightFilter \"PxrBarn\" \"b\"\nLightFilter \"PxrBarn\" \"c\"\nSampleFilter \"PxrCryptomatte\" \"m\"\n"
+                     "EnableLightFilter \"l\" \"b\" 1\nSphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 2u) << c->messages();
     for (const Diagnostic& d : c->diagnostics.all()) EXPECT_EQ(d.severity, Severity::Warning);
 }
 
 TEST(Ris, LightsHaveGeometry) {
-    auto c = world(
+    auto c = inWorld(
         "Geometry \"rectlight\"\nGeometry \"envsphere\"\nAreaLightSource \"PxrStdAreaLight\" \"a\"\nGeometry \"spherelight\"");
     ASSERT_EQ(c->frame().primitives.size(), 2u) << c->messages();
     EXPECT_EQ(c->primitive(0).kind, "Polygon");
@@ -158,15 +158,15 @@ TEST(Ris, LightsHaveGeometry) {
 }
 
 TEST(Ris, PxrOslNamesItsShader) {
-    auto c = world("Pattern \"PxrOSL\" \"p\" \"string shader\" [\"band\"] \"float fuzz\" .1\nPattern \"PxrOSL\" \"q\"\n"
-                   "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"p:Cout\"]\nSphere 1 -1 1 360");
+    auto c = inWorld("Pattern \"PxrOSL\" \"p\" \"string shader\" [\"band\"] \"float fuzz\" .1\nPattern \"PxrOSL\" \"q\"\n"
+                     "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"p:Cout\"]\nSphere 1 -1 1 360");
     EXPECT_EQ(c->only().code, Rie::MissingData);
     EXPECT_EQ(valueOf(c->primitive(), "fuzz"), .1f);
     EXPECT_EQ(c->primitive().attributes->coshaders.at(connectionOf(c->primitive()).handle)->name, "band");
 }
 
 TEST(Ris, PxrVolumeIsWhatIsInside) {
-    auto c = world("Bxdf \"PxrVolume\" \"v\" \"color diffuseColor\" [1 1 1]\nSphere 1 -1 1 360");
+    auto c = inWorld("Bxdf \"PxrVolume\" \"v\" \"color diffuseColor\" [1 1 1]\nSphere 1 -1 1 360");
     EXPECT_EQ(c->primitive().attributes->interior->name, "PxrVolume");
     EXPECT_EQ(c->primitive().attributes->surface->name, "null");
 }

@@ -13,7 +13,7 @@ using namespace alpenglow::ri;
 
 namespace {
 const char* kBall = " Sphere 1 -1 1 360 ";
-Matrix ctm(const std::string& transforms) { return world(transforms + kBall)->primitive().toWorld.first(); }
+Matrix ctm(const std::string& transforms) { return inWorld(transforms + kBall)->primitive().toWorld.first(); }
 } // namespace
 
 TEST(Transforms, EachAgainstItsClosedForm) {
@@ -63,7 +63,7 @@ TEST(Transforms, ShaderSpaceOfCallsBeforeTheWorld) {
 }
 
 TEST(Transforms, CoordinateSystems) {
-    auto c = world(
+    auto c = inWorld(
         "AttributeBegin Translate 1 2 3 CoordinateSystem \"here\" AttributeEnd CoordSysTransform \"here\" Sphere 1 -1 1 360\n"
         "AttributeBegin Scale 2 2 2 ScopedCoordinateSystem \"s\" Identity CoordSysTransform \"s\" Sphere 1 -1 1 360 "
         "AttributeEnd\n"
@@ -75,17 +75,17 @@ TEST(Transforms, CoordinateSystems) {
 }
 
 TEST(Transforms, BadOnesAreRefused) {
-    EXPECT_EQ(world("Rotate 10 0 0 0")->only().code, Rie::Range);
-    EXPECT_EQ(world("Skew 10 0 1 0 0 2 0")->only().code, Rie::Range);
-    EXPECT_EQ(world("Perspective 180")->only().code, Rie::Range);
-    EXPECT_EQ(world("Scale 1 0 1")->only().code, Rie::Math);
+    EXPECT_EQ(inWorld("Rotate 10 0 0 0")->only().code, Rie::Range);
+    EXPECT_EQ(inWorld("Skew 10 0 1 0 0 2 0")->only().code, Rie::Range);
+    EXPECT_EQ(inWorld("Perspective 180")->only().code, Rie::Range);
+    EXPECT_EQ(inWorld("Scale 1 0 1")->only().code, Rie::Math);
     EXPECT_EQ(read("Scale 0 0 0 WorldBegin WorldEnd")->diagnostics.all().back().code, Rie::Math);
 }
 
 TEST(Attributes, AreSavedAndRestored) {
-    auto c =
-        world("Color 1 0 0 AttributeBegin Color 0 1 0 Translate 1 0 0 Sides 1 Sphere 1 -1 1 360 AttributeEnd Sphere 1 -1 1 360\n"
-              "TransformBegin Translate 5 0 0 Color 0 0 1 TransformEnd Sphere 1 -1 1 360");
+    auto c = inWorld(
+        "Color 1 0 0 AttributeBegin Color 0 1 0 Translate 1 0 0 Sides 1 Sphere 1 -1 1 360 AttributeEnd Sphere 1 -1 1 360\n"
+        "TransformBegin Translate 5 0 0 Color 0 0 1 TransformEnd Sphere 1 -1 1 360");
     EXPECT_TRUE(c->ok);
     EXPECT_EQ(c->primitive(0).attributes->color, Color(0, 1, 0));
     EXPECT_EQ(c->primitive(0).attributes->sides, 1);
@@ -97,7 +97,7 @@ TEST(Attributes, AreSavedAndRestored) {
 }
 
 TEST(Attributes, OrientationAndReverse) {
-    auto a = [](const std::string& s) { return world(s + kBall)->primitive().attributes; };
+    auto a = [](const std::string& s) { return inWorld(s + kBall)->primitive().attributes; };
     EXPECT_FALSE(a("")->inside);
     EXPECT_TRUE(a("Orientation \"inside\"")->inside);
     EXPECT_TRUE(a("ReverseOrientation")->inside);
@@ -106,11 +106,11 @@ TEST(Attributes, OrientationAndReverse) {
     EXPECT_TRUE(a("Orientation \"rh\"")->rightHanded);
     EXPECT_FALSE(a("Orientation \"rh\" ReverseOrientation")->rightHanded);
     EXPECT_FALSE(a("Orientation \"lh\" Orientation \"outside\"")->absoluteHandedness);
-    EXPECT_EQ(world("Orientation \"up\"")->only().code, Rie::BadToken);
+    EXPECT_EQ(inWorld("Orientation \"up\"")->only().code, Rie::BadToken);
 }
 
 TEST(Attributes, BasisMatrices) {
-    auto c = world("Basis \"b-spline\" 1 [1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16] 2 Sphere 1 -1 1 360");
+    auto c = inWorld("Basis \"b-spline\" 1 [1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16] 2 Sphere 1 -1 1 360");
     const auto& a = *c->primitive().attributes;
     EXPECT_EQ(a.ubasis.step, 1);
     EXPECT_DOUBLE_EQ(a.ubasis.m[3][1], 4.0 / 6); // RISpec 3.2, 5.2
@@ -119,18 +119,18 @@ TEST(Attributes, BasisMatrices) {
     // Each row set interpolates a constant: the columns of the last row sum to 1, of the others to 0.
     for (const char* name : {"bezier", "b-spline", "catmull-rom"}) {
         auto b =
-            world(std::string("Basis \"") + name + "\" 1 \"" + name + "\" 1 Sphere 1 -1 1 360")->primitive().attributes->ubasis;
+            inWorld(std::string("Basis \"") + name + "\" 1 \"" + name + "\" 1 Sphere 1 -1 1 360")->primitive().attributes->ubasis;
         for (int r = 0; r < 4; ++r) EXPECT_NEAR(b.m[r][0] + b.m[r][1] + b.m[r][2] + b.m[r][3], r == 3, 1e-15) << name;
     }
-    EXPECT_EQ(world("Basis \"bezier\" 0 \"bezier\" 3")->only().code, Rie::Range);
-    EXPECT_EQ(world("Basis \"nurbs\" 3 \"bezier\" 3")->only().code, Rie::BadToken);
+    EXPECT_EQ(inWorld("Basis \"bezier\" 0 \"bezier\" 3")->only().code, Rie::Range);
+    EXPECT_EQ(inWorld("Basis \"nurbs\" 3 \"bezier\" 3")->only().code, Rie::BadToken);
 }
 
 TEST(Attributes, ValuesByClassAndName) {
-    auto c = world("Attribute \"identifier\" \"name\" [\"ball\"] Attribute \"user\" \"float x\" 3 \"string y\" \"z\"\n"
-                   "Attribute \"grouping\" \"membership\" \"a\" Attribute \"grouping\" \"membership\" \"+b\" Attribute "
-                   "\"grouping\" \"membership\" \"-a\"\n"
-                   "GeometricApproximation \"motionfactor\" 2 Sphere 1 -1 1 360");
+    auto c = inWorld("Attribute \"identifier\" \"name\" [\"ball\"] Attribute \"user\" \"float x\" 3 \"string y\" \"z\"\n"
+                     "Attribute \"grouping\" \"membership\" \"a\" Attribute \"grouping\" \"membership\" \"+b\" Attribute "
+                     "\"grouping\" \"membership\" \"-a\"\n"
+                     "GeometricApproximation \"motionfactor\" 2 Sphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const auto& a = *c->primitive().attributes;
     EXPECT_EQ(a.value("identifier:name")->strings[0], "ball");
@@ -138,10 +138,10 @@ TEST(Attributes, ValuesByClassAndName) {
     EXPECT_EQ(a.value("grouping:membership")->strings[0], "b");
     EXPECT_EQ(a.value("GeometricApproximation:motionfactor")->numbers[0], 2);
     EXPECT_EQ(a.value("none"), nullptr);
-    auto d = world("Attribute \"radiosity\" \"steps\" [4]");
+    auto d = inWorld("Attribute \"radiosity\" \"steps\" [4]");
     EXPECT_TRUE(d->ok);
     EXPECT_EQ(d->only().severity, Severity::Info); // another renderer's name
-    EXPECT_EQ(world("Attribute \"trace\" \"bias\" [\"x\"]")->only().code, Rie::Consistency);
+    EXPECT_EQ(inWorld("Attribute \"trace\" \"bias\" [\"x\"]")->only().code, Rie::Consistency);
 }
 
 TEST(Attributes, DetailKeepsItsSpace) {
@@ -153,7 +153,7 @@ TEST(Attributes, DetailKeepsItsSpace) {
 }
 
 TEST(Attributes, Resources) {
-    auto c = world(
+    auto c = inWorld(
         "Color 1 0 0 Translate 1 0 0 Resource \"r\" \"attributes\" \"string operation\" \"save\" Color 0 1 0 Sides 1 Identity\n"
         "Resource \"r\" \"attributes\" \"string operation\" \"restore\" \"string subset\" \"shading\" Sphere 1 -1 1 360\n"
         "Resource \"r\" \"attributes\" \"string operation\" \"restore\" Sphere 1 -1 1 360\n"
@@ -169,9 +169,9 @@ TEST(Attributes, Resources) {
 }
 
 TEST(Lights, ListIsAnAttribute) {
-    auto c = world("LightSource \"ambientlight\" 1 AttributeBegin LightSource \"pointlight\" \"two\" Sphere 1 -1 1 360 "
-                   "AttributeEnd Sphere 1 -1 1 360\n"
-                   "Illuminate \"two\" 1 Illuminate 1 0 Sphere 1 -1 1 360 Illuminate \"1\" 1 Sphere 1 -1 1 360");
+    auto c = inWorld("LightSource \"ambientlight\" 1 AttributeBegin LightSource \"pointlight\" \"two\" Sphere 1 -1 1 360 "
+                     "AttributeEnd Sphere 1 -1 1 360\n"
+                     "Illuminate \"two\" 1 Illuminate 1 0 Sphere 1 -1 1 360 Illuminate \"1\" 1 Sphere 1 -1 1 360");
     EXPECT_TRUE(c->ok) << c->messages();
     using L = std::vector<int>;
     EXPECT_EQ(c->primitive(0).attributes->lights, (L{0, 1}));
@@ -182,14 +182,14 @@ TEST(Lights, ListIsAnAttribute) {
 }
 
 TEST(Lights, HandleGivenTwiceIsTwoLights) {
-    auto c =
-        world("LightSource \"distantlight\" 2 LightSource \"distantlight\" 2 Sphere 1 -1 1 360 Illuminate 2 0 Sphere 1 -1 1 360");
+    auto c = inWorld(
+        "LightSource \"distantlight\" 2 LightSource \"distantlight\" 2 Sphere 1 -1 1 360 Illuminate 2 0 Sphere 1 -1 1 360");
     EXPECT_EQ(c->primitive(0).attributes->lights, (std::vector<int>{0, 1}));
     EXPECT_EQ(c->primitive(1).attributes->lights, (std::vector<int>{0})); // the handle names the newer one
 }
 
 TEST(Lights, AreaLightsOwnWhatFollows) {
-    auto c = world("AttributeBegin AreaLightSource \"arealight\" 7 Sphere 1 -1 1 360 AttributeEnd Sphere 2 -2 2 360");
+    auto c = inWorld("AttributeBegin AreaLightSource \"arealight\" 7 Sphere 1 -1 1 360 AttributeEnd Sphere 2 -2 2 360");
     EXPECT_TRUE(c->frame().lights.at(0).area);
     EXPECT_EQ(c->primitive(0).attributes->areaLight, 0);
     EXPECT_EQ(c->primitive(1).attributes->areaLight, -1);
@@ -205,15 +205,15 @@ TEST(Lights, DieWithTheWorld) {
 }
 
 TEST(Lights, HandleLeftOut) {
-    auto c = world("LightSource \"ambientlight\" \"intensity\" .4");
+    auto c = inWorld("LightSource \"ambientlight\" \"intensity\" .4");
     EXPECT_EQ(c->only().severity, Severity::Warning);
     EXPECT_EQ(c->frame().lights.at(0).shader->params.at(0).name, "intensity");
 }
 
 TEST(Objects, AreStoredInTheirOwnSpace) {
-    auto c = world("Translate 9 0 0 Color 1 0 0 ObjectBegin \"o\" Translate 1 0 0 Sphere 1 -1 1 360 Color 0 0 1 Sphere 1 -1 1 "
-                   "360 ObjectEnd\n"
-                   "Color 0 1 0 ObjectInstance \"o\" Identity ObjectInstance \"o\" ObjectInstance 5");
+    auto c = inWorld("Translate 9 0 0 Color 1 0 0 ObjectBegin \"o\" Translate 1 0 0 Sphere 1 -1 1 360 Color 0 0 1 Sphere 1 -1 1 "
+                     "360 ObjectEnd\n"
+                     "Color 0 1 0 ObjectInstance \"o\" Identity ObjectInstance \"o\" ObjectInstance 5");
     EXPECT_EQ(c->only().code, Rie::BadHandle);
     ASSERT_EQ(c->frame().objects.size(), 1u);
     const auto& o = c->frame().objects[0];
@@ -255,15 +255,15 @@ TEST(Objects, OfAnotherWorldForgetItsLights) {
 }
 
 TEST(Objects, HandleGivenTwiceIsTwoObjects) {
-    auto c =
-        world("ObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd ObjectInstance 1 ObjectBegin 1 Disk 0 1 360 ObjectEnd ObjectInstance 1");
+    auto c = inWorld(
+        "ObjectBegin 1 Sphere 1 -1 1 360 ObjectEnd ObjectInstance 1 ObjectBegin 1 Disk 0 1 360 ObjectEnd ObjectInstance 1");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     ASSERT_EQ(c->frame().objects.size(), 2u);
     EXPECT_EQ(c->frame().objects[size_t(c->frame().instances.at(1).object)].primitives.at(0)->kind, "Disk");
 }
 
 TEST(Motion, OfTransformations) {
-    auto c = world("Translate 0 1 0 MotionBegin [0 1] Translate 0 0 0 Translate 4 0 0 MotionEnd Sphere 1 -1 1 360");
+    auto c = inWorld("Translate 0 1 0 MotionBegin [0 1] Translate 0 0 0 Translate 4 0 0 MotionEnd Sphere 1 -1 1 360");
     EXPECT_TRUE(c->ok) << c->messages();
     const auto& t = c->primitive().toWorld;
     ASSERT_EQ(t.keys.size(), 2u);
@@ -273,8 +273,8 @@ TEST(Motion, OfTransformations) {
 }
 
 TEST(Motion, KeysOfTwoBlocksAreMerged) {
-    auto c = world("MotionBegin [0 1] Translate 0 0 0 Translate 4 0 0 MotionEnd MotionBegin [0.5 1] Scale 1 1 1 Scale 3 3 3 "
-                   "MotionEnd Sphere 1 -1 1 360");
+    auto c = inWorld("MotionBegin [0 1] Translate 0 0 0 Translate 4 0 0 MotionEnd MotionBegin [0.5 1] Scale 1 1 1 Scale 3 3 3 "
+                     "MotionEnd Sphere 1 -1 1 360");
     const auto& t = c->primitive().toWorld;
     EXPECT_EQ(t.times, (std::vector<float>{0, .5f, 1}));
     EXPECT_EQ(transformPoint(t.keys[1], {1, 0, 0}), Vec3d(1 + 2, 0, 0));
@@ -282,7 +282,7 @@ TEST(Motion, KeysOfTwoBlocksAreMerged) {
 }
 
 TEST(Motion, RotationFollowsTheArc) {
-    auto c = world("MotionBegin [0 1] Rotate 0 0 0 1 Rotate 180 0 0 1 MotionEnd Sphere 1 -1 1 360");
+    auto c = inWorld("MotionBegin [0 1] Rotate 0 0 0 1 Rotate 180 0 0 1 MotionEnd Sphere 1 -1 1 360");
     const auto& t = c->primitive().toWorld;
     ASSERT_GE(t.keys.size(), 25u); // 180 / 7.5 + 1
     for (size_t i = 0; i < t.keys.size(); ++i) {
@@ -304,7 +304,7 @@ TEST(Motion, MatricesTurn) {
             for (double x : row) s += std::to_string(x) + " ";
         return s + "]\n";
     };
-    auto c = world("MotionBegin [0 1]\n" + text(a) + text(b) + "MotionEnd Sphere 1 -1 1 360");
+    auto c = inWorld("MotionBegin [0 1]\n" + text(a) + text(b) + "MotionEnd Sphere 1 -1 1 360");
     const auto& t = c->primitive().toWorld;
     ASSERT_GE(t.keys.size(), 40u);
     for (size_t i = 0; i < t.keys.size(); ++i) {
@@ -314,19 +314,19 @@ TEST(Motion, MatricesTurn) {
             for (int x = 0; x < 3; ++x) EXPECT_NEAR(t.keys[i].m[y][x], want.m[y][x], 1e-5) << i; // six decimals
     }
     // Mirrored from key to key, and half a turn: as they are.
-    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(a) + text(scaleMatrix(-1, 1, 1)) + "MotionEnd Sphere 1 -1 1 360")
+    EXPECT_EQ(inWorld("MotionBegin [0 1]\n" + text(a) + text(scaleMatrix(-1, 1, 1)) + "MotionEnd Sphere 1 -1 1 360")
                   ->primitive()
                   .toWorld.keys.size(),
               2u);
-    EXPECT_EQ(world("MotionBegin [0 1]\n" + text(scaleMatrix(1, 1, 1)) + text(rotateMatrix(180, 0, 0, 1)) +
-                    "MotionEnd Sphere 1 -1 1 360")
+    EXPECT_EQ(inWorld("MotionBegin [0 1]\n" + text(scaleMatrix(1, 1, 1)) + text(rotateMatrix(180, 0, 0, 1)) +
+                      "MotionEnd Sphere 1 -1 1 360")
                   ->primitive()
                   .toWorld.keys.size(),
               2u);
 }
 
 TEST(Motion, OfPrimitives) {
-    auto c = world("MotionBegin [0 1] Sphere 1 -1 1 360 Sphere 2 -2 2 360 MotionEnd");
+    auto c = inWorld("MotionBegin [0 1] Sphere 1 -1 1 360 Sphere 2 -2 2 360 MotionEnd");
     EXPECT_TRUE(c->ok) << c->messages();
     EXPECT_EQ(c->frame().primitives.size(), 1u);
     ASSERT_EQ(c->primitive().motionKeys.size(), 1u);
@@ -340,7 +340,7 @@ TEST(Motion, OfTheCamera) {
 }
 
 TEST(Motion, Violations) {
-    auto code = [](const std::string& s) { return world(s)->only().code; };
+    auto code = [](const std::string& s) { return inWorld(s)->only().code; };
     EXPECT_EQ(code("MotionBegin [0 1] Translate 0 0 0 MotionEnd"), Rie::BadMotion);
     EXPECT_EQ(code("MotionBegin [0 1] Translate 0 0 0 Translate 0 0 0 Translate 0 0 1 MotionEnd"), Rie::BadMotion);
     EXPECT_EQ(code("MotionBegin [1 0] Translate 0 0 0 MotionEnd"), Rie::BadMotion);
@@ -349,11 +349,11 @@ TEST(Motion, Violations) {
     EXPECT_EQ(code("MotionEnd"), Rie::Nesting);
     EXPECT_EQ(code("MotionBegin [0 1] Polygon \"P\" [0 0 0 1 0 0 1 1 0] Polygon \"P\" [0 0 0 1 0 0 1 1 0 0 1 0] MotionEnd"),
               Rie::BadMotion);
-    auto c = world("MotionBegin [0 1] Sphere 1 -1 1 360 WorldEnd");
+    auto c = inWorld("MotionBegin [0 1] Sphere 1 -1 1 360 WorldEnd");
     EXPECT_EQ(c->frame().primitives.size(), 1u); // the sample that was there
     // One time is no motion, and no fault.
-    EXPECT_EQ(world("MotionBegin [0] Translate 1 0 0 MotionEnd Sphere 1 -1 1 360")->primitive().toWorld.keys.size(), 1u);
-    auto d = world("MotionBegin [0 1] Color 1 0 0 Color 0 1 0 MotionEnd Sphere 1 -1 1 360");
+    EXPECT_EQ(inWorld("MotionBegin [0] Translate 1 0 0 MotionEnd Sphere 1 -1 1 360")->primitive().toWorld.keys.size(), 1u);
+    auto d = inWorld("MotionBegin [0 1] Color 1 0 0 Color 0 1 0 MotionEnd Sphere 1 -1 1 360");
     EXPECT_EQ(d->only().code, Rie::Incapable);
     EXPECT_EQ(d->primitive().attributes->color, Color(1, 0, 0));
 }

@@ -29,7 +29,7 @@ TEST(UserAttributes, FollowTheBlocks) {
     EXPECT_EQ(of(2, "user:s")->strings, std::vector<std::string>{"a"});
     EXPECT_EQ(c->frame().options.values.at("user:x").numbers, (std::vector<float>{1, 2}));
     // It has no samples of its own.
-    auto moving = world("MotionBegin [0 1]\nAttribute \"user\" \"float x\" 1\nTranslate 1 0 0\nTranslate 2 0 0\nMotionEnd\n");
+    auto moving = inWorld("MotionBegin [0 1]\nAttribute \"user\" \"float x\" 1\nTranslate 1 0 0\nTranslate 2 0 0\nMotionEnd\n");
     EXPECT_EQ(moving->only().code, Rie::BadMotion);
 }
 

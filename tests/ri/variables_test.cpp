@@ -31,18 +31,18 @@ TEST(Declarations, Parse) {
     // VTK's exporter declares all its arrays so.
     for (const char* given : {"Declare \"e\" \"varying double\" Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"e\" [1 2 3]",
                               "Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"varying double e\" [1 2 3]"}) {
-        const auto c = world(given);
+        const auto c = inWorld(given);
         EXPECT_EQ(c->only().severity, Severity::Warning) << c->messages();
         const scene::Param* e = scene::find(c->primitive().params, "e");
         ASSERT_NE(e, nullptr);
         EXPECT_EQ(e->type, scene::Type::Float);
         EXPECT_EQ(e->numbers, (std::vector<float>{1, 2, 3}));
     }
-    EXPECT_EQ(world("Surface \"a\" \"uniform flaot x\" 1")->only().code, Rie::Syntax);
+    EXPECT_EQ(inWorld("Surface \"a\" \"uniform flaot x\" 1")->only().code, Rie::Syntax);
 }
 
 TEST(Declarations, InlineOverridesForOneOccurrence) {
-    auto c = world("Declare \"k\" \"color\" Surface \"a\" \"float k\" 1 \"k\" [1 2 3] Sphere 1 -1 1 360");
+    auto c = inWorld("Declare \"k\" \"color\" Surface \"a\" \"float k\" 1 \"k\" [1 2 3] Sphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const auto& p = c->primitive().attributes->surface->params;
     EXPECT_EQ(p[0].type, Type::Float);
@@ -50,7 +50,7 @@ TEST(Declarations, InlineOverridesForOneOccurrence) {
 }
 
 TEST(Declarations, UndeclaredParametersOfShaders) {
-    auto c = world("Surface \"a\" \"mine\" [1 2 3] \"file\" \"x.tx\" \"one\" 5 \"background\" \"b.tx\" Sphere 1 -1 1 360");
+    auto c = inWorld("Surface \"a\" \"mine\" [1 2 3] \"file\" \"x.tx\" \"one\" 5 \"background\" \"b.tx\" Sphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const auto& p = c->primitive().attributes->surface->params;
     ASSERT_EQ(p.size(), 4u);
@@ -64,12 +64,12 @@ TEST(Declarations, UndeclaredParametersOfShaders) {
 }
 
 TEST(Declarations, ShaderParameterCounts) {
-    EXPECT_EQ(world("Surface \"a\" \"color k\" [1 2]")->only().code, Rie::Consistency);
-    EXPECT_EQ(world("Surface \"a\" \"float[3] k\" [1 2]")->only().code, Rie::Consistency);
-    EXPECT_EQ(world("Surface \"a\" \"Kd\"")->only().code, Rie::MissingData);
-    EXPECT_EQ(world("Surface \"a\" 3")->only().code, Rie::Syntax);
-    EXPECT_EQ(world("Surface \"a\" \"string k\" 3")->only().code, Rie::Consistency);
-    EXPECT_TRUE(world("Surface \"a\" \"lightcolor\" 1 .5 0")->ok); // brackets forgotten
+    EXPECT_EQ(inWorld("Surface \"a\" \"color k\" [1 2]")->only().code, Rie::Consistency);
+    EXPECT_EQ(inWorld("Surface \"a\" \"float[3] k\" [1 2]")->only().code, Rie::Consistency);
+    EXPECT_EQ(inWorld("Surface \"a\" \"Kd\"")->only().code, Rie::MissingData);
+    EXPECT_EQ(inWorld("Surface \"a\" 3")->only().code, Rie::Syntax);
+    EXPECT_EQ(inWorld("Surface \"a\" \"string k\" 3")->only().code, Rie::Consistency);
+    EXPECT_TRUE(inWorld("Surface \"a\" \"lightcolor\" 1 .5 0")->ok); // brackets forgotten
 }
 
 namespace {
@@ -121,17 +121,17 @@ TEST(Counts, OfEveryPrimitive) {
                        {"vertex", k.vertex}, {"facevarying", k.faceVarying}, {"facevertex", k.faceVarying}};
         for (auto& cl : classes) {
             std::string head = std::string(k.request) + " \"" + cl.cls + " float[2] q\" ";
-            auto good = world(head + repeat(cl.n, "1 2"));
+            auto good = inWorld(head + repeat(cl.n, "1 2"));
             EXPECT_EQ(good->count(), 0u) << head << good->messages();
             ASSERT_EQ(good->frame().primitives.size(), 1u) << head;
             const scene::Param* q = scene::find(good->primitive().params, "q");
             ASSERT_NE(q, nullptr) << head;
             EXPECT_EQ(int64_t(q->numbers.size()), 2 * cl.n);
-            auto bad = world(head + repeat(cl.n + 1, "1 2"));
+            auto bad = inWorld(head + repeat(cl.n + 1, "1 2"));
             EXPECT_EQ(bad->only().code, Rie::Consistency) << head << bad->messages();
             EXPECT_EQ(scene::find(bad->primitive().params, "q"), nullptr); // the variable is dropped, the primitive stays
         }
-        auto text = world(std::string(k.request) + " \"uniform string names\" " + repeat(k.uniform, "\"a\""));
+        auto text = inWorld(std::string(k.request) + " \"uniform string names\" " + repeat(k.uniform, "\"a\""));
         EXPECT_EQ(text->count(), 0u) << text->messages();
     }
 }
@@ -163,32 +163,32 @@ TEST(Counts, BadArgumentsDropThePrimitive) {
           "Curves \"linear\" [1] \"nonperiodic\" \"P\" [0 0 0]",
           "SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\"] [2] [0 1] [1] \"P\" [0 0 0 1 0 0 1 1 0]",
           "SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\"] [3 1] [0 1] [1] \"P\" [0 0 0 1 0 0 1 1 0]"}) {
-        auto c = world(bad);
+        auto c = inWorld(bad);
         EXPECT_EQ(c->only().code, Rie::Consistency) << bad << c->messages();
         EXPECT_EQ(c->only().place.line, 2);
         EXPECT_TRUE(c->frame().primitives.empty()) << bad;
     }
-    EXPECT_EQ(world("Polygon \"Cs\" [1 0 0]")->only().code, Rie::MissingData);
-    EXPECT_EQ(world("Patch \"cubic\" \"P\" [0]")->only().code, Rie::BadToken);
-    EXPECT_EQ(world("PatchMesh \"bilinear\" 2 \"round\" 2 \"periodic\" \"Pz\" [0 0 0 0]")->only().code, Rie::BadToken);
+    EXPECT_EQ(inWorld("Polygon \"Cs\" [1 0 0]")->only().code, Rie::MissingData);
+    EXPECT_EQ(inWorld("Patch \"cubic\" \"P\" [0]")->only().code, Rie::BadToken);
+    EXPECT_EQ(inWorld("PatchMesh \"bilinear\" 2 \"round\" 2 \"periodic\" \"Pz\" [0 0 0 0]")->only().code, Rie::BadToken);
 }
 
 TEST(Counts, UnusedPointsOfAMeshAreCut) {
-    auto c = world("PointsPolygons [3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0 7 7 7] \"Cs\" [1 0 0 0 1 0 0 0 1 1 1 1]");
+    auto c = inWorld("PointsPolygons [3] [0 1 2] \"P\" [0 0 0 1 0 0 1 1 0 7 7 7] \"Cs\" [1 0 0 0 1 0 0 0 1 1 1 1]");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     EXPECT_EQ(scene::find(c->primitive().params, "P")->numbers.size(), 9u);
     EXPECT_EQ(scene::find(c->primitive().params, "Cs")->numbers.size(), 9u);
 }
 
 TEST(Counts, OneUniformValueHoldsForAll) {
-    auto c = world("PointsPolygons [3 3] [0 1 2 0 2 1] \"P\" [0 0 0 1 0 0 1 1 0] \"uniform color k\" [1 0 0]");
+    auto c = inWorld("PointsPolygons [3 3] [0 1 2 0 2 1] \"P\" [0 0 0 1 0 0 1 1 0] \"uniform color k\" [1 0 0]");
     EXPECT_EQ(c->only().severity, Severity::Warning);
     EXPECT_EQ(scene::find(c->primitive().params, "k")->cls, Class::Constant);
 }
 
 TEST(Counts, UndeclaredVariablesAreFitted) {
-    auto c = world("Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"temp\" [1 2 3] \"tint\" [1 0 0 0 1 0 0 0 1] \"odd\" [1 2 3 4 5 6 7 8 9 "
-                   "10 11 12 13 14 15 16 17]");
+    auto c = inWorld("Polygon \"P\" [0 0 0 1 0 0 1 1 0] \"temp\" [1 2 3] \"tint\" [1 0 0 0 1 0 0 0 1] \"odd\" [1 2 3 4 5 6 7 8 9 "
+                     "10 11 12 13 14 15 16 17]");
     auto all = c->diagnostics.all();
     ASSERT_EQ(all.size(), 4u) << c->messages(); // three guesses, one that fits nothing
     EXPECT_EQ(all.back().code, Rie::Consistency);
@@ -201,19 +201,19 @@ TEST(Counts, UndeclaredVariablesAreFitted) {
 }
 
 TEST(Counts, PositionForms) {
-    auto c = world("Patch \"bilinear\" \"Pw\" [0 0 0 1 1 0 0 1 0 1 0 1 1 1 0 1]");
+    auto c = inWorld("Patch \"bilinear\" \"Pw\" [0 0 0 1 1 0 0 1 0 1 0 1 1 1 0 1]");
     EXPECT_EQ(scene::find(c->primitive().params, "Pw")->type, Type::HPoint);
     EXPECT_EQ(c->count(), 0u) << c->messages();
-    auto d = world("Patch \"bilinear\" \"Pz\" [0 0 0 0] \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]");
+    auto d = inWorld("Patch \"bilinear\" \"Pz\" [0 0 0 0] \"P\" [0 0 0 1 0 0 0 1 0 1 1 0]");
     EXPECT_EQ(d->only().severity, Severity::Warning);
     EXPECT_EQ(d->primitive().params.size(), 1u);
-    auto e = world("Polygon \"varying point P\" [0 0 0 1 0 0 1 1 0]"); // declared by hand
+    auto e = inWorld("Polygon \"varying point P\" [0 0 0 1 0 0 1 1 0]"); // declared by hand
     EXPECT_EQ(scene::find(e->primitive().params, "P")->cls, Class::Vertex);
 }
 
 TEST(Counts, SubdivisionTags) {
-    auto c = world("SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\" \"interpolateboundary\"] [2 1 0 0] [0 1] [3.5] "
-                   "\"P\" [0 0 0 1 0 0 1 1 0]");
+    auto c = inWorld("SubdivisionMesh \"catmull-clark\" [3] [0 1 2] [\"crease\" \"interpolateboundary\"] [2 1 0 0] [0 1] [3.5] "
+                     "\"P\" [0 0 0 1 0 0 1 1 0]");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     const auto& p = c->primitive();
     EXPECT_EQ(p.strings, (std::vector<std::string>{"catmull-clark", "crease", "interpolateboundary"}));
@@ -223,19 +223,20 @@ TEST(Counts, SubdivisionTags) {
 }
 
 TEST(Counts, TrimCurves) {
-    auto c = world("TrimCurve [1] [2] [0 0 1 2 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1] Sphere 1 -1 1 360 TrimCurve [] [] [] [] [] "
-                   "[] [] [] [] Sphere 1 -1 1 360");
+    auto c =
+        inWorld("TrimCurve [1] [2] [0 0 1 2 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1] Sphere 1 -1 1 360 TrimCurve [] [] [] [] [] "
+                "[] [] [] [] Sphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 0u) << c->messages();
     ASSERT_TRUE(c->primitive(0).attributes->trimCurve);
     EXPECT_EQ(scene::find(*c->primitive(0).attributes->trimCurve, "knot")->numbers.size(), 5u);
     EXPECT_FALSE(c->primitive(1).attributes->trimCurve);
-    EXPECT_EQ(world("TrimCurve [1] [2] [0 0 1 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1]")->only().code, Rie::Consistency);
+    EXPECT_EQ(inWorld("TrimCurve [1] [2] [0 0 1 2] [0] [2] [3] [0 1 0] [0 0 0] [1 1 1]")->only().code, Rie::Consistency);
 }
 
 TEST(Volumes, AreClosedShapesWithTheShaderInside) {
-    auto c = world("Color [1 0 0] Atmosphere \"fog\" Surface \"plastic\" Volume \"box\" [-1 2 -3 4 -5 6] [0 0 0] \"constant "
-                   "float density\" [3] "
-                   "Interior \"haze\" Volume \"ellipsoid\" [1 3 1 3 1 5] [0 0 0] Volume \"cylinder\" [0 1 0 1 0 1] [0 0 0]");
+    auto c = inWorld("Color [1 0 0] Atmosphere \"fog\" Surface \"plastic\" Volume \"box\" [-1 2 -3 4 -5 6] [0 0 0] \"constant "
+                     "float density\" [3] "
+                     "Interior \"haze\" Volume \"ellipsoid\" [1 3 1 3 1 5] [0 0 0] Volume \"cylinder\" [0 1 0 1 0 1] [0 0 0]");
     EXPECT_EQ(c->messages(), "");
     ASSERT_EQ(c->frame().primitives.size(), 5u); // the cylinder has two ends
     const scene::Primitive &box = c->primitive(0), &egg = c->primitive(1);
@@ -248,8 +249,9 @@ TEST(Volumes, AreClosedShapesWithTheShaderInside) {
     EXPECT_EQ(egg.attributes->atmosphere->name, "fog");
     expectMatrix(egg.toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 2, 2, 3, 1});
 
-    c = world("Interior \"haze\" MotionBegin [0 1] Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0] Volume \"box\" [-1 1 -1 1 -1 3] [0 0 "
-              "0] MotionEnd");
+    c = inWorld(
+        "Interior \"haze\" MotionBegin [0 1] Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0] Volume \"box\" [-1 1 -1 1 -1 3] [0 0 "
+        "0] MotionEnd");
     EXPECT_EQ(c->messages(), "");
     ASSERT_EQ(c->primitive().motionKeys.size(), 1u);
     EXPECT_EQ(scene::find(c->primitive().motionKeys[0]->params, "P")->numbers[14], 3);
@@ -261,17 +263,17 @@ TEST(Volumes, ThatAreNoneAreErrors) {
           "Volume \"box\" [-1 1 -1 1 1 1] [0 0 0]", "Volume \"box\" [-1 1 -1 1 -1 1] [0 0]",
           "Volume \"box\" [-1 1 -1 1 -1 1] [-1 0 0]", "Volume \"blobbydso:fields\" [-1 1 -1 1 -1 1] [0 0 0]",
           "MotionBegin [0 1] Volume \"cone\" [-1 1 -1 1 -1 1] [0 0 0] Volume \"cone\" [-1 1 -1 1 -1 2] [0 0 0] MotionEnd"}) {
-        auto c = world(std::string("Interior \"haze\" ") + text + " Sphere 1 -1 1 360");
+        auto c = inWorld(std::string("Interior \"haze\" ") + text + " Sphere 1 -1 1 360");
         EXPECT_GE(c->diagnostics.errors(), 1) << text;
         ASSERT_EQ(c->frame().primitives.size(), 1u) << text;
         EXPECT_EQ(c->primitive().kind, "Sphere");
     }
     // Voxels, and no shader at all: said, and the rest holds. A billion of them take nothing.
-    auto c = world(
+    auto c = inWorld(
         "Interior \"haze\" Volume \"box\" [-1 1 -1 1 -1 1] [1000000000 1000000000 1000000000] \"vertex float density\" [1]");
     EXPECT_NE(c->only().message.find("voxels"), std::string::npos);
     EXPECT_EQ(c->frame().primitives.size(), 1u);
-    c = world("Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0]");
+    c = inWorld("Volume \"box\" [-1 1 -1 1 -1 1] [0 0 0]");
     EXPECT_NE(c->only().message.find("empty"), std::string::npos);
 }
 

@@ -54,7 +54,7 @@ private:
                 c.payload.value = c.payload.value * 0.5f;
                 children.push_back(c);
             }
-            s.wait(std::move(self), int(lanes_.size()), [&](int i, TargetId id) {
+            s.wait(std::move(self), int(lanes_.size()), [&](int i, AccumulatorId id) {
                 children[i].target = id;
                 s.spawn(children[i]);
             });
@@ -120,7 +120,7 @@ public:
         auto* p = strip.get();
         for (auto& t : p->tasks_) s.hold(t.target);
         std::vector<S::Task> rays = p->tasks_;
-        s.wait(std::move(strip), int(rays.size()), [&](int i, TargetId id) {
+        s.wait(std::move(strip), int(rays.size()), [&](int i, AccumulatorId id) {
             rays[i].target = id;
             rays[i].depth++;
             rays[i].payload.kind = Payload::Shadow;
@@ -168,7 +168,7 @@ private:
         ++light_;
         std::vector<S::Task> lights = tasks_;
         float intensity = float(light_) * 0.25f;
-        s.wait(std::move(self), int(lights.size()), [&](int i, TargetId id) {
+        s.wait(std::move(self), int(lights.size()), [&](int i, AccumulatorId id) {
             lights[i].target = id;
             lights[i].depth++;
             lights[i].payload.kind = Payload::Light;
@@ -203,7 +203,7 @@ public:
 TEST(Scheduler, LightBatchesInsideASurfaceBatch) {
     LightService service;
     S s(service);
-    std::vector<TargetId> roots;
+    std::vector<AccumulatorId> roots;
     for (int i = 0; i < 40; ++i) {
         roots.push_back(s.newRoot());
         s.spawn({0, roots.back(), {2, 0, 0, true, Payload::Ray}});
@@ -249,7 +249,7 @@ TEST(Scheduler, MasksAcrossSuspensions) {
     // 16 lanes, one level: lane i gets v/2 for each step in which it takes part.
     FakeService service;
     S s(service);
-    std::vector<TargetId> roots;
+    std::vector<AccumulatorId> roots;
     for (int i = 0; i < 16; ++i) {
         roots.push_back(s.newRoot());
         s.spawn({0, roots.back(), {1, 4, 1, true}});
@@ -270,7 +270,7 @@ TEST(Scheduler, SameBitsForAnySliceAndStrip) {
         service.strip = 1;
         S s(service, nullptr, limits::kFrameBytesPerThread, slice);
         std::mt19937 rng(7);
-        std::vector<TargetId> roots;
+        std::vector<AccumulatorId> roots;
         for (int i = 0; i < 40; ++i) {
             roots.push_back(s.newRoot());
             s.spawn({0, roots.back(), {std::uniform_real_distribution<float>(0, 1e3f)(rng), 3, 4, i % 2 == 0}});
@@ -426,7 +426,7 @@ TEST(Scheduler, WhatIsHeldBackIsFollowedInTheEnd) {
     for (int slice : {1, 3, 8, 4096}) {
         PairingService service;
         S s(service, nullptr, limits::kFrameBytesPerThread, slice);
-        std::vector<TargetId> roots;
+        std::vector<AccumulatorId> roots;
         for (int i = 0; i < 101; ++i) { // ray i: 1 + i % 4 values of i
             roots.push_back(s.newRoot());
             S::Task t;
@@ -445,7 +445,7 @@ TEST(Scheduler, WhatIsHeldBackIsFollowedInTheEnd) {
 TEST(Scheduler, TasksWrittenInOneGoAreFollowedLikeThoseThatAreSpawned) {
     FakeService service;
     S s(service);
-    std::vector<TargetId> roots;
+    std::vector<AccumulatorId> roots;
     for (int k = 0; k < 40; ++k) roots.push_back(s.newRoot());
     ASSERT_TRUE(s.plain());
     for (int k = 0; k < 40; k += 4) {

@@ -33,8 +33,8 @@ float known(int x, Vec2 a, Vec2 b) {
 
 struct KnownTracer final : Tracer {
     uint64_t seed = 0;
-    transport::Counters counts;
-    bool trace(std::span<const transport::CameraRay> rays, std::span<transport::SampleResult> out, const StopFlag*) override {
+    integrator::Counters counts;
+    bool trace(std::span<const integrator::CameraRay> rays, std::span<integrator::SampleResult> out, const StopFlag*) override {
         for (size_t i = 0; i < rays.size(); ++i) {
             const Sampler s(seed, rays[i].px, rays[i].py);
             out[i].color = Color(known(rays[i].px, s.get2(1, 7, 0, rays[i].sample), s.get2(2, 7, 0, rays[i].sample)));
@@ -44,11 +44,11 @@ struct KnownTracer final : Tracer {
         }
         return true;
     }
-    const transport::Counters& counters() const override { return counts; }
+    const integrator::Counters& counters() const override { return counts; }
 };
 
 Engine knownEngine() {
-    return render::test::plainEngine([](const transport::World& w) {
+    return render::test::plainEngine([](const world::World& w) {
         auto t = std::make_unique<KnownTracer>();
         t->seed = w.settings().seed;
         return t;

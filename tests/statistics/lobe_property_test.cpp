@@ -1,8 +1,8 @@
 // A property of every kind of the list of lobes, whatever its parameters: a direction that sample() gives has a density above 0,
 // and a value that is finite and not negative. Where a kind is not cut by a horizon or by shadowing the value is above 0 too.
 // RapidCheck makes the parameters and shrinks what fails; fixed seeds here, fresh ones nightly.
-#include "lobes/lobe.h"
-#include "lobes/sampling.h"
+#include "bsdf/lobe.h"
+#include "bsdf/sampling.h"
 #include "statistics/nightly.h"
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -11,7 +11,7 @@
 namespace lobe_property_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::integrator;
 
 namespace {
 

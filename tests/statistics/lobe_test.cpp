@@ -2,8 +2,8 @@
 // False alarms: alpha = 2e-6 a test. Power: on 200 cells and 1e5 draws an error of alternating +-5 % is found in 200 of 200
 // runs; nightly on 5,202 cells and 1e6 draws +-6 % (noncentrality N delta^2 against 7.1 sqrt(2 k), sum of delta^2 e = N delta^2).
 // Distributions have 4e5 draws on 200 cells: finds 2.3 % (root of the mean square over what is drawn) in 99 of 100 runs.
-#include "lobes/lobe.h"
-#include "lobes/sampling.h"
+#include "bsdf/lobe.h"
+#include "bsdf/sampling.h"
 #include "statistics/agreement.h"
 #include <gtest/gtest.h>
 #include <random>
@@ -13,7 +13,7 @@
 namespace lobe_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::integrator;
 
 namespace {
 

@@ -1,7 +1,7 @@
 // Facets are drawn as the viewer sees them: what a draw brings, its value over its density, is no more than what a mirror would,
 // so that its variance has a bound, and few draws are lost.
-#include "lobes/lobe.h"
-#include "lobes/sampling.h"
+#include "bsdf/lobe.h"
+#include "bsdf/sampling.h"
 #include "statistics/nightly.h"
 #include <gtest/gtest.h>
 #include <random>
@@ -9,7 +9,7 @@
 namespace visiblefacets_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::integrator;
 
 namespace {
 
@@ -25,7 +25,7 @@ Seen draws(const LobeKind& k, float roughness, float roughnessv, float degrees, 
     auto m = std::make_shared<DistributionParams>();
     m->roughness = roughness, m->roughnessv = roughnessv, m->udir = Vec3(1, .2f, .1f), m->eta = eta;
     p.more = m;
-    const OneLobe lobe(k, p);
+    const Bsdf lobe(k, p);
     std::mt19937_64 rng(11 + teststat::seedBase());
     std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);
     Seen s;
@@ -87,7 +87,7 @@ namespace {
 
 /// The error, root mean square over 64 digital shifts, of the mean that n points of Hammersley's net give, of a sky that
 /// brightens from one side to the other.
-double errorOf(const OneLobe& lobe, int n) {
+double errorOf(const Bsdf& lobe, int n) {
     std::mt19937_64 rng(23 + teststat::seedBase());
     const Vec3 bright = normalize(Vec3(.7f, -.2f, .4f));
     double sum = 0, square = 0;
@@ -124,7 +124,7 @@ TEST(VisibleFacets, StratifiedNumbersKeepWhatTheyGain) {
                 auto m = std::make_shared<DistributionParams>();
                 m->roughness = m->roughnessv = roughness;
                 p.more = m;
-                const OneLobe lobe(*findLobe(name), p);
+                const Bsdf lobe(*findLobe(name), p);
                 const double few = errorOf(lobe, 64), many = errorOf(lobe, 1024);
                 EXPECT_LT(many, few / 8) << name << " " << roughness << " " << degrees;
             }

@@ -1,7 +1,7 @@
 // A white furnace for each distribution at every roughness and angle: what its samples bring under a sky of radiance 1 is the
 // integral of its value by quadrature. docs/bsdfs.md shows the figures.
-#include "lobes/lobe.h"
-#include "lobes/sampling.h"
+#include "bsdf/lobe.h"
+#include "bsdf/sampling.h"
 #include "statistics/agreement.h"
 #include <gtest/gtest.h>
 #include <random>
@@ -9,7 +9,7 @@
 namespace whitefurnace_test {
 
 using namespace alpenglow;
-using namespace alpenglow::transport;
+using namespace alpenglow::integrator;
 
 namespace {
 
@@ -28,7 +28,7 @@ LobeParams lobe(float roughness, float cosine) {
 /// Over the sphere, by midpoints in coordinates that are dense about the mirror direction, straight on, and the poles of the
 /// plane.
 double integral(const LobeKind& k, const LobeParams& p, int n) {
-    const OneLobe one(k, p);
+    const Bsdf one(k, p);
     const Basis about(normalize(p.axis * (2 * dot(p.axis, p.wo)) - p.wo));
     double sum = 0;
     for (int i = 0; i < n; ++i)
@@ -52,7 +52,7 @@ TEST(WhiteFurnace, SamplesBringTheIntegral) {
                 const LobeParams p = lobe(roughness, cosine);
                 const std::string what =
                     std::string(k->name) + ", roughness " + std::to_string(roughness) + ", cosine " + std::to_string(cosine);
-                const OneLobe one(*k, p);
+                const Bsdf one(*k, p);
                 if (one.delta()) continue;
                 std::mt19937_64 rng(uint64_t(5) + teststat::seedBase());
                 std::uniform_real_distribution<float> u01(0, 0x1.fffffep-1f);

@@ -28,9 +28,9 @@ void saveSlices(const Scratch& s, int w, int h, int d) {
 }
 
 /// Channels of a lookup at the middle of a voxel.
-std::vector<float> look(const clouds::CloudMap& map, Vec3 p, float radius = 0) {
+std::vector<float> look(const pointcloud::CloudMap& map, Vec3 p, float radius = 0) {
     std::vector<float> v(size_t(map.width()), -1);
-    clouds::Query q;
+    pointcloud::Query q;
     q.P = p;
     q.radius = radius;
     if (!map.lookup(q, v)) v.clear();

@@ -120,13 +120,13 @@ TEST(Pose, StaysWhereItWasWhenTheSceneIsReadAgain) {
 
 /// Notes the rays that arrive.
 struct Notes final : render::Tracer {
-    std::vector<transport::CameraRay> rays;
-    transport::Counters none;
-    bool trace(std::span<const transport::CameraRay> r, std::span<transport::SampleResult>, const StopFlag*) override {
+    std::vector<integrator::CameraRay> rays;
+    integrator::Counters none;
+    bool trace(std::span<const integrator::CameraRay> r, std::span<integrator::SampleResult>, const StopFlag*) override {
         rays.assign(r.begin(), r.end());
         return true;
     }
-    const transport::Counters& counters() const override { return none; }
+    const integrator::Counters& counters() const override { return none; }
 };
 
 TEST(Pose, RaysGoToWhereTheWorldWasBuilt) {
@@ -136,10 +136,10 @@ TEST(Pose, RaysGoToWhereTheWorldWasBuilt) {
     auto notes = std::make_unique<Notes>();
     Notes* seen = notes.get();
     auto tracer = view::turned(std::move(notes), now.to(built));
-    transport::CameraRay r;
+    integrator::CameraRay r;
     r.origin = {0, 0, 0};
     r.direction = {0, 0, 1};
-    transport::SampleResult result;
+    integrator::SampleResult result;
     tracer->trace({&r, 1}, {&result, 1}, nullptr);
     ASSERT_EQ(seen->rays.size(), 1u);
     // The eye went round to the world's left: it looks along +x at a scene that is where it was.

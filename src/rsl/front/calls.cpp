@@ -97,7 +97,7 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     choice.positional = i;
     if (i == n) return true;
     if (!pairs || (n - i) % 2) return false;
-    for (; i < n; i += 2) { // a name may be in a variable, too: see settlePairs()
+    for (; i < n; i += 2) { // a name may be in a variable, too: see resolvePairs()
         const Expr& name = *call.args[i];
         if (name.kind == ExprKind::String) continue;
         if (!choice.shadeop || !isText(name)) return false;
@@ -124,10 +124,10 @@ static void nameSources(Expr& e) {
     }
 }
 
-void Checker::surveyCall(Expr& e, Info& info) {
+void Checker::inferCall(Expr& e, Info& info) {
     nameSources(e);
     bool broken = false;
-    for (auto& a : e.args) broken |= survey(*a).any;
+    for (auto& a : e.args) broken |= infer(*a).any;
     if (e.text.empty()) {
         info.any = true;
         return; // what is called was reported
@@ -282,7 +282,7 @@ void Checker::preferArray(const Expr& e, Type wanted) {
         }
 }
 
-void Checker::settleCall(ExprPtr& pointer, Type result) {
+void Checker::resolveCall(ExprPtr& pointer, Type result) {
     Expr& e = *pointer;
     const Info& info = infos_.at(&e);
     const Choice* best = nullptr;
@@ -298,21 +298,21 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
         const ParameterView p = parameters[std::min(i, parameters.size() - 1)];
         ExprPtr& a = e.args[i];
         if (infos_.at(a.get()).any) {
-            settleCheapest(a);
+            resolveCheapest(a);
             continue;
         }
         if (p.output) {
-            settleVariable(a);
+            resolveVariable(a);
             written(*a);
         } else if (infos_.at(a.get()).channel && choice.shadeop && i == 0) {
             // texture(name[channel]); (name)[channel] too.
             e.channel = std::move(a->args[1]);
             ExprPtr name = std::move(a->args[0]);
-            settle(e.channel, {Base::Float, 0});
-            settle(name, {Base::String, 0});
+            resolveTypes(e.channel, {Base::Float, 0});
+            resolveTypes(name, {Base::String, 0});
             a = std::move(name);
         } else {
-            settle(a, p.type, p.handle);
+            resolveTypes(a, p.type, p.handle);
             // printf("%s", h->name): what another shader gives, of whatever type it is.
             const bool element = a->kind == ExprKind::Index && a->args[0]->kind == ExprKind::Member;
             const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method || element;
@@ -320,7 +320,7 @@ void Checker::settleCall(ExprPtr& pointer, Type result) {
                 a->type = {Base::Void, 0};
         }
     }
-    settlePairs(e, choice.positional, choice.shadeop);
+    resolvePairs(e, choice.positional, choice.shadeop);
     // A shadeop with a result that is an array of open length gets the length that is wanted.
     e.type = choice.result.array < 0 && result.array > 0 ? result : choice.result;
     finish(e);

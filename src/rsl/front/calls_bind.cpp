@@ -173,7 +173,7 @@ void Checker::madeName(Expr& e, size_t at, const Shadeop& op) {
     name.named = NamedArg::Name::Made;
     given.named = NamedArg::Name::ByMade;
     name.place = given.place = e.args[at]->place;
-    settle(e.args[at], {Base::String, 0});
+    resolveTypes(e.args[at], {Base::String, 0});
     // A text in RSL takes its parameters here, and its names must be literals.
     const bool ignored = op.lowering == Lowering::Unavailable || op.lowering == Lowering::Rsl;
     if (op.lowering == Lowering::Rsl)
@@ -182,8 +182,8 @@ void Checker::madeName(Expr& e, size_t at, const Shadeop& op) {
                          "'" + op.name + "' is a function in RSL");
     ExprPtr& value = e.args[at + 1];
     const bool variable = isVariable(*value) && !infos_.at(value.get()).any;
-    if (variable && !ignored) settleVariable(value);
-    else settleCheapest(value);
+    if (variable && !ignored) resolveVariable(value);
+    else resolveCheapest(value);
     if (ignored) return;
     given.output = variable && (op.name == "texture3d" || std::any_of(op.optional.begin(), op.optional.end(), [&](const auto& o) {
                                     return o.output && o.type.base == value->type.base;
@@ -195,7 +195,7 @@ void Checker::madeName(Expr& e, size_t at, const Shadeop& op) {
 }
 
 /// "name", value, ... behind the positional arguments.
-void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
+void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
     for (size_t i = positional; i + 1 < e.args.size(); i += 2) {
         if (e.args[i]->kind != ExprKind::String) {
             madeName(e, i, *op);
@@ -218,7 +218,7 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
         const bool space =
             optional && optional->type == Type{Base::String, 0} && pair.name.ends_with("space") && cheapest(info) == Base::Matrix;
         if (info.any || space) {
-            settleCheapest(value);
+            resolveCheapest(value);
         } else if (!optional) {
             // Names with a prefix are messages ("light:x"), those of bake3d and texture3d are channels.
             const bool channels = op->name == "bake3d" || op->name == "texture3d";
@@ -228,10 +228,10 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
                                  near.empty() ? "" : "did you mean \"" + near + "\"?");
             pair.output = op->name == "texture3d" && isVariable(*value); // what is read from the file goes there
             if (pair.output) {
-                settleVariable(value);
+                resolveVariable(value);
                 written(*value);
             } else {
-                settleCheapest(value);
+                resolveCheapest(value);
             }
         } else if (optional->output) {
             pair.output = true;
@@ -241,14 +241,15 @@ void Checker::settlePairs(Expr& e, size_t positional, const Shadeop* op) {
                 sources_.error(value->place, "\"" + pair.name + "\" gives a " + toString(optional->type) +
                                                  ": it needs a variable of that type");
             } else {
-                settleVariable(value);
+                resolveVariable(value);
                 written(*value);
             }
         } else if (optional->type.array != 0 && !info.array.array && info.listLength < 0) {
-            settle(value, costTo(info, optional->type.base) < kNever && cheapest(info) != Base::Float ? optional->type.element()
-                                                                                                      : Type{cheapest(info), 0});
+            resolveTypes(value, costTo(info, optional->type.base) < kNever && cheapest(info) != Base::Float
+                                    ? optional->type.element()
+                                    : Type{cheapest(info), 0});
         } else {
-            settle(value, optional->type);
+            resolveTypes(value, optional->type);
         }
         pair.value = std::move(value);
         e.pairs.push_back(std::move(pair));

@@ -11,22 +11,22 @@ namespace alpenglow::rsl::front {
 /// One whole expression, of any type.
 void Checker::whole(ExprPtr& e) {
     infos_.clear();
-    survey(*e);
-    settleCheapest(e);
+    infer(*e);
+    resolveCheapest(e);
     infos_.clear();
 }
 
 void Checker::valueOf(ExprPtr& e, Type t, bool handle) {
     infos_.clear();
-    survey(*e);
-    settle(e, t, handle ? Handle::Shader : Handle::Text);
+    infer(*e);
+    resolveTypes(e, t, handle ? Handle::Shader : Handle::Text);
     infos_.clear();
 }
 
 void Checker::condition(ExprPtr& e) {
     infos_.clear();
-    survey(*e);
-    settleCondition(e);
+    infer(*e);
+    resolveCondition(e);
     infos_.clear();
 }
 
@@ -111,7 +111,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     if (s.origin == Symbol::Origin::ShaderParameter && s.type.array < 0) s.open = true;
     const int errors = sources_.errors();
     infos_.clear();
-    const Info& info = survey(*value);
+    const Info& info = infer(*value);
     if (s.type.array) preferArray(*value, s.type);
     if (s.type.array == -1 && info.listLength >= 0) s.type.array = std::max(1, info.listLength);
     if (s.type.array == -1 && info.array.array > 0) s.type.array = info.array.array;
@@ -121,7 +121,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
     if (scalar) {
         // float a[42] = 0: {0, ...}.
-        settle(value, s.type.element(), s.handle ? Handle::Shader : Handle::Text);
+        resolveTypes(value, s.type.element(), s.handle ? Handle::Shader : Handle::Text);
         auto list = std::make_unique<Expr>();
         list->kind = ExprKind::ArrayList;
         list->place = value->place;
@@ -132,7 +132,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
         list->args.push_back(std::move(value));
         value = std::move(list);
     } else {
-        settle(value, s.type, s.handle ? Handle::Shader : Handle::Text);
+        resolveTypes(value, s.type, s.handle ? Handle::Shader : Handle::Text);
     }
     infos_.clear();
     if (sources_.errors() == errors) assignedToUniform(s, *value);
@@ -252,7 +252,7 @@ void Checker::statementPair(Stmt& s, ExprPtr token, ExprPtr value) {
         NamedArg naming;
         naming.named = NamedArg::Name::Made;
         naming.place = token->place;
-        settle(token, {Base::String, 0});
+        resolveTypes(token, {Base::String, 0});
         naming.value = std::move(token);
         s.pairs.push_back(std::move(naming));
         pair.named = NamedArg::Name::ByMade;
@@ -264,10 +264,10 @@ void Checker::statementPair(Stmt& s, ExprPtr token, ExprPtr value) {
             sources_.error(pair.value->place, "the value of \"" + pair.name + "\" must be a variable");
     }
     if (pair.output && variable) {
-        settleVariable(pair.value);
+        resolveVariable(pair.value);
         if (pair.named == NamedArg::Name::Written) written(*pair.value);
     } else {
-        settleCheapest(pair.value);
+        resolveCheapest(pair.value);
     }
     s.pairs.push_back(std::move(pair));
 }
@@ -286,7 +286,7 @@ void Checker::checkLight(Stmt& s) {
     s.exprs.clear();
     size_t next = 0;
     infos_.clear();
-    for (auto& e : given) survey(*e);
+    for (auto& e : given) infer(*e);
     const auto isString = [&](size_t i) {
         return i < given.size() && infos_.at(given[i].get()).cost[int(Base::String)] < kNever;
     };
@@ -295,13 +295,13 @@ void Checker::checkLight(Stmt& s) {
         if (!fits) return;
         for (Base b : types) {
             if (next < given.size()) {
-                settle(given[next], {b, 0});
+                resolveTypes(given[next], {b, 0});
                 s.exprs.push_back(std::move(given[next++]));
             }
         }
     };
     if ((s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) && isString(0)) {
-        settle(given[0], {Base::String, 0});
+        resolveTypes(given[0], {Base::String, 0});
         s.category = std::move(given[next++]);
     } else if (s.kind == StmtKind::Gather) {
         sources_.error(s.place, "gather begins with a category, a string");

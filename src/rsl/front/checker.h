@@ -1,5 +1,5 @@
-// Unit to Program: names, types, overloads, conversions. Expressions are read twice: `survey` finds, bottom up, every type an
-// expression can have and what each would cost; `settle` picks, top down, the cheapest reading and makes its conversions
+// Unit to Program: names, types, overloads, conversions. Expressions are read twice: `infer` finds, bottom up, every type an
+// expression can have and what each would cost; `resolveTypes` picks, top down, the cheapest reading and makes its conversions
 // explicit.
 #pragma once
 #include "rsl/front/conversions.h"
@@ -86,16 +86,16 @@ private:
     void assignedToUniform(const Symbol&, const Expr&);
     static bool endsInReturn(const Stmt&);
 
-    // survey (survey.cpp, calls.cpp)
-    Info& survey(Expr&);
-    void surveyVariable(Expr&, Info&);
-    void surveyIndex(Expr&, Info&);
-    void surveyBinary(Expr&, Info&);
-    void surveyAssign(Expr&, Info&);
-    void surveyConditional(Expr&, Info&);
-    void surveyCast(Expr&, Info&);
-    void surveyCall(Expr&, Info&);
-    void surveyMember(Expr&, Info&);
+    // infer (infer.cpp, calls.cpp)
+    Info& infer(Expr&);
+    void inferVariable(Expr&, Info&);
+    void inferIndex(Expr&, Info&);
+    void inferBinary(Expr&, Info&);
+    void inferAssign(Expr&, Info&);
+    void inferConditional(Expr&, Info&);
+    void inferCast(Expr&, Info&);
+    void inferCall(Expr&, Info&);
+    void inferMember(Expr&, Info&);
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
     static void bestByArguments(std::vector<Choice>&);
@@ -119,19 +119,19 @@ private:
     void statementPair(Stmt&, ExprPtr token, ExprPtr value);
     void poison(Expr&, Info&);
 
-    // settle (settle.cpp, calls.cpp)
-    void settle(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
-    void settleCheapest(ExprPtr&);
-    void settleAs(ExprPtr&, Base); ///< exactly this type, which must have a finite cost
-    void settleIndexed(ExprPtr&);
-    void settleCondition(ExprPtr&);
-    void settleArray(ExprPtr&, Type, Handle = Handle::Either);
-    void settleVariable(ExprPtr&); ///< an output argument: no conversion
-    void settleBinary(ExprPtr&, Base);
-    void settleAssign(ExprPtr&);
-    void settleCall(ExprPtr&, Type result);
+    // resolveTypes (resolveTypes.cpp, calls.cpp)
+    void resolveTypes(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
+    void resolveCheapest(ExprPtr&);
+    void resolveAs(ExprPtr&, Base); ///< exactly this type, which must have a finite cost
+    void resolveIndexed(ExprPtr&);
+    void resolveCondition(ExprPtr&);
+    void resolveArray(ExprPtr&, Type, Handle = Handle::Either);
+    void resolveVariable(ExprPtr&); ///< an output argument: no conversion
+    void resolveBinary(ExprPtr&, Base);
+    void resolveAssign(ExprPtr&);
+    void resolveCall(ExprPtr&, Type result);
     void optionalArguments(Expr&, const Shadeop&);
-    void settlePairs(Expr&, size_t positional, const Shadeop*);
+    void resolvePairs(Expr&, size_t positional, const Shadeop*);
     void bindShadeop(Expr&, const Choice&);
     bool uniformResult(const Expr&, const Choice&) const;
     void convert(ExprPtr&, Type);

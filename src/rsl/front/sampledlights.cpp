@@ -152,8 +152,8 @@ std::string replaced(std::string text, const std::string& word, const std::strin
 
 /// The tokens of a text of our own.
 Tokens tokensOf(SourceSet& sources, const std::string& text) {
-    Preprocessed own =
-        preprocess(sources, sources.add("<generateSamples>", replaced(text, "MOST", std::to_string(limits::kLightTurns))), {});
+    Preprocessed own = preprocess(
+        sources, sources.add("<generateSamples>", replaced(text, "MOST", std::to_string(limits::kLightIterations))), {});
     own.tokens.pop_back(); // the end
     return std::move(own.tokens);
 }

@@ -1,4 +1,4 @@
-// Answers of the renderer on their way into variables; outputs of the displacement shader; variables of the primitive by any
+// Services of the renderer on their way into variables; outputs of the displacement shader; variables of the primitive by any
 // name.
 #include "base/limits.h"
 #include "rsl/front/protocol.h"

@@ -246,7 +246,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         s.pairStrings.push_back(std::to_string(part));
     }
     if (points) mark(kPairPoints);
-    // A uniform variable takes no varying parameter of another shader (answers/services.cpp).
+    // A uniform variable takes no varying parameter of another shader (services/dispatch.cpp).
     const auto isUniform = [](const Expr* l) {
         while (l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
         return l->symbol && l->symbol->storage == Storage::Uniform;

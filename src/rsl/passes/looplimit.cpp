@@ -10,7 +10,7 @@ void limitLoops(Kernel& k) {
         if (i->op != Op::Loop) return;
         Site s;
         s.op = "complaint";
-        s.strings = {"this loop is left after " + std::to_string(limits::kLoopTurns) +
+        s.strings = {"this loop is left after " + std::to_string(limits::kLoopIterations) +
                      " turns at one point, those of loops inside of it counted, with the values that its variables have then; "
                      "its condition does not become false"};
         s.place = i->place;

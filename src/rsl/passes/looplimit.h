@@ -1,4 +1,4 @@
-// Every loop that is left in a kernel gets a limit of turns (limits::kLoopTurns).
+// Every loop that is left in a kernel gets a limit of turns (limits::kLoopIterations).
 #pragma once
 #include "rsl/ir/ir.h"
 

@@ -164,7 +164,9 @@ void Emitter::emitIf(const Inst* i) {
 }
 
 /// The lanes whose loops have made all the turns that one run of a shader may make.
-Value* Emitter::spent() { return b_.CreateICmpUGE(b_.CreateLoad(vi_, turns_), lanes(b_.getInt32(limits::kLoopTurns)), "spent"); }
+Value* Emitter::spent() {
+    return b_.CreateICmpUGE(b_.CreateLoad(vi_, turns_), lanes(b_.getInt32(limits::kLoopIterations)), "spent");
+}
 
 void Emitter::spend(Value* turns, Value* mask) {
     Value* more = b_.CreateSelect(mask, lanes(turns), llvm::Constant::getNullValue(vi_));
@@ -202,7 +204,7 @@ Value* Emitter::withinTurns(const Inst* loop, bool varying, BasicBlock* exit) {
 /// The limit of one loop by itself.
 void Emitter::allowTurn(const Inst* loop, Value* turn, BasicBlock* inside, BasicBlock* exit) {
     BasicBlock* endless = block("endless");
-    b_.CreateCondBr(b_.CreateICmpULT(turn, b_.getInt32(limits::kLoopTurns)), inside, endless);
+    b_.CreateCondBr(b_.CreateICmpULT(turn, b_.getInt32(limits::kLoopIterations)), inside, endless);
     b_.SetInsertPoint(endless);
     callService(loop->site, nullptr, nullptr);
     b_.CreateBr(exit);

@@ -1,0 +1,1 @@
+folder_library(scene DEPS base)

@@ -1,0 +1,20 @@
+find_package(ZLIB REQUIRED)
+folder_library(ri DEPS scene base TBB::tbb ZLIB::ZLIB ${CMAKE_DL_LIBS})
+target_include_directories(ri PRIVATE ${CMAKE_SOURCE_DIR}/include)
+# Libraries of procedurals (DynamicLoad) find the C binding in whatever program has this library.
+target_link_options(ri INTERFACE "LINKER:--export-dynamic-symbol=Ri*")
+# What every byte and number of a file passes through is worth what its compilation takes (bench/RESULTS.md, rib_bench).
+foreach(file binary lexer match parser)
+  set_source_files_properties(${CMAKE_SOURCE_DIR}/src/ri/${file}.cpp PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>")
+endforeach()
+folder_tests(ri DEPS ri geometry)
+# Such libraries, built as anyone would build one: one header, nothing linked.
+if(TARGET test_ri)
+  foreach(library facets hollow stranger_calls)
+    add_library(procedural_${library} MODULE ${CMAKE_SOURCE_DIR}/tests/ri/procedurals/${library}.c)
+    target_include_directories(procedural_${library} PRIVATE ${CMAKE_SOURCE_DIR}/include)
+    set_target_properties(procedural_${library} PROPERTIES PREFIX "" OUTPUT_NAME ${library} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/procedurals)
+    add_dependencies(test_ri procedural_${library})
+  endforeach()
+  target_compile_definitions(test_ri PRIVATE ALPENGLOW_PROCEDURALS="${CMAKE_BINARY_DIR}/procedurals")
+endif()

@@ -1,0 +1,22 @@
+folder_library(texture DEPS base display pointcloud)
+# Lookups in lanes, once for each width and the processors that have it; texture/lookup.cpp chooses.
+foreach(way "4 v2" "8 v3" "16 v4")
+  separate_arguments(way)
+  list(GET way 0 lanes)
+  list(GET way 1 level)
+  set(file ${CMAKE_BINARY_DIR}/lanes/lookup${lanes}.cpp)
+  file(CONFIGURE OUTPUT ${file} CONTENT "#define ALPENGLOW_LANES ${lanes}\n#include \"texture/lanes/lookup.inc\"\n")
+  set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS
+    "-march=x86-64-${level};-mprefer-vector-width=512;-fno-vectorize;-fno-slp-vectorize;-fno-builtin")
+  target_sources(texture PRIVATE ${file})
+endforeach()
+folder_tests(texture DEPS texture)
+if(TARGET test_texture AND TARGET alpenglow_grids)
+  add_dependencies(test_texture alpenglow_grids)
+  add_executable(make_test_grid EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/tests/texture/make_grid.cpp)
+  target_link_libraries(make_test_grid PRIVATE ${OPENVDB_LIBRARY} TBB::tbb Imath::Imath)
+  target_include_directories(make_test_grid SYSTEM PRIVATE ${OPENVDB_HEADERS})
+  target_compile_options(make_test_grid PRIVATE -Wno-enum-constexpr-conversion -fno-sanitize=alignment) # as alpenglow_grids
+  add_dependencies(test_texture make_test_grid)
+  target_compile_definitions(test_texture PRIVATE ALPENGLOW_MAKE_GRID="$<TARGET_FILE:make_test_grid>")
+endif()

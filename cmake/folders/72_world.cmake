@@ -1,0 +1,1 @@
+folder_library(world DEPS bsdf lanes pointcloud photonmap ptex shading)

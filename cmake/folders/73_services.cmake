@@ -1,0 +1,2 @@
+folder_library(services DEPS world)
+folder_tests(lanes DEPS lanes services)

@@ -1,0 +1,1 @@
+folder_library(integrator DEPS services lanes)

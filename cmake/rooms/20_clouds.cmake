@@ -1,2 +1,0 @@
-find_package(ZLIB REQUIRED)
-room(clouds DEPS base ZLIB::ZLIB)

@@ -1,2 +1,0 @@
-find_package(ZLIB REQUIRED)
-room(photons DEPS base ZLIB::ZLIB)

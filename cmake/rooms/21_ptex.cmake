@@ -1,2 +1,0 @@
-find_package(ZLIB REQUIRED)
-room(ptex DEPS base ZLIB::ZLIB)

@@ -1,1 +1,0 @@
-room(world DEPS lobes lanes clouds photons ptex shading)

@@ -1,2 +1,0 @@
-room(answers DEPS world)
-room_tests(lanes DEPS lanes answers)

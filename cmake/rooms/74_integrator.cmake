@@ -1,1 +1,0 @@
-room(integrator DEPS answers lanes)

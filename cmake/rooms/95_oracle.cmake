@@ -1,4 +1,0 @@
-room_tests(oracle DEPS base ${EMBREE_LIBRARY})
-if(TARGET test_oracle)
-  target_include_directories(test_oracle PRIVATE ${CMAKE_SOURCE_DIR}/tests)
-endif()

@@ -1,2 +1,0 @@
-# The published scenes, through the reader and the renderer as the program runs them.
-room_tests(scenes DEPS render integrator ri display)

@@ -1,0 +1,81 @@
+// Light-directed sampling (lightdirected.h) for vertices in blocks on surfaces in scattering media.
+#include "integrator/blockvertices.h"
+#include "integrator/medium.h"
+#include <bit>
+
+namespace alpenglow::integrator {
+
+/// Block version of LobeSelection::lightDirections().
+void BlockVertices::lightDirections(const BatchContext& c) {
+    for (size_t k = 0; k < count_; ++k) sites_[k].beside.clear();
+    if (waits_ || c.between || !mediumEvents_.surfacesAim()) return; // rays of waiting kernels follow the lobe's density alone
+    for (size_t b = 0; b < blocks_; ++b) {
+        Lanes some = 0;
+        for (size_t k = 0; k < count_; ++k) some |= sites_[k].spreads(b);
+        for (some &= vertices_[b].points; some; some &= some - 1) {
+            const int lane = std::countr_zero(some);
+            const size_t point = b * kBlock + size_t(lane);
+            const LightDirected beside = mediumEvents_.atSurfaceInMedium(c, point);
+            if (!(beside.share > 0)) continue;
+            for (size_t k = 0; k < count_; ++k) {
+                if (!(sites_[k].spreads(b) >> lane & 1)) continue;
+                sites_[k].beside.resize(blocks_ * kBlock);
+                sites_[k].beside[point] = beside;
+            }
+        }
+    }
+    for (size_t k = 0; k < count_; ++k)
+        for (size_t b = 0; b < blocks_ && !sites_[k].beside.empty(); ++b) sites_[k].weighLightDirected(b, value_);
+}
+
+Lanes BlockLobes::spreads(size_t b) const {
+    const LobeBlock& l = lobes[b];
+    Lanes some = 0;
+    for (int i = 0; i < kBlock; ++i) some |= Lanes(l.chosen[i] > 0 && l.lobe[kRowDelta][i] == 0) << i;
+    return some & l.asked;
+}
+
+void BlockLobes::weighLightDirected(size_t b, Row* value) {
+    LightDirected* const of = &beside[b * kBlock];
+    Lanes asked = 0;
+    alignas(64) Row w[3];
+    for (int i = 0; i < kBlock; ++i) {
+        asked |= Lanes(of[i].share > 0) << i;
+        for (int q = 0; q < 3; ++q) w[q][i] = of[i].light[q];
+    }
+    if (!asked) return;
+    lanes->evaluate(lobes[b].lobe[0], asked, w[0], value[0]);
+    for (; asked; asked &= asked - 1) {
+        const int i = std::countr_zero(asked);
+        of[i].weigh({{}, value[kRowFcos][i], value[kRowPdf][i]});
+    }
+}
+
+void BlockLobes::addLightDirected(Lanes some, const Row* w, const size_t* pointOf, float* pdf) const {
+    for (some = beside.empty() ? 0 : some; some; some &= some - 1) {
+        const int i = std::countr_zero(some);
+        pdf[i] = beside[pointOf[i]].density({w[0][i], w[1][i], w[2][i]}, pdf[i]);
+    }
+}
+
+void BlockLobes::draw(size_t b, Lanes some, render::NumberBlock& u, Row* drawn) const {
+    Vec3 directions[kBlock];
+    Lanes aside = 0;
+    for (Lanes left = beside.empty() ? 0 : some; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        Vec2 pair{u.x[i], u.y[i]};
+        const std::optional<Vec3> w = beside[b * kBlock + size_t(i)].draw(pair);
+        u.x[i] = pair.x;
+        if (!w) continue;
+        directions[i] = *w;
+        aside |= 1u << i;
+    }
+    lanes->sample(lobes[b].lobe[0], some & ~aside, u.x, drawn[0]);
+    for (; aside; aside &= aside - 1) {
+        const int i = std::countr_zero(aside);
+        for (int q = 0; q < 3; ++q) drawn[kRowDirection + q][i] = directions[i][q];
+        drawn[kRowDrawn][i] = 1;
+    }
+}
+
+} // namespace alpenglow::integrator

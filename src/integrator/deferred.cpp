@@ -1,0 +1,28 @@
+#include "integrator/deferred.h"
+#include "integrator/bakes.h"
+#include "integrator/photons.h"
+#include "world/impl.h"
+
+namespace alpenglow::integrator {
+namespace {
+/// Null for other implementations of World (tests), which have no procedurals.
+const WorldImpl* inside(const World& w) { return dynamic_cast<const WorldImpl*>(&w); }
+} // namespace
+
+void askForProcedurals(const World& w, int most) {
+    if (hasDeferred(w)) inside(w)->deferred_->askFor(most);
+}
+
+std::vector<int> procedurals(const World& w) { return hasDeferred(w) ? inside(w)->deferred_->met() : std::vector<int>(); }
+
+bool hasDeferred(const World& w) { return inside(w) && inside(w)->deferred_; }
+
+bool needsAllShapes(const World& w) { return inside(w) && (bakes(w) || w.interpolates() || !photonMapsOf(w, true).empty()); }
+
+void takeOver(const World& w, const World& before) {
+    if (inside(w) && inside(before)) inside(w)->prints_.goOn(inside(before)->prints_);
+}
+
+bool hasPrints(const World& w) { return inside(w) && inside(w)->prints_.pending(); }
+
+} // namespace alpenglow::integrator

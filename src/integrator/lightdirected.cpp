@@ -1,0 +1,82 @@
+// Light-directed sampling for surfaces in media (lightdirected.h): selects the light and its share of a lobe's samples.
+#include "integrator/lightdirected.h"
+#include "bsdf/sampling.h"
+#include "integrator/lobeselection.h"
+#include "integrator/mediastacks.h"
+#include "integrator/medium.h"
+#include "integrator/photonstage.h"
+#include "integrator/requests.h"
+
+namespace alpenglow::integrator {
+
+namespace {
+constexpr float kMostLightDirected = 0.3f; ///< largest share of a lobe's samples
+constexpr float kThin = 0.2f;              ///< optical distance to the light at which the share is half of that
+} // namespace
+
+float LightDirected::density(const Vec3& w, float ofLobe) const {
+    if (!(share > 0)) return ofLobe;
+    const float sine = std::max(length(cross(w, light)), 1e-6f);
+    return (1 - share) * ofLobe + share * float(0.5 / (kPi * kPi)) / sine;
+}
+
+std::optional<Vec3> LightDirected::draw(Vec2& u) const {
+    if (!(share > 0)) return {};
+    if (u.x >= share) {
+        u.x = std::min((u.x - share) / (1 - share), 1 - 0x1p-24f);
+        return {};
+    }
+    const Vec2 off = unitCircle(0.5f * u.x / share), about = unitCircle(u.y);
+    return Basis(light).toWorld({off.y * about.x, off.y * about.y, off.x});
+}
+
+bool MediumEvents::surfacesAim() const {
+    return world_.scatters_ && rules_.pickOne && rules_.lightsAtRequests &&
+           world_.settings_.mediumSampling != MediumSampling::Distance;
+}
+
+/// Tries the side of the surface that the ray arrives from first, then the other one.
+LightDirected MediumEvents::atSurfaceInMedium(const KernelRun& c, size_t point) const {
+    const PathRay& ray = c.rays[point];
+    const ShadePoint& p = c.points[point];
+    const Vec3 n = dot(p.surface.n, ray.dir) > 0 ? -p.surface.n : p.surface.n;
+    for (const Vec3& side : {n, -n}) {
+        const int medium = MediaStacks::mediumOf(media_.towards(c, int(point), side));
+        if (medium < 0) continue;
+        const Medium& m = world_.media_[size_t(medium)];
+        if (!m.homogeneous || !(maxComponent(m.homogeneous->scattering) > 0)) continue;
+        float away = 0;
+        const Vec3 to = lightDirection(m, ray, p.P, &away);
+        if (!(dot(to, side) > 0)) continue;
+        const float thick = away * mean(m.homogeneous->scattering); // small where little is scattered on the way
+        return {to, kMostLightDirected * thick / (thick + kThin)};
+    }
+    return {};
+}
+
+void LobeSelection::lightDirections() {
+    if (!mediumEvents_.surfacesAim() || c_->between || photons_.photonTrace()) return;
+    aimed_.clear();
+    for (size_t point = 0; point < c_->points.size(); ++point)
+        if (begin_[point] != begin_[point + 1]) lightDirection(point);
+    if (aimed_.empty()) return;
+    for (int i : aimed_) requests_.rows.ask(requests_.lobes[size_t(i)].place, requests_.lobes[size_t(i)].beside.light);
+    requests_.rows.evaluate();
+    for (int i : aimed_) requests_.lobes[size_t(i)].beside.weigh(requests_.rows.value(requests_.lobes[size_t(i)].place));
+}
+
+void LobeSelection::lightDirection(size_t point) {
+    const LightDirected beside = mediumEvents_.atSurfaceInMedium(*c_, point);
+    if (!(beside.share > 0)) return;
+    for (int i : lobesOf(point)) {
+        LobeVertex& l = requests_.lobes[size_t(i)];
+        // A waiting kernel reads distances and directions of its rays, which must follow the density of the lobe alone.
+        if (l.delta || !l.followed || !(l.chosen > 0) || l.ownsTarget || l.elsewhere || l.below >= 0 ||
+            (l.trace && l.trace->onlyLights))
+            continue;
+        l.beside = beside;
+        aimed_.push_back(i);
+    }
+}
+
+} // namespace alpenglow::integrator

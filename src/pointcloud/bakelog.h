@@ -1,0 +1,81 @@
+// Baked data of shaders, collected while they run in an order that does not depend on threads or batches, and written after the
+// frame.
+#pragma once
+#include "base/diagnostics.h"
+#include "pointcloud/pointcloud.h"
+#include <map>
+#include <mutex>
+
+namespace alpenglow {
+struct OutputPolicy;
+}
+
+namespace alpenglow::pointcloud {
+
+/// Layout of the records of one bake() or bake3d() call.
+struct BakeLayout {
+    bool flat = false; ///< bake(): s, t and the one channel; else bake3d(): P, N, radius and channels
+    std::vector<Channel> channels;
+    int width = 0;     ///< numbers of the channels
+    std::string where; ///< file, line and column of the call: it orders the calls of one point
+    SourcePlace place;
+};
+
+/// Identifies the point of a record: grid points by shape and index, hits of camera rays by pixel.
+struct BakeKey {
+    bool camera = false;
+    int32_t y = 0, x = 0; ///< grids: shape, point
+    int32_t layers = 0;   ///< camera: surfaces before it
+    uint32_t vertex = 0;
+    uint32_t sample = 0;
+};
+
+/// Who writes a file, by fileIdentity().
+using FileOwners = std::map<std::string, std::string>;
+
+class BakeLog {
+public:
+    /// Adds the numbers of one call: s, t and the value; or P (3), N (3), radius and the channels, in the space of the file.
+    /// Layouts must outlive the log. Returns false if the log is full, which is reported when it is written. Thread safe.
+    bool add(const std::string& file, const BakeLayout&, const BakeKey&, std::span<const float> numbers);
+    /// Appends records added since the last call to the earlier ones, in order of keys. Averages the samples of grid points.
+    /// Removes bitwise duplicates, because points may be shaded again. Call while no thread adds.
+    void settle();
+    /// Whether anything was added since the last settle(). Nobody adds meanwhile.
+    bool pending() const;
+    /// Discards records added since the last settle(), because the samples were void.
+    void discard();
+    /// Calls settle(), writes all files except those of other owners, and empties the log. Returns false if a file could not be
+    /// written; each is reported.
+    bool write(const OutputPolicy&, Diagnostics&, FileOwners = {});
+    bool empty() const { return files_.empty(); }
+    /// Size of the records in memory.
+    size_t bytes() const { return bytes_; }
+
+private:
+    struct Entry {
+        BakeKey key;
+        const BakeLayout* layout;
+        size_t at; ///< in File::pending
+    };
+    struct Row {
+        const BakeLayout* layout;
+        size_t at; ///< in File::settled
+    };
+    struct File {
+        std::vector<Entry> entries;
+        std::vector<float> pending, settled;
+        std::vector<Row> rows;
+        uint64_t notFinite = 0;
+    };
+    void settle(File&);
+    void count();
+    bool writeFlat(const std::string& name, const File&, const OutputPolicy&, Diagnostics&) const;
+    bool writeCloud(const std::string& name, const File&, const OutputPolicy&, Diagnostics&) const;
+    std::mutex mutex_;
+    std::map<std::string, File> files_;
+    size_t bytes_ = 0;
+    bool full_ = false;
+};
+
+} // namespace alpenglow::pointcloud

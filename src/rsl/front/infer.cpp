@@ -1,0 +1,465 @@
+// Bottom up: which types can this expression have, and what would each cost?
+#include "rsl/front/checker.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+constexpr Base kAll[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
+                         Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kTuples[] = {Base::Color, Base::Point, Base::Vector, Base::Normal};
+int sum(int a, int b) { return std::min(a + b, kNever); }
+} // namespace
+
+Base Checker::cheapest(const Info& info) {
+    Base best = Base::Void;
+    int cost = info.cost[0];
+    for (Base b : kAll)
+        if (info.cost[int(b)] < cost) {
+            cost = info.cost[int(b)];
+            best = b;
+        }
+    return best;
+}
+
+int Checker::costTo(const Info& info, Base to) {
+    if (info.any) return 0;
+    int best = kNever;
+    for (Base b : kAll) best = std::min(best, sum(info.cost[int(b)], implicitCost(b, to)));
+    return best;
+}
+
+bool Checker::isVariable(const Expr& e) const {
+    if (e.kind == ExprKind::Variable) return true;
+    return e.kind == ExprKind::Index && !e.args.empty() && isVariable(*e.args[0]);
+}
+
+void Checker::poison(Expr&, Info& info) { info.any = true; }
+
+/// The types of an expression, in words.
+std::string Checker::describe(Expr& e) {
+    const Info& info = infos_.at(&e);
+    if (info.any) return "an error";
+    if (info.array.array) return named(info.array, info.handle);
+    if (info.listLength >= 0) return "an array of " + std::to_string(info.listLength);
+    if (e.kind == ExprKind::Tuple) return "a triple";
+    const Base b = cheapest(info);
+    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : named({b, 0}, info.handle);
+}
+
+std::string Checker::componentHint(Base b) {
+    return std::string("a component is read by x[0] or ") + (b == Base::Color ? "comp(x, 0)" : "xcomp(x)");
+}
+
+std::string Checker::named(Type t, Handle h) {
+    if (t.base != Base::String || h != Handle::Shader) return toString(t);
+    const std::string s = toString(t);
+    return "shader" + s.substr(std::string("string").size());
+}
+
+Checker::Info& Checker::infer(Expr& e) {
+    Info& info = infos_[&e]; // references into the map stay valid
+    info = Info();
+    switch (e.kind) {
+    case ExprKind::Number:
+        info.cost[int(Base::Float)] = 0;
+        break;
+    case ExprKind::String:
+        info.cost[int(Base::String)] = 0;
+        info.handle = e.handle ? Handle::Shader : Handle::Text;
+        break;
+    case ExprKind::Variable:
+        inferVariable(e, info);
+        break;
+    case ExprKind::Index:
+        inferIndex(e, info);
+        break;
+    case ExprKind::Unary: {
+        const Info& a = infer(*e.args[0]);
+        if (a.any) {
+            info.any = true;
+            break;
+        }
+        if (e.op == ExprOp::Not) {
+            int c = kNever;
+            for (Base b : kAll) c = std::min(c, sum(a.cost[int(b)], conditionCost(b)));
+            info.cost[int(Base::Bool)] = c;
+        } else {
+            info.cost[int(Base::Float)] = std::min(a.cost[int(Base::Float)], sum(a.cost[int(Base::Bool)], 4));
+            for (Base b : kTuples) info.cost[int(b)] = a.cost[int(b)];
+            info.either = a.either;
+            info.number = a.number;
+        }
+        if (cheapest(info) == Base::Void) {
+            sources_.error(e.place, std::string("'") + spelling(e.op) + "' cannot be applied to " + describe(*e.args[0]));
+            poison(e, info);
+        }
+        break;
+    }
+    case ExprKind::Binary:
+        inferBinary(e, info);
+        break;
+    case ExprKind::Assign:
+        inferAssign(e, info);
+        break;
+    case ExprKind::Conditional:
+        inferConditional(e, info);
+        break;
+    case ExprKind::Tuple:
+    case ExprKind::MatrixTuple: {
+        int cost = 0;
+        if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser said so
+        for (auto& a : e.args) {
+            const Info& i = infer(*a);
+            const int c = costTo(i, Base::Float);
+            if (c >= kNever) {
+                sources_.error(a->place, "a component must be a float, not " + describe(*a));
+                poison(e, info);
+            }
+            cost = sum(cost, c);
+        }
+        if (info.any) break;
+        if (e.kind == ExprKind::MatrixTuple) info.cost[int(Base::Matrix)] = cost;
+        else
+            for (Base b : kTuples) info.cost[int(b)] = cost;
+        break;
+    }
+    case ExprKind::ArrayList:
+        info.listLength = int(e.args.size());
+        info.handle = Handle::Either;
+        for (auto& a : e.args)
+            if (const Info& i = infer(*a); i.cost[int(Base::String)] < kNever && info.handle == Handle::Either)
+                info.handle = i.handle;
+        break;
+    case ExprKind::Cast:
+        inferCast(e, info);
+        break;
+    case ExprKind::ShadeopCall:
+        inferCall(e, info);
+        break;
+    case ExprKind::FunctionCall:
+        info.any = true;
+        break;
+    case ExprKind::Sequence:
+        for (auto& a : e.args) infer(*a);
+        info = infos_.at(e.args.back().get());
+        info.choices.clear();
+        break;
+    case ExprKind::Member:
+    case ExprKind::Method:
+        inferMember(e, info);
+        break;
+    }
+    return info;
+}
+
+/// Of another shader: member->name, method->name(...).
+void Checker::inferMember(Expr& e, Info& info) {
+    for (auto& a : e.args) infer(*a);
+    for (auto& a : e.args) info.any |= infos_.at(a.get()).any;
+    if (info.any) return;
+    const Info& of = infos_.at(e.args[0].get());
+    if (of.array.array || costTo(of, Base::String) >= kNever || of.handle == Handle::Text) {
+        sources_.error(e.place, "'->' needs a structure or a shader, not " + describe(*e.args[0]));
+        info.any = true;
+        return;
+    }
+    // What it gives is known when the shader is bound: here it is what is wanted.
+    for (Base b : kAll) info.cost[int(b)] = b == Base::Float ? 0 : b == Base::Bool ? kNever : 1;
+    info.handle = Handle::Either;
+}
+
+void Checker::inferVariable(Expr& e, Info& info) {
+    if (e.text.empty()) {
+        info.any = true;
+        return;
+    }
+    Symbol* s = e.symbol ? e.symbol : lookup(e.text);
+    if (!s && e.text == "PI") {
+        e.kind = ExprKind::Number;
+        e.number = 3.14159265358979323846;
+        info.cost[int(Base::Float)] = 0;
+        return;
+    }
+    if (!s) s = tolerated(e);
+    if (!s && e.text == "null") { // the handle of no shader
+        e.kind = ExprKind::String;
+        e.text.clear();
+        e.handle = true;
+        info.cost[int(Base::String)] = 0;
+        info.handle = Handle::Shader;
+        return;
+    }
+    if (!s && (e.text == "surface" || e.text == "caller" || e.text == "light")) { // handles that RSL 2 has names for
+        e.kind = ExprKind::String;
+        e.text = "(" + e.text + ")";
+        e.handle = true;
+        program_.handles = true;
+        info.cost[int(Base::String)] = 0;
+        info.handle = Handle::Shader;
+        return;
+    }
+    if (!s) {
+        unknownVariable(e);
+        info.any = true;
+        return;
+    }
+    e.symbol = s;
+    info.handle = s->handle ? Handle::Shader : Handle::Text;
+    if (s->type.base == Base::Void) info.any = true;
+    else if (s->type.array != 0) info.array = s->type;
+    else info.cost[int(s->type.base)] = 0;
+}
+
+void Checker::inferIndex(Expr& e, Info& info) {
+    const Info& base = infer(*e.args[0]);
+    const Info& index = infer(*e.args[1]);
+    if (base.any) {
+        info.any = true;
+        return;
+    }
+    const bool ofHandle = e.args[0]->kind == ExprKind::Member; // an element of an array or a component: what is wanted
+    if (costTo(index, Base::Float) >= kNever) {
+        sources_.error(e.args[1]->place, "an index must be a float, not " + describe(*e.args[1]));
+        info.any = true;
+        return;
+    }
+    if (ofHandle) {
+        info.cost = base.cost;
+        info.handle = Handle::Either;
+        return;
+    }
+    if (base.array.array) {
+        info.cost[int(base.array.base)] = 0;
+        info.handle = base.handle;
+        const Expr& i = *e.args[1];
+        const Symbol* array = e.args[0]->symbol; // one of open length may be longer than its default
+        if (i.kind == ExprKind::Number && base.array.array > 0 && !(array && array->open && i.number > -1) &&
+            (i.number <= -1 || i.number >= base.array.array))
+            sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " +
+                                        std::to_string(base.array.array));
+        return;
+    }
+    int tuple = kNever;
+    for (Base b : kTuples) tuple = std::min(tuple, base.cost[int(b)]);
+    if (tuple < kNever) {
+        info.cost[int(Base::Float)] = tuple;
+        const Expr& i = *e.args[1];
+        if (i.kind == ExprKind::Number && (i.number <= -1 || i.number >= 3))
+            sources_.error(i.place, "a tuple has components 0, 1 and 2");
+        return;
+    }
+    if (base.cost[int(Base::String)] < kNever) {
+        info.cost[int(Base::String)] = base.cost[int(Base::String)];
+        info.channel = true;
+        return;
+    }
+    sources_.error(e.place, describe(*e.args[0]) + " has no elements",
+                   cheapest(base) == Base::Matrix ? "comp(m, row, column) reads a matrix" : "");
+    info.any = true;
+}
+
+bool Checker::isNumber(const Info& i) {
+    if (i.number) return true;
+    for (Base b : kAll)
+        if (b != Base::Float && b != Base::Bool && i.cost[int(b)] < kNever) return false;
+    return i.cost[int(Base::Float)] < kNever;
+}
+
+/// What it costs to read the operands `l` and `r` as `a` and `b`. What is wanted reaches through arithmetic: in a color .5 + .5 *
+/// texture(m) is colored, so that what could be a tuple is no number beside one; numbers that are nothing else cost next to
+/// nothing. But what is multiplied by a point, vector or normal scales it: P + noise(P) * N goes along N. docs/language.md has
+/// the rule.
+int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, const Info& r, Base b) {
+    const bool scales = op == ExprOp::Mul || op == ExprOp::Div;
+    const auto canBe = [](const Info& i, Base as) {
+        if (i.number) return as == Base::Float;
+        return i.cost[int(as)] < kNever ||
+               (isPointLike(as) && (i.cost[int(Base::Point)] < kNever || i.cost[int(Base::Vector)] < kNever));
+    };
+    const bool left = canBe(l, Base::Float), right = canBe(r, Base::Float);
+    if (!o.promotes) return o.cost + (scales && isPointLike(a) && isPointLike(b) && left != right ? kBroadcast : 0);
+    if (o.result == Base::Bool) return o.cost + kCompared;
+    const bool leftIsNumber = !Type{a, 0}.isTuple();
+    const bool other = leftIsNumber ? right : left; // may be a number, too
+    const bool choice = canBe(leftIsNumber ? l : r, o.operand);
+    return o.cost + (choice && (other || !scales || !isPointLike(o.operand)) ? kBroadcast : kPromotion);
+}
+
+void Checker::inferBinary(Expr& e, Info& info) {
+    const Info& l = infer(*e.args[0]);
+    const Info& r = infer(*e.args[1]);
+    if (l.any || r.any) {
+        info.any = true;
+        return;
+    }
+    const bool strings = l.cost[int(Base::String)] < kNever && r.cost[int(Base::String)] < kNever;
+    // A handle is compared with a handle, and never joined to a text.
+    const bool mixed = strings && (!alike(l.handle, r.handle) ||
+                                   (e.op == ExprOp::Add && (l.handle == Handle::Shader || r.handle == Handle::Shader)));
+    const bool arithmetic = e.op == ExprOp::Add || e.op == ExprOp::Sub || e.op == ExprOp::Mul || e.op == ExprOp::Div;
+    if (arithmetic && isNumber(l) && isNumber(r)) info.number = l.number ? l.number : r.number;
+    else if (arithmetic && isNumber(r)) info.number = l.either;
+    else if (arithmetic && isNumber(l)) info.number = r.either;
+    else if (arithmetic && l.either && r.either) info.either = l.either;
+    for (Base a : kAll) {
+        if (l.cost[int(a)] >= kNever) continue;
+        for (Base b : kAll) {
+            if (r.cost[int(b)] >= kNever) continue;
+            if (mixed && a == Base::String && b == Base::String) continue;
+            if (const auto o = operation(e.op, a, b)) {
+                int& c = info.cost[int(o->result)];
+                // A truth is a truth: how it was come by chooses nothing around it.
+                c = o->result == Base::Bool
+                        ? 0
+                        : std::min(c, sum(sum(l.cost[int(a)], r.cost[int(b)]), operandCost(e.op, *o, l, a, r, b)));
+            }
+        }
+    }
+    if (info.number)
+        for (Base b : kTuples) info.cost[int(b)] = sum(info.cost[int(b)], kLastResort);
+    if (cheapest(info) != Base::Void) return;
+    std::string hint;
+    const Base a = cheapest(l), b = cheapest(r);
+    if (e.op == ExprOp::Mul && (a == Base::Matrix || b == Base::Matrix)) hint = "transform(m, p) multiplies a point by a matrix";
+    else if ((a == Base::Color) != (b == Base::Color) && (Type{a, 0}.isTuple() && Type{b, 0}.isTuple()))
+        hint = "a written conversion, as in color x, makes them alike";
+    else if (e.op == ExprOp::Cross && (a == Base::Float || b == Base::Float))
+        hint = "'^' is the cross product; pow(x, y) is the power";
+    sources_.error(
+        e.place, std::string("'") + spelling(e.op) + "' cannot combine " + describe(*e.args[0]) + " and " + describe(*e.args[1]),
+        hint);
+    poison(e, info);
+}
+
+void Checker::inferAssign(Expr& e, Info& info) {
+    const Info& l = infer(*e.args[0]);
+    const Info& r = infer(*e.args[1]);
+    if (!isVariable(*e.args[0])) {
+        if (!l.any) sources_.error(e.place, "what stands left of the assignment is not a variable");
+        info.any = true;
+        return;
+    }
+    if (l.any || r.any) {
+        info.any = true;
+        return;
+    }
+    if (l.array.array) {
+        preferArray(*e.args[1], l.array);
+        const bool fits = r.listLength >= 0 ? l.array.array < 0 || r.listLength <= l.array.array
+                                            : r.array.base == l.array.base && r.array.array != 0 &&
+                                                  (r.array.array == l.array.array || r.array.array < 0 || l.array.array < 0);
+        info.handle = l.handle;
+        if (!fits || (l.array.base == Base::String && !alike(l.handle, r.handle)) || e.op != ExprOp::Assign) {
+            sources_.error(e.place, "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0]));
+            info.any = true;
+        } else info.array = l.array;
+        return;
+    }
+    const Base target = cheapest(l);
+    int cost = kNever;
+    if (e.op == ExprOp::Assign) {
+        cost = costTo(r, target);
+    } else {
+        for (Base b : kAll) {
+            const auto o = r.cost[int(b)] < kNever ? operation(e.op, target, b) : std::nullopt;
+            if (o && implicitCost(o->result, target) < kNever)
+                cost = std::min(cost, r.cost[int(b)] + operandCost(e.op, *o, l, target, r, b) + implicitCost(o->result, target));
+        }
+    }
+    info.handle = l.handle;
+    const bool handles = l.handle == Handle::Shader || r.handle == Handle::Shader;
+    const bool mixed = target == Base::String && (!alike(l.handle, r.handle) || (e.op != ExprOp::Assign && handles));
+    if (cost >= kNever || l.channel || mixed) {
+        const bool toFloat = target == Base::Float && Type{cheapest(r), 0}.isTuple();
+        sources_.error(e.place,
+                       e.op == ExprOp::Assign ? "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0])
+                                              : std::string("'") + spelling(e.op) + "=' cannot combine " + describe(*e.args[0]) +
+                                                    " and " + describe(*e.args[1]),
+                       toFloat ? componentHint(cheapest(r)) : "");
+        info.any = true;
+        return;
+    }
+    info.cost[int(target)] = cost;
+}
+
+void Checker::inferConditional(Expr& e, Info& info) {
+    const Info& c = infer(*e.args[0]);
+    const Info& a = infer(*e.args[1]);
+    const Info& b = infer(*e.args[2]);
+    int cost = kNever;
+    for (Base t : kAll) cost = std::min(cost, sum(c.cost[int(t)], conditionCost(t)));
+    if (!c.any && cost >= kNever) {
+        sources_.error(e.args[0]->place, describe(*e.args[0]) + " cannot be a condition");
+        info.any = true;
+    }
+    if (c.any || a.any || b.any) info.any = true;
+    if (info.any) return;
+    for (Base t : kAll)
+        if (a.cost[int(t)] < kNever || b.cost[int(t)] < kNever) info.cost[int(t)] = sum(cost, sum(costTo(a, t), costTo(b, t)));
+    if (isNumber(a) && isNumber(b)) info.number = a.number ? a.number : b.number;
+    else if ((a.either || isNumber(a)) && (b.either || isNumber(b))) info.either = a.either ? a.either : b.either;
+    const bool strings = a.cost[int(Base::String)] < kNever && b.cost[int(Base::String)] < kNever;
+    info.handle = a.handle == Handle::Either ? b.handle : a.handle;
+    if (cheapest(info) == Base::Void || (strings && !alike(a.handle, b.handle))) {
+        sources_.error(e.place,
+                       "the two values of '?' do not fit together: " + describe(*e.args[1]) + " and " + describe(*e.args[2]));
+        info.any = true;
+    }
+}
+
+void Checker::inferCast(Expr& e, Info& info) {
+    Expr& operand = *e.args[0];
+    // point space (x, y, z) with the space in a variable reads like a call.
+    if (!e.space && operand.kind == ExprKind::ShadeopCall && (operand.args.size() == 3 || operand.args.size() == 16)) {
+        const Symbol* s = nullptr;
+        for (size_t i = scopes_.size(); i-- > 0 && !s;)
+            if (const auto f = scopes_[i].names.find(operand.text); f != scopes_[i].names.end()) s = f->second;
+        if (s && s->type == Type{Base::String, 0} && !findShadeop(operand.text)) {
+            e.space = std::make_unique<Expr>();
+            e.space->kind = ExprKind::Variable;
+            e.space->text = operand.text;
+            e.space->place = operand.place;
+            operand.kind = operand.args.size() == 3 ? ExprKind::Tuple : ExprKind::MatrixTuple;
+        }
+    }
+    if (e.space) {
+        const Info& s = infer(*e.space);
+        if (!s.any && (costTo(s, Base::String) >= kNever || s.handle == Handle::Shader)) {
+            sources_.error(e.space->place, "the name of a space is a string");
+            info.any = true;
+        }
+        if (!Type{e.type.base, 0}.isTuple() && e.type.base != Base::Matrix) {
+            sources_.error(e.space->place, "a " + toString(e.type) + " is in no space");
+            info.any = true;
+        }
+    }
+    const Info& a = infer(operand);
+    if (a.any) {
+        // The type is as written, whatever went wrong inside.
+        if (e.type.array == 0) info.cost[int(e.type.base)] = 0;
+        info.any = true;
+        return;
+    }
+    if (e.type.array != 0 || a.array.array != 0) {
+        bool fits = a.array.base == e.type.base && a.array.array != 0 && e.type.array != 0;
+        if (fits) info.array = a.array;
+        else info.any = true;
+        if (!fits) sources_.error(e.place, "cannot convert " + describe(operand) + " to " + toString(e.type));
+        return;
+    }
+    int cost = kNever;
+    for (Base b : kAll) cost = std::min(cost, sum(a.cost[int(b)], castCost(b, e.type.base)));
+    info.handle = e.handle ? Handle::Shader : Handle::Text;
+    if (cost >= kNever || (e.type.base == Base::String && !alike(a.handle, info.handle))) {
+        const bool toFloat = e.type.base == Base::Float && Type{cheapest(a), 0}.isTuple();
+        sources_.error(e.place, "cannot convert " + describe(operand) + " to " + named(e.type, info.handle),
+                       toFloat ? componentHint(cheapest(a)) : "");
+        info.any = true;
+        return;
+    }
+    info.cost[int(e.type.base)] = cost;
+}
+
+} // namespace alpenglow::rsl::front

@@ -1,0 +1,475 @@
+// Top down: the cheapest reading becomes the tree, its conversions explicit nodes.
+#include "rsl/front/checker.h"
+#include "rsl/front/clone.h"
+#include <algorithm>
+#include <utility>
+
+namespace alpenglow::rsl::front {
+
+namespace {
+constexpr Base kAllBases[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
+                              Base::Normal, Base::Matrix, Base::String, Base::Bool};
+} // namespace
+
+/// Type and children are known: `varying` follows from the children.
+void Checker::finish(Expr& e) {
+    e.varying = false;
+    for (const auto& a : e.args) e.varying |= a->varying;
+    if (e.space) e.varying |= e.space->varying;
+}
+
+void Checker::convert(ExprPtr& e, Type to) {
+    if (e->type == to) return;
+    auto c = std::make_unique<Expr>();
+    c->kind = ExprKind::Cast;
+    c->type = to;
+    c->place = e->place;
+    c->height = e->height + 1;
+    c->varying = e->varying;
+    c->args.push_back(std::move(e));
+    e = std::move(c);
+}
+
+void Checker::resolveTypes(ExprPtr& e, Type want, Handle handle) {
+    const Info& info = infos_.at(e.get());
+    if (info.any || want.base == Base::Void) {
+        resolveCheapest(e);
+        if (want.base != Base::Void) e->type = want;
+        return;
+    }
+    if (want.array != 0) return resolveArray(e, want, handle);
+    if (info.array.array || info.listLength >= 0) {
+        sources_.error(e->place, "expected a " + named(want, handle) + ", not " + describe(*e));
+        e->type = want;
+        return;
+    }
+    Base best = Base::Void;
+    int cost = kNever;
+    for (Base b : kAllBases) {
+        const int c = info.cost[int(b)] + implicitCost(b, want.base);
+        if (c < cost) {
+            cost = c;
+            best = b;
+        }
+    }
+    if (best == Base::Void || (want.base == Base::String && !alike(info.handle, handle))) {
+        std::string hint;
+        if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple()) hint = componentHint(cheapest(info));
+        sources_.error(e->place, "expected a " + named(want, handle) + ", not " + describe(*e), hint);
+        e->type = want;
+        return;
+    }
+    resolveAs(e, best);
+    becomesTuple(info, *e, want.base);
+    convert(e, want);
+}
+
+/// What arithmetic with a number has made a float is wanted as a tuple, and so gets three alike components.
+void Checker::becomesTuple(const Info& info, const Expr& settled, Base wanted) {
+    if (unit_ != &main_ || !info.number || settled.type != Type{Base::Float, 0} || !Type{wanted, 0}.isTuple()) return;
+    const Place& p = info.number->place;
+    madeNumbers_.emplace(std::array{p.file, p.line, p.column}, MadeNumber{info.number->text, wanted});
+}
+
+void Checker::warnOfNumbers() {
+    for (const auto& [place, what] : madeNumbers_) {
+        if (place[0] != 0) continue; // headers are others'
+        const std::string type = toString({what.wanted, 0});
+        sources_.warning(
+            {place[0], place[1], place[2]},
+            what.name + "() is a float in arithmetic with a number; the " + type + " that is wanted has three alike components",
+            "'" + type + " " + what.name + "(...)' has three of its own; 'float " + what.name + "(...)' says that one is meant");
+    }
+}
+
+void Checker::resolveCheapest(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) {
+        // Children may hold what is worth a look (nothing is reported twice); types no longer matter.
+        return;
+    }
+    if (info.array.array) return resolveArray(e, info.array);
+    if (info.listLength >= 0) {
+        sources_.error(e->place, "a list of elements {...} is of use only as the value of an array");
+        return;
+    }
+    const Base b = cheapest(info);
+    if (b == Base::Void && e->kind == ExprKind::ShadeopCall) return resolveCall(e, {Base::Void, 0});
+    resolveAs(e, b);
+}
+
+/// What has elements: an array, or what can be a tuple as one, noise(P)[1] too.
+void Checker::resolveIndexed(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    Base best = Base::Void;
+    for (Base b : kAllBases)
+        if (Type{b, 0}.isTuple() && info.cost[int(b)] < (best == Base::Void ? kNever : info.cost[int(best)])) best = b;
+    if (info.any || info.array.array || info.listLength >= 0 || best == Base::Void || e->kind == ExprKind::Member)
+        return resolveCheapest(e);
+    resolveAs(e, best);
+}
+
+void Checker::resolveCondition(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) {
+        e->type = {Base::Bool, 0};
+        return;
+    }
+    Base best = Base::Void;
+    int cost = kNever;
+    for (Base b : kAllBases) {
+        const int c = info.cost[int(b)] + conditionCost(b);
+        if (c < cost) {
+            cost = c;
+            best = b;
+        }
+    }
+    if (best == Base::Void) {
+        sources_.error(e->place, describe(*e) + " cannot be a condition");
+        e->type = {Base::Bool, 0};
+        return;
+    }
+    resolveAs(e, best);
+    if (best == Base::Bool) return;
+    // A number is true when it is not zero.
+    auto zero = std::make_unique<Expr>();
+    zero->kind = ExprKind::Number;
+    zero->type = {Base::Float, 0};
+    zero->place = e->place;
+    zero->varying = false;
+    convert(zero, e->type);
+    auto test = std::make_unique<Expr>();
+    test->kind = ExprKind::Binary;
+    test->op = ExprOp::NotEqual;
+    test->type = {Base::Bool, 0};
+    test->place = e->place;
+    test->height = e->height + 1;
+    test->args.push_back(std::move(e));
+    test->args.push_back(std::move(zero));
+    finish(*test);
+    e = std::move(test);
+}
+
+void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) {
+        e->type = want;
+        return;
+    }
+    if (e->kind == ExprKind::ArrayList) {
+        const int length = want.array > 0 ? want.array : std::max(1, info.listLength);
+        if (int(e->args.size()) > length) {
+            sources_.error(e->args[size_t(length)]->place,
+                           std::to_string(e->args.size()) + " elements for an array of " + std::to_string(length));
+            e->args.resize(size_t(length));
+        }
+        for (auto& a : e->args) resolveTypes(a, want.element(), handle);
+        // Elements that are not given are the last one again after "...", else zero: the list stays as short as it was written.
+        for (const auto& a : e->args) e->height = std::max(e->height, a->height + 1);
+        e->type = {want.base, length};
+        finish(*e);
+        return;
+    }
+    if (e->kind == ExprKind::Member) {
+        resolveAs(e, want.base);
+        e->type = {want.base, -1};
+        return;
+    }
+    const Type have = info.array;
+    const bool mixed = want.base == Base::String && !alike(info.handle, handle);
+    if (have.base != want.base || mixed || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
+        sources_.error(e->place, "expected " + named(want, handle) + ", not " + describe(*e));
+        e->type = want;
+        return;
+    }
+    if (e->kind == ExprKind::Variable) {
+        e->type = have;
+        e->varying = e->symbol->storage != Storage::Uniform;
+    } else if (e->kind == ExprKind::ShadeopCall) {
+        resolveCall(e, want.array > 0 ? want : have);
+    } else if (e->kind == ExprKind::Assign) {
+        resolveAssign(e);
+    } else if (e->kind == ExprKind::Cast) {
+        ExprPtr inner = std::move(e->args[0]);
+        resolveArray(inner, want);
+        if (e->space) { // each element is in that space
+            resolveTypes(e->space, {Base::String, 0});
+            e->type = inner->type;
+            e->args[0] = std::move(inner);
+            finish(*e);
+            return;
+        }
+        e = std::move(inner);
+    }
+}
+
+/// An output argument keeps its own type.
+void Checker::resolveVariable(ExprPtr& e) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) return;
+    if (info.array.array) return resolveArray(e, info.array);
+    resolveAs(e, cheapest(info));
+}
+
+void Checker::resolveAs(ExprPtr& e, Base t) {
+    const Info& info = infos_.at(e.get());
+    if (info.any) {
+        e->type = {t, 0};
+        return;
+    }
+    switch (e->kind) {
+    case ExprKind::Number:
+    case ExprKind::String:
+        e->type = {t, 0};
+        e->varying = false;
+        return;
+    case ExprKind::Variable:
+        e->type = {t, 0};
+        e->varying = e->symbol->storage != Storage::Uniform;
+        if (e->varying && e->symbol->origin == Symbol::Origin::Global) readsPoint(*e, "'" + e->symbol->name + "'");
+        return;
+    case ExprKind::Index:
+        if (info.channel)
+            sources_.error(e->place, "a string has no elements; name[channel] has its place in texture() and its kin");
+        resolveIndexed(e->args[0]);
+        resolveTypes(e->args[1], {Base::Float, 0});
+        e->type = {t, 0};
+        if (e->args[0]->kind == ExprKind::Member) {
+            e->varying = true;
+            return;
+        }
+        break;
+    case ExprKind::Unary:
+        if (e->op == ExprOp::Not) resolveCondition(e->args[0]);
+        else resolveTypes(e->args[0], {t, 0});
+        e->type = {t, 0};
+        break;
+    case ExprKind::Sequence:
+        for (size_t i = 0; i + 1 < e->args.size(); ++i) resolveCheapest(e->args[i]);
+        resolveAs(e->args.back(), t);
+        e->type = e->args.back()->type;
+        break;
+    case ExprKind::Member:
+    case ExprKind::Method:
+        resolveTypes(e->args[0], {Base::String, 0}, Handle::Shader);
+        for (size_t i = 1; i < e->args.size(); ++i) {
+            if (isVariable(*e->args[i])) resolveVariable(e->args[i]);
+            else resolveCheapest(e->args[i]);
+        }
+        e->type = {t, 0};
+        e->varying = true;
+        if (function_) varyingFunctions_.insert(function_);
+        program_.handles = true;
+        return;
+    case ExprKind::Binary:
+        resolveBinary(e, t);
+        return;
+    case ExprKind::Assign:
+        resolveAssign(e);
+        return;
+    case ExprKind::Conditional:
+        resolveCondition(e->args[0]);
+        // Truth values are no values: 0 and 1 where they meet as results.
+        if (t == Base::Bool) t = Base::Float;
+        resolveTypes(e->args[1], {t, 0}, Handle::Either);
+        resolveTypes(e->args[2], {t, 0}, Handle::Either);
+        e->type = {t, 0};
+        break;
+    case ExprKind::Tuple:
+    case ExprKind::MatrixTuple:
+        for (auto& a : e->args) resolveTypes(a, {Base::Float, 0});
+        e->type = {t, 0};
+        break;
+    case ExprKind::Cast: {
+        if (e->space) resolveTypes(e->space, {Base::String, 0});
+        const Info& a = infos_.at(e->args[0].get());
+        Base best = t;
+        int cost = kNever;
+        for (Base b : kAllBases) {
+            const int c = a.cost[int(b)] + castCost(b, t);
+            if (c < cost) {
+                cost = c;
+                best = b;
+            }
+        }
+        resolveAs(e->args[0], best);
+        becomesTuple(a, *e->args[0], t);
+        Expr& inner = *e->args[0];
+        if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space)
+            inner.space = std::move(e->space);
+        if (!e->space && inner.type == Type{t, 0}) {
+            // Nothing to convert: the word chose the reading.
+            ExprPtr value = std::move(e->args[0]);
+            finish(*value);
+            if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall ||
+                value->kind == ExprKind::Variable)
+                value->varying = value->varying || inner.varying;
+            e = std::move(value);
+            return;
+        }
+        e->type = {t, 0};
+        break;
+    }
+    case ExprKind::ShadeopCall:
+        resolveCall(e, {t, 0});
+        return;
+    case ExprKind::ArrayList:
+    case ExprKind::FunctionCall:
+        return;
+    }
+    finish(*e);
+}
+
+void Checker::resolveBinary(ExprPtr& e, Base t) {
+    const Info& l = infos_.at(e->args[0].get());
+    const Info& r = infos_.at(e->args[1].get());
+    int cost = kNever;
+    Base left = Base::Void, right = Base::Void;
+    Operation best{};
+    for (Base a : kAllBases)
+        for (Base b : kAllBases) {
+            if (l.cost[int(a)] >= kNever || r.cost[int(b)] >= kNever) continue;
+            const auto o = operation(e->op, a, b);
+            if (!o || o->result != t) continue;
+            const int c = l.cost[int(a)] + r.cost[int(b)] + operandCost(e->op, *o, l, a, r, b);
+            if (c < cost) {
+                cost = c;
+                left = a;
+                right = b;
+                best = *o;
+            }
+        }
+    if (best.operand == Base::Bool) {
+        resolveCondition(e->args[0]);
+        resolveCondition(e->args[1]);
+    } else {
+        const bool scales = (e->op == ExprOp::Mul || e->op == ExprOp::Div) && isPointLike(best.operand);
+        resolveAs(e->args[0], left);
+        if (!scales) becomesTuple(l, *e->args[0], best.operand);
+        convert(e->args[0], {best.operand, 0});
+        resolveAs(e->args[1], right);
+        if (!scales) becomesTuple(r, *e->args[1], best.operand);
+        convert(e->args[1], {best.operand, 0});
+    }
+    e->type = {best.result, 0};
+    finish(*e);
+    if (best.result == Base::String) {
+        // name + "": old shaders join strings so.
+        if (e->args[1]->kind == ExprKind::String && e->args[0]->kind == ExprKind::String) {
+            e->args[0]->text += e->args[1]->text;
+            e = std::move(e->args[0]);
+        } else if (e->args[1]->kind == ExprKind::String && e->args[1]->text.empty()) e = std::move(e->args[0]);
+        else if (e->args[0]->kind == ExprKind::String && e->args[0]->text.empty()) e = std::move(e->args[1]);
+        else if (const Shadeop* concat = findShadeop("concat"); concat && !concat->signatures.empty()) {
+            e->kind = ExprKind::ShadeopCall;
+            e->op = ExprOp::None;
+            e->shadeop = concat;
+            e->signature = &concat->signatures[0];
+            e->text = "concat";
+        }
+    }
+}
+
+void Checker::resolveAssign(ExprPtr& e) {
+    resolveVariable(e->args[0]);
+    const Type target = e->args[0]->type;
+    if (e->op == ExprOp::Add && target.base == Base::String && target.array == 0) {
+        // a += "y": a = a + "y", which the builder of the IR knows by its text and names the place once.
+        const Shadeop* concat = findShadeop("concat");
+        resolveAs(e->args[1], Base::String);
+        auto joined = std::make_unique<Expr>();
+        joined->kind = ExprKind::ShadeopCall;
+        joined->place = e->place;
+        joined->type = target;
+        joined->shadeop = concat;
+        joined->signature = &concat->signatures[0];
+        joined->text = "concat";
+        joined->args.push_back(clone(*e->args[0]));
+        joined->args.push_back(std::move(e->args[1]));
+        finish(*joined);
+        e->args[1] = std::move(joined);
+        e->op = ExprOp::Assign;
+        e->text = "+=";
+    } else if (e->op == ExprOp::Assign || target.array != 0) {
+        resolveTypes(e->args[1], target, Handle::Either); // infer compared them
+    } else {
+        const Info& l = infos_.at(e->args[0].get());
+        const Info& r = infos_.at(e->args[1].get());
+        int cost = kNever;
+        Base best = Base::Void, operand = target.base;
+        for (Base b : kAllBases) {
+            if (r.cost[int(b)] >= kNever) continue;
+            const auto o = operation(e->op, target.base, b);
+            if (!o || implicitCost(o->result, target.base) >= kNever) continue;
+            const int c = r.cost[int(b)] + operandCost(e->op, *o, l, target.base, r, b) + implicitCost(o->result, target.base);
+            if (c < cost) {
+                cost = c;
+                best = b;
+                operand = o->operand;
+            }
+        }
+        resolveAs(e->args[1], best);
+        if (!isPointLike(target.base) || e->op == ExprOp::Add || e->op == ExprOp::Sub) becomesTuple(r, *e->args[1], target.base);
+        convert(e->args[1],
+                {operand == Base::Matrix || target.base == Base::Color || target.base == Base::Float ? operand : target.base, 0});
+    }
+    e->type = target;
+    finish(*e);
+    written(*e->args[0]);
+    const Expr* root = e->args[0].get();
+    while (root->kind == ExprKind::Index) root = root->args[0].get();
+    if (root->symbol) {
+        if (root->symbol->origin != Symbol::Origin::Global) assignedToUniform(*root->symbol, *e->args[1]);
+        if (root == e->args[0].get()) e->varying = e->args[1]->varying;
+    }
+}
+
+/// The function being checked needs a point that is shaded. construct() runs before there is any.
+/// `differs`: from point to point of one batch too.
+void Checker::readsPoint(const Expr& e, const std::string& what, bool differs) {
+    if (function_ && differs) varyingFunctions_.insert(function_);
+    if (inConstruct())
+        sources_.warning(e.place, what + " differs from point to point, and construct() runs once for the whole shader",
+                         "begin() runs for the points that are shaded");
+}
+
+bool Checker::inConstruct() const { return shader_ && shader_->object && function_ && function_->name == "construct"; }
+
+/// Something is stored in this variable: is that allowed?
+void Checker::written(const Expr& variable) {
+    const Expr* root = &variable;
+    while (root->kind == ExprKind::Index) root = root->args[0].get();
+    const Symbol* s = root->symbol;
+    if (!s) return;
+    const std::string name = "'" + s->name + "'";
+    const bool constructs = inConstruct();
+    if (s->isConstant && s->origin == Symbol::Origin::Local && !constructs) {
+        sources_.warning(variable.place, name + " is constant and is given another value here",
+                         shader_ && shader_->object ? "the members of a class that are constant get theirs in construct()" : "");
+        return;
+    }
+    switch (s->origin) {
+    case Symbol::Origin::Local:
+        break;
+    case Symbol::Origin::Global:
+        if (s->writable || (foreignLight_ && (s->name == "Cl" || s->name == "Ol"))) break;
+        // Old surfaces move P, as PRMan let them: the renderer displaces the primitive (world/displacement.cpp).
+        if (kind_ == ShaderKind::Surface && s->name == "P") break;
+        if (s->storage == Storage::Uniform) sources_.error(variable.place, name + " cannot be written");
+        else
+            sources_.warning(variable.place, name + std::string(" is read-only") +
+                                                 (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : "") +
+                                                 "; the shader changes a copy of its own");
+        break;
+    case Symbol::Origin::ShaderParameter:
+        if (!s->output && toldNotOutput_.insert(s).second)
+            sources_.warning(variable.place, "parameter " + name + " is not output; the shader changes a copy of its own");
+        break;
+    case Symbol::Origin::FunctionParameter:
+        if (!s->output && toldNotOutput_.insert(s).second)
+            sources_.warning(variable.place, "parameter " + name + " is not output; the function changes a copy of its own");
+        break;
+    }
+}
+
+} // namespace alpenglow::rsl::front

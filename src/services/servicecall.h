@@ -1,0 +1,46 @@
+// One service call of a running kernel: its points, arguments and results.
+#pragma once
+#include "services/kernelrun.h"
+#include "world/shadervalue.h"
+#include <bit>
+
+namespace alpenglow::services {
+
+/// Rows have one float for each lane; result rows are initially zero. Row 0 of a query is 1 if there is a value that fits, else
+/// 0; then follow the values, by component, then element. For a resizable array its length comes before them.
+class ServiceCall {
+public:
+    ServiceCall(KernelRun&, Diagnostics&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
+    template <class Body> void each(Body&& body) const {
+        for (int lane = 0; lane < lanes; ++lane)
+            if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane, c.points[size_t(first + lane)]);
+    }
+    /// The same, with the lane only.
+    template <class Body> void eachLane(Body&& body) const {
+        for (int lane = 0; lane < lanes; ++lane)
+            if ((mask >> lane & 1) && size_t(first + lane) < c.size()) body(lane);
+    }
+    float at(int row, int lane) const { return in[size_t(row) * lanes + lane]; }
+    void put(int row, int lane, float v) const { out[size_t(row) * lanes + lane] = v; }
+    void putText(int row, int lane, const std::string& t) const { put(row, lane, std::bit_cast<float>(rsl::internString(t))); }
+    /// The first string of the call, which may vary over the points.
+    std::string name(int lane) const;
+    /// The same, interned.
+    int32_t nameId(int lane) const;
+    SourcePlace place() const;
+    /// Writes the value, if it fits the destination.
+    void answer(int lane, const ShaderValue&) const;
+    /// Binding of a lane's point; for a light's kernel, of the surface that it lights. Null without a primitive.
+    const SurfaceBinding* binding(const WorldImpl&, int lane) const;
+
+    KernelRun& c;
+    Diagnostics& diagnostics;
+    const SiteInfo& s;
+    const rsl::ir::Site& d;
+    const int site, first, lanes;
+    const uint64_t mask;
+    const float* const in;
+    float* const out;
+};
+
+} // namespace alpenglow::services

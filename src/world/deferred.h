@@ -1,0 +1,39 @@
+// Bounds of deferred procedurals (scene/deferred.h) for rays.
+#pragma once
+#include "accel/accel.h"
+#include "world/names.h"
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace alpenglow::world {
+
+class DeferredBounds {
+public:
+    struct Bound {
+        geometry::Bounds box; ///< camera space, over the shutter interval
+
+        int number = 0; ///< scene::deferredNumber()
+    };
+    explicit DeferredBounds(std::vector<Bound>);
+    /// Sets how many bounds along its way a ray records, nearest first. Call before tracing.
+    void askFor(int most) const { most_ = most; }
+    /// Whether a ray reaches a bound before `end`, in units of its direction; records these bounds. Thread safe.
+    bool intersects(const accel::Ray&, double end) const;
+    /// The recorded numbers, ascending.
+    std::vector<int> met() const;
+
+private:
+    struct Node {
+        geometry::Bounds box;
+        uint32_t first = 0, count = 0; ///< range in bounds_; count 0: children are the next node and the node `first`
+    };
+    void build(uint32_t first, uint32_t end);
+    std::vector<Bound> bounds_; ///< in order of the leaves
+    std::vector<Node> nodes_;
+    std::unique_ptr<std::atomic<uint8_t>[]> met_;
+    mutable int most_ = 1;
+};
+
+} // namespace alpenglow::world

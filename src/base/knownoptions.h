@@ -11,10 +11,10 @@ namespace alpenglow::known {
 
 /// What a name does in this program.
 enum class Effect {
-    Used,    ///< decides something about the picture or the run
-    Asked,   ///< decides nothing by itself: kept for shaders (option(), attribute()) and for RIB's If
-    Told,    ///< nothing sets it by this name: attribute() or option() tells it of the graphics state or of the point
-    Ignored, ///< a name of other renderers: accepted with a note alone, and without an effect
+    Used,       ///< changes the picture or the run
+    ForShaders, ///< no effect by itself: kept for shaders (option(), attribute()) and for RIB's If
+    Computed,   ///< read-only: attribute() or option() computes it from the graphics state or the point
+    Ignored,    ///< a name of another renderer: accepted with a note, no effect
 };
 
 /// One name of Option "category" "name", of Attribute, or of a parameter of Hider or Display.
@@ -30,7 +30,7 @@ struct OptionDescription {
     std::string_view answerUnderPath = {}; ///< under Hider "path", if that is something else
 
     /// Whether a request that sets it changes anything.
-    bool settable() const { return effect == Effect::Used || effect == Effect::Asked; }
+    bool settable() const { return effect == Effect::Used || effect == Effect::ForShaders; }
 };
 
 /// One hider.

@@ -32,7 +32,7 @@ std::span<const OptionDescription> tableOf(Topic t) {
 }
 
 const char* effectName(Effect e) {
-    return e == Effect::Used ? "used" : e == Effect::Asked ? "for shaders" : e == Effect::Told ? "told" : "ignored";
+    return e == Effect::Used ? "used" : e == Effect::ForShaders ? "for shaders" : e == Effect::Computed ? "computed" : "ignored";
 }
 
 std::string_view lastPart(std::string_view name) { return name.substr(name.find(':') + 1); }
@@ -67,11 +67,11 @@ std::string standardText(const OptionDescription& d) { return d.standard.empty()
 
 std::string oneText(Topic t, const OptionDescription& d) {
     if (d.effect == Effect::Ignored) return fmt::format("{}\n    Accepted, no effect. A name of {}.\n", d.name, d.doc);
-    if (d.effect == Effect::Told)
+    if (d.effect == Effect::Computed)
         return fmt::format("{}  ({})\n    {}\n    Only {} reads it; nothing sets it by this name.\n", d.name, typeText(d), d.doc,
                            t == Topic::Options ? "option()" : "attribute()");
     return fmt::format("{}  ({})\n    {}\n    Default: {}.{}\n    Example: {}\n", d.name, typeText(d), d.doc, standardText(d),
-                       d.effect == Effect::Asked ? " It changes nothing by itself; shaders and RIB's If can ask for it." : "",
+                       d.effect == Effect::ForShaders ? " It has no effect by itself; shaders and RIB's If can read it." : "",
                        example(t, d));
 }
 
@@ -129,15 +129,15 @@ std::string pageTable(Topic t, Effect effect) {
     return out;
 }
 
-std::string pageTold(Topic t) {
-    std::string out = "| name | type | what it tells |\n|---|---|---|\n";
+std::string pageComputed(Topic t) {
+    std::string out = "| name | type | value |\n|---|---|---|\n";
     for (const OptionDescription& d : tableOf(t))
-        if (d.effect == Effect::Told) out += fmt::format("| {} | {} | {} |\n", d.name, typeText(d), cell(d.doc));
+        if (d.effect == Effect::Computed) out += fmt::format("| {} | {} | {} |\n", d.name, typeText(d), cell(d.doc));
     return out;
 }
 
 std::string pageIgnored(Topic t) {
-    std::string out = "| name | whose, and why nothing is done |\n|---|---|\n";
+    std::string out = "| name | renderer, and why it has no effect |\n|---|---|\n";
     for (const OptionDescription& d : tableOf(t))
         if (d.effect == Effect::Ignored) out += fmt::format("| {} | {} |\n", d.name, cell(d.doc));
     return out;
@@ -164,12 +164,13 @@ std::string optionsPage() {
         "Points and matrices are the numbers of the file: `transform(\"object\", \"current\", p)` says where they are.\n";
     out += "\n## Options\n\n`Option \"category\" \"type name\" value`, before `WorldBegin`.\n\n" +
            pageTable(Topic::Options, Effect::Used);
-    out += "\n`option()` tells of the frame, too:\n\n" + pageTold(Topic::Options);
+    out += "\n`option()` also reads these values of the frame:\n\n" + pageComputed(Topic::Options);
     out += "\n## Attributes\n\n`Attribute \"category\" \"type name\" value`, up to the end of the block.\n\n" +
            pageTable(Topic::Attributes, Effect::Used);
-    out += "\nThese decide nothing by themselves. Shaders ask for them, and get the default where nothing is set.\n\n" +
-           pageTable(Topic::Attributes, Effect::Asked);
-    out += "\n`attribute()` tells of the graphics state and of the point, too:\n\n" + pageTold(Topic::Attributes);
+    out += "\nThese have no effect by themselves. Shaders read them, and get the default where nothing is set.\n\n" +
+           pageTable(Topic::Attributes, Effect::ForShaders);
+    out +=
+        "\n`attribute()` also reads these values of the graphics state and of the point:\n\n" + pageComputed(Topic::Attributes);
     out += "\n## Hiders\n\n`Hider \"name\" \"type parameter\" value`; `--hider` overrides it.\n\n| hider | what it does "
            "|\n|---|---|\n";
     for (const auto& h : known::knownHiders()) out += fmt::format("| {} | {} |\n", h.name, cell(h.doc));

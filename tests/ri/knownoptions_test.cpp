@@ -121,8 +121,8 @@ TEST(KnownOptions, EveryNameSaysWhatItDoes) {
         for (const OptionDescription& d : table) {
             EXPECT_GE(d.doc.size(), 10u) << d.name;
             if (d.effect == Effect::Ignored) EXPECT_NE(d.doc.find("; "), d.doc.npos) << d.name << ": " << d.doc;
-            if (d.effect == Effect::Told) EXPECT_FALSE(d.type.empty()) << d.name;
-            if (d.effect == Effect::Asked) EXPECT_FALSE(d.answer.empty()) << d.name;
+            if (d.effect == Effect::Computed) EXPECT_FALSE(d.type.empty()) << d.name;
+            if (d.effect == Effect::ForShaders) EXPECT_FALSE(d.answer.empty()) << d.name;
         }
 }
 

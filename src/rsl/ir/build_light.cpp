@@ -308,7 +308,10 @@ void Builder::lightBlock(const Stmt& s) {
             place_ = s.place;
             Inst* lengths =
                 emit(Op::Mul, Kind::Float, {runtime1("al_length", {L}, Kind::Float), runtime1("al_length", {axis}, Kind::Float)});
-            Inst* limit = emit(Op::Mul, Kind::Float, {runtime1("al_cos", {within(angle)}, Kind::Float), lengths});
+            // -2 for all directions: the product of lengths may round to less than -dot(L, axis).
+            Inst* all = emit(Op::LessEqual, Kind::Bool, {constant(3.14159265f), angle});
+            Inst* cosine = emit(Op::Select, Kind::Float, {all, constant(-2), runtime1("al_cos", {within(angle)}, Kind::Float)});
+            Inst* limit = emit(Op::Mul, Kind::Float, {cosine, lengths});
             lit = emit(Op::LessEqual, Kind::Bool, {limit, dot(L, axis)});
         }
     }

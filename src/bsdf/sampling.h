@@ -1,7 +1,6 @@
 // Sampling formulas (docs/design/light-transport.md). All directions unit length; densities per solid angle.
 #pragma once
 #include "base/vec.h"
-#include "bsdf/roulettefactors.h"
 #include <algorithm>
 #include <cstdint>
 
@@ -74,12 +73,12 @@ inline float rouletteWaiting(int bounces, uint32_t known, uint32_t before, uint3
 /// probabilities at a point sum to 1/2, and the tree of rays ends if surfaces reflect at most half.
 inline float rouletteOfLight(int bounces, uint32_t many) { return bounces < 1 ? 1 : .5f / float(std::max(many, 1u)); }
 
-/// Survival probability of a path with throughput `weight`, as a rule after its third bounce; 0: it ends; the caller divides by
-/// it. `factor` (> 0, RouletteFactors) times the root of the largest channel, because the throughput itself would end paths whose
-/// light costs more variance than their time (figures in docs/noise.md). `dice` draws a random number if needed.
-template <class Dice> float rouletteOfPath(const Color& weight, float factor, const Dice& dice) {
+/// Survival probability of a path after its third bounce, with throughput `weight`; 0: it ends; the caller divides by it. 1.5
+/// times the root of the largest channel, because the throughput itself would end paths whose light costs more variance than
+/// their time (figures in docs/noise.md). `dice` draws a random number if needed.
+template <class Dice> float rouletteOfPath(const Color& weight, const Dice& dice) {
     const float m = maxComponent(Color(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z)));
-    const float q = std::min(1.f, factor * std::sqrt(m));
+    const float q = std::min(1.f, 1.5f * std::sqrt(m));
     return q >= 1 ? 1 : q > 0 && dice() < q ? q : 0;
 }
 

@@ -1,6 +1,5 @@
 // Adds light to targets. All light passes through this file.
 #include "integrator/accumulator.h"
-#include "integrator/bouncetally.h"
 #include "integrator/context.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/stageset.h"
@@ -22,7 +21,6 @@ void Accumulator::contribute(Sched& sched, const Contribution& d) {
     // Rays of the caustic guide carry only the light of lights that they hit; all other light belongs to the lobe's own ray.
     if (d.path && d.path->guided() && d.event != LightEvent::Met && d.event != LightEvent::Sky) return;
     sched.add(d.target, d.light);
-    if (context_.tally && d.path && d.path->sample) context_.tally->add(size_t(d.path->sample->path), d.path->bounces, d.light);
     contributePart(sched, d.path, d.end, d.light);
     for (int32_t share = d.share; share >= 0; share = shares[size_t(share)].next)
         sched.add(shares[size_t(share)].target, d.light * shares[size_t(share)].ratio);

@@ -71,10 +71,7 @@ void BlockVertices::throwDice(size_t b) {
     uint32_t keys[kMostSites];
     for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
     stages_.name(v, keys, next_);
-    for (int i = 0; i < kBlock; ++i) next_.factor[i] = world_.roulette_->at(v.bounces[i] + 1);
-    const bool local = roulette_ == Roulette::Local;
-    const auto goesOn = [&](int32_t n) { return local ? n < 3 : world_.roulette_->always(n + 1); };
-    if (roulette_ == Roulette::None || (!waits_ && std::all_of(v.bounces, v.bounces + kBlock, goesOn))) {
+    if (roulette_ == Roulette::None || (!waits_ && std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; }))) {
         std::fill_n(next_.dice, kBlock, 0.f);
         return;
     }

@@ -5,8 +5,6 @@
 
 namespace alpenglow::integrator {
 
-struct BounceTally;
-
 /// How a hider transports light.
 struct Rules {
     bool pickOne = false;          ///< path: one continuation per vertex, chosen at random; else all
@@ -29,7 +27,6 @@ struct Context {
     Rules rules;
     Counters counters;
     const StopFlag* stop = nullptr; ///< null: cannot be stopped
-    BounceTally* tally = nullptr;   ///< counts what the bounces of paths bring; null: nobody asks
     /// The current call can still be repeated with fewer points at a time, so exceeding the memory for requests is not yet an
     /// error.
     bool beginsAnew = false;

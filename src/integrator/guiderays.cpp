@@ -52,8 +52,7 @@ void GuideRays::send(const Lobe& l, const Aim& a, const Vec3& w, const LobeValue
     const uint32_t vertex = childVertex(l.from.vertex, kGuideRay, 0);
     if (rules_.roulette && bounces > 3) {
         const auto dice = [&] { return store_.random(l.from).one(vertex, kRoulette, 0); };
-        const float q = world_.settings_.localRoulette ? rouletteLocal(bounces, l.weight, dice())
-                                                       : rouletteOfPath(weight, RouletteFactors::kUsual, dice);
+        const float q = world_.settings_.localRoulette ? rouletteLocal(bounces, l.weight, dice()) : rouletteOfPath(weight, dice);
         if (!(q > 0)) return;
         weight = weight / q;
     }

@@ -41,7 +41,6 @@ bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out
 bool Integrator::seesNothing(std::span<const geometry::Plane> sides) const {
     return impl_->grids && impl_->grids->emptyIsBlack() && !sides.empty() && !impl_->pipeline.world().accel_->reachesInto(sides);
 }
-void Integrator::tally(BounceTally* t) { impl_->pipeline.tally(t); }
 bool Integrator::unfinished() const { return impl_->pipeline.unfinished(); }
 const Counters& Integrator::counters() const { return impl_->pipeline.counters(); }
 

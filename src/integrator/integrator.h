@@ -16,8 +16,6 @@ namespace alpenglow::integrator {
 /// World::build() with an Evaluator that runs kernels as the integrator does.
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame>, const Settings&, Diagnostics&);
 
-struct BounceTally; // bouncetally.h
-
 class Integrator {
 public:
     explicit Integrator(std::shared_ptr<const World>, Diagnostics&);
@@ -25,8 +23,6 @@ public:
     /// Traces all rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; the results
     /// are then undefined. Use one Integrator per thread.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
-    /// From now on each trace() counts what the bounces of its paths bring and cost; null: no more. It must outlive the calls.
-    void tally(BounceTally*);
     /// Whether camera rays within all of these half-spaces are known to hit nothing and to be black, so that they need not be
     /// traced. Conservative: false means unknown. True mainly under hidden.
     bool seesNothing(std::span<const geometry::Plane>) const;

@@ -126,23 +126,17 @@ bool savePhotonMap(const World& world, const std::string& name, std::span<const 
     return photonmap::savePhotons(name, photons, emitted, w.cameraToWorld_, {".", allowWrite}, d);
 }
 
-bool mayTryPaths(const World& world) {
+bool mayHaveCaustics(const World& world) {
     const auto& w = static_cast<const WorldImpl&>(world);
     if (hasDeferred(world)) return false; // the world may be replaced while rays are traced
     const auto bakes = [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; };
-    return std::none_of(w.bindings_.begin(), w.bindings_.end(),
-                        [&](const SurfaceBinding& b) { // their samples would be baked, too
-                            return b.surfaceS && std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(), bakes);
-                        });
-}
-
-bool mayHaveCaustics(const World& world) {
-    const auto& w = static_cast<const WorldImpl&>(world);
-    return mayTryPaths(world) && std::any_of(w.bindings_.begin(), w.bindings_.end(), [](const SurfaceBinding& b) {
-               return b.surfaceS && !b.surfaceS.kernel->facts().suspends &&
-                      std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(),
-                                  [](const SiteInfo& s) { return s.kind == SiteKind::Trace; });
-           });
+    for (const SurfaceBinding& b : w.bindings_) // samples that measure the brightness of the picture would be baked, too
+        if (b.surfaceS && std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(), bakes)) return false;
+    return std::any_of(w.bindings_.begin(), w.bindings_.end(), [](const SurfaceBinding& b) {
+        return b.surfaceS && !b.surfaceS.kernel->facts().suspends &&
+               std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(),
+                           [](const SiteInfo& s) { return s.kind == SiteKind::Trace; });
+    });
 }
 
 GuideFigures guideCaustics(const World& world, std::span<const StoredPhoton> stored, double emitted, float brightness) {

@@ -73,8 +73,6 @@ bool savePhotonMap(const World&, const std::string& name, std::span<const photon
                    Diagnostics&);
 /// Makes photons available to the shaders of this world under this name.
 void setPhotonMap(const World&, const std::string& name, std::vector<photonmap::Photon>);
-/// Whether paths can be traced before the first sample without an effect on the picture.
-bool mayTryPaths(const World&);
 /// Whether mirrors or clear glass may cause caustics in this world.
 bool mayHaveCaustics(const World&);
 /// Size of the caustic guide of a world (world/causticguide.h).

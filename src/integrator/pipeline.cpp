@@ -6,7 +6,6 @@
 #include "integrator/atmosphere.h"
 #include "integrator/batchpool.h"
 #include "integrator/blockvertices.h"
-#include "integrator/bouncetally.h"
 #include "integrator/cameraoutputs.h"
 #include "integrator/depthrays.h"
 #include "integrator/displacement.h"
@@ -113,7 +112,6 @@ Pipeline::~Pipeline() { // strips of an abandoned frame need their kernels
 
 const StageSet& Pipeline::stages() const { return parts_->set; }
 const WorldImpl& Pipeline::world() const { return parts_->context.world; }
-void Pipeline::tally(BounceTally* t) { parts_->context.tally = t; }
 Counters& Pipeline::counters() { return parts_->context.counters; }
 bool& Pipeline::unfinished() { return parts_->intersector.unfinished; }
 
@@ -212,7 +210,6 @@ bool Pipeline::traceAll(std::span<const CameraRay> rays, std::span<SampleResult>
     size_t aovs = 0;
     for (int width : w.outputWidths_) aovs += size_t(width);
     sums.begin(rays.size());
-    if (parts_->context.tally) parts_->context.tally->begin(rays.size());
     sums.nowhere = w.lightOutputs_.empty() ? shading::kNoAccumulator : sched.newRoot();
     parts_->intersector.begin(std::any_of(rays.begin(), rays.end(), [](const CameraRay& c) { return c.grid != nullptr; }));
     const scene::LightPaths* const paths = parts_->paths.automaton;
@@ -271,8 +268,6 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     p.intersector.cast(slice);
     const std::vector<accel::Hit>& hits = p.intersector.hits;
     std::vector<const Sched::Task*> missed;
-    for (size_t i = 0; p.context.tally && i < slice.size(); ++i)
-        p.context.tally->ray(slice[i].payload.bounces, slice[i].payload.weight, hits[i].valid());
     for (size_t i = 0; i < slice.size(); ++i) {
         if (!hits[i].valid()) missed.push_back(&slice[i]);
         else if (p.guide.bringsNothing(slice[i].payload, world().bindingOf_[hits[i].shape])) p.store.freeExtra(slice[i].payload);

@@ -8,8 +8,6 @@
 
 namespace alpenglow::integrator {
 
-struct BounceTally;
-
 class Pipeline final : public shading::Sched::RayService {
 public:
     Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&);
@@ -29,7 +27,6 @@ public:
     const StageSet& stages() const;
     const WorldImpl& world() const;
     Counters& counters();
-    void tally(BounceTally*);    ///< Integrator::tally()
     shading::Sched& scheduler(); ///< of this pipeline; created at the first call
     /// Whether a ray of the last trace() reached the bound of a deferred procedural (DeferredBounds); its results are then
     /// undefined.

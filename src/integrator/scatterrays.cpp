@@ -154,21 +154,15 @@ void ScatterRays::throwDice(int turn) {
         const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
         const PathRay& from = rayOf(l);
         s.vertex = childVertex(from.vertex, l.site, l.occurrence * 4096 + uint32_t(turn));
-        if (rules_.roulette && (l.ownsTarget || mayEnd(from.bounces + 1)))
+        if (rules_.roulette && (l.ownsTarget || from.bounces + 1 > 3))
             numbers_.askOne(store_.random(from).numbers(), s.vertex, kRoulette, 0);
     }
     numbers_.draw();
     size_t number = 0;
     for (LobeRay& s : sent)
         if (const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
-            s.goes && rules_.roulette && (l.ownsTarget || mayEnd(rayOf(l).bounces + 1)))
+            s.goes && rules_.roulette && (l.ownsTarget || rayOf(l).bounces + 1 > 3))
             s.dice = numbers_.one(number++);
-}
-
-/// Whether roulette may end a path before its ray of so many bounces.
-bool ScatterRays::mayEnd(int bounces) const {
-    const bool byFactors = !photons_.photonTrace() && !world_.settings_.localRoulette && world_.lightTraces_ == 0;
-    return byFactors ? !world_.roulette_->always(bounces) : bounces > 3;
 }
 
 /// A ray that carries emission only is useless if it misses the bounding spheres of all emitters.
@@ -197,11 +191,10 @@ float ScatterRays::roulette(const LobeVertex& l, const LobeRay& s, uint16_t& ask
         if (q < 1 && dice() >= q) q = 0;
     } else if (world_.settings_.localRoulette) {
         q = rouletteLocal(from.bounces + 1, l.weight, from.bounces + 1 > 3 ? dice() : 0);
-    } else if (mayEnd(from.bounces + 1)) {
+    } else if (from.bounces + 1 > 3) {
         // A light that traces sends rays at every vertex: throughput ends this tree of rays.
         const Color left(std::fabs(weight.x), std::fabs(weight.y), std::fabs(weight.z));
-        const float factor = photons_.photonTrace() ? RouletteFactors::kUsual : world_.roulette_->at(from.bounces + 1);
-        q = world_.lightTraces_ > 0 ? rouletteLocal(from.bounces + 1, left, dice()) : rouletteOfPath(weight, factor, dice);
+        q = world_.lightTraces_ > 0 ? rouletteLocal(from.bounces + 1, left, dice()) : rouletteOfPath(weight, dice);
     }
     return std::max(q, 0.f);
 }

@@ -45,7 +45,6 @@ private:
     void pick(size_t point, float number);
     void drawAgain(int turn);
     void throwDice(int turn);
-    bool mayEnd(int bounces) const;
     void sendRay(const LobeRay&, Sched&);
     bool intersectsEmitter(const LobeVertex&, const Vec3& w) const;
     /// Survival probability of the ray; 0: it is not sent.

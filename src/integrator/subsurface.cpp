@@ -206,7 +206,7 @@ bool Walks::scatter(Walker& w, double way) {
     const Random random = store_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]);
     if (rules_.roulette || w.steps > 64) {
         const auto dice = [&] { return random.one(w.vertex, kRoulette, 0); };
-        const float q = rouletteOfPath(left / std::max(maxComponent(begin), 1e-30f), RouletteFactors::kUsual, dice);
+        const float q = rouletteOfPath(left / std::max(maxComponent(begin), 1e-30f), dice);
         if (!(q > 0)) return false;
         w.weight = w.weight / q;
     }

@@ -82,8 +82,7 @@ void Transparency::continueBehind(const SurfaceBinding& b, const PathRay& ray, A
             q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);
         } else if (depth > 3) {
             const Color left(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z));
-            q = world_.lightTraces_ > 0 ? rouletteLocal(depth, left, dice())
-                                        : rouletteOfPath(r.weight, RouletteFactors::kUsual, dice);
+            q = world_.lightTraces_ > 0 ? rouletteLocal(depth, left, dice()) : rouletteOfPath(r.weight, dice);
         }
         if (!(q > 0)) return;
         r.weight = r.weight / q;

@@ -2,7 +2,6 @@
 // beyond <cstdint>: code for newer processors must not leave a copy of a library's inline function for others.
 #pragma once
 #include "bsdf/lobelanes.h"
-#include "bsdf/roulettefactors.h"
 #include "lanes/names.h"
 #include <cstdint>
 
@@ -107,8 +106,8 @@ struct alignas(64) ScatterBlock {
     Row request[3], spread, indirect; ///< of that lobe: weight, half angle in radians, and 1 if `energyScale` applies, else 0
     Row origin[3], weight[3];         ///< by extend()
     uint32_t vertex[kBlock];          ///< by name(): random number key
-    Row dice, factor;                 ///< for extend(): random numbers, and RouletteFactors of the next rays
-    Lanes goes = 0, single = 0;       ///< single: delta lobes, without pdf
+    Row dice;
+    Lanes goes = 0, single = 0; ///< single: delta lobes, without pdf
 };
 
 /// Rays in the layout of the queues: a row for each word of a scheduler task (integrator/raywords.h). A pointer takes two rows.

@@ -73,9 +73,9 @@ static void nameVertices(const VertexBlock& v, const uint32_t* key, ScatterBlock
     }
 }
 
-/// Survival probability by rouletteOfPath() or rouletteLocal() (bsdf/sampling.h); 0: the path ends.
-AL_INLINE vf chanceToGoOn(Roulette rule, const V3& weight, const V3& request, const vf& factor, const vf& dice) {
-    const vf likely = rule == Roulette::Local ? maxComponent(request) : factor * rootLanes(maxComponent(absolute(weight)));
+/// Survival probability by rouletteOfPath() or rouletteLocal() (bsdf/sampling.h) after the third bounce; 0: the path ends.
+AL_INLINE vf chanceToGoOn(Roulette rule, const V3& weight, const V3& request, const vf& dice) {
+    const vf likely = rule == Roulette::Local ? maxComponent(request) : vf(1.5f) * rootLanes(maxComponent(absolute(weight)));
     const vf most = select(likely < 1, likely, vf(1));
     return select(most >= 1, vf(1), select((most > 0) & (dice < most), most, vf(0)));
 }
@@ -92,11 +92,9 @@ static Lanes extendPaths(const VertexBlock& v, Roulette rule, ScatterBlock& to) 
         const vm good = finite(weight);
         bad |= bitsFrom(mask & ~good, at);
         vf q(1);
-        if (rule != Roulette::None) {
-            const vf factor = load(to.factor + at);
-            const vm plays = rule == Roulette::Local ? loadInt(v.bounces + at) + 1 > 3 : factor < vf(RouletteFactors::kAlways);
-            q = select(plays, chanceToGoOn(rule, weight, load3(to.request, at), factor, load(to.dice + at)), vf(1));
-        }
+        if (rule != Roulette::None)
+            q = select(loadInt(v.bounces + at) + 1 > 3, chanceToGoOn(rule, weight, load3(to.request, at), load(to.dice + at)),
+                       vf(1));
         const vm brings = v.waits ? vm(-1) : ~isZero(weight);
         goes |= bitsFrom(mask & good & brings & (q > 0), at);
         store3(to.weight, at, weight / q);

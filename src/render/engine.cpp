@@ -12,7 +12,6 @@ public:
     }
     const integrator::Counters& counters() const override { return integrator_.counters(); }
     bool seesNothing(std::span<const geometry::Plane> sides) const override { return integrator_.seesNothing(sides); }
-    void tally(integrator::BounceTally* t) override { integrator_.tally(t); }
     bool unfinished() const override { return integrator_.unfinished(); }
 
 private:

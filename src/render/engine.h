@@ -6,10 +6,6 @@
 #include <memory>
 #include <span>
 
-namespace alpenglow::integrator {
-struct BounceTally;
-}
-
 namespace alpenglow::render {
 
 /// Traces the rays of one thread. See integrator::Integrator.
@@ -19,7 +15,6 @@ public:
     virtual bool trace(std::span<const integrator::CameraRay>, std::span<integrator::SampleResult>, const StopFlag* stop) = 0;
     virtual const integrator::Counters& counters() const = 0;
     virtual bool seesNothing(std::span<const geometry::Plane>) const { return false; } ///< see integrator::Integrator
-    virtual void tally(integrator::BounceTally*) {}                                    ///< see integrator::Integrator
     /// See integrator::Integrator.
     virtual bool unfinished() const { return false; }
 };

@@ -1,6 +1,5 @@
 // Implementation of World for its users inside of the renderer: shapes, shaders and lights with their bindings.
 #pragma once
-#include "bsdf/roulettefactors.h"
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
 #include "scene/fwd.h"
@@ -200,10 +199,8 @@ public:
     texture::IrradianceTables irradiance_;
     texture::SkyDirectionTables skyMaps_;
     std::shared_ptr<PhotonStore> photons_; ///< changes between passes only, while no thread traces
-    /// Changes before the first sample only, while no thread traces.
-    std::shared_ptr<RouletteFactors> roulette_ = std::make_shared<RouletteFactors>();
-    std::shared_ptr<CloudStore> clouds_; ///< point clouds, and baked data; thread safe
-    std::shared_ptr<PtexStore> ptex_;    ///< Ptex files; thread safe
+    std::shared_ptr<CloudStore> clouds_;   ///< point clouds, and baked data; thread safe
+    std::shared_ptr<PtexStore> ptex_;      ///< Ptex files; thread safe
     mutable FlippedNormals turnedAway_;
     bool globalMaps_ = false; ///< some surface has a global photon map that an indirectdiffuse() may use
     mutable LightRecords records_;

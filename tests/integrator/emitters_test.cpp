@@ -91,11 +91,11 @@ TEST(Emitters, Displaced) {
         << "moving: " << m.mean() << " +- " << m.se() << ", " << want;
 }
 
-// Within a ball of which each side shines alike: every direction brings L. At its inner side L points against N, where the cosine
+// At the centre of a ball of which each side shines alike: every direction brings L. L points against N, where the cosine
 // of the cone is -1 but for rounding.
 TEST(Emitters, FromInsideOfABall) {
     writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
-    expectAll(lit(lamp("\"both5\" 1", "Translate 3 1 7\nSphere 50 -50 50 360\n")), 5, 1e-3, "inside of a ball");
+    expectAll(lit(lamp("\"both5\" 1", "Sphere 50 -50 50 360\n")), 5, 1e-3, "inside of a ball");
 }
 
 // Half of a ball, cut by a box whose face stands on edge as seen from the origin: half of L (R / d)^2.

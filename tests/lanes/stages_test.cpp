@@ -278,8 +278,6 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
             for (int k = 0; k < count; ++k) s->takeValues(lobes[size_t(k)], k, value[0], to);
             s->name(v, keys, to);
             std::copy_n(dice, kBlock, to.dice);
-            const RouletteFactors factors; // some paths end early, some late
-            for (int i = 0; i < kBlock; ++i) to.factor[i] = turn % 2 ? .3f + .2f * float(i) : factors.at(v.bounces[i] + 1);
             EXPECT_EQ(s->extend(v, rule, to), 0u);
             for (int i = 0; i < kBlock; ++i) {
                 int picked = -1, last = -1, asked = 0;
@@ -307,11 +305,9 @@ TEST(Stages, PathsGoOnAsThoseOfOnePoint) {
                                           : Color(0);
                 Color weight = at(v.weight, i) * (at(l.weight, i) * (f * (1 / l.chosen[i])));
                 const int depth = v.bounces[i] + 1;
-                const float q = rule == Roulette::None    ? 1
-                                : rule == Roulette::Local ? rouletteLocal(depth, at(l.weight, i), dice[i])
-                                : to.factor[i] >= RouletteFactors::kAlways
-                                    ? 1
-                                    : rouletteOfPath(weight, to.factor[i], [&] { return dice[i]; });
+                const float q = rule == Roulette::None || depth <= 3 ? 1
+                                : rule == Roulette::Local            ? rouletteLocal(depth, at(l.weight, i), dice[i])
+                                                                     : rouletteOfPath(weight, [&] { return dice[i]; });
                 EXPECT_EQ(to.goes >> i & 1, !(weight == Color(0)) && q > 0);
                 if (!(to.goes >> i & 1)) continue;
                 EXPECT_TRUE(same(at(to.weight, i), weight / q));

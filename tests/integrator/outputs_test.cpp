@@ -381,18 +381,18 @@ TEST(Outputs, WhatAnImagerMakesOpaqueHasAlpha) {
     }
 }
 
-// attribute(): a value of another type or size is no answer.
+// attribute(): a value of another type or size is no answer; a single number converts to a colour as in the language.
 TEST(Outputs, AttributesOfAnotherTypeAreNotTold) {
     writeShader("askswrong", R"(surface askswrong() {
-    float f = 5, two[2] = {6, 6}; string s = "kept"; color c = 7; matrix m = 1;
-    float found = attribute("Ri:Color", f) + attribute("Ri:ShadingRate", s) + attribute("Ri:Sides", c)
-        + attribute("identifier:name", f) + option("Ri:Format", f) + attribute("Ri:Color", m);
-    float right = attribute("Ri:DetailRange", two) + attribute("Ri:Color", c);
-    Oi = 1; Ci = color(found * 10 + right, f, s == "kept" ? comp(c, 1) : -1);
+    float f = 5, two[2] = {6, 6}; string s = "kept"; color c = 7, sides = 7; matrix m = 1;
+    float found = attribute("Ri:Color", f) + attribute("Ri:ShadingRate", s) + attribute("identifier:name", f)
+        + option("Ri:Format", f) + attribute("Ri:Color", m);
+    float right = attribute("Ri:DetailRange", two) + attribute("Ri:Color", c) + attribute("Ri:Sides", sides);
+    Oi = 1; Ci = color(found * 10 + right, f, s == "kept" && sides == 2 ? comp(c, 1) : -1);
 }
 )");
     Scene s(inWorld(std::string("Color .25 .5 1\nSurface \"askswrong\"\n") + kFloor), under(Hider::Hidden));
-    EXPECT_EQ(s.one(kView), Color(2, 5, .5f));
+    EXPECT_EQ(s.one(kView), Color(3, 5, .5f));
 }
 
 } // namespace

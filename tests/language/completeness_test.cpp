@@ -94,8 +94,8 @@ std::vector<std::string> literals(const std::string& code) {
 /// The shaders that tests of rendered scenes write.
 Calls ofRenderedTests() {
     Calls calls;
-    for (const char* room : {"integrator", "render", "shading", "plugins", "language", "cli", "clouds", "ptex"})
-        for (const auto& entry : fs::directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / "tests" / room)) {
+    for (const char* folder : {"integrator", "render", "shading", "plugins", "language", "cli", "pointcloud", "ptex"})
+        for (const auto& entry : fs::directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / "tests" / folder)) {
             if (!entry.path().string().ends_with("_test.cpp")) continue;
             std::ifstream in(entry.path());
             std::stringstream code;

@@ -116,26 +116,6 @@ struct Asking {
     }
 };
 
-/// Finds the first surface at which the accumulated opacity exceeds the threshold.
-bool intersect(const StageSet& set, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
-    Color through(1);
-    for (int layers = 0; layers < limits::kShadowLayers; ++layers) {
-        if (!set.intersector.intersect(ray, hit)) return false;
-        if (!(maxComponent(threshold) > 0)) return true;
-        const SurfaceBinding& b = set.context.world.bindings_[size_t(set.context.world.bindingOf_[hit.shape])];
-        const Opacity& o = b.opacityFor(as.kind->set.mode);
-        Color taken = o.constant;
-        if (o.kernel) {
-            const OpacityQuery q{set.context.world.bindingOf_[hit.shape], hit, &as, &o.kernel};
-            set.opacities.opacities({&q, 1}, {&taken, 1});
-        }
-        through *= Color(1) - taken;
-        if (1 - through.x >= threshold.x && 1 - through.y >= threshold.y && 1 - through.z >= threshold.z) return true;
-        set.context.world.goOn(ray, hit);
-    }
-    return false;
-}
-
 void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count) {
     const GatherSite& g = *a.s.gather;
     for (int k = begin; k < end; ++k) {
@@ -283,7 +263,7 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
             ray.sides = kind.set.sides;
             ray.only = kind.set.only;
             if (p.ray->sample) ray.level = p.ray->sample->level;
-            met = intersect(a.set, ray, as, g.threshold >= 0 ? Color(a.triple(g.threshold)) : Color(0), hit);
+            met = firstOpaque(a.set, ray, as, g.threshold >= 0 ? Color(a.triple(g.threshold)) : Color(0), hit);
             ++a.set.context.raysOf(kind.type);
         }
         tellRay(g, row, from, w, met ? float(hit.distance) : 1e38f);

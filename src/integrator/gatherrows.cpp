@@ -1,4 +1,7 @@
 #include "integrator/gatherrows.h"
+#include "integrator/intersector.h"
+#include "integrator/opacities.h"
+#include "integrator/stageset.h"
 #include "world/raysets.h"
 #include <bit>
 #include <set>
@@ -67,6 +70,25 @@ void endGatherRay(const GatherSite& g, const shading::TargetValue& v, float* row
         if (o.of == GatherSite::Of::Light) putGathered(row, o, v.radiance);
         else if (o.of == GatherSite::Of::Opacity) putGathered(row, o, Color(1) - v.transmission);
     }
+}
+
+bool firstOpaque(const StageSet& set, accel::Ray ray, const ShadowRay& as, const Color& threshold, accel::Hit& hit) {
+    Color through(1);
+    for (int layers = 0; layers < limits::kShadowLayers; ++layers) {
+        if (!set.intersector.intersect(ray, hit)) return false;
+        if (!(maxComponent(threshold) > 0)) return true;
+        const SurfaceBinding& b = set.context.world.bindings_[size_t(set.context.world.bindingOf_[hit.shape])];
+        const Opacity& o = b.opacityFor(as.kind->set.mode);
+        Color taken = o.constant;
+        if (o.kernel) {
+            const OpacityQuery q{set.context.world.bindingOf_[hit.shape], hit, &as, &o.kernel};
+            set.opacities.opacities({&q, 1}, {&taken, 1});
+        }
+        through *= Color(1) - taken;
+        if (1 - through.x >= threshold.x && 1 - through.y >= threshold.y && 1 - through.z >= threshold.z) return true;
+        set.context.world.goOn(ray, hit);
+    }
+    return false;
 }
 
 } // namespace alpenglow::integrator

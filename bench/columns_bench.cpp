@@ -2,7 +2,7 @@
 // written for this one box, with columns of floats from the camera to the film and no shader, no scene and no tree.
 //   columns_bench [SLICE [BATCH [CALL [WIDTH [HEIGHT [SAMPLES [EXACT [TURNS]]]]]]]]
 // Prints nanoseconds of processor time a sample, the best of the turns (3), and what each stage takes; by default 320 x 240
-// pixels of 16 samples. EXACT 0: sums in double. LightDirected it: `scene_bench --stages --spp 16 box`.
+// pixels of 16 samples. EXACT 0: sums in double. For comparison: `scene_bench --stages --spp 16 box`.
 #include "bench/columns/wave.h"
 #include <cstdio>
 #include <ctime>

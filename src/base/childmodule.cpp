@@ -20,7 +20,7 @@ namespace alpenglow {
 namespace {
 
 constexpr int kWhy = 512;                  ///< bytes of what a child has to say
-constexpr int kQueried = 1, kNoModule = 2; ///< exit codes of the child: it said why; the module cannot be loaded
+constexpr int kReported = 1, kNoModule = 2; ///< exit codes of the child: it wrote the reason; the module cannot be loaded
 
 /// Lets this process take so much memory beside what it has; what asks for more is told that there is none. Not under
 /// AddressSanitizer, whose own tables are larger than any limit.
@@ -49,7 +49,7 @@ void limitMemory([[maybe_unused]] uint64_t bytes) {
     for (const int s : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(s, SIG_DFL);
     void* handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (void* function = handle ? dlsym(handle, name) : nullptr) {
-        code = work(function, to, why, kWhy) == 0 ? 0 : kQueried;
+        code = work(function, to, why, kWhy) == 0 ? 0 : kReported;
     } else {
         const char* text = dlerror();
         std::strncpy(why, text ? text : "it has no function of ours", kWhy - 1);

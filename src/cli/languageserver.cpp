@@ -89,7 +89,7 @@ std::vector<Json> LanguageServer::handle(const Json& message) {
         return out;
     }
     if (!object || !message.contains("method") || !message["method"].is_string()) {
-        // Services to requests of ours, of which there are none, have an id and a result.
+        // Replies to requests of ours, of which there are none, have an id and a result.
         if (!object || !(message.contains("result") || message.contains("error")))
             out.push_back(error(id, kInvalidRequest, "this is neither a request nor a notification"));
         return out;

@@ -13,7 +13,7 @@ public:
     /// Folders for #include beside that of the shader, and macros.
     explicit LanguageServer(rsl::FrontOptions options) : options_(std::move(options)) {}
 
-    /// Services one message; what is to be sent, in order. Never throws: what cannot be understood gets an error or, when it asks
+    /// Answers one message; what is to be sent, in order. Never throws: what cannot be understood gets an error or, when it asks
     /// for no answer, nothing.
     std::vector<Json> handle(const Json& message);
     /// Diagnostics of the texts that changed since the last call: to be sent when no message waits.

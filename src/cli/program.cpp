@@ -154,8 +154,8 @@ std::string exitStatuses() {
 /// Options of render that the user has in .alpenglowrc; those of the command line come behind them and have the last word.
 std::vector<std::string> optionsOfRcFiles(const std::vector<std::string>& args) {
     if (args.empty() || args[0] != "render" || std::find(args.begin(), args.end(), "--no-rc") != args.end()) return {};
-    Diagnostics unsaid; // it is said when their RIB is read
-    const std::vector<std::string> options = rcOptions(rcFiles(unsaid));
+    Diagnostics dropped; // the reader of their RIB reports the same
+    const std::vector<std::string> options = rcOptions(rcFiles(dropped));
     if (!options.empty()) std::fprintf(stderr, "note: .alpenglowrc adds %s\n", printable(joined(options, " ")).c_str());
     return options;
 }

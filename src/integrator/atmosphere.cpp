@@ -134,7 +134,7 @@ void Atmosphere::atmosphereOfPhotons(BatchContext& c) {
         const int binding = in >= 0 ? world.media_[size_t(in)].binding : r.lobeBinding;
         if (binding < 0) continue;
         const Medium& m = in >= 0 ? world.media_[size_t(in)] : world.bindings_[size_t(binding)].atmosphere;
-        if (!m.shader || m.homogeneous) continue; // segmentEvents handle homogeneous media
+        if (!m.shader || m.homogeneous) continue; // segment events handle homogeneous media
         ways.push_back({&m, binding, i, in >= 0 ? r.origin : r.lobeOrigin});
     }
     if (ways.empty()) return;

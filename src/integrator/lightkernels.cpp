@@ -60,7 +60,7 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
     return nested_.trace(c, s, point, row, occurrence);
 }
 
-/// Services a gather() in a light's kernel.
+/// Answers a gather() in a light's kernel.
 void LightKernels::gather(BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
     const int lanes = c.requestLanes;
     if (!world_.accel_ || !c.points[size_t(first)].ray) { // lights being measured see no geometry: one ray without a hit

@@ -28,7 +28,7 @@ void hashText(const std::string&, float out[3]);
 /// Takes one printf() of one lane.
 using PrintFn = std::function<void(int lane, const std::string&)>;
 
-/// Services format, printf, concat, match and stringhash, and reports arrays at their limit, for the lanes of `mask`; arguments
+/// Answers format, printf, concat, match and stringhash, and reports arrays at their limit, for the lanes of `mask`; arguments
 /// as of ServiceFn. False for other sites. `files`: CompiledKernel::files, for messages. Without `print` the text goes to
 /// standard output.
 bool basicService(const ir::Site&, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics&,

@@ -33,7 +33,8 @@ bool SpilledArrays::answer(const ir::Site& s, int32_t first, uint64_t mask, int3
         const uint64_t key = uint64_t(uint32_t(argument(0, lane))) << 32 | uint32_t(first + lane);
         const int width = resize ? int(argument(3, lane)) : ir::components(store ? s.argKinds[3] : s.resultKinds[0]);
         // Floats count whole numbers up to 2^24 one by one.
-        const size_t behind = size_t(std::clamp(at - storage, 0.f, float(1 << 24))), begin = behind * size_t(width);
+        const float beyond = at - storage; // may be not a number: the shader's own
+        const size_t begin = size_t(beyond > 0 ? std::min(beyond, float(1 << 24)) : 0) * size_t(width);
         if (load) {
             const auto v = elements_.find(key);
             const bool there = v != elements_.end() && begin + size_t(width) <= v->second.size();

@@ -17,7 +17,7 @@ inline constexpr size_t kSpilledArrayBytes = size_t(256) << 20;
 class SpilledArrays {
 public:
     explicit SpilledArrays(size_t most = kSpilledArrayBytes) : most_(most) {}
-    /// Services a service on arrays: "arraystore" gives the length that the array has with this element at least, "arrayload" the
+    /// Answers a service on arrays: "arraystore" gives the length that the array has with this element at least, "arrayload" the
     /// element, 0 where there is none; "arrayresize" the length that it gets. A length that there is no memory for is reported
     /// once, and the old one or the storage's is kept. False: the site is another service. `first`: the point of lane 0.
     bool answer(const ir::Site&, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics&,

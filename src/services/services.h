@@ -1,4 +1,4 @@
-// Services calls of running kernels (services). Call sites are resolved in advance (world/sites.h); answers that do not depend on
+// Answers calls of running kernels (services). Call sites are resolved in advance (world/sites.h); answers that do not depend on
 // the point are cached by interned name. One for each thread: no lock.
 #pragma once
 #include "pointcloud/hemisphere.h"
@@ -52,7 +52,7 @@ class Services {
 public:
     /// `tracer`: null if there are no lights.
     Services(const WorldImpl&, Diagnostics&, Tracer* tracer);
-    /// Services a call of any kind except requests for light. Rows are those of rsl::ServiceFn.
+    /// Answers a call of any kind except requests for light. Rows are those of rsl::ServiceFn.
     void service(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     // illuminance loops, as in rsl::KernelCall (lightloop.cpp).
     int32_t lightBegin(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* rows);

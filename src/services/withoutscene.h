@@ -11,7 +11,7 @@
 
 namespace alpenglow::services {
 
-/// Services texture(), environment() and textureinfo() from maps on disk, rayinfo() and similar as for a camera ray, and
+/// Answers texture(), environment() and textureinfo() from maps on disk, rayinfo() and similar as for a camera ray, and
 /// rendererinfo(), with the same code as in a scene. A missing map is reported once with its place. For one thread.
 class WithoutScene {
 public:

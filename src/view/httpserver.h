@@ -48,7 +48,7 @@ public:
     int port() const { return port_; }
     /// Begins to answer. Once.
     void start(Handler);
-    /// Services no more; the handler is not called again.
+    /// Answers no more; the handler is not called again.
     void stop();
     /// From any thread: postponed requests may have a response now.
     void wake();

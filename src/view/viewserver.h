@@ -5,7 +5,7 @@
 
 namespace alpenglow::view {
 
-/// Services requests with the token that come to this port under a name of this machine; rejects all others.
+/// Answers requests with the token that come to this port under a name of this machine; rejects all others.
 class ViewServer {
 public:
     ViewServer(Session&, HttpServer&, std::string token);

@@ -35,7 +35,7 @@ struct LightBound {
 /// times the largest cosine at which its light can leave toward the point, so lights that face away get none. A fraction kBlind
 /// is equal for all lights, so that lights whose power was missed (a spot between the probes) are also found.
 ///
-/// Far nodes act as one light; near ones are opened first (the cut), with shares relative to the whole cut. SubsurfaceMedium the
+/// Far nodes act as one light; near ones are opened first (the cut), with shares relative to the whole cut. Below the
 /// cut a node's probability is divided between its children by the same measure. One random number makes the choice by systematic
 /// sampling: a comb of unit spacing over the cumulative probabilities of the leaves includes each light with exactly its
 /// probability, by which its contribution is divided. After Conty Estevez and Kulla, Importance Sampling of Many Lights with

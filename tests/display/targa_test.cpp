@@ -155,7 +155,7 @@ TEST(Foreign, CutAndDamagedFilesAreErrorsOrPictures) {
 #endif
 
 #if !__has_feature(address_sanitizer) // its own tables are larger than any limit
-// LightDirected the picture, twice, a module has kForeignBytes.
+// In addition to the picture, twice, a module has kForeignBytes.
 TEST(Foreign, TheModuleHasNoMoreMemoryThanItNeeds) {
     static_assert(kForeignBytes + 2 * limits::kImageSmallBytes < size_t(16) << 30);
     Scratch s;

@@ -44,7 +44,7 @@ TEST(SampleLights, EachLightOnce) {
     Scene sky(inWorld(std::string(kPoint) + kSun + kSky + look("samplelights") + kFloor), under(Hider::Path));
     expectMean(sky.estimate(kView, samples(2000)), kPointValue + kSunValue + .25, .01, "with a sky");
 }
-// LightDirected diffuse() each has its own part, and a sphere that shines is seen by both techniques.
+// With diffuse() each has its own part, and a sphere that shines is seen by both techniques.
 TEST(SampleLights, AreaLightsAsBefore) {
     const std::string lamp =
         "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"slrect\" 7 \"intensity\" 3\n"

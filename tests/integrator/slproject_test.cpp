@@ -84,7 +84,7 @@ TEST(SlProject, WrapModesAndFilters) {
                                    c.wrapv + "\", \"" + filter + "\");",
                                map),
                        texel(c.column, c.row), std::string(c.wrapu) + c.wrapv + filter);
-    // LightDirected the middles: the texel, or a mean of two of a row.
+    // Away from the middles: the texel, or a mean of two of a row.
     const double u = 3.9 / 8, v = 4.5 / 8;
     expectNear(valueOf("Ci = slTexture2D(map, " + number(u) + ", " + number(v) + ", \"repeat\", \"repeat\", \"nearest\");", map),
                texel(3, 4), "nearest");

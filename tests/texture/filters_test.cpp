@@ -91,7 +91,7 @@ TEST(Filters, AreSumsOverTheFootprintForEveryWrap) {
                 sum += std::fabs(double(v) - expected);
                 worst = std::max(worst, std::fabs(double(v) - expected));
             }
-            // LightDirected a clamped map coarse levels show the mean of their outermost texel, not its edge: off by half a texel
+            // Outside of a clamped map coarse levels show the mean of their outermost texel, not its edge: off by half a texel
             // of up to 0.17 of the map, of waves with a slope of 1.6. At the edge of a black map the shape of the filter shows.
             const bool edge = std::string(wrap) == "black" || std::string(wrap) == "clamp";
             EXPECT_LT(sum / n, edge ? .02 : .006) << wrap << " " << int(f);

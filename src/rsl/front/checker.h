@@ -119,7 +119,7 @@ private:
     void statementPair(Stmt&, ExprPtr token, ExprPtr value);
     void poison(Expr&, Info&);
 
-    // resolveTypes (resolveTypes.cpp, calls.cpp)
+    // resolveTypes (resolve.cpp, calls.cpp)
     void resolveTypes(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
     void resolveCheapest(ExprPtr&);
     void resolveAs(ExprPtr&, Base); ///< exactly this type, which must have a finite cost

@@ -197,7 +197,7 @@ void Builder::storeElement(Inst* a, Inst* index, Inst* value) {
         store);
 }
 
-/// The length that an array gets that wants this one: less where there is no memory, which is said when the shader runs.
+/// The length that an array gets when it is resized to `wanted`: less where memory runs out, reported when the shader runs.
 Inst* Builder::resized(const Inst* a, Inst* wanted) {
     if (!unbound_) return limitLength(a, wanted);
     return branch(
@@ -228,7 +228,7 @@ void Builder::copyBehind(Inst* to, Inst* from, Inst* length) {
               [&](Inst* at) { storeElement(to, at, coerce(loadElement(from, at), to->element)); });
 }
 
-/// Says, when the shader runs, that an array is longer than what can be done with its elements.
+/// Reports, when the shader runs, that an array is longer than the part of it that can be passed on.
 void Builder::refuseLonger(const Inst* a, const Place& place, const std::string& where) {
     if (!lengths(a) || !unbound_) return;
     branch(

@@ -10,7 +10,7 @@ namespace alpenglow::rsl::ir {
 
 namespace {
 
-/// LightDirected the key of a channel: 1 where a call has given it a value.
+/// The output that is 1 where a call has given the channel of this key a value.
 std::string flagOf(const std::string& key) { return OutputName::given(key).text(); }
 bool isFlag(const std::string& key) { return !OutputName::givenName(key).empty(); }
 

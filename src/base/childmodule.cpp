@@ -19,7 +19,7 @@ namespace alpenglow {
 
 namespace {
 
-constexpr int kWhy = 512;                  ///< bytes of what a child has to say
+constexpr int kWhy = 512;                   ///< bytes of what a child has to say
 constexpr int kReported = 1, kNoModule = 2; ///< exit codes of the child: it wrote the reason; the module cannot be loaded
 
 /// Lets this process take so much memory beside what it has; what asks for more is told that there is none. Not under

@@ -18,7 +18,7 @@ namespace alpenglow::integrator {
 bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
     if (!of || l.hazy || (emitter && !l.emitter)) return false;
-    if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.sky || l.cone) return false;
+    if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.isSky() || l.cone) return false;
     for (size_t i = 0; emitter && i < l.emitter->flat().size(); ++i)
         if (of.plan->overriddenBy(l.emitter->flatShape(i))) return false;
     const auto& k = *of.kernel;
@@ -32,7 +32,7 @@ void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
 
 /// Samples the light for each lit point of litBlocks_.
 void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
-    placeInRows(light);
+    placeInRows(light, c.between ? nullptr : guideOf(world_, light));
     const size_t n = litBlocks_.size() * kBlock;
     auto call = batches_.take();
     call->bound = &light.kernel;
@@ -55,7 +55,7 @@ void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
 }
 
 /// Chooses points on the light for blocks in which some points sample it.
-void BlockVertices::placeInRows(const BoundLight& light) {
+void BlockVertices::placeInRows(const BoundLight& light, const LightGuide* guide) {
     beginLights(light);
     const size_t n = litBlocks_.size() * kBlock;
     lamp_.resize(9 * n);
@@ -70,14 +70,15 @@ void BlockVertices::placeInRows(const BoundLight& light) {
         std::fill_n(lamp_.data() + 3 * n, 3 * n, 0.f);
     }
     for (size_t k = 0; k < litBlocks_.size(); ++k) {
-        if (light.kind == LightKind::Area) placeOnEmitter(k, *light.emitter);
+        if (light.kind == LightKind::Area) placeOnEmitter(k, light, guide);
         for (size_t q = 0; q < 3; ++q)
             std::copy_n(vertices_[litBlocks_[k]].P[q], kBlock, lamp_.data() + (6 + q) * n + k * kBlock);
     }
 }
 
 /// The same for one of litBlocks_ on an emitter, shape by shape, each for the points that chose it.
-void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
+void BlockVertices::placeOnEmitter(size_t k, const BoundLight& light, const LightGuide* guide) {
+    const Emitter& emitter = *light.emitter;
     const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
     float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
     LightBlock& l = lights_[b];
@@ -85,6 +86,8 @@ void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
     const VertexBlock& v = vertices_[b];
     Lanes of[limits::kLightsSampled] = {};
     alignas(64) double share[kBlock];
+    Guiding guiding;
+    if (guide) guiding.begin(*guide, v, lit_[b], pairs_[b]);
     for (size_t i = 0; i < size_t(kBlock); ++i) {
         const float choose = shapes.size() > 1 ? choices_[b].x[i] : 0;
         of[emitter.flatFrom({v.P[0][i], v.P[1][i], v.P[2][i]}, choose, share[i])] |= 1u << i;
@@ -109,6 +112,51 @@ void BlockVertices::placeOnEmitter(size_t k, const Emitter& emitter) {
         placed.points |= there;
         if (emitter.flatVisibility(s) & visibilityBit(RayType::Diffuse)) placed.metDiffuse |= there;
         if (emitter.flatVisibility(s) & visibilityBit(RayType::Specular)) placed.metSpecular |= there;
+    }
+    if (guiding.guided) followGuide(k, light, *guide, guiding);
+}
+
+void BlockVertices::Guiding::begin(const LightGuide& guide, const VertexBlock& v, Lanes of, render::NumberBlock& numbers) {
+    for (; of; of &= of - 1) {
+        const int i = std::countr_zero(of);
+        const GuidedDraw by(&guide, {v.P[0][i], v.P[1][i], v.P[2][i]}, numbers.x[i]);
+        cell[i] = by.cell;
+        toward |= Lanes(by.toward) << i;
+        guided |= Lanes(by.cell != nullptr) << i;
+    }
+}
+
+/// Places samples where the guide's directions lead, and gives all points that have a guide the density of the mixture.
+void BlockVertices::followGuide(size_t k, const BoundLight& light, const LightGuide& guide, const Guiding& guiding) {
+    const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
+    float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
+    LightBlock& l = lights_[b];
+    const VertexBlock& v = vertices_[b];
+    BlockPlaced& placed = placed_[k];
+    for (Lanes left = guiding.guided; left; left &= left - 1) {
+        const size_t i = size_t(std::countr_zero(left));
+        const Vec3 from(v.P[0][i], v.P[1][i], v.P[2][i]);
+        const LightGuide::Cell& cell = *guiding.cell[i];
+        if (guiding.toward >> i & 1) {
+            const Vec3 w = guide.draw(cell, from, {pairs_[b].x[i], pairs_[b].y[i]});
+            Emitter::Sample s;
+            geometry::SurfacePoint point;
+            const Lanes bit = 1u << i;
+            placed.points &= ~bit, placed.metDiffuse &= ~bit, placed.metSpecular &= ~bit;
+            if (!light.emitter->sampleToward(from, w, s, point, light.pointNeeds) ||
+                (s.shape->oneSided() && !(dot(intersectsNormal(point), s.direction) < 0)))
+                continue;
+            const Vec3 at = intersectsAt(point), end = leavesFrom(point, -s.direction);
+            for (size_t q = 0; q < 3; ++q) {
+                P[q * n + i] = at[int(q)], N[q * n + i] = point.n[int(q)];
+                l.w[q][i] = s.direction[int(q)], l.end[q][i] = end[int(q)];
+            }
+            l.density[i] = s.pdf;
+            placed.points |= bit;
+            if (s.visibility & visibilityBit(RayType::Diffuse)) placed.metDiffuse |= bit;
+            if (s.visibility & visibilityBit(RayType::Specular)) placed.metSpecular |= bit;
+        }
+        l.density[i] = guide.mixed(cell, l.density[i], from, {l.w[0][i], l.w[1][i], l.w[2][i]});
     }
 }
 

@@ -31,6 +31,12 @@ void BlockVertices::light(BatchContext& c) {
         if (c.between) takeParts(light, c);
         if (!litBlocks_.empty()) lightAlone(light, c);
     }
+    for (const int number : world_.skies_) {
+        const BoundLight& light = world_.lights_[size_t(number)];
+        if (!light.guidable || waits_ || c.between || !guideOf(world_, light) || !list.lights.contains(number)) continue;
+        findLit(&light);
+        if (!litBlocks_.empty()) lightAlone(light, c);
+    }
 }
 
 /// Finds the points that sample a light; null: any light.
@@ -59,7 +65,7 @@ void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
 /// that illuminance loops handle.
 bool BlockVertices::samples(const Site& s, const BoundLight& light) {
     if (!s.lights || s.lighting) return s.lights;
-    return (light.kind == LightKind::Area || light.sky || s.info->allLights) && light.strategy != LightStrategy::Illuminance;
+    return (light.kind == LightKind::Area || light.isSky() || s.info->allLights) && light.strategy != LightStrategy::Illuminance;
 }
 
 /// Draws the random numbers of a stream (NumberBlock) at all points.
@@ -79,10 +85,10 @@ void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock
 }
 
 /// Chooses a point on the light for a lit one. Returns false if the sample carries no light.
-bool BlockVertices::placeQuery(const BoundLight& light, const LightNumbers& u, const ShadePoint& lit, ShadePoint& q,
-                               Emitter::Sample& s) const {
+bool BlockVertices::placeQuery(const BoundLight& light, const LightGuide* guide, const LightNumbers& u, const ShadePoint& lit,
+                               ShadePoint& q, Emitter::Sample& s) const {
     tellLit(q, lit);
-    if (!placeLightSample(world_, light, u, true, q, s)) return false;
+    if (!placeLightSample(world_, light, guide, u, true, q, s)) return false;
     // Sides 1: rays pass through the emitter from its back, so it sends nothing there.
     return light.kind != LightKind::Area || light.mean || !s.shape->oneSided() ||
            dot(intersectsNormal(q.surface), s.direction) < 0;
@@ -93,6 +99,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
     const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
     if (takesPair(light, true)) drawNumbers(use << 1, pairs_);
     if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
+    const LightGuide* const guide = c.between ? nullptr : guideOf(world_, light);
     asked_.clear();
     surfaces_.pointsOfRows(c);
     for (size_t b = 0; b < blocks_; ++b)
@@ -105,7 +112,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
             LightNumbers u;
             if (takesPair(light, true)) u.pair = {pairs_[b].x[lane], pairs_[b].y[lane]};
             if (takesChoice(light)) u.choose = choices_[b].x[lane];
-            const bool placed = placeQuery(light, u, c.points[size_t(point)], q, a.sample);
+            const bool placed = placeQuery(light, guide, u, c.points[size_t(point)], q, a.sample);
             if (!placed) asked_.pop_back();
         }
     queries_.resize(asked_.size());
@@ -139,12 +146,12 @@ void BlockVertices::takeValues(const BoundLight& light, const BatchContext& c) {
 /// Copies the radiance from one point on a light into a lane.
 void BlockVertices::takeValue(LightBlock& l, int lane, const BoundLight& light, const LightValue& value, const ShadePoint& query,
                               const Emitter::Sample& sample) {
-    const bool drawn = l.emitter || light.sky;
+    const bool drawn = l.emitter || light.isSky();
     const Vec3 w = drawn ? sample.direction : directionOr(-value.L, Vec3(0, 0, 1));
     const Vec3 end = l.emitter ? leavesFrom(query.surface, -w) : Vec3();
     for (int q = 0; q < 3; ++q) l.w[q][lane] = w[q], l.Cl[q][lane] = value.Cl[q], l.end[q][lane] = end[q];
     l.density[lane] = drawn ? sample.pdf : 1;
-    const float far = light.sky || light.kind == LightKind::Distant ? 1e38f : length(value.L);
+    const float far = light.isSky() || light.kind == LightKind::Distant ? 1e38f : length(value.L);
     l.far[lane] = far < 1e30f ? far * (1 - 1e-5f) : far;
     l.keptDiffuse[lane] = value.kept(RayType::Diffuse);
     l.keptSpecular[lane] = value.kept(RayType::Specular);
@@ -202,6 +209,16 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
             const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
             sendShadow(s, point, lane, {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, of,
                        query < 0 ? nullptr : &values_[size_t(query)], c);
+            if (of.hasDensity() && !c.between) {
+                const VertexBlock& v = vertices_[b];
+                const float light = luminance(Color(l.Cl[0][lane], l.Cl[1][lane], l.Cl[2][lane])), pdf = l.density[lane];
+                shadows_.note({{{v.P[0][lane], v.P[1][lane], v.P[2][lane]},
+                                {l.w[0][lane], l.w[1][lane], l.w[2][lane]},
+                                light,
+                                light / pdf,
+                                pdf},
+                               int(&of - world_.lights_.data())});
+            }
         }
     }
 }

@@ -8,6 +8,7 @@
 #include "integrator/raywords.h"
 #include "integrator/stageset.h"
 #include "lanes/stages.h"
+#include "world/lightguide.h"
 
 namespace alpenglow::integrator {
 
@@ -59,7 +60,7 @@ private:
     static bool samples(const Site&, const BoundLight&);
     void sampleLight(const BoundLight&, BatchContext&);
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true);
-    bool placeQuery(const BoundLight&, const struct LightNumbers&, const ShadePoint& lit, ShadePoint& query,
+    bool placeQuery(const BoundLight&, const LightGuide*, const struct LightNumbers&, const ShadePoint& lit, ShadePoint& query,
                     Emitter::Sample&) const;
     static void takeValue(LightBlock&, int lane, const BoundLight&, const LightValue&, const ShadePoint& query,
                           const Emitter::Sample&);
@@ -77,8 +78,15 @@ private:
     bool inRows(const BoundLight&, const BoundKernel&) const;
     void lightInRows(const BoundLight&, BatchContext&);
     void askInRows(const BoundLight&, const BatchContext&);
-    void placeInRows(const BoundLight&);
-    void placeOnEmitter(size_t k, const Emitter&);
+    void placeInRows(const BoundLight&, const LightGuide*);
+    void placeOnEmitter(size_t k, const BoundLight&, const LightGuide*);
+    /// The light samples of a block that have a guide.
+    struct Guiding {
+        Lanes guided = 0, toward = 0; ///< toward: in a direction of the guide
+        const LightGuide::Cell* cell[kBlock];
+        void begin(const LightGuide&, const VertexBlock&, Lanes, render::NumberBlock&);
+    };
+    void followGuide(size_t k, const BoundLight&, const LightGuide&, const Guiding&);
     void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
     void takeLightOf(size_t k, const BoundLight&, const shading::Batch&, const BatchContext&);
     void placeFar(const BoundLight&, const shading::Batch&, size_t at, LightBlock&) const;

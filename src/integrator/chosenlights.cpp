@@ -141,7 +141,7 @@ void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
             const LightNumbers u{{pairs_[k].x[lane], pairs_[k].y[lane]}, choices_.empty() ? 0 : choices_[k].x[lane]};
             if (of_.size() == queries.size()) queries.emplace_back(); // earlier queries are overwritten
             samples_.emplace_back();
-            if (b_.placeQuery(light, u, c.points[size_t(q.asked[lane]->point)], queries[of_.size()], samples_.back()))
+            if (b_.placeQuery(light, nullptr, u, c.points[size_t(q.asked[lane]->point)], queries[of_.size()], samples_.back()))
                 of_.emplace_back(k, lane);
             else samples_.pop_back();
         }

@@ -59,7 +59,7 @@ void Connection::reach(int query) {
     const size_t k = size_t(query);
     const BoundLight& light = *q.light[k];
     const bool area = light.kind == LightKind::Area;
-    const Vec3 w = area || light.sky ? q.drawn[k].direction : directionOr(-q.value[k].L, Vec3(0, 0, 1));
+    const Vec3 w = area || light.isSky() ? q.drawn[k].direction : directionOr(-q.value[k].L, Vec3(0, 0, 1));
     for (int i : lobesOf(size_t(q.point[k]))) {
         const LobeVertex& l = requests_.lobes[size_t(i)];
         if (!lightSampling_.samples(l, light) || q.draw[k].nth >= lightSampling_.lightSamples(l)) continue;
@@ -120,7 +120,7 @@ void Connection::send(const Reached& r) {
     const Vec3 end = area ? leavesFrom(lightSampling_.queries.at[k].surface, -r.w) : Vec3();
     if (l.trace && area && !intersects(l, r.query, r.w, from, end)) return;
     const float away = light.kind == LightKind::Distant ? 1e38f : length(lightSampling_.queries.value[k].L);
-    if (l.trace && !area && !light.sky && light.kind != LightKind::Distant && away > l.maxDistance) return;
+    if (l.trace && !area && !light.isSky() && light.kind != LightKind::Distant && away > l.maxDistance) return;
     const Color given = contribution(r);
     const int32_t share = shareOf(l);
     const uint16_t path = paths_.atLobe(l, c_->points[size_t(l.point)], ray, r.w);
@@ -138,9 +138,9 @@ void Connection::send(const Reached& r) {
             {from, normalizeOr(end - from, r.w), length(end - from) * (1 - 1e-6f), given, l.target, p.shutter, p.ray, sums});
     } else {
         // A ray of trace() sees the sky also behind geometry beyond its distance.
-        const float far = light.sky ? l.maxDistance : away;
+        const float far = light.isSky() ? l.maxDistance : away;
         shadows_.queue.push_back(
-            {from, r.w, far < 1e30f && !light.sky ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
+            {from, r.w, far < 1e30f && !light.isSky() ? far * (1 - 1e-5f) : far, given, l.target, p.shutter, p.ray, false});
         if (const float radius = lightSampling_.queries.value[k].shadowRadius; radius > 0) {
             const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
             const Vec2 u = store_.random(ray).pair(lightVertex(size_t(l.point)), use, 0);
@@ -158,7 +158,7 @@ void Connection::send(const Reached& r) {
     if (path) shadow.light = paths_.lights[size_t(&light - world_.lights_.data())];
     // Not occluded: light loops and trace() with "samplelights" under the other hiders, and lights whose shader computed
     // visibility.
-    const bool asInLoops = c_->below || (l.trace && !area && !light.sky);
+    const bool asInLoops = c_->below || (l.trace && !area && !light.isSky());
     if ((asInLoops && !rules_.pickOne && !light.shadows) || lightSampling_.queries.value[k].ownShadow) shadow.distance = 0;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "integrator/rays.h"
 #include "integrator/samples.h"
+#include "world/lightguide.h"
 
 namespace alpenglow::integrator {
 
@@ -16,6 +17,13 @@ struct Rules {
           emissionCounts(pickOne) {}
 };
 
+/// A direction in which a path saw a light, or met an opaque surface.
+struct SeenSample {
+    static constexpr int32_t kBlocked = -1;
+    SeenLight seen;
+    int32_t light; ///< index in WorldImpl::lights_; kBlocked: a surface
+};
+
 /// One for each thread.
 struct Context {
     Context(std::shared_ptr<const WorldImpl>, Diagnostics&);
@@ -26,7 +34,8 @@ struct Context {
     const int32_t totalReflection; ///< the label of rays that Counters::totalReflected counts
     Rules rules;
     Counters counters;
-    const StopFlag* stop = nullptr; ///< null: cannot be stopped
+    const StopFlag* stop = nullptr;          ///< null: cannot be stopped
+    std::vector<SeenSample>* seen = nullptr; ///< not null: receives the lights that paths see (learnlights.h)
     /// The current call can still be repeated with fewer points at a time, so exceeding the memory for requests is not yet an
     /// error.
     bool beginsAnew = false;

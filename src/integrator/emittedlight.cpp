@@ -6,6 +6,7 @@
 #include "integrator/gathercalls.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
+#include "integrator/lightsample.h"
 #include "integrator/litsurfaces.h"
 #include "integrator/mediastacks.h"
 #include "integrator/medium.h"
@@ -20,6 +21,14 @@ namespace alpenglow::integrator {
 EmittedLight::EmittedLight(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces),
       media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons), store_(s.store), gathers_(s.gathers) {}
+
+/// Density of light samples at the origin of a ray in direction w; pdf: of the light alone.
+float EmittedLight::mixedPdf(const PathRay& r, const BoundLight& l, float pdf, const Vec3& w) const {
+    const LightGuide* guide = rules_.pickOne ? guideOf(world_, l) : nullptr;
+    if (!guide || store_.extraOf(r).flown.medium >= 0 || (l.guidable && r.first)) return pdf;
+    const LightGuide::Cell* cell = guide->find(r.lobeOrigin);
+    return cell ? guide->mixed(*cell, pdf, r.lobeOrigin, w) : pdf;
+}
 
 void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sched) {
     for (const Sched::Task* t : tasks) // the environment map of a trace()
@@ -67,9 +76,14 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
                 const bool weighed = r.bounces > 0 && !r.kind->fromTrace; // hit by a lobe of a lighting shadeop
                 float weight = weighed ? value[i].kept(r.type()) : 1.f;
                 if (r.lobePdf < 0) weight *= -r.lobePdf;
-                if (l.sky && r.lobePdf >= 0) { // its lobe has sampled this sky
-                    float pdf = l.sky->pdf(r.dir);
-                    if (rules_.pickOne && r.lobeBinding >= 0)
+                if (l.isSky() && r.lobePdf >= 0) { // its lobe may have sampled this sky
+                    float pdf = l.sky ? l.sky->pdf(r.dir) : 0;
+                    if (context_.seen && l.guidable && luminance(value[i].Cl) > 0) {
+                        const float light = luminance(value[i].Cl);
+                        context_.seen->push_back({{r.lobeOrigin, r.dir, light, light / r.lobePdf, pdf}, number});
+                    }
+                    pdf = mixedPdf(r, l, pdf, r.dir);
+                    if (l.sky && rules_.pickOne && r.lobeBinding >= 0)
                         pdf *= lightKernels_.chanceOf(number, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                     weight *= world_.settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
                 }
@@ -130,6 +144,8 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
             float weight = r.lobePdf < 0 ? -r.lobePdf : 1;
             if (r.lobePdf >= 0 && light.emitter && light.importance) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);
+                const Vec3 w = normalizeOr(intersectsAt(p.surface) - r.lobeOrigin, r.dir);
+                pdf = mixedPdf(r, light, pdf, w);
                 if (rules_.pickOne && r.lobeBinding >= 0)
                     pdf *= lightKernels_.chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);

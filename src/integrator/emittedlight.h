@@ -31,7 +31,8 @@ private:
         const ShadePoint* point;
     };
     void emission(std::span<const Met>, Sched&); ///< sorted by light
-    std::vector<int> litBy_;                     ///< RayExtra::lit, by query of a light
+    float mixedPdf(const PathRay&, const BoundLight&, float pdf, const Vec3& w) const;
+    std::vector<int> litBy_; ///< RayExtra::lit, by query of a light
     Accumulator& accumulator_;
     LightKernels& lightKernels_;
     const LightPathStates& paths_;

@@ -21,7 +21,7 @@ GuideRays::GuideRays(const StageSet& s) : Stage(s.context), store_(s.store) {
 GuideRays::Aim GuideRays::aimAt(const Vec3& P, const Vec3& n, const Vec3& in, float brings) const {
     Aim a;
     if (!guide()->maySend(brings)) return a;
-    a.side = CausticGuide::sideOf(dot(n, in) > 0 ? -n : n);
+    a.side = SurfaceTree::sideOf(dot(n, in) > 0 ? -n : n);
     a.cell = guide()->find(P, a.side);
     if (a.cell) a.code = guide()->codeFor(*a.cell, brings);
     return a;

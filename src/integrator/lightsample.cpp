@@ -24,15 +24,36 @@ Vec3 originOfLight(const ShaderInstance& of, float shutter) {
     return Vec3(m[3][3] == 1 || m[3][3] == 0 ? at : at / m[3][3]);
 }
 
-bool placeLightSample(const WorldImpl& world, const BoundLight& light, const LightNumbers& u, bool path, ShadePoint& p,
-                      Emitter::Sample& s) {
+const LightGuide* guideOf(const WorldImpl& w, const BoundLight& l) {
+    if (!w.photons_ || w.photons_->lightGuides.empty()) return nullptr;
+    return w.photons_->lightGuides[size_t(&l - w.lights_.data())].get();
+}
+
+GuidedDraw::GuidedDraw(const LightGuide* guide, const Vec3& from, float& x) {
+    cell = guide ? guide->find(from) : nullptr;
+    if (!cell) return;
+    toward = x < cell->share;
+    x = std::min(toward ? x / cell->share : (x - cell->share) / (1 - cell->share), 1 - 0x1p-24f);
+}
+
+bool placeLightSample(const WorldImpl& world, const BoundLight& light, const LightGuide* guide, const LightNumbers& numbers,
+                      bool path, ShadePoint& p, Emitter::Sample& s) {
+    LightNumbers u = numbers;
+    const GuidedDraw by(guide, p.Ps, u.pair.x);
+    const auto mix = [&] {
+        if (by.cell) s.pdf = guide->mixed(*by.cell, s.pdf, p.Ps, s.direction);
+    };
     if (light.kind == LightKind::Area) {
-        if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)
-                         : light.emitter->sample(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)))
+        if (by.toward) {
+            const Vec3 w = guide->draw(*by.cell, p.Ps, u.pair);
+            if (!light.emitter->sampleToward(p.Ps, w, s, p.surface, light.pointNeeds)) return false;
+        } else if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)
+                                : light.emitter->sample(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)))
             return false;
         if (world.accel_->hasSolids() && !world.accel_->keeps(world.numberOfShape_.at(s.shape), intersectsAt(p.surface),
                                                               intersectsNormal(p.surface), p.shutter))
             return false; // the part of a lamp outside of its CSG solid
+        mix();
         p.shape = s.shape;
         p.P = intersectsAt(p.surface);
         p.N = p.surface.n;
@@ -41,8 +62,14 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
     }
     p.shape = nullptr;
     p.surface = *p.lit;
-    if (light.sky) {
-        if (!light.sky->sample(u.pair, s.direction, s.pdf)) return false;
+    if (light.isSky()) {
+        if (by.toward) {
+            s.direction = guide->draw(*by.cell, p.Ps, u.pair);
+            s.pdf = light.sky ? light.sky->pdf(s.direction) : 0;
+        } else if (!light.sky || !light.sky->sample(u.pair, s.direction, s.pdf)) {
+            return false;
+        }
+        mix();
         s.shape = nullptr;
         s.visibility = ~0u;
         p.P = p.Ps + s.direction;

@@ -62,7 +62,8 @@ void LightQueries::clear() {
 bool LightSampling::samples(const LobeVertex& l, const BoundLight& light) const {
     if (!light.importance && (l.trace || rules_.emissionCounts)) return false; // only rays find it
     if (photonScatter_.leftToPhotons(l, light)) return false;
-    return l.lights && !l.elsewhere && !l.delta && (light.kind == LightKind::Area || light.sky || l.deltaLights) &&
+    if (light.guidable && (l.ownsTarget || !l.followed || !(l.chosen > 0))) return false; // the guide completes a ray
+    return l.lights && !l.elsewhere && !l.delta && (light.kind == LightKind::Area || light.isSky() || l.deltaLights) &&
            (l.lobeOfShader || light.strategy != LightStrategy::Illuminance);
 }
 
@@ -151,7 +152,18 @@ void LightSampling::run(Sched& sched) {
         askWanted(kernel, sched);
         grouped[g].clear();
     }
+    if (!many) guidedSkies(list, sched);
     if (!many) chosenAt_[0].clear();
+}
+
+/// Samples skies that only their guide samples, at all points of chosenAt_.
+void LightSampling::guidedSkies(const WorldImpl::LightList& list, Sched& sched) {
+    if (!rules_.pickOne || c_->between || c_->below) return;
+    for (const int number : world_.skies_) {
+        const BoundLight& light = world_.lights_[size_t(number)];
+        if (light.guidable && guideOf(world_, light) && list.lights.contains(number))
+            lightOf(light, chosenAt_[0], nullptr, sched);
+    }
 }
 
 /// Appends the points that sample a light, and draws the random numbers of kSamplesAtOnce samples from `first` on. Returns the
@@ -169,7 +181,7 @@ int LightSampling::want(const BoundLight& light, std::span<const std::pair<int, 
         for (int k = first; k < std::min(count, first + kSamplesAtOnce); ++k) {
             wanted_.push_back({&light, point, chance, {k, count}});
             const Random random = store_.random(ray).draw(uint32_t(k), uint32_t(count));
-            const uint32_t vertex = light.kind == LightKind::Area || light.sky ? lightVertex(size_t(point)) : ray.vertex;
+            const uint32_t vertex = light.kind == LightKind::Area || light.isSky() ? lightVertex(size_t(point)) : ray.vertex;
             if (takesPair(light, rules_.pickOne)) numbers_.askPair(random.numbers(), vertex, use, 0);
             if (takesChoice(light)) numbers_.askOne(random.numbers(), vertex, use, 0);
         }
@@ -204,7 +216,8 @@ bool LightSampling::place(ShadePoint& p, Emitter::Sample& s, const BoundLight& l
     LightNumbers u;
     if (takesPair(light, rules_.pickOne)) u.pair = numbers_.pair(number++);
     if (takesChoice(light)) u.choose = numbers_.one(number++);
-    return placeLightSample(world_, light, u, rules_.pickOne, p, s);
+    return placeLightSample(world_, light, c_->between || !rules_.pickOne ? nullptr : guideOf(world_, light), u, rules_.pickOne,
+                            p, s);
 }
 
 /// Splits the last query by the widths with which lobes of its point see the emitter.

@@ -48,6 +48,7 @@ private:
     bool chooseLights(const WorldImpl::LightList&, const std::vector<int>& on, std::vector<int>& touched);
     void lightOf(const BoundLight&, std::span<const std::pair<int, float>> chosen, const BoundKernel* shared, Sched&);
     void askWanted(const BoundKernel* shared, Sched&);
+    void guidedSkies(const WorldImpl::LightList&, Sched&);
     int want(const BoundLight&, std::span<const std::pair<int, float>> chosen, int first);
     void placeWanted();
     bool place(ShadePoint&, Emitter::Sample&, const BoundLight&, size_t& number) const;

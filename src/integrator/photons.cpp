@@ -148,7 +148,7 @@ GuideFigures guideCaustics(const World& world, std::span<const StoredPhoton> sto
     for (const StoredPhoton& s : stored) {
         const float l = luminance(s.photon.power);
         if (!s.caustic || !(l > 0)) continue;
-        const int side = CausticGuide::sideOf(photonmap::unpackUnit(s.photon.normal));
+        const int side = SurfaceTree::sideOf(photonmap::unpackUnit(s.photon.normal));
         photons.push_back({s.photon.P, s.photon.P + s.way, side, l});
         power += l;
     }

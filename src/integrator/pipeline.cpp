@@ -269,6 +269,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     const std::vector<accel::Hit>& hits = p.intersector.hits;
     std::vector<const Sched::Task*> missed;
     for (size_t i = 0; i < slice.size(); ++i) {
+        if (hits[i].valid() && p.context.seen) blocked(slice[i].payload, hits[i]);
         if (!hits[i].valid()) missed.push_back(&slice[i]);
         else if (p.guide.bringsNothing(slice[i].payload, world().bindingOf_[hits[i].shape])) p.store.freeExtra(slice[i].payload);
         else p.queues.add(slice[i], hits[i], sched);
@@ -280,6 +281,13 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     const bool all = sched.frameBytes() > 0 || p.context.raysAtOnce < Context::kSlice;
     for (size_t g : p.queues.ready(all)) shadeHits(g, sched);
     while (p.queues.full()) settle(sched);
+}
+
+/// Notes a ray that may have seen a sky and met an opaque surface instead (Context::seen).
+void Pipeline::blocked(const PathRay& r, const accel::Hit& h) {
+    const SurfaceBinding& b = world().bindings_[size_t(world().bindingOf_[h.shape])];
+    if (r.lobePdf >= 0 && b.opacityFor(r.kind->set.mode).opaque())
+        parts_->context.seen->push_back({{r.lobeOrigin, r.dir}, SeenSample::kBlocked});
 }
 
 bool Pipeline::settle(Sched& sched) {

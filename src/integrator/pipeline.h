@@ -42,6 +42,7 @@ private:
     void takeResults(std::span<SampleResult>, std::span<const shading::AccumulatorId> roots);
     void endTrace(); ///< adds the scheduler's counts, then calls forget()
     void forget();   ///< drops the state of a trace() that has ended or was abandoned
+    void blocked(const shading::PathRay&, const accel::Hit&);
     void shadeHits(size_t group, shading::Sched&);
     struct Parts;
     std::unique_ptr<Parts> parts_;

@@ -347,12 +347,16 @@ void ShadowRays::flush(Sched& s) {
             arrives(m.contribution, m.target, m.share, m.areaLight, m.path);
         }
     }
+    for (const auto& [sample, ray] : noted_)
+        if (maxComponent(transmitted_[ray]) > 0) context_.seen->push_back(sample);
+    noted_.clear();
     queue.clear();
     more.clear();
     occlusion_.hemispheres.clear();
 }
 
 void ShadowRays::clear() {
+    noted_.clear();
     queue.clear();
     more.clear();
 }

@@ -30,6 +30,11 @@ public:
     void flush(Sched&);
     void clear();
 
+    /// Notes the light sample of the last ray of the queue for Context::seen, if it is not occluded.
+    void note(const SeenSample& s) {
+        if (context_.seen) noted_.push_back({s, queue.size() - 1});
+    }
+
     std::vector<ShadowRay> queue;
     std::vector<MoreLight> more;       ///< further light along rays of the queue
     std::vector<Contribution> settled; ///< contributions that need no ray, added with the queue
@@ -41,6 +46,7 @@ private:
     bool intersectsOnlyOpaque(const ShadowRay&) const;
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
     void blockedByAll(std::span<const ShadowRay>, std::span<Color> out);
+    std::vector<std::pair<SeenSample, size_t>> noted_; ///< with its ray in the queue
     std::vector<uint16_t> straights_; ///< by ray: surfaces passed straight through; filled only for light path outputs
     std::vector<Color> transmitted_;
     std::vector<accel::Ray> rays_;

@@ -41,6 +41,9 @@ void accumulate(RenderStats& all, const RenderStats& f) {
     for (auto member :
          {&RenderStats::Guide::photons, &RenderStats::Guide::cells, &RenderStats::Guide::lobes, &RenderStats::Guide::rays})
         all.guide.*member += before.guide.*member;
+    for (auto member : {&RenderStats::LightGuide::samples, &RenderStats::LightGuide::lights, &RenderStats::LightGuide::cells,
+                        &RenderStats::LightGuide::used})
+        all.lightGuide.*member += before.lightGuide.*member;
     all.depth.maximum = std::max(all.depth.maximum, before.depth.maximum);
     all.errors += before.errors;
     all.warnings += before.warnings;

@@ -1,4 +1,5 @@
 #include "render/guidepass.h"
+#include "integrator/learnlights.h"
 #include "photonmap/limits.h"
 #include "render/filtersampler.h"
 #include "render/photonpass.h"
@@ -18,20 +19,26 @@ bool refused(const scene::Options& o) {
     return p && !p->numbers.empty() && p->numbers[0] == 0;
 }
 
-/// Mean luminance of the complete picture without its brightest 2 %, because a caustic hit by chance is not representative. From
-/// 1,024 samples that are not samples of the picture.
-float brightnessOf(Job& job) {
-    constexpr int kSide = 32;
+/// A ray through each of side x side parts of the complete picture; they are not samples of the picture.
+std::vector<integrator::CameraRay> pilotRays(Job& job, int side) {
     const scene::Options& o = job.world->frame().options;
     const FilterSampler filter(job.plan.basis.filter);
     std::vector<PixelSample> samples;
-    for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x) samples.push_back({x * std::max(o.xres, 1) / kSide, y * std::max(o.yres, 1) / kSide, 0});
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            samples.push_back({x * std::max(o.xres, 1) / side, y * std::max(o.yres, 1) / side, uint32_t(y * side + x)});
     NumberRows numbers;
     std::vector<integrator::CameraRay> rays;
     std::vector<float> weights;
     pathRays(job.camera, filter, job.settings.seed ^ kOtherSeed, samples, numbers, rays, weights);
-    for (integrator::CameraRay& r : rays) r.sample = 0x40000000u; // larger than any sample number of a picture
+    for (integrator::CameraRay& r : rays) r.sample += 0x40000000u; // larger than any sample number of a picture
+    return rays;
+}
+
+/// Mean luminance of the complete picture without its brightest 2 %, because a caustic hit by chance is not representative. From
+/// 1,024 samples.
+float brightnessOf(Job& job) {
+    const std::vector<integrator::CameraRay> rays = pilotRays(job, 32);
     std::vector<integrator::SampleResult> results(rays.size());
     Diagnostics silent;
     const auto tracer = job.engine.tracer(job.world, silent);
@@ -72,6 +79,25 @@ bool learnCaustics(Job& job) {
     for (integrator::StoredPhoton& s : all) s.photon.power /= float(turns);
     const float brightness = brightnessOf(job);
     job.guide = integrator::guideCaustics(*job.world, all, passes.emission().power(), brightness);
+    job.world->flushPrints(false);
+    return !job.pollStop();
+}
+
+bool learnLights(Job& job) {
+    if (refused(job.world->frame().options) || !integrator::mayGuideLights(*job.world)) return true;
+    const scene::Options& o = job.world->frame().options;
+    Diagnostics silent;
+    const auto learn = [&](int side) {
+        return integrator::learnLights(job.world, pilotRays(job, side), silent, &job.halt, job.lightGuide);
+    };
+    // Few paths tell whether a guide pays; more tell what it should know. For the complete picture, so that a crop equals that
+    // part of the picture.
+    const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
+    if (!learn(int(std::sqrt(std::clamp(pixels / 4, 256., 4096.))))) return false;
+    if (job.lightGuide.used > 0) {
+        integrator::forgetLights(*job.world);
+        if (!learn(int(std::sqrt(std::clamp(pixels, 4096., 32768.))))) return false;
+    }
     job.world->flushPrints(false);
     return !job.pollStop();
 }

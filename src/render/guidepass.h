@@ -7,5 +7,7 @@ namespace alpenglow::render {
 /// Builds the guide unless the options disable it or photons find no caustics. The guide is equal for all parts, samples and
 /// threads of a picture. Returns false if stopped.
 bool learnCaustics(Job&);
+/// Builds the guides of light samples, likewise.
+bool learnLights(Job&);
 
 } // namespace alpenglow::render

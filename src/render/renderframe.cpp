@@ -449,6 +449,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.paths += double(c.paths);
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
     stats_.guide = {job.guide.photons, job.guide.cells, job.guide.lobes, c.guided};
+    stats_.lightGuide = {job.lightGuide.samples, job.lightGuide.lights, job.lightGuide.cells, job.lightGuide.used};
     stats_.nonFinite += f.nonFinite;
     if (!settings_.pixel) {
         sayEmptyPicture(job, *f.frame, diagnostics_);

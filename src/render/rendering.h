@@ -1,6 +1,7 @@
 // The two loops that turn camera rays into pixels, and their shared parts. Internal to render/.
 #pragma once
 #include "base/numberlanes.h"
+#include "integrator/learnlights.h"
 #include "integrator/photons.h"
 #include "render/camera.h"
 #include "render/engine.h"
@@ -47,6 +48,7 @@ struct Job {
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, at the last report
     std::atomic<uint64_t> rayTotal{0};
+    integrator::LightGuideFigures lightGuide;   ///< of path
     integrator::GuideFigures guide;             ///< of path
     std::atomic<bool> met{false}, shone{false}; ///< some camera ray hit a surface; carried light
 

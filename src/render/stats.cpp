@@ -72,6 +72,8 @@ std::string toJson(const RenderStats& s) {
                     {"kernels", s.shading.kernels},
                     {"cacheHits", s.shading.cacheHits}};
     j["guide"] = {{"photons", s.guide.photons}, {"cells", s.guide.cells}, {"lobes", s.guide.lobes}, {"rays", s.guide.rays}};
+    const RenderStats::LightGuide& l = s.lightGuide;
+    j["lightGuide"] = {{"samples", l.samples}, {"lights", l.lights}, {"cells", l.cells}, {"used", l.used}};
     j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
     j["errors"] = s.errors;
     j["warnings"] = s.warnings;
@@ -111,6 +113,10 @@ std::string toTable(const RenderStats& s) {
         row("guide", fmt::format("{} photons of mirrors and glass, {} cells, {} lobes; {} rays aimed, {:.1f} % of all",
                                  grouped(s.guide.photons), grouped(s.guide.cells), grouped(s.guide.lobes), grouped(s.guide.rays),
                                  100 * double(s.guide.rays) / double(std::max<uint64_t>(s.totalRays, 1))));
+    if (s.lightGuide.used)
+        row("lights",
+            fmt::format("{} sampled where they are visible, by {} samples, in {} of {} cells", grouped(s.lightGuide.lights),
+                        grouped(s.lightGuide.samples), grouped(s.lightGuide.used), grouped(s.lightGuide.cells)));
     if (s.noise.known)
         row("noise", fmt::format("{:.5f}: the mean relative error of the light on surfaces (docs/noise.md)", s.noise.noise));
     if (!s.curve.empty()) row("curve", s.curve);

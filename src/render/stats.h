@@ -39,6 +39,11 @@ struct RenderStats {
     struct Guide {
         uint64_t photons = 0, cells = 0, lobes = 0, rays = 0;
     } guide;
+    /// The guides of light samples under path (docs/light.md): light samples that they were built from, lights that have one,
+    /// their cells, and cells where samples follow them.
+    struct LightGuide {
+        uint64_t samples = 0, lights = 0, cells = 0, used = 0;
+    } lightGuide;
     struct Depth {
         int maximum = 0;
         double average = 0;

@@ -128,7 +128,7 @@ enum Trail : uint8_t {
     /// Unit of three bits: kGuided, or code of the probability (CausticGuide::chanceOf) of a guide ray at the last lobe that is
     /// not a delta; 0: none
     kTrailGuide = 4,
-    kTrailSide = 32 ///< unit of three bits: CausticGuide::sideOf() there
+    kTrailSide = 32 ///< unit of three bits: SurfaceTree::sideOf() there
 };
 inline constexpr int kGuided = 7; ///< in place of the code: this ray was aimed by the guide and carries only light behind mirrors
 

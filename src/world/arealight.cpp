@@ -205,6 +205,25 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 
+bool Emitter::followsDirections() const { return flat_.size() == 1 && triangles_[size_t(entries_[0].triangles)].planar(); }
+
+bool Emitter::sampleToward(const Vec3& from, const Vec3& w, Sample& out, geometry::SurfacePoint& point, uint32_t needs) const {
+    const Entry& e = entries_[0];
+    geometry::HitRef at;
+    if (!triangles_[size_t(e.triangles)].meet(from, w, at)) return false;
+    e.shape->evaluateHit(at.prim, at.b1, at.b2, point, needs);
+    const Vec3 d = intersectsAt(point) - from;
+    out.shape = e.shape;
+    out.visibility = e.visibility;
+    out.distance = length(d);
+    if (!(out.distance > 0)) return false;
+    out.direction = d / out.distance;
+    TriangleLamp::Seen seen;
+    const bool angle = triangles_[size_t(e.triangles)].see(from, seen);
+    out.pdf = angle ? float(e.share / seen.total) : areaPdf(e, e.share, point, from);
+    return std::isfinite(out.pdf);
+}
+
 bool Emitter::sampleSurface(const Vec3& from, Vec2 u, float choose, float time, Sample& out, geometry::SurfacePoint& point,
                             uint32_t needs) const {
     if (entries_.empty()) return false;

@@ -62,6 +62,11 @@ public:
     /// empty.
     const geometry::Shape* samplePoint(Vec2 u, float choose, float time, const Vec3& toward, geometry::SurfacePoint& point,
                                        float& perArea) const;
+    /// Whether light samples may follow directions (sampleToward): one shape, a flat polygon, which a ray meets once.
+    bool followsDirections() const;
+    /// As sample(), but at the point in direction w, with the `pdf` of sample() there. Returns false if there is none.
+    bool sampleToward(const Vec3& from, const Vec3& w, Sample& out, geometry::SurfacePoint& point,
+                      uint32_t needs = geometry::kNeedAll) const;
     /// Density per steradian with which sample() returns this hit, seen from `from`; 0 for shapes of other lights.
     float pdf(const geometry::Shape* shape, const geometry::SurfacePoint& hit, const Vec3& from) const;
 

@@ -41,7 +41,10 @@ struct BoundLight {
     std::shared_ptr<const class SkyTable> sky; ///< Environment, path: radiance table; null: rays of lobes find it without one
     bool importance = true;                    ///< false: not sampled where rays find it (__importancesample 0)
     /// Whether it has a density over directions: an emitter that rays can hit, or a sky.
-    bool hasDensity() const { return (kind == LightKind::Area && !mean) || sky; }
+    bool hasDensity() const { return (kind == LightKind::Area && !mean) || isSky(); }
+    /// Environment, path, without a table: sampled only where a light guide knows which part is visible (lightguide.h).
+    bool guidable = false;
+    bool isSky() const { return sky || guidable; }
     int outL = -1, outCl = -1, outOl = -1, outLit = -1;
     /// Output parameters that the kernel computes: name, output, components; then the total width.
     struct Value {

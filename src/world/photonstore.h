@@ -12,6 +12,7 @@
 namespace alpenglow::world {
 
 class CausticGuide;
+class LightGuide;
 
 class PhotonStore {
 public:
@@ -45,6 +46,8 @@ public:
     std::vector<uint8_t> lightsOfPasses;
     /// Null: paths find caustics by chance only. Changes only while no thread traces.
     std::shared_ptr<const CausticGuide> guide;
+    /// By light: guides of its samples (world/lightguide.h); empty: no light has one. Changes only while no thread traces.
+    std::vector<std::shared_ptr<const LightGuide>> lightGuides;
     float widthOfPasses = 0; ///< photons treat lobes with a smaller spread, in radians, as mirrors
 
 private:

@@ -1,5 +1,6 @@
 #include "world/skytable.h"
 #include "base/exact.h"
+#include "world/emitterfootprint.h"
 #include "world/impl.h"
 #include <algorithm>
 #include <cmath>
@@ -151,6 +152,8 @@ void WorldImpl::tabulateSkies(Evaluator& evaluator) {
         BoundLight& l = lights_[size_t(i)];
         if (l.kind != LightKind::Environment || !l.importance || l.asksSurface || l.sentCl >= 0) continue;
         if (l.kernel.kernel->facts().suspends) continue;
+        const bool sampled = settings_.direct && settings_.indirect && !settings_.bsdfOnly && !settings_.lightOnly;
+        l.guidable = sampled && !l.channels && !usesFootprint(l);
         const int widest = widestMap(l.kernel, *this);
         if (widest == 0) { // arithmetic only: most such skies are uniform
             const std::vector<float> few = luminanceOf(l, 2 * kCoarse, kCoarse, 1, evaluator);
@@ -161,6 +164,7 @@ void WorldImpl::tabulateSkies(Evaluator& evaluator) {
         if (!(table->concentration() > kConcentrated)) continue;
         l.power = float(table->integral() / (2 * kPi)); // between the effect of a uniform sky and of a small sun overhead
         l.sky = std::move(table);
+        l.guidable = false;
     }
 }
 

@@ -92,6 +92,34 @@ geometry::HitRef TriangleLamp::place(const Vec3& from, const Seen& seen, Vec2 u)
     return {uint32_t(t), b1, b2, nullptr, 0};
 }
 
+bool TriangleLamp::meet(const Vec3& from, const Vec3& w, geometry::HitRef& hit) const {
+    const Vec3d at(from), way(w);
+    for (size_t t = 0; t < triangles_.size(); ++t) {
+        const Vec3d a = triangles_[t][0] - at, e1 = triangles_[t][1] - triangles_[t][0], e2 = triangles_[t][2] - triangles_[t][0];
+        const Vec3d n = cross(e1, e2), q = cross(a, way);
+        const double facing = dot(n, way);
+        if (!(facing != 0) || !(dot(a, n) / facing > 0)) continue;
+        const double b1 = dot(q, e2) / facing, b2 = -dot(q, e1) / facing;
+        if (!(b1 >= 0 && b2 >= 0 && b1 + b2 <= 1)) continue;
+        hit = {uint32_t(t), b1, b2, nullptr, 0};
+        return true;
+    }
+    return false;
+}
+
+bool TriangleLamp::planar() const {
+    constexpr double kFlat = 1e-6; // relative to the radius
+    Vec3d n(0.);
+    for (const auto& t : triangles_)
+        if (const Vec3d m = cross(t[1] - t[0], t[2] - t[0]); dot(m, m) > dot(n, n)) n = m;
+    const double l = length(n), most = kFlat * std::sqrt(radius2_);
+    if (!(l > 0)) return false;
+    for (const auto& t : triangles_)
+        for (const Vec3d& c : t)
+            if (!(std::fabs(dot(c - triangles_[0][0], n)) <= most * l)) return false;
+    return true;
+}
+
 bool TriangleLamp::flat(const geometry::Shape& s) {
     const auto* polygons = dynamic_cast<const geometry::PolygonMesh*>(&s);
     return polygons && polygons->plain() && !s.diced() && has(s) && s.mesh().triangles() > 0;

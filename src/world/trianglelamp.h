@@ -24,6 +24,10 @@ public:
     bool see(const Vec3& from, Seen&) const;
     /// Samples a point by a pair of numbers: a triangle of the mesh and the position on it.
     geometry::HitRef place(const Vec3& from, const Seen&, Vec2 u) const;
+    /// The triangle that a ray from a point meets first; false: none. w: unit.
+    bool meet(const Vec3& from, const Vec3& w, geometry::HitRef&) const;
+    /// Whether all triangles lie in one plane, so that a ray meets one of them at most.
+    bool planar() const;
     /// Whether all points are on flat triangles with one normal each, as FlatEmitter requires.
     static bool flat(const geometry::Shape&);
     /// For a flat shape.

@@ -149,16 +149,16 @@ TEST(CausticGuide, DrawsByItsDensity) {
         const float a = 6.2832f * u(random);
         photons.push_back({{2 * u(random) - 1, 0, 2 * u(random) - 1},
                            {std::cos(a) + .3f * u(random), 1 + .2f * u(random), std::sin(a)},
-                           CausticGuide::sideOf(n),
+                           SurfaceTree::sideOf(n),
                            .001f});
     }
     const CausticGuide guide(photons, 1);
     EXPECT_GT(guide.cells(), 20u);
-    EXPECT_EQ(guide.find({0, 0, 0}, CausticGuide::sideOf(-n)), nullptr);
-    EXPECT_EQ(guide.find({9, 0, 0}, CausticGuide::sideOf(n)), nullptr);
-    EXPECT_EQ(guide.find({NAN, 0, 0}, CausticGuide::sideOf(n)), nullptr);
+    EXPECT_EQ(guide.find({0, 0, 0}, SurfaceTree::sideOf(-n)), nullptr);
+    EXPECT_EQ(guide.find({9, 0, 0}, SurfaceTree::sideOf(n)), nullptr);
+    EXPECT_EQ(guide.find({NAN, 0, 0}, SurfaceTree::sideOf(n)), nullptr);
     for (const Vec3& P : {Vec3(.1f, 0, .2f), Vec3(-.9f, 0, .7f), Vec3(.5f, 0, -.5f)}) {
-        const CausticGuide::Cell* cell = guide.find(P, CausticGuide::sideOf(n));
+        const CausticGuide::Cell* cell = guide.find(P, SurfaceTree::sideOf(n));
         ASSERT_NE(cell, nullptr);
         EXPECT_NEAR(cell->irradiance, 3 / 4., .4) << "3 units of light over 4 of area";
         // The integral of the density, and that of functions by both: evenly over the sphere, and by draws.
@@ -178,10 +178,10 @@ TEST(CausticGuide, DrawsByItsDensity) {
 }
 
 TEST(CausticGuide, SendsByWhatTheEyeGets) {
-    std::vector<GuidePhoton> photons(100, {{0, 0, 0}, {0, 1, 0}, CausticGuide::sideOf({0, 1, 0}), .01f});
+    std::vector<GuidePhoton> photons(100, {{0, 0, 0}, {0, 1, 0}, SurfaceTree::sideOf({0, 1, 0}), .01f});
     for (size_t i = 0; i < photons.size(); ++i) photons[i].P = {float(i % 10), 0, float(i / 10)};
     const CausticGuide guide(photons, 2);
-    const CausticGuide::Cell* cell = guide.find({4, 0, 4}, CausticGuide::sideOf({0, 1, 0}));
+    const CausticGuide::Cell* cell = guide.find({4, 0, 4}, SurfaceTree::sideOf({0, 1, 0}));
     ASSERT_NE(cell, nullptr);
     int last = 1;
     for (float brings = 1000; brings > 1e-7f; brings *= .7f) {

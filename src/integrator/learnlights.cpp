@@ -1,0 +1,81 @@
+#include "integrator/learnlights.h"
+#include "integrator/deferred.h"
+#include "integrator/pipeline.h"
+#include "integrator/shadowrays.h"
+#include "world/lightguide.h"
+#include <algorithm>
+
+namespace alpenglow::integrator {
+
+namespace {
+
+constexpr size_t kAtOnce = 1024;       ///< paths traced together: their rays fit into the cache of a core
+constexpr double kLeastFollowing = .3; ///< with fewer samples where a guide is used it is not worth its look-ups
+constexpr size_t kFewest = 40;         ///< samples of a light
+
+/// Whether paths may be traced before the picture.
+bool mayTraceBefore(const WorldImpl& w) {
+    if (hasDeferred(w)) return false; // the world may be replaced while rays are traced
+    const auto bakes = [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; };
+    return std::none_of(w.bindings_.begin(), w.bindings_.end(), [&](const SurfaceBinding& b) { // they would be baked, too
+        return b.surfaceS && std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(), bakes);
+    });
+}
+
+bool mayGuide(const WorldImpl& w, const BoundLight& l) {
+    if (!l.kernel || !l.importance || l.mean || l.hazy || l.instance->moving) return false;
+    return l.isSky() || (l.kind == LightKind::Area && l.emitter && l.emitter->followsDirections() && !w.accel_->hasSolids());
+}
+
+LightDomain domainOf(const BoundLight& l) { return l.isSky() ? LightDomain() : LightDomain(l.emitter->flat()[0]); }
+
+} // namespace
+
+bool mayGuideLights(const World& world) {
+    const auto& w = static_cast<const WorldImpl&>(world);
+    if (!w.accel_ || !w.photons_ || w.settings_.hider != Hider::Path || !mayTraceBefore(w)) return false;
+    for (const WorldImpl::LightList& l : w.lightLists_)
+        if (l.ofAll || !l.chooser.empty()) return false;
+    return std::any_of(w.lights_.begin(), w.lights_.end(), [&](const BoundLight& l) { return mayGuide(w, l); });
+}
+
+void forgetLights(const World& world) { static_cast<const WorldImpl&>(world).photons_->lightGuides.clear(); }
+
+bool learnLights(const std::shared_ptr<const World>& world, std::span<const CameraRay> rays, Diagnostics& d, const StopFlag* stop,
+                 LightGuideFigures& f) {
+    const auto of = std::static_pointer_cast<const WorldImpl>(world);
+    Pipeline pipeline(of, d);
+    std::vector<SeenSample> seen;
+    pipeline.stages().context.seen = &seen;
+    std::vector<SampleResult> results(std::min(rays.size(), kAtOnce));
+    for (size_t first = 0; first < rays.size(); first += kAtOnce) {
+        const auto some = rays.subspan(first, std::min(kAtOnce, rays.size() - first));
+        if (!pipeline.trace(some, std::span(results).first(some.size()), stop)) return false;
+    }
+    std::vector<std::vector<SeenLight>> by(of->lights_.size());
+    std::vector<Vec3> blocked;
+    for (const SeenSample& s : seen)
+        if (s.light == SeenSample::kBlocked) blocked.push_back(s.seen.P);
+        else if (mayGuide(*of, of->lights_[size_t(s.light)]) && std::isfinite(s.seen.weight) &&
+                 (s.seen.pdf > 0 || of->lights_[size_t(s.light)].guidable))
+            by[size_t(s.light)].push_back(s.seen);
+    f = {};
+    LightGuides guides(by.size());
+    for (size_t i = 0; i < by.size(); ++i) {
+        if (by[i].size() < kFewest) continue;
+        auto guide = std::make_shared<const LightGuide>(domainOf(of->lights_[i]), by[i]);
+        if (of->lights_[i].guidable) guide = std::make_shared<const LightGuide>(domainOf(of->lights_[i]), by[i], blocked);
+        f.samples += by[i].size();
+        f.cells += guide->cells();
+        const auto follows = std::count_if(by[i].begin(), by[i].end(), [&](const SeenLight& s) { return guide->find(s.P); });
+        if (!(double(follows) > kLeastFollowing * double(by[i].size()))) continue;
+        ++f.lights;
+        f.used += guide->used();
+        guides[i] = std::move(guide);
+    }
+    if (f.lights == 0) guides.clear();
+    of->photons_->lightGuides = std::move(guides);
+    return true;
+}
+
+} // namespace alpenglow::integrator

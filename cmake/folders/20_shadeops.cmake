@@ -1,5 +1,8 @@
 folder_library(shadeops DEPS base)
 folder_tests(shadeops DEPS shadeops)
+if(TARGET test_shadeops)
+  target_sources(test_shadeops PRIVATE ${CMAKE_SOURCE_DIR}/tests/shadeops/jets_runtime.cpp)
+endif()
 
 # The runtime as bitcode, one file a lane width, from the same headers as the program's own copy (src/shadeops/sections.cpp).
 # clang 19 whatever compiles the rest: the JIT reads LLVM 19 bitcode. The target attributes only set what vector code is sensible.

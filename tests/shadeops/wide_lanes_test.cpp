@@ -1,7 +1,7 @@
 // The same templates at 16 lanes: every lane has the bits of the program's 4-lane copy, on ordinary and on odd inputs.
 #define ALPENGLOW_LANES 16
+#include "jets_runtime.h"
 #include "shadeops/descriptor.h"
-#include "shadeops/host_runtime.h"
 #include "shadeops/runtime.h"
 #include <cmath>
 #include <cstring>

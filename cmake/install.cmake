@@ -14,12 +14,13 @@ add_custom_command(OUTPUT ${help_folder}/help-files DEPENDS alpenglow ${CMAKE_SO
   COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alpenglow> -DOUT=${help_folder} -P ${CMAKE_SOURCE_DIR}/cmake/helpfiles.cmake
   COMMENT "Manual pages and completions" VERBATIM)
 add_custom_target(installable ALL
-  DEPENDS ${help_folder}/help-files alpenglow alpenglow_c blender_addon ${installed_targets})
+  DEPENDS ${help_folder}/help-files alpenglow alpenglow_c blender_addon narrow_lanes ${installed_targets})
 
 install(TARGETS alpenglow RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS alpenglow_c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES ${CMAKE_BINARY_DIR}/lib/libri.so ${CMAKE_BINARY_DIR}/lib/librib.so DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS ${installed_targets} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/alpenglow)
+install(FILES ${narrow_files} DESTINATION ${CMAKE_INSTALL_LIBDIR}/alpenglow)
 if(TARGET _alpenglow)
   add_dependencies(installable _alpenglow)
   set(python_place ${CMAKE_INSTALL_LIBDIR}/alpenglow/python)

@@ -1,5 +1,8 @@
 folder_library(shadeops DEPS base)
 folder_tests(shadeops DEPS shadeops)
+if(TARGET test_shadeops)
+  target_sources(test_shadeops PRIVATE ${CMAKE_SOURCE_DIR}/tests/shadeops/jets_runtime.cpp)
+endif()
 
 # The runtime as bitcode, one file a lane width, from the same headers as the program's own copy (src/shadeops/sections.cpp).
 # clang 19 whatever compiles the rest: the JIT reads LLVM 19 bitcode. The target attributes only set what vector code is sensible.
@@ -17,8 +20,6 @@ file(MAKE_DIRECTORY ${bitcode_dir})
 set(bitcode_source ${CMAKE_SOURCE_DIR}/src/shadeops/bitcode/runtime.inc)
 # Bitcode holds the name of the file that was compiled, and the program holds the bitcode: this name has no folder of the build in it.
 file(CONFIGURE OUTPUT ${bitcode_dir}/runtime.cpp CONTENT "#include \"shadeops/bitcode/runtime.inc\"\n")
-set(bitcode_files)
-set(bitcode_names)
 foreach(lanes 4 8 16 32 64)
   set(march x86-64-v4)
   if(lanes EQUAL 4)
@@ -33,13 +34,24 @@ foreach(lanes 4 8 16 32 64)
       -fno-stack-protector -fno-asynchronous-unwind-tables -Wall -Wno-psabi -I${CMAKE_SOURCE_DIR}/src
       -MD -MF ${bc}.d -MT ${bc} bitcode/runtime.cpp -o ${bc}
     WORKING_DIRECTORY ${CMAKE_BINARY_DIR} DEPENDS ${bitcode_source} DEPFILE ${bc}.d COMMENT "Runtime bitcode, ${lanes} lanes" VERBATIM)
-  list(APPEND bitcode_files ${bc})
-  list(APPEND bitcode_names runtime${lanes}.bc)
 endforeach()
+# The program holds those of 16 lanes and more. Only --lanes asks for fewer: these are files beside its modules, so that ./render
+# need not wait for them. They end in a digest of what the program holds, which takes none from other sources.
+set(bitcode_names runtime16.bc runtime32.bc runtime64.bc)
+set(bitcode_files ${bitcode_names})
+list(TRANSFORM bitcode_files PREPEND ${bitcode_dir}/)
 add_custom_command(OUTPUT ${bitcode_dir}/hash.txt
   COMMAND ${CMAKE_COMMAND} -E sha256sum ${bitcode_names} > hashes.txt
   COMMAND ${CMAKE_COMMAND} -E sha256sum hashes.txt > hash.txt
   DEPENDS ${bitcode_files} WORKING_DIRECTORY ${bitcode_dir} VERBATIM)
+set(narrow_files)
+foreach(lanes 4 8)
+  set(file ${CMAKE_BINARY_DIR}/bin/alpenglow_runtime${lanes}.bc)
+  add_custom_command(OUTPUT ${file} COMMAND ${CMAKE_COMMAND} -E cat runtime${lanes}.bc hash.txt > ${file}
+    DEPENDS ${bitcode_dir}/runtime${lanes}.bc ${bitcode_dir}/hash.txt WORKING_DIRECTORY ${bitcode_dir} VERBATIM)
+  list(APPEND narrow_files ${file})
+endforeach()
+add_custom_target(narrow_lanes ALL DEPENDS ${narrow_files})
 set_source_files_properties(${CMAKE_SOURCE_DIR}/src/shadeops/bitcode.cpp PROPERTIES
   OBJECT_DEPENDS "${bitcode_files};${bitcode_dir}/hash.txt"
   COMPILE_DEFINITIONS "ALPENGLOW_BITCODE_DIR=\"${bitcode_dir}\"")

@@ -41,7 +41,7 @@ if(ALPENGLOW_PYTHON AND PYBIND11_HEADERS AND ALPENGLOW_PYTHON_PROGRAM AND NOT in
   foreach(f ${python_files})
     file(CREATE_LINK ${CMAKE_SOURCE_DIR}/python/${f} ${python_folder}/${f} SYMBOLIC)
   endforeach()
-  add_custom_target(python_module DEPENDS _alpenglow alpenglow_jit)
+  add_custom_target(python_module DEPENDS _alpenglow alpenglow_jit narrow_lanes)
   if(ALPENGLOW_TESTS)
     file(GLOB python_tests CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/python/*_test.py)
     foreach(t ${python_tests})

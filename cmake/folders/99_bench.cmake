@@ -17,7 +17,7 @@ foreach(way "scalar kScalar 1 v4" "avx512_16 kAvx512x16 16 v4" "avx512_32 kAvx51
 endforeach()
 target_include_directories(pattern_bench PRIVATE bench/patterns)
 target_link_libraries(pattern_bench PRIVATE display base)
-add_dependencies(bench pattern_bench rsl_bench)
+add_dependencies(bench pattern_bench rsl_bench narrow_lanes)
 add_executable(rib_bench EXCLUDE_FROM_ALL bench/rib_bench.cpp)
 target_link_libraries(rib_bench PRIVATE ri)
 add_dependencies(bench rib_bench)

@@ -49,7 +49,7 @@ std::string shippedShaders(const fs::path& folder) {
 
 std::string moduleFile(const char* name, const char* variable, const fs::path& folder) {
     std::error_code e;
-    if (const char* named = std::getenv(variable)) return fs::is_regular_file(named, e) ? named : "";
+    if (const char* named = variable ? std::getenv(variable) : nullptr) return fs::is_regular_file(named, e) ? named : "";
     if (folder.empty()) return {};
     for (const char* place : {".", configured::kModules, "../lib/alpenglow", "alpenglow", "../bin", "../../bin", "../.."})
         if (const fs::path found = (folder / place / name).lexically_normal(); fs::is_regular_file(found, e))

@@ -22,8 +22,9 @@ std::filesystem::path codeFolder();
 /// The folder of the shaders that ship, for code in `folder`; "" when there is none.
 std::string shippedShaders(const std::filesystem::path& folder = codeFolder());
 
-/// A module of the program (libalpenglow_*.so), for code in `folder`. When the environment variable `variable` is set, it
-/// names the file, and no other is looked for. "" when there is no such file.
+/// A module of the program (libalpenglow_*.so), or another file that lies beside these, for code in `folder`. When the
+/// environment variable `variable` is set, it names the file, and no other is looked for; nullptr: there is none. "" when there
+/// is no such file.
 std::string moduleFile(const char* name, const char* variable, const std::filesystem::path& folder = codeFolder());
 
 } // namespace alpenglow

@@ -25,7 +25,7 @@ template <class A> void each(A& a, FrameStats& f) {
 }
 template <class A> void each(A& a, FrameResult& r) { a(r.outcome, r.told, r.parseSec, r.grown); }
 
-class Packer {
+class RecordPacker {
 public:
     template <class... T> void operator()(T&... values) { (put(values), ...); }
     std::string bytes;
@@ -58,9 +58,9 @@ private:
 };
 
 /// If bytes are missing, sets `fine` to false and reads nothing more.
-class Unpacker {
+class RecordUnpacker {
 public:
-    explicit Unpacker(std::string_view b) : bytes_(b) {}
+    explicit RecordUnpacker(std::string_view b) : bytes_(b) {}
     template <class... T> void operator()(T&... values) { (get(values), ...); }
     bool fine() const { return fine_ && bytes_.empty(); }
 
@@ -106,13 +106,13 @@ private:
 };
 
 template <class T> std::string bytesOf(T& v) {
-    Packer p;
+    RecordPacker p;
     each(p, v);
     return std::move(p.bytes);
 }
 
 template <class T> bool fromBytes(std::string_view bytes, T& v) {
-    Unpacker u(bytes);
+    RecordUnpacker u(bytes);
     each(u, v);
     return u.fine();
 }

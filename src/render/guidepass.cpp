@@ -10,7 +10,7 @@ namespace alpenglow::render {
 
 namespace {
 
-constexpr uint32_t kPilot = 0xfffffffeu, kLearned = 0xfffffffdu; ///< numbers of photon passes, distinct from others
+constexpr uint32_t kGuidePilot = 0xfffffffeu, kLearned = 0xfffffffdu; ///< numbers of photon passes, distinct from others
 constexpr uint32_t kMostTurns = 4;
 constexpr uint64_t kOtherSeed = 0x6775696465ull; ///< makes the guide independent of the picture's own samples
 
@@ -65,9 +65,9 @@ bool learnCaustics(Job& job) {
     // Few enough to cost nothing in small pictures. For the complete picture, so that a crop equals that part of the picture.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
     const auto pilot = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 14)));
-    if (!passes.emit(kPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
+    if (!passes.emit(kGuidePilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
     if (found.empty()) return true;
-    passes.emission().learn(found, kPilot, pilot);
+    passes.emission().learn(found, kGuidePilot, pilot);
     const auto photons = uint32_t(std::clamp(pixels, double(1u << 13), double(1u << 17)));
     // For emitters that are not flat, emission is inefficient: sends more.
     std::vector<integrator::StoredPhoton> all;

@@ -441,7 +441,6 @@ std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& sha
     auto k = buildDefaults(shader->program(), shader->shader(), diagnostics, read);
     if (!k) return values;
     KernelOptions options;
-    options.lanes = 4;
     options.vectors = 1;
     const int errors = diagnostics.errors();
     ir::optimize(*k, options, diagnostics);

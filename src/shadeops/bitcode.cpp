@@ -1,9 +1,11 @@
-// The bitcode files of the build folder as arrays, by the assembler's .incbin.
+// The bitcode files of the build folder as arrays, by the assembler's .incbin; those of few lanes as files beside the modules.
 #include "shadeops/bitcode.h"
 #include "base/digest.h"
 #include "shadeops/descriptor.h"
+#include "shadeops/narrowruntime.h"
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #define AL_EMBED(name, file)                                                                                                     \
     asm(".section .rodata\n"                                                                                                     \
@@ -16,8 +18,6 @@
     extern "C" const unsigned char name[];                                                                                       \
     extern "C" const unsigned char name##_end[];
 
-AL_EMBED(alpenglow_bitcode_4, "runtime4.bc")
-AL_EMBED(alpenglow_bitcode_8, "runtime8.bc")
 AL_EMBED(alpenglow_bitcode_16, "runtime16.bc")
 AL_EMBED(alpenglow_bitcode_32, "runtime32.bc")
 AL_EMBED(alpenglow_bitcode_64, "runtime64.bc")
@@ -27,6 +27,11 @@ namespace alpenglow::rsl {
 namespace {
 
 Bitcode between(const unsigned char* begin, const unsigned char* end) { return {begin, static_cast<size_t>(end - begin)}; }
+
+const NarrowRuntime& narrow(int lanes) {
+    const Bitcode hash = between(alpenglow_bitcode_hash, alpenglow_bitcode_hash_end);
+    return narrowRuntime(lanes, {reinterpret_cast<const char*>(hash.data), hash.size});
+}
 
 /// Over everything in the descriptors that becomes code.
 uint64_t hashDescriptors() {
@@ -53,9 +58,10 @@ uint64_t hashDescriptors() {
 Bitcode runtimeBitcode(int lanes) {
     switch (lanes) {
     case 4:
-        return between(alpenglow_bitcode_4, alpenglow_bitcode_4_end);
-    case 8:
-        return between(alpenglow_bitcode_8, alpenglow_bitcode_8_end);
+    case 8: {
+        const std::vector<uint8_t>& bytes = narrow(lanes).bytes;
+        return {bytes.empty() ? nullptr : bytes.data(), bytes.size()};
+    }
     case 16:
         return between(alpenglow_bitcode_16, alpenglow_bitcode_16_end);
     case 32:
@@ -67,10 +73,22 @@ Bitcode runtimeBitcode(int lanes) {
     }
 }
 
-std::string_view runtimeHash() {
+std::string runtimeLack(int lanes) {
+    for (const int n : {4, 8})
+        if (lanes <= n && !narrow(n).lack.empty()) return narrow(n).lack;
+    return {};
+}
+
+std::string_view runtimeHash(int lanes) {
     static const std::string hash =
         std::string(reinterpret_cast<const char*>(alpenglow_bitcode_hash), 64) + "-" + std::to_string(hashDescriptors());
-    return hash;
+    if (lanes > 8) return hash;
+    static const std::string narrowHash = [] {
+        Digest all;
+        for (const int n : {4, 8}) all.add(narrow(n).bytes.data(), narrow(n).bytes.size());
+        return hash + "-" + digestText(all.value());
+    }();
+    return narrowHash;
 }
 
 } // namespace alpenglow::rsl

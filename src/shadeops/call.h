@@ -125,21 +125,29 @@ template <class R, class... A> constexpr int outputsOf(R (*)(A...)) {
 }
 template <auto F> void wrapped(const vf* in, vf* out) { call(F, in, out); }
 
+// Who includes this wants the functions on vf alone (1), or those on Jet1 and Jet2 as well (3).
+#ifndef ALPENGLOW_ORDERS
+#define ALPENGLOW_ORDERS 3
+#endif
+#if ALPENGLOW_ORDERS == 1
+#define AL_ORDERS(function) &wrapped<&function<vf>>
+#else
+#define AL_ORDERS(function) &wrapped<&function<vf>>, &wrapped<&function<Jet1>>, &wrapped<&function<Jet2>>
+#endif
+
 /// One symbol as compiled into this program.
 struct RuntimeEntry {
     std::string_view symbol;
-    void (*order[3])(const vf* in, vf* out); ///< on vf, Jet1, Jet2
-    int in, out;                             ///< components (at order 0, floats)
+    void (*order[ALPENGLOW_ORDERS])(const vf* in, vf* out); ///< on vf, Jet1, Jet2
+    int in, out;                                            ///< components (at order 0, floats)
 };
 
 template <int I> struct EntryAt;
 inline constexpr int kFirstEntry = __COUNTER__ + 1;
 #define AL_RUNTIME(name, function)                                                                                               \
     template <> struct EntryAt<__COUNTER__ - kFirstEntry> {                                                                      \
-        static constexpr RuntimeEntry kEntry = {#name,                                                                           \
-                                                {&wrapped<&function<vf>>, &wrapped<&function<Jet1>>, &wrapped<&function<Jet2>>}, \
-                                                inputsOf(&function<vf>),                                                         \
-                                                outputsOf(&function<vf>)};                                                       \
+        static constexpr RuntimeEntry kEntry = {                                                                                 \
+            #name, {AL_ORDERS(function)}, inputsOf(&function<vf>), outputsOf(&function<vf>)};                                    \
     };
 template <size_t... I> constexpr auto collectEntries(std::index_sequence<I...>) {
     return std::array<RuntimeEntry, sizeof...(I)>{EntryAt<static_cast<int>(I)>::kEntry...};

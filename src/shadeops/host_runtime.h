@@ -14,8 +14,4 @@ RuntimeShape runtimeShape(std::string_view symbol);
 /// Every symbol of the runtime, those that no signature names too.
 std::vector<std::string_view> runtimeSymbols();
 
-/// evaluateRuntime on jets: order 0, 1 or 2, each component as its 1, 3 or 6 parts {v, du, dv, duu, duv, dvv}. False when the
-/// symbol is unknown or the counts do not fit.
-bool evaluateRuntimeJet(std::string_view symbol, int order, const float* in, int inCount, float* out, int outCount);
-
 } // namespace alpenglow::rsl

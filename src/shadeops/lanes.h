@@ -12,7 +12,9 @@
 #endif
 #define AL_JOIN2(a, b) a##b
 #define AL_JOIN(a, b) AL_JOIN2(a, b)
+#ifndef AL_NAMESPACE
 #define AL_NAMESPACE AL_JOIN(lanes, ALPENGLOW_LANES)
+#endif
 #define AL_INLINE static inline __attribute__((always_inline))
 #define AL_MEMBER __attribute__((always_inline)) inline
 

@@ -1,5 +1,7 @@
-// The sections that hold code, compiled into the program at 4 lanes: descriptors, and evaluateRuntime.
+// The sections that hold code, compiled into the program at 4 lanes: descriptors, and evaluateRuntime. Without derivatives: the
+// functions on jets take three quarters of the compilation, and only tests call them (tests/shadeops/jets_runtime.h).
 #define ALPENGLOW_DESCRIBE
+#define ALPENGLOW_ORDERS 1
 #include "shadeops/host_runtime.h"
 #include "shadeops/runtime.h"
 #include <algorithm>
@@ -29,22 +31,15 @@ std::vector<std::string_view> runtimeSymbols() {
     return list;
 }
 
-bool evaluateRuntimeJet(std::string_view symbol, int order, const float* in, int inCount, float* out, int outCount) {
-    static constexpr int kParts[] = {1, 3, 6};
-    static constexpr int kMost = 64 * 6; // more components than any symbol has
+bool evaluateRuntime(std::string_view symbol, const float* in, int inCount, float* out, int outCount) {
+    static constexpr int kMost = 64; // more components than any symbol has
     const auto* entry = findEntry(symbol);
-    if (!entry || order < 0 || order > 2) return false;
-    const int parts = kParts[order];
-    if (inCount != entry->in * parts || outCount != entry->out * parts || inCount > kMost || outCount > kMost) return false;
+    if (!entry || inCount != entry->in || outCount != entry->out || inCount > kMost || outCount > kMost) return false;
     lanes4::vf a[kMost], r[kMost];
     for (int i = 0; i < inCount; ++i) a[i] = lanes4::vf(in[i]);
-    entry->order[order](a, r);
+    entry->order[0](a, r);
     for (int i = 0; i < outCount; ++i) out[i] = r[i][0];
     return true;
-}
-
-bool evaluateRuntime(std::string_view symbol, const float* in, int inCount, float* out, int outCount) {
-    return evaluateRuntimeJet(symbol, 0, in, inCount, out, outCount);
 }
 
 } // namespace alpenglow::rsl

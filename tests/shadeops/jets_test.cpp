@@ -1,6 +1,7 @@
 // Values against the double reference, and first and second derivatives of every symbol of the runtime against central
 // differences of it.
 #define ALPENGLOW_REFERENCE "../tests/shadeops/reference_lanes.h"
+#include "jets_runtime.h"
 #include "shadeops/descriptor.h"
 #include "shadeops/host_runtime.h"
 #include "shadeops/runtime.h"

@@ -1,4 +1,5 @@
 // Properties of the noises (3Delight manual, 6.4.2): range, mean, lattice, period, smoothness, decorrelated channels, spectrum.
+#include "jets_runtime.h"
 #include "shadeops/descriptor.h"
 #include "shadeops/host_runtime.h"
 #include <array>

@@ -144,7 +144,10 @@ TEST(Registry, BitcodeAtEveryWidth) {
     }
     EXPECT_EQ(runtimeBitcode(5).data, nullptr);
     EXPECT_GE(runtimeHash().size(), 64u);
-    EXPECT_EQ(runtimeHash(), runtimeHash());
+    EXPECT_EQ(runtimeHash(), runtimeHash(16));
+    EXPECT_EQ(runtimeHash(4), runtimeHash(8)); // each holds both files
+    EXPECT_NE(runtimeHash(8), runtimeHash(16));
+    for (const int lanes : {4, 8, 16}) EXPECT_EQ(runtimeLack(lanes), "");
 }
 
 // A small evaluator of example expressions: calls, constructors of constants, numbers, one difference.

@@ -1,7 +1,10 @@
-// The same templates at 16 lanes: every lane has the bits of the program's 4-lane copy, on ordinary and on odd inputs.
+// The same templates at 16 lanes (8 on a processor without such vectors: CMakeLists.txt): every lane has the bits of the
+// program's 4-lane copy, on ordinary and on odd inputs.
+#ifndef ALPENGLOW_LANES
 #define ALPENGLOW_LANES 16
+#endif
+#include "jets_runtime.h"
 #include "shadeops/descriptor.h"
-#include "shadeops/host_runtime.h"
 #include "shadeops/runtime.h"
 #include <cmath>
 #include <cstring>
@@ -22,15 +25,15 @@ bool sameBits(float a, float b) { return (std::isnan(a) && std::isnan(b)) || std
 
 void compareAll(const std::function<float()>& draw, int rounds) {
     static constexpr int kParts[] = {1, 3, 6};
-    for (const auto& entry : lanes16::kEntries)
+    for (const auto& entry : AL_NAMESPACE::kEntries)
         for (int order = 0; order < 3; ++order)
             for (int round = 0; round < rounds; ++round) {
                 const int in = entry.in * kParts[order], out = entry.out * kParts[order];
-                std::vector<lanes16::vf> a(in), r(out);
+                std::vector<AL_NAMESPACE::vf> a(in), r(out);
                 for (auto& x : a)
-                    for (int lane = 0; lane < 16; ++lane) x[lane] = draw();
+                    for (int lane = 0; lane < ALPENGLOW_LANES; ++lane) x[lane] = draw();
                 entry.order[order](a.data(), r.data());
-                for (int lane = 0; lane < 16; lane += 5) {
+                for (int lane = 0; lane < ALPENGLOW_LANES; lane += 5) {
                     std::vector<float> one(in), result(out);
                     for (int i = 0; i < in; ++i) one[i] = a[i][lane];
                     ASSERT_TRUE(evaluateRuntimeJet(entry.symbol, order, one.data(), in, result.data(), out)) << entry.symbol;

@@ -66,6 +66,8 @@ bool generate(const ir::Kernel& kernel, const KernelOptions& options, KernelFile
     ModuleRequest request;
     request.kernel = &kernel;
     request.lanes = options.lanes <= 4 ? 4 : options.lanes <= 8 ? 8 : 16;
+    error = runtimeLack(request.lanes);
+    if (!error.empty()) return false;
     request.vectors = options.vectors;
     request.mixed = options.mixed;
     request.optimize = options.optimize;
@@ -108,7 +110,7 @@ std::shared_ptr<const CompiledKernel> load(const KernelFile& k, bool fromCache, 
 }
 
 std::string codeKey(const KernelOptions& o) {
-    std::string k = std::string(kVersion) + "\n" + std::string(runtimeHash()) + "\n" + name(isaFor(o.lanes)) + "\n";
+    std::string k = std::string(kVersion) + "\n" + std::string(runtimeHash(o.lanes)) + "\n" + name(isaFor(o.lanes)) + "\n";
     for (int n : {o.lanes, o.vectors, int(o.mixed), o.optimize, int(o.suspend), int(o.path), o.outline, int(o.differences)})
         k += std::to_string(n) + ",";
     auto text = [&](const std::string& s) { k += std::to_string(s.size()) + ":" + s; };

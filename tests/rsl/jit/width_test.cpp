@@ -1,6 +1,6 @@
 // How many points a kernel works on at once: less than asked for where it calls what only the narrower runtimes have.
 #include "handmade.h"
-#include "shadeops/host_runtime.h"
+#include "shadeops/descriptor.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::test::width_test {
@@ -27,7 +27,7 @@ void expectWidth(const char* symbol, int widest, const std::vector<Kind>& argume
             for (size_t i = 0; i < arguments.size(); ++i)
                 for (int row = 0; row < ir::components(arguments[i]); ++row) given.push_back(value(int(i), n, row));
             float want = 0;
-            ASSERT_TRUE(evaluateRuntimeJet(symbol, 0, given.data(), int(given.size()), &want, 1));
+            ASSERT_TRUE(evaluateRuntime(symbol, given.data(), int(given.size()), &want, 1));
             ASSERT_EQ(run(0, 0, n), want) << n;
         }
     }

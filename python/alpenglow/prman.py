@@ -19,10 +19,12 @@ from __future__ import annotations
 import inspect
 from typing import Any, Callable, Dict, List, Optional, Sequence
 
-from . import _context
+from . import _context, _oslc
 from ._context import REQUESTS, Context, format_record, near
 from ._messages import Error
 from ._tokens import ERRORS, NUMBERS, SEVERITIES, TOKENS
+
+_oslc.add_to_path()
 
 __all__ = ["Cleanup", "Error", "GetProgramName", "Init", "Ri", "Ric"]
 

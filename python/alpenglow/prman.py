@@ -69,6 +69,7 @@ class Ri:
     SimpleBound = "SimpleBound"
     DSOBound = "DSOBound"
     LastError = 0
+    PRMAN_VERSION_STR = "24.0"  # scripts ask which plug-ins there are; the materials are those of that release
 
     def __init__(self, *, keep_pictures: bool = False, progress: Optional[Callable] = None,
                  flags: Optional[Sequence[str]] = None) -> None:

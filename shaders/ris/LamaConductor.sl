@@ -1,11 +1,11 @@
 /* LamaConductor: a metal, of RIS. Names and defaults are those of Pixar's documentation. A node of others, too: lama.h.
      fresnelMode 0: IOR and extinction; 1: reflectivity straight on and edgeColor at the rim
-   Not here: iridescence, anisotropyDirection. */
+   Not here: iridescence, anisotropyDirection, tailMix, edgeColorMode. */
 #include "lama.h"
 surface LamaConductor(varying color tint = 1; float fresnelMode = 0; varying color IOR = color(.18, .42, 1.37);
                       varying color extinction = color(3.42, 2.35, 1.77), reflectivity = color(.945, .7772, .3737);
                       varying color edgeColor = color(.9979, .9813, .7523); varying float roughness = .1, anisotropy = 0;
-                      varying vector anisotropyDirection = 0; varying float anisotropyRotation = 0;
+                      varying vector anisotropyDirection = 0; varying float anisotropyRotation = 0, tailMix = 0, tailLength = .5; float edgeColorMode = 0;
                       varying normal conductorNormal = 0, normal_ = 0; LAMA_OUT)
 {
     normal none = 0;

@@ -1,6 +1,6 @@
 /* PxrMeshLight: the primitives that follow in its attribute block shine, of RIS.
    Radiance is lightColor * intensity * 2^exposure, tinted by temperature where enableTemperature is 1; areaNormalize divides it by the
-   area, so that the size does not change the power. emissionFocus, coneAngle and coneSoftness shape the beam; areaNormalize has no effect, for the area is not known to the shader.
+   area, so that the size does not change the power. emissionFocus, coneAngle and coneSoftness shape the beam.
    Not done: shadow parameters, thinShadow and traceLightPaths. Lamp: Light "PxrMeshLight" "l" "float intensity" 5 */
 #include "rislight.h"
 light PxrMeshLight(float intensity = 1, exposure = 0; color lightColor = 1; float enableTemperature = 0, temperature = 6500;
@@ -11,7 +11,8 @@ light PxrMeshLight(float intensity = 1, exposure = 0; color lightColor = 1; floa
     __nonspecular = 1 - specular;
     vector X = vtransform("shader", "current", vector(1, 0, 0)), Y = vtransform("shader", "current", vector(0, 1, 0)),
            Z = vtransform("shader", "current", vector(0, 0, 1));
-    float area = 1;
+    uniform float area = 1;
+    if (areaNormalize != 0) attribute("light:area", area);
     color radiance = risRadiance(intensity, exposure, lightColor, enableTemperature, temperature);
     if (areaNormalize != 0) radiance /= area;
     if (emissionFocusNormalize != 0) radiance *= (2 + emissionFocus) / 2;

@@ -149,7 +149,7 @@ scene::ShaderRef Interpreter::network(const Call& call, scene::Keeper keeper) {
 /// A scene of RIS without lights and without an integrator that follows light is lit along the axis of the camera: white paint
 /// that faces it has radiance 1.
 void Interpreter::addHeadlight(scene::Frame& frame) {
-    if (!ris_ || !headlight_ || !frame.lights.empty() || frame.primitives.empty()) return;
+    if (!ris_ || !headlight_ || !frame.lights.empty() || (frame.primitives.empty() && frame.instances.empty())) return;
     auto call = std::make_shared<scene::ShaderCall>();
     call->name = "PxrDistantLight";
     const auto give = [&](const char* name, float value) {
@@ -161,7 +161,7 @@ void Interpreter::addHeadlight(scene::Frame& frame) {
     give("intensity", 3.14159265f);
     give("areaNormalize", 1);
     call->toWorld = inverse(frame.options.worldToCamera);
-    call->place = frame.primitives[0]->place;
+    call->place = frame.primitives.empty() ? frame.instances[0].place : frame.primitives[0]->place;
     scene::Light l;
     l.shader = std::move(call);
     l.attributes = std::make_shared<scene::Attributes>();

@@ -63,6 +63,20 @@ TEST(RisLights, MapsOfDomesAreTurnedAsPublished) {
         }
 }
 
+// The light of the shape is that of its radiance, intensity / area, through the form factor.
+TEST(RisLights, GeometryThatShinesMayKeepItsPowerAtAnySize) {
+    for (const char* light : {"AreaLightSource \"PxrStdAreaLight\" \"a\" \"float intensity\" 4",
+                              "Light \"PxrMeshLight\" \"a\" \"float intensity\" 4 \"int areaNormalize\" 1"})
+        for (double half : {.05, .5}) {
+            std::ostringstream shape;
+            shape << light << "\nScale " << half << ' ' << half << " 1\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]";
+            const double want = 4 / (4 * half * half) * ofRectangle(half, half, 2);
+            expectMean(paint(block(shape.str())), want, .01 * want, light);
+        }
+    expectMean(paint(block("Light \"PxrMeshLight\" \"a\" \"float intensity\" 4\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]")),
+               4 * ofRectangle(1, 1, 2), .02, "a mesh keeps its radiance");
+}
+
 TEST(RisLights, AMissingMapIsSaidAndTheLightShinesWithoutIt) {
     expectMean(
         paint("Light \"PxrDomeLight\" \"l\" \"float intensity\" .5 \"string lightColorMap\" \"nowhere.tex\"\n", {0, 0, 2}, 1), .5,

@@ -135,6 +135,20 @@ TEST(Ris, WithoutLightsAndIntegratorTheEyeHasALamp) {
     EXPECT_EQ(read("Integrator \"PxrDefault\" \"i\"\n" + ball)->frame().lights.size(), 1u);
     EXPECT_EQ(read("Integrator \"PxrPathTracer\" \"i\"\n" + ball)->frame().lights.size(), 0u);
     EXPECT_EQ(inWorld("Sphere 1 -1 1 360")->frame().lights.size(), 0u);
+    auto objects = read("WorldBegin\nObjectBegin 1\nSphere 1 -1 1 360\nObjectEnd\nBxdf \"PxrDiffuse\" \"d\"\nObjectInstance "
+                        "1\nWorldEnd\n");
+    EXPECT_EQ(objects->frame().lights.size(), 1u); // instances are drawn as well
+    ASSERT_EQ(objects->frame().instances.size(), 1u);
+    EXPECT_TRUE(objects->frame().instances[0].attributes->lights.contains(0));
+}
+
+// RIS gives Camera a kind, a handle and parameters; RISpec a name and parameters.
+TEST(Ris, CameraHasAKindAndAHandle) {
+    for (const char* camera : {"\"PRManCamera\" \"id\" \"float fStop\" [8]", "\"side\" \"float fStop\" [8]", "\"side\""}) {
+        auto c = read(std::string("Camera ") + camera + "\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+        ASSERT_EQ(c->count(), 1u) << c->messages();
+        EXPECT_EQ(c->only().code, Rie::Incapable);
+    }
 }
 
 TEST(Ris, PxrOcclusionSeesOneSurfaceEverywhere) {

@@ -49,8 +49,8 @@ TEST(Osl, ParametersThatAreBoundToThePrimitiveBeginWithItsVariables) {
                           "x.osl", *std::make_unique<Diagnostics>());
     ASSERT_TRUE(rsl);
     EXPECT_NE(rsl->find("Cs_ = Cs;"), std::string::npos) << *rsl;
-    EXPECT_NE(rsl->find("t_ = .5;"), std::string::npos) << *rsl;
-    EXPECT_NE(rsl->find("v_ = 2;"), std::string::npos) << *rsl;
+    EXPECT_NE(rsl->find("t_= .5;"), std::string::npos) << *rsl;
+    EXPECT_NE(rsl->find("v_= 2;"), std::string::npos) << *rsl;
 }
 
 TEST(Osl, FormsThatDiffer) {

@@ -32,7 +32,7 @@ color risRadiance(float intensity, exposure; color lightColor; float enableTempe
 /* 1 where a map is named and can be read: light with a map that is missing shines as if it had none. */
 float risMap(string map;) {
     uniform float there = 0;
-    if (map != "") textureinfo(map, "exists", there);
+    if (map != "") there = textureinfo(map, "exists", 0);
     return there;
 }
 /* What a map holds, with saturation and gamma applied. */
@@ -136,7 +136,7 @@ float risFilter(uniform float f[]; uniform float at; string map; point a, b; out
                 t = clamp(t, 0, 1);
             }
             uniform float there = 0;
-            if (map != "") textureinfo(map, "exists", there);
+            if (map != "") there = textureinfo(map, "exists", 0);
             if (crosses == 0) v = 0;
             else if (s < 0 || s > 1 || t < 0 || t > 1) tint = fill;
             else if (there != 0) tint = color texture(map, s, t);

@@ -7,7 +7,7 @@ surface PxrNormalMap(varying color inputRGB = color(.5, .5, 1); string filename 
     if (invertT != 0) y = 1 - y;
     color c = inputRGB;
     uniform float there = 0;
-    if (filename != "") textureinfo(filename, "exists", there);
+    if (filename != "") there = textureinfo(filename, "exists", 0);
     if (filename != "") c = color(float texture(filename[0], x, y, "blur", blur), float texture(filename[1], x, y, "blur", blur), float texture(filename[2], x, y, "blur", blur));
     if (filename != "" && there == 0) c = inputRGB;
     normal n = normalize(N);

@@ -11,7 +11,7 @@ surface PxrTexture(string filename = ""; float firstChannel = 0, atlasStyle = 0,
     resultA = missingAlpha;
     if (filename != "") {
         uniform float there = 0;
-        textureinfo(filename, "exists", there);
+        there = textureinfo(filename, "exists", 0);
         uniform float channels = 3;
         textureinfo(filename, "channels", channels);
         string kind = (filter_ == 0) ? "box" : "gaussian";

@@ -1,5 +1,6 @@
 // RIS: connected parameters begin with what patterns give, and lights have the closed forms of their units (docs/ris.md).
 #include "integrator/harness.h"
+#include "integrator/maps.h"
 
 namespace risscene_test {
 
@@ -146,6 +147,21 @@ TEST(RisNetwork, OslTakesVariablesOfThePrimitiveWhereItSaysSo) {
         shown("Color [.2 .4 .6]\nPattern \"oslbound\" \"o\"\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"o:Cout\"]\n");
     EXPECT_NEAR(c.x, .2f, 1e-6); // and is found in other case
     EXPECT_NEAR(c.z, .6f, 1e-6);
+}
+
+TEST(RisNetwork, APictureThatIsMissingIsSaidAndHasItsColourForThat) {
+    const std::string show = "\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"t:resultRGB\"]\n",
+                      texture = "Pattern \"PxrTexture\" \"t\" \"color missingColor\" [.1 .2 .3] \"string filename\" ";
+    const Color there = shown(texture + writeMap("risthere.exr", Color(.5f, .25f, 1)) + show);
+    EXPECT_NEAR(there.x, .5f, 1e-3);
+    EXPECT_NEAR(there.y, .25f, 1e-3);
+    const Color missing = shown(texture + "\"risnowhere.exr\"" + show, 1);
+    EXPECT_NEAR(missing.x, .1f, 1e-6);
+    EXPECT_NEAR(missing.z, .3f, 1e-6);
+    const Color bent = shown("Pattern \"PxrNormalMap\" \"t\" \"string filename\" \"risnowhere.exr\"\nBxdf \"shownormal\" "
+                             "\"b\" \"reference normal n\" [\"t:resultN\"]\n",
+                             1);
+    EXPECT_NEAR(std::fabs(bent.z), 1, 1e-6); // the surface's own
 }
 
 TEST(RisNetwork, VariablesOfThePrimitiveAndAttributesAreRead) {

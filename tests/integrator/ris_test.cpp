@@ -150,17 +150,24 @@ TEST(RisNetwork, OslTakesVariablesOfThePrimitiveWhereItSaysSo) {
 }
 
 TEST(RisNetwork, APictureThatIsMissingIsSaidAndHasItsColourForThat) {
+    const auto seen = [](const std::string& requests, int errors) {
+        writeShaders();
+        Scene s("WorldBegin\n" + requests + kSquare + "WorldEnd\n", path());
+        const Color c = s.one(rayTo({0, 0, 0}, {.25f, .5f, 2}));
+        EXPECT_EQ(s.diagnostics.errors(), errors) << s.messages();
+        return c;
+    };
     const std::string show = "\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"t:resultRGB\"]\n",
                       texture = "Pattern \"PxrTexture\" \"t\" \"color missingColor\" [.1 .2 .3] \"string filename\" ";
-    const Color there = shown(texture + writeMap("risthere.exr", Color(.5f, .25f, 1)) + show);
+    const Color there = seen(texture + writeMap("risthere.exr", 4, 4, Color(.5f, .25f, 1)) + show, 0);
     EXPECT_NEAR(there.x, .5f, 1e-3);
     EXPECT_NEAR(there.y, .25f, 1e-3);
-    const Color missing = shown(texture + "\"risnowhere.exr\"" + show, 1);
+    const Color missing = seen(texture + "\"risnowhere.exr\"" + show, 1);
     EXPECT_NEAR(missing.x, .1f, 1e-6);
     EXPECT_NEAR(missing.z, .3f, 1e-6);
-    const Color bent = shown("Pattern \"PxrNormalMap\" \"t\" \"string filename\" \"risnowhere.exr\"\nBxdf \"shownormal\" "
-                             "\"b\" \"reference normal n\" [\"t:resultN\"]\n",
-                             1);
+    const Color bent = seen("Pattern \"PxrNormalMap\" \"t\" \"string filename\" \"risnowhere.exr\"\nBxdf \"shownormal\" "
+                            "\"b\" \"reference normal n\" [\"t:resultN\"]\n",
+                            1);
     EXPECT_NEAR(std::fabs(bent.z), 1, 1e-6); // the surface's own
 }
 

@@ -186,7 +186,7 @@ TEST(RisFilters, WhatIsNotKnownIsSaidOnce) {
             path(), 1);
     const std::string said = "LightFilter \"PxrNoSuchLightFilter\" is left out";
     EXPECT_NE(s.messages().find(said), std::string::npos);
-    EXPECT_EQ(s.messages().find(said), s.messages().rfind(said));
+    EXPECT_EQ(s.messages().find(said), s.messages().rfind(said)) << s.messages();
 }
 
 /// A profile of 3 angles from the axis, the same all around: 200, 100 and 0 candelas.

@@ -605,7 +605,7 @@ class Oslc(InFolder):
             status, _out, said = run(sys.executable, "a.py", "half")
             self.assertEqual((status, said), (0, ""))
         self.assertIn("half.osl", open("half.oso").read())
-        self.assertAlmostEqual(float(read_exr("a.exr")["G"].mean()), .25, 5)
+        self.assertAlmostEqual(float(read_exr("a.exr")["G"].max()), .25, 5)
 
     def test_faults_end_it(self):
         self.write("half.osl", "shader half(output color Cout = 0) { Cout = nowhere; }\n")
@@ -624,7 +624,7 @@ class Oslc(InFolder):
         status, _out, said = run(sys.executable, "a.py", "half")
         self.assertEqual(status, 0)
         self.assertIn("Half.osl", said)
-        self.assertAlmostEqual(float(read_exr("a.exr")["G"].mean()), .25, 5)
+        self.assertAlmostEqual(float(read_exr("a.exr")["G"].max()), .25, 5)
 
 
 if __name__ == "__main__":

@@ -607,6 +607,10 @@ class Oslc(InFolder):
         self.assertIn("half.osl", open("half.oso").read())
         self.assertAlmostEqual(float(read_exr("a.exr")["G"].max()), .25, 5)
 
+    def test_scripts_that_ask_for_the_release(self):
+        import alpenglow.prman
+        self.assertEqual(alpenglow.prman.Ri().PRMAN_VERSION_STR.split(".")[0], "24")
+
     def test_faults_end_it(self):
         self.write("half.osl", "shader half(output color Cout = 0) { Cout = nowhere; }\n")
         self.write("a.py", self.SCRIPT)

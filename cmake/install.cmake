@@ -25,8 +25,8 @@ if(TARGET _alpenglow)
   add_dependencies(installable _alpenglow)
   set(python_place ${CMAKE_INSTALL_LIBDIR}/alpenglow/python)
   install(TARGETS _alpenglow LIBRARY DESTINATION ${python_place}/alpenglow)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/python/ DESTINATION ${python_place} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi"
-    PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/python/ DESTINATION ${python_place} USE_SOURCE_PERMISSIONS FILES_MATCHING PATTERN "*.py"
+    PATTERN "*.pyi" PATTERN py.typed PATTERN oslc PATTERN __pycache__ EXCLUDE)
 endif()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/shaders)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/editors/vscode DESTINATION ${CMAKE_INSTALL_DATADIR}/alpenglow/editors)

@@ -36,8 +36,8 @@ if(ALPENGLOW_PYTHON AND PYBIND11_HEADERS AND ALPENGLOW_PYTHON_PROGRAM AND NOT in
   set_property(TARGET _alpenglow APPEND PROPERTY LINK_DEPENDS ${CMAKE_SOURCE_DIR}/src/python/exported.map)
   file(GLOB python_files RELATIVE ${CMAKE_SOURCE_DIR}/python CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/python/prman.py
     ${CMAKE_SOURCE_DIR}/python/alpenglow/*.py ${CMAKE_SOURCE_DIR}/python/alpenglow/*.pyi
-    ${CMAKE_SOURCE_DIR}/python/alpenglow/py.typed)
-  file(MAKE_DIRECTORY ${python_folder}/alpenglow)
+    ${CMAKE_SOURCE_DIR}/python/alpenglow/py.typed ${CMAKE_SOURCE_DIR}/python/alpenglow/bin/*)
+  file(MAKE_DIRECTORY ${python_folder}/alpenglow/bin)
   foreach(f ${python_files})
     file(CREATE_LINK ${CMAKE_SOURCE_DIR}/python/${f} ${python_folder}/${f} SYMBOLIC)
   endforeach()

@@ -19,10 +19,12 @@ from __future__ import annotations
 import inspect
 from typing import Any, Callable, Dict, List, Optional, Sequence
 
-from . import _context
+from . import _context, _oslc
 from ._context import REQUESTS, Context, format_record, near
 from ._messages import Error
 from ._tokens import ERRORS, NUMBERS, SEVERITIES, TOKENS
+
+_oslc.add_to_path()
 
 __all__ = ["Cleanup", "Error", "GetProgramName", "Init", "Ri", "Ric"]
 
@@ -67,6 +69,7 @@ class Ri:
     SimpleBound = "SimpleBound"
     DSOBound = "DSOBound"
     LastError = 0
+    PRMAN_VERSION_STR = "24.0"  # scripts ask which plug-ins there are; the materials are those of that release
 
     def __init__(self, *, keep_pictures: bool = False, progress: Optional[Callable] = None,
                  flags: Optional[Sequence[str]] = None) -> None:

@@ -59,7 +59,7 @@ class Ri:
     CS: str
     CUBIC: str
     CURRENT: str
-    def Camera(self, name: str, *parameters: Any, **keywords: Any) -> None: ...
+    def Camera(self, name: str, handle: Optional[str] = ..., *parameters: Any, **keywords: Any) -> None: ...
     def Clipping(self, near: float, far: float) -> None: ...
     def ClippingPlane(self, x: float, y: float, z: float, nx: float, ny: float, nz: float) -> None: ...
     def Color(self, color: Sequence[float]) -> None: ...
@@ -206,6 +206,7 @@ class Ri:
     POWERSTEP: int
     PRIMITIVE: str
     PRINT: str
+    PRMAN_VERSION_STR: str
     PROC2DELAYEDREADARCHIVE: str
     PROC2DYNAMICLOAD: str
     PROC2RUNPROGRAM: str

@@ -10,7 +10,10 @@
     varying color M##_mirror = 0, M##_through = 0; varying float M##_glassIor = 1.5, M##_glassRough = .1, M##_glassAniso = 0; \
     varying color M##_sheen = 0; varying float M##_sheenRough = .1; \
     varying color M##_sss = 0, M##_sssRadius = 1; varying color M##_translucent = 0, M##_glow = 0; varying normal M##_bump = 0;
+/* What the nodes of Pixar's documentation have besides and no light here depends on. */
 #define LAMA_OUT \
+    varying color shadowColor = 0; varying float energyCompensation = 1, surfaceMollification = 1, motionMollification = 0; \
+    float bumpShadowing = 1, overrideExteriorIOR = 0; varying float exteriorIOR = 1; string lobeName = "", matte = ""; \
     output varying color bxdf_out_diffuse = 0; output varying float bxdf_out_diffuseRough = 0; \
     output varying color bxdf_out_metal = 0; output varying color bxdf_out_metalIor = 1; output varying color bxdf_out_metalK = 0; \
     output varying float bxdf_out_metalRough = .1; output varying float bxdf_out_metalAniso = 0; \

@@ -26,6 +26,15 @@ vector cross(vector a, b;) { return a ^ b; }
 float linearstep(float a, b, x;) { return (a == b) ? ((x < a) ? 0 : 1) : clamp((x - a) / (b - a), 0, 1); }
 float luminance(color c;) { return .2126 * comp(c, 0) + .7152 * comp(c, 1) + .0722 * comp(c, 2); }
 float aastep(float edge, x;) { return filterstep(edge, x); }
+float filterwidth(float x;) { return abs(Du(x) * du) + abs(Dv(x) * dv); }
+float inversesqrt(float a;) { return (a > 0) ? 1 / sqrt(a) : 0; }
+float expm1(float a;) { return exp(a) - 1; }
+float select(float a, b, c;) { return (c != 0) ? b : a; }
+color select(color a, b; float c;) { return (c != 0) ? b : a; }
+float hashnoise(float x;) { return float cellnoise(x); }
+float hashnoise(float x, y;) { return float cellnoise(x, y); }
+float hashnoise(point p;) { return float cellnoise(p); }
+float backfacing() { return (N . I > 0) ? 1 : 0; }
 float osl_isnull(float a;) { return 0; }
 
 float snoise(float x;) { return 2 * float noise(x) - 1; }

@@ -1,11 +1,11 @@
 /* LamaDielectric: glass, plastic's surface, of RIS. Names and defaults are those of Pixar's documentation. A node of others, too:
    lama.h. As the top of LamaLayer what comes through is the node below.
      fresnelMode 0: reflectivity straight on; 1: IOR
-   Not here: absorption and scattering inside (Interior "medium"), dispersion, iridescence, anisotropyDirection. */
+   Not here: absorption and scattering inside (Interior "medium"), dispersion, iridescence, anisotropyDirection, tailMix. */
 #include "lama.h"
 surface LamaDielectric(float fresnelMode = 0; varying float IOR = 1.5; varying float reflectivity = .04;
                        varying color reflectionTint = 1, transmissionTint = 1; varying float roughness = .1, anisotropy = 0;
-                       varying vector anisotropyDirection = 0; varying float anisotropyRotation = 0;
+                       varying vector anisotropyDirection = 0; varying float anisotropyRotation = 0, tailMix = 0, tailLength = .5;
                        varying color absorptionColor = 1; varying float absorptionRadius = 1;
                        varying normal dielectricNormal = 0, normal_ = 0; LAMA_OUT)
 {

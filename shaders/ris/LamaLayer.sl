@@ -1,7 +1,7 @@
 /* LamaLayer: a node over another, which gets the light that the upper one neither reflects nor spreads, of RIS: lama.h. What a
    LamaDielectric at the top lets through is the node below, tinted. topThickness is not read. */
 #include "lama.h"
-surface LamaLayer(LAMA_IN(materialTop) LAMA_IN(materialBase) varying float topMix = 1, topThickness = 1; LAMA_OUT)
+surface LamaLayer(LAMA_IN(materialTop) LAMA_IN(materialBase) varying float topMix = 1, topThickness = 0; LAMA_OUT)
 {
     normal n;
     risSide(normal 0, materialTop_bump, n);

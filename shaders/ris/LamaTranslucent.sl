@@ -1,6 +1,6 @@
 /* LamaTranslucent: diffuse light through a thin surface, of RIS. A node of others, too: lama.h. */
 #include "lama.h"
-surface LamaTranslucent(varying color translucentColor = .18, color_ = -1; varying float roughness = 0, energyCompensation = 1;
+surface LamaTranslucent(varying color translucentColor = .18, color_ = -1; varying float roughness = 0;
                         varying normal translucentNormal = 0, normal_ = 0; LAMA_OUT)
 {
     normal none = 0;

@@ -1,21 +1,20 @@
 /* PxrDomeLight: a sky all around, of RIS. Radiance is lightColor * intensity * 2^exposure times that of the map,
-   tinted by temperature where enableTemperature is 1. The map is of latitudes and longitudes (or a cube map) about the z axis of the light's space;
-   colorMapGamma is applied to it. Under "path" where it is bright lights are sampled. Not done: colorMapSaturation, shadow parameters, portals
-   and light filters. Ball: Light "PxrDomeLight" "l" "float intensity" 1 */
+   tinted by temperature where enableTemperature is 1. The map is of latitudes and longitudes (or a cube map); its top is +z of the
+   light's space, its middle -x, a quarter from its left edge -y. colorMapGamma and colorMapSaturation are applied to it; where it cannot
+   be read there is none. Under "path" where it is bright lights are sampled. Not done: shadow parameters, portals
+  . Ball: Light "PxrDomeLight" "l" "float intensity" 1 */
 #include "rislight.h"
 light PxrDomeLight(float intensity = 1, exposure = 0; color lightColor = 1; float enableTemperature = 0, temperature = 6500;
          string lightColorMap = ""; color colorMapGamma = 1; float colorMapSaturation = 1, specular = 1, diffuse = 1;
-         output float __nondiffuse = 0; output float __nonspecular = 0; string __group = "", lightGroup = "") {
+         output float __nondiffuse = 0; output float __nonspecular = 0; string __group = "", lightGroup = ""; RIS_SHAPED) {
     __nondiffuse = 1 - diffuse;
     __nonspecular = 1 - specular;
     color radiance = risRadiance(intensity, exposure, lightColor, enableTemperature, temperature);
     string map = lightColorMap;
+    float there = risMap(map);
     solar() {
         Cl = radiance;
-        if (map != "") {
-            color seen = environment(map, vtransform("shader", -L));
-            Cl *= color(pow(max(0, comp(seen, 0)), 1 / comp(colorMapGamma, 0)), pow(max(0, comp(seen, 1)), 1 / comp(colorMapGamma, 1)),
-                        pow(max(0, comp(seen, 2)), 1 / comp(colorMapGamma, 2)));
-        }
+        if (there != 0) Cl *= risMapped(color environment(map, risLatLong(vtransform("shader", -L))), colorMapGamma, colorMapSaturation);
+        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, Ps - 1e5 * normalize(L), Ps);
     }
 }

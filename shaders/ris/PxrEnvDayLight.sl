@@ -1,4 +1,5 @@
-/* PxrEnvDayLight: sun and sky of a day, of RIS; the zenith is the z axis of the light's space, y is north. The sky is that of A. J. Preetham, P. Shirley and
+/* PxrEnvDayLight: sun and sky of a day, of RIS; the zenith is +z of the light's space, north +x, east +y (as
+   hdPrman of OpenUSD, light.cpp, has it). The sky is that of A. J. Preetham, P. Shirley and
    B. Smits, "A Practical Analytic Model for Daylight" (1999), with haze as turbidity; the sun that of its appendix. Where month is 0
    sunDirection points to the sun, else date, hour, zone, latitude and longitude tell where it is. The unit is that a white floor under 100 klux has
    radiance 1 at intensity * 2^exposure = 1. Below the horizon is groundColor. Not done: groundMode, enableShadows and shadow parameters.
@@ -7,7 +8,7 @@
 light PxrEnvDayLight(float intensity = 1, exposure = 0; vector sunDirection = vector(0, 0, 1); float haze = 2;
          color skyTint = 1, sunTint = 1, groundColor = .2; float groundMode = 0, sunSize = 1;
          float month = 11, day = 20, year = 2014, hour = 14.633333, zone = -8, latitude = 47.602, longitude = -122.332;
-         float specular = 1, diffuse = 1; output float __nondiffuse = 0; output float __nonspecular = 0; string __group = "", lightGroup = "") {
+         float specular = 1, diffuse = 1; output float __nondiffuse = 0; output float __nonspecular = 0; string __group = "", lightGroup = ""; RIS_SHAPED) {
     float perez(float a, b, c, d, e, ct, g, cg;) {
         return (1 + a * exp(b / max(ct, .01))) * (1 + c * exp(d * g) + e * cg * cg);
     }
@@ -23,7 +24,7 @@ light PxrEnvDayLight(float intensity = 1, exposure = 0; vector sunDirection = ve
         float t = hour + .17 * sin(4 * PI * (J - 80) / 373) - .129 * sin(2 * PI * (J - 8) / 355) + (longitude - 15 * zone) / 15;
         float turn = PI * t / 12, decline = .4093 * sin(2 * PI * (J - 81) / 368);
         float up = sin(lat) * sin(decline) - cos(lat) * cos(decline) * cos(turn);
-        toSun = normalize(vector(cos(decline) * sin(turn), cos(lat) * sin(decline) + sin(lat) * cos(decline) * cos(turn), up));
+        toSun = normalize(vector(cos(lat) * sin(decline) + sin(lat) * cos(decline) * cos(turn), cos(decline) * sin(turn), up));
     }
     float cs = clamp(zcomp(toSun), 0, 1), ts = acos(cs), T = clamp(haze, 1.7, 10), day1 = smoothstep(-.1, .05, zcomp(toSun));
     /* zenith: luminance and chromaticity */
@@ -44,6 +45,7 @@ light PxrEnvDayLight(float intensity = 1, exposure = 0; vector sunDirection = ve
             Cl = scale * day1 * skyTint * color(max(0, 3.2404542 * X - 1.5371385 * Y - .4985314 * Z),
                 max(0, -.9692660 * X + 1.8760108 * Y + .0415560 * Z), max(0, .0556434 * X - .2040259 * Y + 1.0572252 * Z));
         }
+        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, Ps - 1e5 * normalize(L), Ps);
     }
     /* what comes through the air at .61, .55 and .465 micrometres: Rayleigh and aerosol */
     float m = 1 / (cs + .15 * pow(93.885 - degrees(ts), -1.253)), beta = .04608 * T - .04586;
@@ -51,5 +53,6 @@ light PxrEnvDayLight(float intensity = 1, exposure = 0; vector sunDirection = ve
                           exp(-m * (.008735 * pow(.465, -4.08) + beta * pow(.465, -1.3))));
     vector axis = vtransform("shader", "current", -toSun);
     solar(axis, radians(.265 * max(sunSize, .05)))
-        Cl = intensity * pow(2, exposure) * 1.28 * (zcomp(toSun) > 0 ? 1 : 0) * through * sunTint; /* 128 klux outside of the air */
+        Cl = risFiltered(intensity * pow(2, exposure) * 1.28 * (zcomp(toSun) > 0 ? 1 : 0) * through * sunTint, lightFilters, lightFilterMaps,
+                         Ps - 1e5 * normalize(L), Ps); /* 128 klux outside of the air */
 }

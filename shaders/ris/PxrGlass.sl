@@ -1,9 +1,9 @@
 /* PxrGlass: glass, of RIS before PxrSurface had it. Names are those of Pixar's documentation.
      absorptionColor with absorptionGain above 0: what is left of light after 1 / absorptionGain scene units inside
-   Ball: Surface "ris/PxrGlass" "float roughness" 0 */
+   Ball: Surface "ris/PxrGlass" "color reflectionColor" [1 1 1] "color transmissionColor" [1 1 1] */
 #include "rislobes.h"
-surface PxrGlass(varying float ior = 1.5, roughness = .1, anisotropic = 0, reflectionGain = 1, transmissionGain = 1;
-                 varying color reflectionColor = 1, transmissionColor = 1, absorptionColor = 1; varying float absorptionGain = 0;
+surface PxrGlass(varying float ior = 1.5, roughness = 0, anisotropic = 0, reflectionGain = 1, transmissionGain = 1;
+                 varying color reflectionColor = .5, transmissionColor = .8, absorptionColor = 1; varying float absorptionGain = 0;
                  float thin = 0; varying normal bumpNormal = 0; varying float presence = 1;)
 {
     normal n;

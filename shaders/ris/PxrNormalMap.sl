@@ -6,7 +6,10 @@ surface PxrNormalMap(varying color inputRGB = color(.5, .5, 1); string filename 
     RIS_COORDINATES(x, y);
     if (invertT != 0) y = 1 - y;
     color c = inputRGB;
+    uniform float there = 0;
+    if (filename != "") there = textureinfo(filename, "exists", 0);
     if (filename != "") c = color(float texture(filename[0], x, y, "blur", blur), float texture(filename[1], x, y, "blur", blur), float texture(filename[2], x, y, "blur", blur));
+    if (filename != "" && there == 0) c = inputRGB;
     normal n = normalize(N);
     resultN = n;
     if (disable == 0) {

@@ -1,12 +1,12 @@
 /* PxrRectLight: a rectangle, 1 across in x and y, that shines along +z, of RIS.
    Radiance is lightColor * intensity * 2^exposure, tinted by temperature where enableTemperature is 1; areaNormalize divides it by the
    area, so that the size does not change the power. emissionFocus, coneAngle and coneSoftness shape the beam; lightColorMap lies on the rectangle.
-   Not done: iesProfile, shadow parameters, thinShadow, traceLightPaths and light filters. Lamp: Light "PxrRectLight" "l" "float intensity" 5 */
+   Not done: shadow parameters, thinShadow and traceLightPaths. Lamp: Light "PxrRectLight" "l" "float intensity" 5 */
 #include "rislight.h"
 light PxrRectLight(float intensity = 1, exposure = 0; color lightColor = 1; float enableTemperature = 0, temperature = 6500;
          float areaNormalize = 0, emissionFocus = 0, emissionFocusNormalize = 0; color emissionFocusTint = 0;
          float coneAngle = 90, coneSoftness = 0, specular = 1, diffuse = 1; string lightColorMap = ""; color colorMapGamma = 1; float colorMapSaturation = 1;
-         output float __nondiffuse = 0; output float __nonspecular = 0; string __group = "", lightGroup = "") {
+         output float __nondiffuse = 0; output float __nonspecular = 0; string __group = "", lightGroup = ""; RIS_SHAPED) {
     __nondiffuse = 1 - diffuse;
     __nonspecular = 1 - specular;
     vector X = vtransform("shader", "current", vector(1, 0, 0)), Y = vtransform("shader", "current", vector(0, 1, 0)),
@@ -15,13 +15,11 @@ light PxrRectLight(float intensity = 1, exposure = 0; color lightColor = 1; floa
     color radiance = risRadiance(intensity, exposure, lightColor, enableTemperature, temperature);
     if (areaNormalize != 0) radiance /= area;
     if (emissionFocusNormalize != 0) radiance *= (2 + emissionFocus) / 2;
+    float there = risMap(lightColorMap);
     illuminate(P, N, PI / 2) {
         float cosine = normalize(L) . normalize(N);
         Cl = radiance * risShape(cosine, emissionFocus, emissionFocusTint, coneAngle, coneSoftness);
-        if (lightColorMap != "") {
-            color seen = texture(lightColorMap, s, 1 - t);
-            Cl *= color(pow(comp(seen, 0), 1 / comp(colorMapGamma, 0)), pow(comp(seen, 1), 1 / comp(colorMapGamma, 1)),
-                        pow(comp(seen, 2), 1 / comp(colorMapGamma, 2)));
-        }
+        if (there != 0) Cl *= risMapped(color texture(lightColorMap, s, 1 - t), colorMapGamma, colorMapSaturation);
+        Cl = risFiltered(Cl * risProfile(lightProfile, iesProfileScale, vtransform("shader", L)), lightFilters, lightFilterMaps, P, Ps);
     }
 }

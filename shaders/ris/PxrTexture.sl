@@ -1,5 +1,5 @@
 /* PxrTexture: a picture, of RIS, by s and t or a manifold. invertT 1 puts its lower edge at t = 0; firstChannel, filter (0 box, else gaussian), blur;
-   saturation, the scales and offsets of colour and alpha; missingColor and missingAlpha where no file is named. The colour
+   saturation, the scales and offsets of colour and alpha; missingColor and missingAlpha where no file is named or it is missing. The colour
    space of a map is its file's (docs/maps.md). Not done: atlasStyle, lerp, linearize. */
 #include "rispattern.h"
 surface PxrTexture(string filename = ""; float firstChannel = 0, atlasStyle = 0, invertT = 1, filter_ = 1, blur = 0, lerp = 1;
@@ -10,6 +10,8 @@ surface PxrTexture(string filename = ""; float firstChannel = 0, atlasStyle = 0,
     resultRGB = missingColor;
     resultA = missingAlpha;
     if (filename != "") {
+        uniform float there = 0;
+        there = textureinfo(filename, "exists", 0);
         uniform float channels = 3;
         textureinfo(filename, "channels", channels);
         string kind = (filter_ == 0) ? "box" : "gaussian";
@@ -21,6 +23,10 @@ surface PxrTexture(string filename = ""; float firstChannel = 0, atlasStyle = 0,
         resultA = 1;
         if (channels == 4) resultA = float texture(filename[3], x, y, "blur", blur, "filter", kind);
         if (channels == 2) resultA = float texture(filename[1], x, y, "blur", blur, "filter", kind);
+        if (there == 0) { /* the lookup above has said so */
+            resultRGB = missingColor;
+            resultA = missingAlpha;
+        }
     }
     resultRGB = risSaturate(resultRGB, saturation) * colorScale + colorOffset;
     resultA = resultA * alphaScale + alphaOffset;

@@ -1,7 +1,7 @@
 /* PxrTileManifold: s and t in tiles, of RIS: scaled, turned by angle degrees and moved, each tile from 0 to 1 with a turn of orientation quarters and, where
-   randomOrientation is 1, one of its own; every second row is moved by rowOffset. Not done: numTextures and variations that name files. */
+   randomOrientation is 1, one of its own; every second row is moved by rowOffset. Not done: numTextures, textureOrder and variations that name files. */
 #include "rispattern.h"
-surface PxrTileManifold(varying float angle = 0, scaleS = 1, scaleT = 1, offsetS = 0, offsetT = 0; float invertT = 0, randomOrientation = 0, orientation = 0, rowOffset = 0, numTextures = 1, randomSeed = 0;
+surface PxrTileManifold(varying float angle = 0, scaleS = 1, scaleT = 1, offsetS = 0, offsetT = 0; float invertT = 0, randomOrientation = 0, orientation = 0, rowOffset = 0, numTextures = 1, randomSeed = 0, textureOrder = 0, randomExtraSeed = 0;
                         string primvarS = "", primvarT = ""; RIS_RESULT; output varying float resultS = 0, resultT = 0, id = 0) {
     float x = s, y = t;
     if (primvarS != "" && primvarS != "s" && primvarS != "st") getvar(null, primvarS, x);

@@ -117,6 +117,14 @@ constexpr OptionDescription kAttributes[] = {
     {"light:units", "string", "\"radiance\" under path, else by the shader", "\"samples\"", Used,
      "What an area light's Cl is: \"radiance\", or \"samples\": its geometry gives the mean of Cl over samples, as BMRT and "
      "3Delight had it."},
+    {"lightfilter:subset", "string", "", "", Ignored, "PRMan; a filter holds for all that its lights shine on"},
+    {"lighting:excludesubset", "string", "\"\"", "\"rim\"", Used,
+     "Lights of RIS that do not shine on what follows, as lighting:subset names them.", "\"\""},
+    {"lighting:mute", "int", "0", "1", Used, "1: a Light that follows is off.", "0"},
+    {"lighting:subset", "string", "\"\"", "\"key rim\"", Used,
+     "The only lights of RIS that shine on what follows: handles, names of identifier:name or groups of grouping:membership of "
+     "lights (\"default\" without one), with blanks or commas between them.",
+     "\"\""},
     {"photon:causticmap", "string", "\"\"", "\"caustics\"", Used,
      "The photon map of light that comes to the surface by way of mirrors and glass: what caustic() looks up.", "\"\""},
     {"photon:estimator", "int", "50", "100", Used,

@@ -230,6 +230,7 @@ constexpr OptionDescription kHiderParameters[] = {
 
 constexpr OptionDescription kDisplayParameters[] = {
     {"alphamode", "", "", "", Ignored, "PRMan; colours are premultiplied by alpha, always"},
+    {"asrgba", "", "", "", Ignored, "PRMan; colours and alpha have the names R, G, B and A, always"},
     {"associatealpha", "", "", "", Ignored, "3Delight; colours are premultiplied by alpha, always"},
     {"autocrop", "", "", "", Ignored, "several renderers; the data window is that of CropWindow"},
     {"bias", "", "", "", Ignored, "3Delight; shadow() takes its own bias, or that of Option \"shadow\" \"bias\""},
@@ -245,6 +246,7 @@ constexpr OptionDescription kDisplayParameters[] = {
      "hidden and raytrace: full widths of the filter in pixels."},
     {"hostcomputer", "", "", "", Ignored, "PRMan; the metadata of pictures name no machine"},
     {"merge", "", "", "", Ignored, "Aqsis; each Display is a picture of its own"},
+    {"mode", "", "", "", Ignored, "PRMan; the display's own argument says which channels it has"},
     {"quality", "", "", "", Ignored, "several renderers; no format here is lossy in that way"},
     {"quantize", "float[4]", "that of Quantize", "[0 255 0 255]", Used,
      "Codes of 0 and 1, least and greatest code; [0 0 0 0]: floating point, where the format has it."},

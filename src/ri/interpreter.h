@@ -5,6 +5,7 @@
 #include "ri/call.h"
 #include "ri/declare.h"
 #include "ri/library.h"
+#include "ri/lightfilters.h"
 #include "ri/openarchives.h"
 #include "ri/program.h"
 #include "ri/readahead.h"
@@ -41,6 +42,7 @@ struct GraphicsState {
     std::shared_ptr<scene::Attributes> attributes;
     scene::Transform ctm;                       ///< current to world; before WorldBegin to camera
     std::shared_ptr<const NamedSystems> scoped; ///< ScopedCoordinateSystem
+    LightFilters filters;                       ///< of the lights that follow
 };
 
 /// A stored object: primitives in its own space, and what tells whether its light indices still mean something.
@@ -122,6 +124,7 @@ public:
     scene::ShaderRef network(const Call& call, scene::Keeper);
     void pattern(const Call& call);
     void risLight(const Call& call);
+    void lightFilter(const Call& call);
     void isRis() { ris_ = true; }
     /// The shader that an Integrator sees instead of all surfaces; null: none.
     void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
@@ -256,6 +259,10 @@ private:
     // ris.cpp
     std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
     void overrideAttributes(scene::Frame&) const;
+    void addFilters(Call& call) const;
+    void addProfile(Call& call);
+    void turnOn(int light);
+    std::vector<std::pair<int, std::set<std::string>>> groupsOfLights(const scene::Frame& frame) const;
     void addHeadlight(scene::Frame&);
     void risOptions(scene::Options&) const;
     // unlit.cpp

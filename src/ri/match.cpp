@@ -77,6 +77,8 @@ private:
     bool present(const ArgSpec& a) {
         Value* v = current();
         if (!v) return false;
+        if (a.form == ArgSpec::Form::String && !a.array && call_.request->parameters && (values_.size() - index_) % 2 == 0)
+            return false; // names and values of a parameter list come in pairs
         if (a.form == ArgSpec::Form::String)
             return a.array ? v->array && v->kind != Value::Kind::Numbers : v->kind == Value::Kind::Strings;
         return a.array ? v->array && v->kind != Value::Kind::Strings : v->kind == Value::Kind::Numbers;

@@ -1,4 +1,4 @@
-// Requests of PRMan 21 and later (RIS): networks of patterns, lights that are on everywhere, what such a scene is drawn with.
+// Requests of PRMan 21 and later (RIS): networks of patterns, what such a scene is drawn with. Its lights: rislights.cpp.
 // docs/ris.md has what they mean here.
 #include "ri/ris.h"
 #include "ri/interpreter.h"
@@ -10,16 +10,6 @@
 
 namespace alpenglow::ri {
 namespace {
-
-/// The words of a token that names a connection: "reference color diffuseColor" gives its last. Empty: it is none.
-std::string connectedName(const std::string& token) {
-    std::istringstream in(token);
-    std::string word, last;
-    if (!(in >> word) || word != "reference") return {};
-    while (in >> word)
-        if (word.front() != '[') last = word;
-    return last.substr(0, last.find('['));
-}
 
 /// "tex:resultRGB", with the handle up to the last colon: those of Maya have some of their own.
 scene::Connection connection(const std::string& parameter, int element, const std::string& text, const SourcePlace& place) {
@@ -92,35 +82,15 @@ private:
     std::vector<std::string> way_; ///< handles from the request to here
 };
 
-/// Where a light of RIS stands when its shape is not what the scene draws: one across, shining along +z.
-struct LightShape {
-    std::string_view name, requests;
-};
-constexpr LightShape kGeometryShapes[] = {
-    {"PxrRectLight", "Polygon \"P\" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0] \"st\" [0 0 1 0 1 1 0 1]"},
-    {"PxrPortalLight", "Polygon \"P\" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0] \"st\" [0 0 1 0 1 1 0 1]"},
-    {"PxrDiskLight", "Disk 0 .5 360"},
-    {"PxrSphereLight", "Sphere .5 -.5 .5 360"},
-    {"PxrCylinderLight", "TransformBegin Rotate 90 0 1 0 Cylinder .5 -.5 .5 360 TransformEnd"},
-};
-/// Geometry that stands for a light, and draws nothing: "envsphere" and its like.
-constexpr std::string_view kNoShapes[] = {"envsphere", "domelight", "distantlight", "envlight", "envdaylight"};
-constexpr std::string_view kFar[] = {"PxrDomeLight", "PxrDistantLight", "PxrEnvDayLight", "PxrStdEnvMapLight",
-                                     "PxrStdEnvDayLight"};
-
 } // namespace
 
-std::optional<std::string_view> lightGeometry(std::string_view name) {
-    static constexpr std::pair<std::string_view, std::string_view> kShapeNames[] = {{"rectlight", "PxrRectLight"},
-                                                                                    {"disklight", "PxrDiskLight"},
-                                                                                    {"spherelight", "PxrSphereLight"},
-                                                                                    {"cylinderlight", "PxrCylinderLight"}};
-    for (const auto& [geometry, light] : kShapeNames)
-        if (geometry == name)
-            return std::find_if(std::begin(kGeometryShapes), std::end(kGeometryShapes), [&](auto& s) { return s.name == light; })
-                ->requests;
-    if (std::find(std::begin(kNoShapes), std::end(kNoShapes), name) != std::end(kNoShapes)) return "";
-    return {};
+std::string connectedName(const std::string& token) {
+    std::istringstream in(token);
+    std::string word, last;
+    if (!(in >> word) || word != "reference") return {};
+    while (in >> word)
+        if (word.front() != '[') last = word;
+    return last.substr(0, last.find('['));
 }
 
 std::shared_ptr<scene::ShaderCall> Interpreter::networkCall(const Call& call) {
@@ -176,77 +146,10 @@ scene::ShaderRef Interpreter::network(const Call& call, scene::Keeper keeper) {
     return kept;
 }
 
-void Interpreter::risLight(const Call& call) {
-    ris_ = true;
-    const std::string& name = call.text(0);
-    if (std::any_of(call.params.begin(), call.params.end(), [](const RawParam& p) { return !connectedName(p.token).empty(); }))
-        incapable(call, "connections of lights and light filters are not done by this version: they keep their own values");
-    Call plain = call;
-    std::erase_if(plain.params, [](const RawParam& p) { return !connectedName(p.token).empty(); });
-    const auto shape =
-        std::find_if(std::begin(kGeometryShapes), std::end(kGeometryShapes), [&](const LightShape& s) { return s.name == name; });
-    const bool far = std::find(std::begin(kFar), std::end(kFar), name) != std::end(kFar);
-    if (shape == std::end(kGeometryShapes)) { // far away, or the primitives that follow
-        light(plain, !far);
-        globalLights_.insert(int(lights().size()) - 1);
-        return;
-    }
-    if (!inWorld())
-        return reporter.once("ri:worldlight", Severity::Warning, Rie::Incapable, call.place,
-                             "a light with a shape before WorldBegin is left out", "put it behind WorldBegin");
-    if (!begin(BlockKind::Attribute, call)) return;
-    light(plain, true);
-    scene::Attributes& a = attributes();
-    globalLights_.insert(a.areaLight);
-    // Of black paint that shines: seen by what it lights, hides nothing, and is seen by the camera where the scene says so.
-    a.surface = nullptr;
-    a.displacement = a.atmosphere = a.interior = a.exterior = nullptr;
-    a.coshaders.clear();
-    a.color = Color{0};
-    a.opacity = Color{1};
-    a.sides = name == "PxrSphereLight" || name == "PxrCylinderLight" ? 2 : 1;
-    expand("Surface \"constant\"", call);
-    if (!a.value("visibility:camera")) expand("Attribute \"visibility\" \"int camera\" 0", call);
-    expand("Attribute \"visibility\" \"int transmission\" 0", call);
-    expand(std::string(shape->requests), call);
-    end(BlockKind::Attribute, call);
-}
-
-/// Lights of RIS are on for all that there is, whatever stood before them; an integrator may see one surface everywhere.
-void Interpreter::overrideAttributes(scene::Frame& frame) const {
-    if (globalLights_.empty() && !integratorSurface_) return;
-    std::map<scene::AttributesRef, scene::AttributesRef> lit;
-    const auto light = [&](const scene::AttributesRef& a) {
-        scene::AttributesRef& known = lit[a];
-        if (known) return known;
-        auto copy = std::make_shared<scene::Attributes>(*a);
-        for (const int l : globalLights_) copy->lights.insert(l);
-        if (integratorSurface_ && !globalLights_.count(a->areaLight)) copy->surface = integratorSurface_;
-        return known = copy;
-    };
-    const auto all = [&](std::vector<scene::PrimitiveRef>& list) {
-        for (scene::PrimitiveRef& p : list) {
-            if (!p->attributes) continue;
-            auto copy = std::make_shared<scene::Primitive>(*p);
-            copy->attributes = light(p->attributes);
-            if (p->attributesBefore) copy->attributesBefore = light(p->attributesBefore);
-            for (auto& k : copy->motionKeys) {
-                k = std::make_shared<scene::Primitive>(*k);
-                if (k->attributes) k->attributes = light(k->attributes);
-            }
-            p = std::move(copy);
-        }
-    };
-    all(frame.primitives);
-    for (scene::Object& o : frame.objects) all(o.primitives);
-    for (scene::Instance& i : frame.instances)
-        if (i.attributes) i.attributes = light(i.attributes);
-}
-
 /// A scene of RIS without lights and without an integrator that follows light is lit along the axis of the camera: white paint
 /// that faces it has radiance 1.
 void Interpreter::addHeadlight(scene::Frame& frame) {
-    if (!ris_ || !headlight_ || !frame.lights.empty() || frame.primitives.empty()) return;
+    if (!ris_ || !headlight_ || !frame.lights.empty() || (frame.primitives.empty() && frame.instances.empty())) return;
     auto call = std::make_shared<scene::ShaderCall>();
     call->name = "PxrDistantLight";
     const auto give = [&](const char* name, float value) {
@@ -258,7 +161,7 @@ void Interpreter::addHeadlight(scene::Frame& frame) {
     give("intensity", 3.14159265f);
     give("areaNormalize", 1);
     call->toWorld = inverse(frame.options.worldToCamera);
-    call->place = frame.primitives[0]->place;
+    call->place = frame.primitives.empty() ? frame.instances[0].place : frame.primitives[0]->place;
     scene::Light l;
     l.shader = std::move(call);
     l.attributes = std::make_shared<scene::Attributes>();

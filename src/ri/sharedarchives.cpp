@@ -72,7 +72,8 @@ bool Interpreter::mayShare(const std::string& name) const {
 bool Interpreter::instanceOfArchive(const std::string& name, const Call& call) {
     if (sharedArchives_.empty() || !mayShare(name)) return false;
     const auto found = locateArchive(name, call.place);
-    const auto known = found ? sharedArchives_.find(found->key) : sharedArchives_.end();
+    if (!found) return true; // which is said: there is nothing to read
+    const auto known = sharedArchives_.find(found->key);
     if (known == sharedArchives_.end()) return false;
     const SharedArchive& archive = known->second;
     const auto under = archive.under.find(archive.known && !archive.settings ? nullptr : state.attributes.get());
@@ -82,7 +83,9 @@ bool Interpreter::instanceOfArchive(const std::string& name, const Call& call) {
 }
 
 void Interpreter::readDelayed(const std::string& name, const Call& call) {
-    const auto found = mayShare(name) ? locateArchive(name, call.place) : std::nullopt;
+    const bool may = mayShare(name);
+    const auto found = may ? locateArchive(name, call.place) : std::nullopt;
+    if (may && !found) return; // which is said
     SharedArchive* const archive = found ? &sharedArchives_[found->key] : nullptr;
     SharedArchive::Under* under = nullptr;
     if (archive && (!archive->known || archive->shapes)) {

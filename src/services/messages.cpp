@@ -1,6 +1,7 @@
 // Queries between shaders: parameters and outputs of a primitive's shaders, of lights and volumes; attributes.
 #include "scene/scene.h"
 #include "services/services.h"
+#include "world/arealight.h"
 #include "world/objectbox.h"
 
 namespace alpenglow::services {
@@ -197,8 +198,17 @@ namespace {
 
 constexpr char kLight[] = "light:", kOfLight[] = "attribute:light:";
 
+/// The area of an area light's geometry, in camera space; nothing for other lights.
+std::optional<Information> areaOf(const WorldImpl& w, const scene::Light& light) {
+    const auto index = size_t(&light - w.frame().lights.data());
+    const Emitter* e = index < w.lights_.size() ? w.lights_[index].emitter.get() : nullptr;
+    if (!e || e->empty()) return std::nullopt;
+    return Information{{float(e->area())}, {}, false};
+}
+
 /// In a light's shader all attributes are the light's; prefix "light:" is optional.
 std::optional<Information> ofTheLightItself(const WorldImpl& w, const scene::Light& light, const std::string& name) {
+    if (name == "light:area") return areaOf(w, light);
     if (!light.attributes) return std::nullopt;
     std::optional<Information> i = attributeOf(w, *light.attributes, name, nullptr, nullptr);
     if (!i && name.rfind(kLight, 0) == 0) i = attributeOf(w, *light.attributes, name.substr(sizeof kLight - 1), nullptr, nullptr);

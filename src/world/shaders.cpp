@@ -209,6 +209,7 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
             i->parameters.strings[rsl::kCategory] = given.strings[0];
             continue;
         }
+        if (!p && (given.name == "__instanceid" || given.name == "__materialid")) continue; // RIS: labels for mattes
         if (!p) {
             std::string near = nearestName(given.name, names);
             d.reportOnce("parameter:" + call.name + ":" + given.name,

@@ -1,5 +1,6 @@
 // RIS: connected parameters begin with what patterns give, and lights have the closed forms of their units (docs/ris.md).
 #include "integrator/harness.h"
+#include "integrator/maps.h"
 
 namespace risscene_test {
 
@@ -116,6 +117,58 @@ TEST(RisNetwork, OslAndSeExprGiveWhatTheyCompute) {
     EXPECT_NEAR(e.x, .3 * .3 / 2, 1e-6);
     EXPECT_NEAR(e.y, .6 * .6 / 2, 1e-6);
     EXPECT_NEAR(e.z, 1.9 * 1.9 / 2, 1e-5);
+}
+
+TEST(RisNetwork, FunctionsOfSeExprHaveTheirValues) {
+    const auto value = [](const std::string& text) {
+        return shown("Pattern \"PxrSeExpr\" \"e\" \"string expression\" [\"" + text +
+                     "\"]\nBxdf \"shownumber\" \"b\" \"reference float x\" [\"e:resultF\"]\n")
+            .x;
+    };
+    EXPECT_NEAR(value("fmod(7.5, 2)"), 1.5, 1e-6);
+    EXPECT_NEAR(value("fmod(-7.5, 2)"), -1.5, 1e-6);
+    EXPECT_NEAR(value("gaussstep(.5, 0, 1)"), std::pow(2, -2), 1e-6);
+    EXPECT_NEAR(value("remap(.7, .5, .1, .2, 0)"), .5, 1e-5);
+    EXPECT_NEAR(value("contrast(.25, .25)"), .5 * std::pow(.5, std::log(.75) / std::log(.5)), 1e-5);
+    EXPECT_NEAR(value("gamma(.25, 2) + sind(30) + trunc(-1.5) + hypot(3, 4) + log10(100)"), .5 + .5 - 1 + 5 + 2, 1e-5);
+    EXPECT_NEAR(value("compress(.25, 1, 3) + expand(.25, .2, .3) + invert(.25)"), 1.5 + .5 + .75, 1e-5);
+    EXPECT_NEAR(value("angle([1, 0, 0], [0, 2, 0]) + cbrt(27)"), M_PI / 2 + 3, 1e-5);
+    // Without jitter sites are in the middles of cells.
+    EXPECT_NEAR(value("voronoi([.5, .5, .75], 2, 0)"), .25, 1e-5);
+    EXPECT_NEAR(value("voronoi([.5, .5, .75], 3, 0)"), .75, 1e-5);
+    EXPECT_NEAR(value("voronoi([.5, .5, .75], 4, 0)"), .5, 1e-5);
+    EXPECT_NEAR(value("pvoronoi([1.4, .5, .75], 0)"), 1.5, 1e-5);
+}
+
+TEST(RisNetwork, OslTakesVariablesOfThePrimitiveWhereItSaysSo) {
+    std::ofstream(shaderFolder() + "/OslBound.osl")
+        << "shader OslBound(color Cs = 1 [[int lockgeom = 0]], output color Cout = 0) { Cout = Cs; }\n";
+    const Color c =
+        shown("Color [.2 .4 .6]\nPattern \"oslbound\" \"o\"\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"o:Cout\"]\n");
+    EXPECT_NEAR(c.x, .2f, 1e-6); // and is found in other case
+    EXPECT_NEAR(c.z, .6f, 1e-6);
+}
+
+TEST(RisNetwork, APictureThatIsMissingIsSaidAndHasItsColourForThat) {
+    const auto seen = [](const std::string& requests, int errors) {
+        writeShaders();
+        Scene s("WorldBegin\n" + requests + kSquare + "WorldEnd\n", path());
+        const Color c = s.one(rayTo({0, 0, 0}, {.25f, .5f, 2}));
+        EXPECT_EQ(s.diagnostics.errors(), errors) << s.messages();
+        return c;
+    };
+    const std::string show = "\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"t:resultRGB\"]\n",
+                      texture = "Pattern \"PxrTexture\" \"t\" \"color missingColor\" [.1 .2 .3] \"string filename\" ";
+    const Color there = seen(texture + writeMap("risthere.exr", 4, 4, Color(.5f, .25f, 1)) + show, 0);
+    EXPECT_NEAR(there.x, .5f, 1e-3);
+    EXPECT_NEAR(there.y, .25f, 1e-3);
+    const Color missing = seen(texture + "\"risnowhere.exr\"" + show, 1);
+    EXPECT_NEAR(missing.x, .1f, 1e-6);
+    EXPECT_NEAR(missing.z, .3f, 1e-6);
+    const Color bent = seen("Pattern \"PxrNormalMap\" \"t\" \"string filename\" \"risnowhere.exr\"\nBxdf \"shownormal\" "
+                            "\"b\" \"reference normal n\" [\"t:resultN\"]\n",
+                            1);
+    EXPECT_NEAR(std::fabs(bent.z), 1, 1e-6); // the surface's own
 }
 
 TEST(RisNetwork, VariablesOfThePrimitiveAndAttributesAreRead) {

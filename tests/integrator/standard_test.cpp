@@ -112,12 +112,12 @@ TEST(Standard, WhiteFurnaceOfRis) {
         {"\"ris/PxrSurface\" \"diffuseGain\" 0 \"refractionGain\" 1 \"reflectionGain\" 1 \"glassRoughness\" .2 "
          "\"glassRefractionRoughness\" .1",
          .9, 1.01, true},
-        {"\"ris/PxrGlass\" \"roughness\" 0", .999, 1.001, true},
+        {"\"ris/PxrGlass\" \"reflectionColor\" [1 1 1] \"transmissionColor\" [1 1 1]", .999, 1.001, true},
         {"\"ris/PxrConstant\" \"emitColor\" [1 1 1]", .9999, 1.0001},
         {"\"ris/PxrBlack\"", 0, 1e-6},
         {"\"ris/PxrLMPlastic\" \"diffuseColor\" [1 1 1] \"clearcoatColor\" [1 1 1]", .97, 1.03},
         {"\"ris/LamaDiffuse\" \"diffuseColor\" [1 1 1]", .9999, 1.0001},
-        {"\"ris/LamaConductor\" \"reflectivity\" [1 1 1] \"edgeColor\" [1 1 1] \"roughness\" .4", .97, 1.02},
+        {"\"ris/LamaConductor\" \"fresnelMode\" 1 \"reflectivity\" [1 1 1] \"edgeColor\" [1 1 1] \"roughness\" .4", .97, 1.02},
         {"\"ris/LamaDielectric\" \"roughness\" 0", .999, 1.001, true},
         {"\"ris/LamaEmission\" \"emissionColor\" [1 1 1]", .9999, 1.0001},
     };

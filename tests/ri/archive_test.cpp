@@ -99,6 +99,17 @@ TEST_F(Archives, Delayed) {
     EXPECT_EQ(c->primitive(1).attributes->color, Color(1, 1, 1));
 }
 
+TEST_F(Archives, ADelayedOneThatIsMissingIsSaidOnce) {
+    write("d.rib", "Sphere 1 -1 1 360");
+    const std::string missing = "Procedural \"DelayedReadArchive\" [\"lost.rib\"] [-1 1 -1 1 -1 1]\n";
+    auto c = readHere("WorldBegin\n" + missing + "Sphere 1 -1 1 360\nWorldEnd");
+    EXPECT_EQ(c->only().code, Rie::NoFile) << c->messages();
+    EXPECT_EQ(c->frame().primitives.size(), 1u);
+    // Also where others may be instances of what was read.
+    auto d = readHere("WorldBegin\nProcedural \"DelayedReadArchive\" [\"d.rib\"] [-1 1 -1 1 -1 1]\n" + missing + "WorldEnd");
+    EXPECT_EQ(d->only().code, Rie::NoFile) << d->messages();
+}
+
 TEST(InlineArchives, AreRecordedNotExecuted) {
     auto c = read("ArchiveBegin \"ball\" Sphere 1 -1 1 360 ArchiveBegin \"inner\" ArchiveEnd ArchiveEnd WorldBegin ReadArchive "
                   "\"ball\" Translate 1 0 0 ReadArchive \"ball\" WorldEnd");

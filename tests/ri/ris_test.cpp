@@ -1,5 +1,6 @@
 // Requests of RIS: networks of patterns by handle, lights that are on everywhere, the hider that follows (docs/ris.md).
 #include "collect.h"
+#include "ri/lightfilters.h"
 #include "ri/ris.h"
 #include "scene/network.h"
 
@@ -134,6 +135,20 @@ TEST(Ris, WithoutLightsAndIntegratorTheEyeHasALamp) {
     EXPECT_EQ(read("Integrator \"PxrDefault\" \"i\"\n" + ball)->frame().lights.size(), 1u);
     EXPECT_EQ(read("Integrator \"PxrPathTracer\" \"i\"\n" + ball)->frame().lights.size(), 0u);
     EXPECT_EQ(inWorld("Sphere 1 -1 1 360")->frame().lights.size(), 0u);
+    auto objects = read("WorldBegin\nObjectBegin 1\nSphere 1 -1 1 360\nObjectEnd\nBxdf \"PxrDiffuse\" \"d\"\nObjectInstance "
+                        "1\nWorldEnd\n");
+    EXPECT_EQ(objects->frame().lights.size(), 1u); // instances are drawn as well
+    ASSERT_EQ(objects->frame().instances.size(), 1u);
+    EXPECT_TRUE(objects->frame().instances[0].attributes->lights.contains(0));
+}
+
+// RIS gives Camera a kind, a handle and parameters; RISpec a name and parameters.
+TEST(Ris, CameraHasAKindAndAHandle) {
+    for (const char* camera : {"\"PRManCamera\" \"id\" \"float fStop\" [8]", "\"side\" \"float fStop\" [8]", "\"side\""}) {
+        auto c = read(std::string("Camera ") + camera + "\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+        ASSERT_EQ(c->count(), 1u) << c->messages();
+        EXPECT_EQ(c->only().code, Rie::Incapable);
+    }
 }
 
 TEST(Ris, PxrOcclusionSeesOneSurfaceEverywhere) {
@@ -169,6 +184,46 @@ TEST(Ris, PxrVolumeIsWhatIsInside) {
     auto c = inWorld("Bxdf \"PxrVolume\" \"v\" \"color diffuseColor\" [1 1 1]\nSphere 1 -1 1 360");
     EXPECT_EQ(c->primitive().attributes->interior->name, "PxrVolume");
     EXPECT_EQ(c->primitive().attributes->surface->name, "null");
+}
+
+TEST(Ris, ProfilesAreReadAndWhatIsDamagedIsRefused) {
+    const std::string head = "IESNA:LM-63-1995\nTILT=", tail = "1 1000 2 2 3 1 1 0 0 0 1 1 50\n0, 90\n0 90 180\n10 5 20 0 -1 8\n";
+    std::string why;
+    const auto p = lightProfile(head + "NONE\n" + tail, why);
+    ASSERT_TRUE(p) << why;
+    EXPECT_EQ(*p, (std::vector<float>{2, 3, 0, 90, 0, 90, 180, .5f, .25f, 1, 0, 0, .4f}));
+    EXPECT_EQ(lightProfile(head + "INCLUDE\n1 2\n0 90\n1 .9\n" + tail, why), p);
+    for (const std::string& bad :
+         {std::string(), head, head + "NONE\n", head + "NONE\n1 1000 2", head + "NONE\n1 1000 2 2 3 2 1 0 0 0 1 1 50\n0 90\n",
+          head + "NONE\n1 1 1 99999 99999 1 1 0 0 0 1 1 1\n0 1\n", head + "NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1\n90 0\n0\n1 1\n",
+          head + "NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1\n0 90\n0\n0 0\n", head + "NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1\n0 90\n0\n1\n",
+          head + "NONE\nnan nan nan", head + "INCLUDE\n1 99999\n"}) {
+        why.clear();
+        EXPECT_FALSE(lightProfile(bad, why)) << bad;
+        EXPECT_FALSE(why.empty()) << bad;
+    }
+}
+
+TEST(Ris, AProfileThatIsMissingIsSaidOnceAndTheLightShines) {
+    auto c = inWorld("Light \"PxrRectLight\" \"l\" \"string iesProfile\" \"nowhere.ies\"\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->only().code, Rie::NoFile);
+    EXPECT_EQ(c->frame().lights.size(), 1u);
+}
+
+TEST(Ris, FiltersHoldForTheLightsOfTheirBlockAndAreBounded) {
+    auto c =
+        inWorld("AttributeBegin\nTransformBegin\nTranslate 0 0 3\nLightFilter \"PxrRodLightFilter\" \"f\" \"float edge\" .5\n"
+                "TransformEnd\nLight \"PxrDomeLight\" \"a\"\nAttributeEnd\nLight \"PxrDomeLight\" \"b\"\nSphere 1 -1 1 360");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    const scene::Param* rows = scene::find(c->frame().lights[0].shader->params, "lightFilters");
+    ASSERT_NE(rows, nullptr);
+    ASSERT_EQ(rows->numbers.size(), kFilterRow);
+    EXPECT_EQ(rows->numbers[2 + 14], -3); // from world to the filter
+    EXPECT_EQ(rows->numbers[27], .5f);
+    EXPECT_EQ(scene::find(c->frame().lights[1].shader->params, "lightFilters"), nullptr);
+    std::string many;
+    for (size_t i = 0; i < kLightFilters + 3; ++i) many += "LightFilter \"PxrRodLightFilter\" \"f\"\n";
+    EXPECT_EQ(inWorld(many + "Light \"PxrDomeLight\" \"a\"\nSphere 1 -1 1 360")->only().code, Rie::Limit);
 }
 
 } // namespace

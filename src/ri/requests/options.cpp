@@ -304,7 +304,7 @@ std::vector<Request> optionRequests() {
          }},
         {"Option", "string class; ..", k, kOptions, false, "Options of this renderer, by class and name (docs/options.md).",
          "\"searchpath\" \"shader\" [\"shaders:@\"]", option},
-        {"Camera", "string name; ..", k, kOptions, false, "Names a further camera; not used.", "\"side\"",
+        {"Camera", "string name; string handle?; ..", k, kOptions, false, "Names a further camera; not used.", "\"side\"",
          [](Interpreter& in, const Call& c) { in.incapable(c, "named cameras are not used"); }},
     };
 }

@@ -65,7 +65,7 @@ void integrator(Interpreter& in, const Call& c) {
     }
 }
 
-/// What changes pictures afterwards, or light on its way.
+/// What changes pictures afterwards.
 void leftOut(Interpreter& in, const Call& c) {
     in.isRis();
     const std::string name = c.text(0);
@@ -97,10 +97,11 @@ std::vector<Request> risRequests() {
         {"Light", named, Kind::Light, any, false,
          "A light that is on everywhere, also behind its AttributeEnd: one across, shining along +z.",
          "\"PxrRectLight\" \"l\" \"float intensity\" 2", [](Interpreter& in, const Call& c) { in.risLight(c); }},
-        {"LightFilter", named, Kind::Light, any, false, "A filter of lights: said once and left out.", "\"PxrBarn\" \"f\"",
-         leftOut},
+        {"LightFilter", named, Kind::Light, any, false,
+         "A filter of the lights that follow, up to the AttributeEnd: what it lets through (docs/ris.md).",
+         "\"PxrRodLightFilter\" \"f\" \"float edge\" .1", [](Interpreter& in, const Call& c) { in.lightFilter(c); }},
         {"EnableLightFilter", "string light; string filter; int on", Kind::Light, any, false,
-         "Has no effect, as LightFilter has none.", "\"l\" \"f\" 1", enableLightFilter},
+         "Has no effect: a filter is on for the lights that follow it.", "\"l\" \"f\" 1", enableLightFilter},
         {"Integrator", named, Kind::Other, any, false,
          "How light is followed: by path, with the settings that it has, too; direct light, occlusion, or what surfaces are.",
          "\"PxrPathTracer\" \"i\" \"int maxPathLength\" 6", integrator},

@@ -136,7 +136,9 @@ private:
             out += t + " " + name(w_[i + 1].text);
             size_t at = i + 2;
             if (is(at, "[")) out += text(at, closing(at) + 1), at = closing(at) + 1;
-            if (at < e) out += text(at, e);
+            const bool bound = ofShader && std::any_of(&w_[i], &w_[e], [](const OslWord& w) { return w.bound; });
+            if (bound && renamed_.count(w_[i + 1].text) && isRslGlobal(w_[i + 1].text, t)) out += " = " + w_[i + 1].text;
+            else if (at < e) out += text(at, e);
             else if (ofShader) out += t == "string" ? " = \"\"" : " = 0";
             out += e < end ? "; " : "";
             i = e + 1;

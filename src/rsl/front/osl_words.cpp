@@ -19,7 +19,8 @@ public:
         std::vector<OslWord> words;
         while (skipBlank(), at_ < text_.size()) {
             if (rest().starts_with("[[")) {
-                skipMetadata();
+                const bool bound = skipMetadata();
+                if (bound && !words.empty()) words.back().bound = true;
                 continue;
             }
             OslWord w{OslWord::Kind::Sign, {}, line_ - before_, line_, int(at_ - lineBegin_) + 1};
@@ -47,7 +48,9 @@ private:
             else break;
         }
     }
-    void skipMetadata() {
+    /// Whether it says lockgeom = 0.
+    bool skipMetadata() {
+        std::string said;
         for (int depth = 0; at_ < text_.size();) {
             if (text_[at_] == '"') {
                 step();
@@ -55,9 +58,11 @@ private:
                 continue;
             }
             depth += text_[at_] == '[' ? 1 : text_[at_] == ']' ? -1 : 0;
+            if (!std::isspace(static_cast<unsigned char>(text_[at_]))) said += text_[at_];
             step();
-            if (depth == 0) return;
+            if (depth == 0) break;
         }
+        return said.find("lockgeom=0") != std::string::npos;
     }
     void take(OslWord& w, bool first) {
         static constexpr std::array<std::string_view, 19> kSigns{
@@ -105,6 +110,12 @@ std::vector<OslWord> oslWords(std::string_view text) { return OslReader(text).al
 bool isOslType(std::string_view w) {
     return w == "float" || w == "int" || w == "color" || w == "point" || w == "vector" || w == "normal" || w == "matrix" ||
            w == "string";
+}
+
+bool isRslGlobal(const std::string& name, const std::string& type) {
+    const auto all = globalVariables(ShaderKind::Surface);
+    return std::any_of(all.begin(), all.end(),
+                       [&](const GlobalVariable& g) { return g.name == name && toString(g.type) == type; });
 }
 
 bool isRslWord(const std::string& name) {

@@ -13,13 +13,17 @@ struct OslWord {
     std::string text;
     int lines = 0; ///< that begin between the word before and this
     int line = 0, column = 0;
+    bool bound = false; ///< [[int lockgeom = 0]] follows: the parameter takes a variable of the primitive
 };
 
-/// Comments and [[metadata]] left out.
+/// Comments and [[metadata]] left out, but for lockgeom.
 std::vector<OslWord> oslWords(std::string_view text);
 
 /// Whether it names a type of a value that RSL has, too.
 bool isOslType(std::string_view);
+
+/// Whether a variable of surface shaders has that name and type (of RSL).
+bool isRslGlobal(const std::string& name, const std::string& type);
 
 /// Whether RSL means something else by a name, so that a variable cannot have it.
 bool isRslWord(const std::string& name);

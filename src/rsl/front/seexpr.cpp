@@ -32,7 +32,11 @@ constexpr SeExprFunction kSeExprFunctions[] = {
     {"ccellnoise", "se_ccellnoise", 'v', "p", ""},
     {"turbulence", "se_turbulence", 'f', "pfff", "6,2,.5"},
     {"fbm", "se_fbm", 'f', "pfff", "6,2,.5"},
-    {"voronoi", "se_voronoi", 'f', "pff", "1,.5"},
+    {"vfbm", "se_vfbm", 'v', "pfff", "6,2,.5"},
+    {"cfbm", "se_cfbm", 'v', "pfff", "6,2,.5"},
+    {"voronoi", "se_voronoi", 'f', "pffffff", "1,.5,0,4,2,.5"},
+    {"cvoronoi", "se_cvoronoi", 'v', "pffffff", "1,.5,0,4,2,.5"},
+    {"pvoronoi", "se_pvoronoi", 'v', "pfffff", ".5,0,4,2,.5"},
     {"length", "se_length", 'f', "p", ""},
     {"dot", "se_dot", 'f', "pp", ""},
     {"dist", "se_dist", 'f', "pp", ""},
@@ -43,6 +47,20 @@ constexpr SeExprFunction kSeExprFunctions[] = {
     {"hash", "se_hash", 'f', "fff", "0,0"},
     {"rand", "se_hash", 'f', "fff", "0,0"},
     {"bias", "se_bias", 'f', "ff", ""},
+    {"gamma", "se_gamma", 'f', "ff", ""},
+    {"contrast", "se_contrast", 'f', "ff", ""},
+    {"invert", "se_invert", 'f', "f", ""},
+    {"compress", "se_compress", 'f', "fff", ""},
+    {"expand", "se_expand", 'f', "fff", ""},
+    {"gaussstep", "se_gaussstep", 'f', "fff", ""},
+    {"remap", "se_remap", 'f', "fffff", ""},
+    {"fmod", "se_fmod", 'f', "ff", ""},
+    {"hypot", "se_hypot", 'f', "ff", ""},
+    {"angle", "se_angle", 'f', "pp", ""},
+    {"ortho", "se_ortho", 'v', "pp", ""},
+    {"saturate", "se_saturate", 'v', "pf", ""},
+    {"rgbtohsl", "se_rgbtohsl", 'v', "p", ""},
+    {"hsltorgb", "se_hsltorgb", 'v', "p", ""},
     {"hsi", "se_hsi", 'v', "pfff", ""},
     {"mix", "mix", 'a', "aaa", ""},
     {"clamp", "clamp", 'a', "aaa", ""},
@@ -52,8 +70,12 @@ constexpr SeExprFunction kSeExprFunctions[] = {
     {"atan2", "atan", 'f', "ff", ""},
 };
 /// Functions of a number, which three numbers take one by one.
-constexpr std::string_view kSeExprOfOne[] = {"abs",  "floor", "ceil", "sqrt", "sin", "cos",  "tan",
-                                             "asin", "acos",  "atan", "exp",  "log", "sign", "round"};
+constexpr std::pair<std::string_view, std::string_view> kSeExprOfOne[] = {
+    {"abs", "abs"},      {"floor", "floor"},    {"ceil", "ceil"},      {"sqrt", "sqrt"},      {"sin", "sin"},
+    {"cos", "cos"},      {"tan", "tan"},        {"asin", "asin"},      {"acos", "acos"},      {"atan", "atan"},
+    {"exp", "exp"},      {"log", "log"},        {"sign", "sign"},      {"round", "round"},    {"trunc", "se_trunc"},
+    {"cbrt", "se_cbrt"}, {"log10", "se_log10"}, {"deg", "degrees"},    {"rad", "radians"},    {"sind", "se_sind"},
+    {"cosd", "se_cosd"}, {"tand", "se_tand"},   {"asind", "se_asind"}, {"acosd", "se_acosd"}, {"atand", "se_atand"}};
 
 class SeExprTranslator {
 public:
@@ -77,9 +99,10 @@ public:
         std::string out = "#include \"seexpr.h\"\nsurface seexpr(";
         for (const SeExprVariable& v : given_)
             out += std::string("varying ") + (v.color ? "color " : "float ") + own(v.name) + " = 0; ";
-        out += "output varying color resultRGB = 0; output varying float resultR = 0, resultG = 0, resultB = 0) {\n";
+        out += "output varying color resultRGB = 0; output varying float resultF = 0, resultR = 0, resultG = 0, resultB = 0) "
+               "{\n";
         for (const auto& [name, vec] : variables_) out += std::string(vec ? "color " : "float ") + own(name) + " = 0;\n";
-        return out + body + "resultRGB = " + color(result) +
+        return out + body + "resultRGB = " + color(result) + ";\nresultF = " + number(result) +
                ";\nresultR = comp(resultRGB, 0);\nresultG = comp(resultRGB, 1);\nresultB = comp(resultRGB, 2);\n}\n";
     }
 
@@ -324,9 +347,11 @@ private:
         if (failed_) return {"0"};
         for (const SeExprPart& p : a)
             if (p.text.size() > kSeExprText / 16) return fail("it is too long"), SeExprPart{"0"}; // some are written three times
-        if (std::find(std::begin(kSeExprOfOne), std::end(kSeExprOfOne), n) != std::end(kSeExprOfOne) && a.size() == 1) {
-            if (a[0].vec) return each(a[0], [&](const std::string& x) { return n + "(" + x + ")"; });
-            return {n + "(" + a[0].text + ")", false};
+        const auto one = std::find_if(std::begin(kSeExprOfOne), std::end(kSeExprOfOne), [&](auto& f) { return f.first == n; });
+        if (one != std::end(kSeExprOfOne) && a.size() == 1) {
+            const std::string f(one->second);
+            if (a[0].vec) return each(a[0], [&](const std::string& x) { return f + "(" + x + ")"; });
+            return {f + "(" + a[0].text + ")", false};
         }
         if (n == "smoothstep" && a.size() == 3) // the number comes first
             return {"smoothstep(" + number(a[1]) + ", " + number(a[2]) + ", " + number(a[0]) + ")", false};

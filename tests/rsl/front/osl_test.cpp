@@ -38,6 +38,21 @@ TEST(Osl, ParametersAndOutputsAreThoseOfTheShader) {
     EXPECT_EQ(names, "Cin n file s_ Cout! resultF! "); // s is a variable of RSL
 }
 
+TEST(Osl, ParametersThatAreBoundToThePrimitiveBeginWithItsVariables) {
+    auto p = compiled(
+        "shader c(color Cs = 1 [[int lockgeom=0]], float s = 0 [[string help = \"[a]\", int lockgeom = 0]], float t = 0, "
+        "output color Cout = 0,) { Cout = Cs * s + t; }");
+    ASSERT_TRUE(p);
+    const auto rsl =
+        front::rslFromOsl("shader c(color Cs = 1 [[int lockgeom = 0]], float t = .5, float v = 2 [[int lockgeom = 1]], output "
+                          "color o = 0) { o = Cs; }",
+                          "x.osl", *std::make_unique<Diagnostics>());
+    ASSERT_TRUE(rsl);
+    EXPECT_NE(rsl->find("Cs_ = Cs;"), std::string::npos) << *rsl;
+    EXPECT_NE(rsl->find("t_= .5;"), std::string::npos) << *rsl;
+    EXPECT_NE(rsl->find("v_= 2;"), std::string::npos) << *rsl;
+}
+
 TEST(Osl, FormsThatDiffer) {
     compiled("shader a(output color c = 0) { c = (float) noise(\"uperlin\", u * 10, v * 10) * color(\"hsv\", .5, 1, 1); }");
     compiled("shader noise(output color c = 0) { c = noise(\"cell\", P); c += snoise(P); }");
@@ -51,6 +66,8 @@ TEST(Osl, FormsThatDiffer) {
     compiled("shader g(string f = \"\", output color c = 0, output float a = 0) { texture(f, u, v, \"firstchannel\", 1, "
              "\"alpha\", a); "
              "c = (color) texture(f, u, v); c.x = 1; }");
+    compiled("shader w(output float r = 0) { float f = filterwidth(u); r = smoothstep(.5 - f, .5 + f, u) + select(0, 1, "
+             "backfacing()); }");
     compiled("surface h(output color c = 0) { color t[3] = { color(1, 0, 0), color(0, 1, 0), color(0, 0, 1) }; int id; "
              "getattribute(\"builtin\", \"id\", id); c = t[id % 3]; }");
 }

@@ -27,7 +27,14 @@ TEST(SeExpr, ExpressionsCompile) {
           "$c = c1; if ($u < 0.5 && $v > 0.25) { $c = [1, 0, 0]; } else if (k == 1) { $c = 0.5; } else { $c *= 2; } $c",
           "noise($P * 3) ^ 2 + fbm(P, 4) - voronoi(10 * P)", "smoothstep($u, 0.2, 0.3) * cnoise([u, v, 0])",
           "mix(c1, [0, 1, 0], noise(u * 10, v * 10))", "abs(sin(P))  # a comment\n", "-(u % .5) / !k + ~k",
-          "$x = 1; $x = [1, 2, 3]; x"})
+          "$x = 1; $x = [1, 2, 3]; x", "sqrt(($u-0.5)*($u-0.5)*4)*voronoi($P*10,2,0.5,0)", "fbm(vnoise($P*20) + $P*20/4)",
+          "$colour = c1;\n$c = floor( 10 * $u ) +floor( 10 * $v );\nif( fmod( $c, 2.0 ) < 1.0 "
+          ")\n{\n\t$colour=[1,0,0];\n}\n$colour\n",
+          "cvoronoi(P, 5, .5, .2) + pvoronoi(P)",
+          "remap(u, .5, .1, .2, 2) + gaussstep(u, 0, 1) + contrast(u, .7) + gamma(v, 2.2)",
+          "saturate(c1, .5) + hsltorgb(rgbtohsl(c1)) + cfbm(P) + vfbm(P, 3)",
+          "deg(rad(k)) + sind(30) + trunc(-1.5) + cbrt(k) + log10(k) + hypot(3, 4) + angle(P, N) + invert(u)",
+          "expand(u, .2, .3) + compress(u, 1, 2) + norm(ortho(P, N))[0]"})
         compiled(text);
 }
 

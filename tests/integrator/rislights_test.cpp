@@ -65,7 +65,7 @@ TEST(RisLights, MapsOfDomesAreTurnedAsPublished) {
 
 // The light of the shape is that of its radiance, intensity / area, through the form factor.
 TEST(RisLights, GeometryThatShinesMayKeepItsPowerAtAnySize) {
-    for (const char* light : {"AreaLightSource \"PxrStdAreaLight\" \"a\" \"float intensity\" 4",
+    for (const char* light : {"AreaLightSource \"PxrStdAreaLight\" \"a\" \"float intensity\" 4 \"float areaNormalize\" 1",
                               "Light \"PxrMeshLight\" \"a\" \"float intensity\" 4 \"int areaNormalize\" 1"})
         for (double half : {.05, .5}) {
             std::ostringstream shape;

@@ -55,26 +55,28 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
 std::vector<Inst*> Builder::traceParts(const Expr& written) {
     const Expr& e = withNames(written);
     std::string name = "uniform";
-    size_t lobes = 3;
+    std::optional<int> numbers; // of "lobeparameters"
     for (const NamedArg& p : e.pairs) {
         if (!p.value) continue;
         if (p.name == "distribution" || p.name == "bsdf") {
             const Inst* v = expr(*p.value, Kind::String);
             name = v->op == Op::ConstString ? v->text : "";
         } else if (p.name == "lobeparameters" && p.value->type.array) {
-            lobes = static_cast<size_t>(arrayLength(array(*p.value)) / 4);
+            numbers = arrayLength(array(*p.value));
         }
     }
-    const size_t count = name == "glass-ggx" ? 2 : name == "hair" ? std::clamp<size_t>(lobes, 1, 4) : 1;
-    if (count == 1 && name != "hair") {
+    const Distribution* const m = findDistribution(name);
+    if (!m || m->parts == 1) {
         warn(e.place,
              name.empty()
                  ? "trace() with parts needs a distribution that is known when the shader is compiled; all is in the first"
                  : "trace(): \"" + name + "\" has no parts; all is in the first");
         return {service(e, Op::Request)};
     }
+    int count = m->parts;
+    if (!m->lobe.empty()) count = std::clamp(numbers ? *numbers / static_cast<int>(m->lobe.size()) : m->lobes, 1, m->parts);
     std::vector<Inst*> parts;
-    for (size_t i = 0; i < count; ++i) parts.push_back(service(e, Op::Request, static_cast<int>(i)));
+    for (int i = 0; i < count; ++i) parts.push_back(service(e, Op::Request, i));
     return parts;
 }
 

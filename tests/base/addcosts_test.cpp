@@ -1,0 +1,75 @@
+// What it costs to add one more of a kind: the files of src that name one example of each. docs/architecture.md has the table.
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace addcosts_test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The words of a source in lower case, without comments: "makeTorus(al_bsdf_ward)" has make, torus, al, bsdf and ward.
+std::set<std::string> wordsOf(const std::string& source) {
+    static const std::regex comment(R"(//[^\n]*)"), word(R"([A-Z]?[a-z0-9]+|[A-Z]+(?![a-z]))");
+    const std::string code = std::regex_replace(source, comment, "");
+    std::set<std::string> words;
+    for (std::sregex_iterator i(code.begin(), code.end(), word), end; i != end; ++i) {
+        std::string w = i->str();
+        for (char& c : w) c = char(std::tolower(static_cast<unsigned char>(c)));
+        words.insert(w);
+    }
+    return words;
+}
+
+/// The files of src whose code has the word, or one that begins or ends with it as a name of several words would.
+std::set<std::string> filesThatName(const std::string& example, const std::set<std::string>& others) {
+    const fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
+    std::set<std::string> files;
+    for (const auto& e : fs::recursive_directory_iterator(src)) {
+        const auto ext = e.path().extension();
+        const std::string file = fs::relative(e.path(), src).string();
+        if ((ext != ".cpp" && ext != ".h" && ext != ".inc") || others.count(file)) continue;
+        std::ifstream in(e.path());
+        if (wordsOf({std::istreambuf_iterator<char>(in), {}}).count(example)) files.insert(file);
+    }
+    return files;
+}
+
+std::string lines(const std::set<std::string>& files) {
+    std::string text;
+    for (const std::string& f : files) text += "\n    " + f;
+    return text;
+}
+
+/// The row of docs/architecture.md, "The cost of adding", that begins with this.
+int limitInTheTable(const std::string& kind) {
+    std::ifstream in(fs::path(ALPENGLOW_SOURCE_DIR) / "docs/architecture.md");
+    const std::regex row("\\| " + kind + R"( \| (\d+) \| .*)");
+    std::smatch found;
+    for (std::string line; std::getline(in, line);)
+        if (std::regex_match(line, found, row)) return std::stoi(found[1]);
+    return -1;
+}
+
+TEST(AddCosts, TheScannerFindsWords) {
+    const auto words = wordsOf("case SiteKind::Torus: makeTorus(al_bsdf_ward, toward); // comment\nRIF(DiskV) \"cook-torrance\"");
+    for (const char* w : {"site", "kind", "torus", "make", "ward", "toward", "rif", "disk", "cook", "torrance"})
+        EXPECT_TRUE(words.count(w)) << w;
+    EXPECT_FALSE(words.count("comment"));
+}
+
+// If a test fails, take the name out of the file that it lists: a descriptor, a trait or a table of the example's own file does
+// what the file asks the name for.
+TEST(AddCosts, Lobe) {
+    const auto files = filesThatName("ward", {"rsl/front/osl.cpp"}); // the closures of another language
+    EXPECT_EQ(int(files.size()), limitInTheTable("a lobe, `ward`")) << lines(files);
+}
+
+} // namespace
+
+} // namespace addcosts_test

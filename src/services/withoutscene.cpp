@@ -1,6 +1,7 @@
 #include "services/withoutscene.h"
 #include "scene/scene.h"
 #include "services/services.h"
+#include "services/table.h"
 #include "world/cloudstore.h"
 
 namespace alpenglow::services {
@@ -17,6 +18,7 @@ WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d
     auto world = std::make_shared<WorldImpl>();
     world->frame_ = std::make_shared<scene::Frame>();
     world->settings_.texturePaths = std::move(texturePaths);
+    world->services_ = serviceTable();
     world->diagnostics_ = &d;
     world->textures_ = std::make_unique<texture::TextureSystem>(d);
     world->photons_ = std::make_shared<PhotonStore>(MapFiles{}, Matrix(), d);
@@ -44,12 +46,8 @@ void WithoutScene::setPoints(const Vec3& eye, std::span<const Vec3> points) {
 bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
                           const float* in, float* out) {
     if (site < 0) return false;
-    const std::string& op = k.sites()[size_t(site)].op;
-    bool asks = false;
-    for (const char* name : {"texture", "environment", "shadow", "texture3d", "textureinfo", "rayinfo", "rendererinfo",
-                             "raylevel", "isindirectray", "isshadowray", "__skysample", "__skydensity"})
-        asks |= op == name;
-    if (!asks) return false;
+    const Service* service = findService(serviceTable(), k.sites()[size_t(site)].op);
+    if (!service || !(service->traits & kWithoutScene)) return false;
     State& s = *state_;
     if (s.kernel != &k) {
         s.bound = bindKernel(std::shared_ptr<const rsl::CompiledKernel>(std::shared_ptr<const rsl::CompiledKernel>{}, &k), false,

@@ -68,6 +68,20 @@ struct Example {
     std::string expression, value, setup = {}, when = {};
 };
 
+/// What a shadeop filters over beyond its coordinates: where these go from sample to sample. The compiler adds the differences to
+/// the call.
+struct Footprint {
+    enum class Of : uint8_t {
+        Nothing,
+        Surface, ///< two floats, by default s and t; another form takes four corners of them
+        Space    ///< a point or direction
+    } of = Of::Nothing;
+    size_t first = 0;     ///< the argument where the coordinates begin
+    size_t count = 0;     ///< Space: arguments of the form that has a footprint
+    bool corners = false; ///< Space: another form takes four corners
+    bool marks = false;   ///< Surface: an argument more says that the call gives no coordinates
+};
+
 struct Shadeop {
     std::string name;
     std::vector<Signature> signatures;
@@ -85,6 +99,7 @@ struct Shadeop {
     std::vector<Example> examples;
     std::vector<OptionalParameter> optional;
     std::vector<Base> lastResort; ///< results that are meant only where no other becomes what is wanted: the distance of trace()
+    Footprint footprint;          ///< Lowering::Service
     std::string rsl;              ///< Lowering::Rsl: the functions in RSL; names as in signatures
 };
 

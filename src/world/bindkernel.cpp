@@ -7,8 +7,8 @@
 #include "world/gathersite.h"
 #include "world/photonattributes.h"
 #include "world/pointsite.h"
-#include "world/ptexsite.h"
 #include "world/raysets.h"
+#include "world/service.h"
 #include "world/unknownfilter.h"
 
 namespace alpenglow::world {
@@ -20,6 +20,7 @@ SourcePlace placeOf(const rsl::ir::Site& s, const rsl::CompiledKernel& k) {
 
 namespace {
 
+/// Calls that no service answers: requests, and loops.
 SiteKind kindOf(const std::string& op) {
     static const std::map<std::string, SiteKind> kinds = {{"ambient", SiteKind::Ambient},
                                                           {"diffuse", SiteKind::Diffuse},
@@ -34,47 +35,7 @@ SiteKind kindOf(const std::string& op) {
                                                           {"gather", SiteKind::Gather},
                                                           {"gatherturn", SiteKind::GatherIteration},
                                                           {"lightvisibility", SiteKind::LightVisibility},
-                                                          {"illuminance", SiteKind::Illuminance},
-                                                          {"texture", SiteKind::Texture},
-                                                          {"environment", SiteKind::Environment},
-                                                          {"shadow", SiteKind::Shadow},
-                                                          {"surface", SiteKind::Message},
-                                                          {"displacement", SiteKind::Message},
-                                                          {"atmosphere", SiteKind::Message},
-                                                          {"incident", SiteKind::Message},
-                                                          {"opposite", SiteKind::Message},
-                                                          {"lightsource", SiteKind::LightSource},
-                                                          {"attribute", SiteKind::Attribute},
-                                                          {"option", SiteKind::Option},
-                                                          {"rendererinfo", SiteKind::RendererInfo},
-                                                          {"rayinfo", SiteKind::RayInfo},
-                                                          {"raylevel", SiteKind::RayLevel},
-                                                          {"isindirectray", SiteKind::RayLevel},
-                                                          {"isshadowray", SiteKind::RayLevel},
-                                                          {"textureinfo", SiteKind::TextureInfo},
-                                                          {"__skysample", SiteKind::SkySamples},
-                                                          {"__skydensity", SiteKind::SkySamples},
-                                                          {"photonmap", SiteKind::Photons},
-                                                          {"caustic", SiteKind::Photons},
-                                                          {"lightsetup", SiteKind::LightSetup},
-                                                          {"getlight", SiteKind::LightHandles},
-                                                          {"getvar", SiteKind::PrimitiveVariable},
-                                                          {"shadername", SiteKind::ShaderName},
-                                                          {"getlights", SiteKind::LightHandles},
-                                                          {"islightcategory", SiteKind::LightHandles},
-                                                          {"currentlight", SiteKind::LightHandles},
-                                                          {"lightcall", SiteKind::LightHandles},
-                                                          {"lightparameter", SiteKind::LightHandles},
-                                                          {"bake", SiteKind::Bake},
-                                                          {"bake3d", SiteKind::Bake3d},
-                                                          {"texture3d", SiteKind::Texture3d},
-                                                          {"ptexture", SiteKind::Ptexture},
-                                                          {"depth", SiteKind::Depth},
-                                                          {"random", SiteKind::Random},
-                                                          {"transform", SiteKind::Transform},
-                                                          {"vtransform", SiteKind::Transform},
-                                                          {"ntransform", SiteKind::Transform},
-                                                          {"mtransform", SiteKind::Transform}};
+                                                          {"illuminance", SiteKind::Illuminance}};
     auto i = kinds.find(op);
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
@@ -288,6 +249,10 @@ Diagnostic unknownFilter(const std::string& name, const std::string& op, const S
             {}};
 }
 
+void bindMap(SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) { i.map = textureSite(i, *i.site, k, world); }
+void bindPhotonMap(SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) { i.photons = photonSite(i, k, world); }
+void bindCloud(SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) { i.cloud = cloudSite(i, k, world); }
+
 size_t rowsOf(const SiteInfo& i, int row) {
     int at = 0;
     for (auto kind : i.site->argKinds) {
@@ -408,7 +373,8 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     if (!k) return b;
     for (const auto& s : k->sites()) {
         SiteInfo i;
-        i.kind = kindOf(s.op);
+        i.service = findService(world->services_, s.op);
+        i.kind = i.service ? i.service->kind : kindOf(s.op);
         i.site = &s;
         bindRows(i, s);
         if (readsPoints(i)) {
@@ -429,12 +395,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (const auto cache = i.text.find("lightcache"); cache != i.text.end()) i.refresh = cache->second == "refresh";
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
         bindSent(i);
-        if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment || i.kind == SiteKind::Shadow)
-            i.map = textureSite(i, s, *k, *world);
-        if (i.kind == SiteKind::Ptexture) i.ptex = ptexSite(i, *k, *world);
-        if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
-        if (i.kind == SiteKind::Bake || i.kind == SiteKind::Bake3d || i.kind == SiteKind::Texture3d)
-            i.cloud = cloudSite(i, *k, *world);
+        if (i.service && i.service->bind) i.service->bind(i, *k, *world);
         if (i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere)) world->photons_->asksGlobal = true;
         bindLobe(i);
         i.exponent = s.op == "specularstd" || world->rispecSpecular_ ? kRispecExponent : kSpecularExponent;

@@ -13,6 +13,7 @@
 #include "world/lightchooser.h"
 #include "world/photonstore.h"
 #include "world/records.h"
+#include "world/service.h"
 #include "world/world.h"
 #include <functional>
 #include <unordered_map>
@@ -132,6 +133,7 @@ public:
     size_t sceneLights_ = 0;   ///< lights of frame_; later entries of lights_ are further blocks of their shaders
     MakeEvaluator evaluators_; ///< also used by the imager
     Settings settings_;
+    ServiceTable services_;                                         ///< of services/, above this folder
     bool rispecSpecular_ = false;                                   ///< specular() uses RISpec's exponent (shadeops/specular.h)
     std::map<const scene::ShaderCall*, InstanceRef> coShaders_;     ///< one instance for each request
     std::map<std::vector<const void*>, InstanceRef> withCoShaders_; ///< by shader, then the requests of its co-shaders

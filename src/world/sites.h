@@ -88,10 +88,11 @@ struct SubsurfaceSite {
     enum class Model : uint8_t { Walk, Dipole, BetterDipole } model = Model::Walk;
     std::string group; ///< "": from the attribute
 };
-struct GatherSite; // world/gathersite.h
-struct CloudSite;  // world/cloudsite.h
-struct PointSite;  // world/pointsite.h
-struct PtexSite;   // world/ptexsite.h
+struct GatherSite;  // world/gathersite.h
+struct CloudSite;   // world/cloudsite.h
+struct PointSite;   // world/pointsite.h
+struct Service;     // world/service.h
+struct ServiceSite; // world/service.h
 
 /// Parameters of a photonmap() or caustic(). Rows, or -1.
 struct PhotonSite {
@@ -165,7 +166,7 @@ enum class SiteKind : uint8_t {
     Texture3d,
     PointHemisphere,
     PointSubsurface,
-    Ptexture,
+    Service, ///< answered by SiteInfo::service, and of no interest elsewhere
     Other
 };
 struct SiteInfo {
@@ -196,7 +197,8 @@ struct SiteInfo {
     std::shared_ptr<const PhotonSite> photons;        ///< Photons
     std::shared_ptr<const CloudSite> cloud;           ///< Bake, Bake3d, Texture3d
     std::shared_ptr<const PointSite> points;          ///< PointHemisphere, PointSubsurface
-    std::shared_ptr<const PtexSite> ptex;             ///< Ptexture
+    const Service* service = nullptr;                 ///< answers the call; null: a request, or a call of another kind
+    std::shared_ptr<const ServiceSite> resolved;      ///< what `service` has resolved
     bool setUp = false, refresh = false;              ///< loops: with a setup; "lightcache" "refresh"
     bool outside = false;                             ///< queries: outside of light loops
     bool once = false;                                ///< printf: in construct()

@@ -4,6 +4,7 @@
 #include "shading/faceindex.h"
 #include "world/gathersite.h"
 #include "world/photonattributes.h"
+#include "world/service.h"
 #include "world/shadervalue.h"
 #include <set>
 
@@ -451,27 +452,8 @@ void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, co
 /// Whether a kernel may request light, or query lights.
 static bool asksForLight(const BoundKernel& k) {
     return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) {
-        switch (s.kind) {
-        case SiteKind::Texture:
-        case SiteKind::Environment:
-        case SiteKind::TextureInfo:
-        case SiteKind::Irradiance:
-        case SiteKind::Printf:
-        case SiteKind::Attribute:
-        case SiteKind::Option:
-        case SiteKind::RendererInfo:
-        case SiteKind::RayInfo:
-        case SiteKind::RayLevel:
-        case SiteKind::PrimitiveVariable:
-        case SiteKind::ShaderName:
-        case SiteKind::Depth:
-        case SiteKind::Transform:
-        case SiteKind::Random:
-        case SiteKind::Text:
-            return false;
-        default:
-            return true;
-        }
+        if (s.service) return !(s.service->traits & kAsksNoLight);
+        return s.kind != SiteKind::Irradiance && s.kind != SiteKind::Printf && s.kind != SiteKind::Text;
     });
 }
 

@@ -193,12 +193,13 @@ static void takeDiced(WorldImpl& w, const std::vector<uint32_t>& visibility) {
 }
 
 std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Frame>& frame, const Settings& settings,
-                                          MakeEvaluator evaluators, Diagnostics& d) {
+                                          std::span<const Service> services, MakeEvaluator evaluators, Diagnostics& d) {
     double begin = buildClock();
     auto w = std::make_shared<WorldImpl>();
     w->frame_ = frame;
     w->sceneLights_ = frame->lights.size();
     w->settings_ = settings;
+    w->services_ = services;
     for (const std::string& name : settings.outputs) w->wanted_.push_back(rsl::OutputName::parse(name));
     w->diagnostics_ = &d;
     const scene::Options& o = frame->options;

@@ -1,5 +1,5 @@
-// bsdf(): chooses the distribution by its name: when the shader is compiled if the name is known then, else by a branch a name. The
-// formulas are runtime code (shadeops/bsdf/).
+// bsdf(): chooses the distribution by its name: when the shader is compiled if the name is known then, else by a branch a name.
+// The formulas are runtime code (shadeops/bsdf/).
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <utility>
@@ -67,16 +67,14 @@ std::vector<Inst*> Builder::distribution(const Distribution& m, const Distributi
         for (float number : m.lobe) lobes.push_back(constant(number));
     const size_t count = std::min(static_cast<size_t>(m.parts), lobes.size() / m.lobe.size());
     Inst* largest = constant(1);
-    for (size_t i = 0; i < count; ++i)
-        largest = runtime1("al_max_f", {largest, lobes[i * m.lobe.size()]}, Kind::Float);
+    for (size_t i = 0; i < count; ++i) largest = runtime1("al_max_f", {largest, lobes[i * m.lobe.size()]}, Kind::Float);
     std::vector<Inst*> parts;
     for (size_t i = 0; i < count; ++i) {
         std::vector<Inst*> numbers(lobes.begin() + std::ptrdiff_t(i * m.lobe.size()),
                                    lobes.begin() + std::ptrdiff_t((i + 1) * m.lobe.size()));
         Inst* weight = std::exchange(numbers[0], constant(static_cast<float>(i)));
         Inst* v = coerce(call(numbers)[0], Kind::Triple);
-        parts.push_back(
-            emit(Op::Mul, Kind::Triple, {v, coerce(emit(Op::Div, Kind::Float, {weight, largest}), Kind::Triple)}));
+        parts.push_back(emit(Op::Mul, Kind::Triple, {v, coerce(emit(Op::Div, Kind::Float, {weight, largest}), Kind::Triple)}));
     }
     if (parts.empty()) parts.push_back(zero(Kind::Triple));
     return parts;

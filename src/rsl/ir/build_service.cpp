@@ -172,25 +172,20 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         Inst* step = coerce(global(size, Base::Float), v->kind);
         return isConst(step, 0.0f) ? zero(v->kind) : emit(Op::Mul, v->kind, {emit(d, v->kind, {v}), step});
     };
-    const bool faces = op.name == "ptexture";
-    if ((op.name == "texture" && all.size() <= 3) || (faces && all.size() <= 5)) {
-        Inst* st[2];
-        if (all.size() == (faces ? 5 : 3)) {
-            st[0] = all[all.size() - 2];
-            st[1] = all[all.size() - 1];
-        } else {
-            st[0] = global("s", Base::Float);
-            st[1] = global("t", Base::Float);
-            addArgument(s, args, st[0], real);
-            addArgument(s, args, st[1], real);
-        }
+    const Footprint& over = op.footprint;
+    if (over.of == Footprint::Of::Surface && (all.size() == over.first || all.size() == over.first + 2)) {
+        const bool given = all.size() > over.first;
+        Inst* const st[] = {given ? all[over.first] : global("s", Base::Float),
+                            given ? all[over.first + 1] : global("t", Base::Float)};
+        for (Inst* c : st)
+            if (!given) addArgument(s, args, c, real);
         for (int d = 0; d < 2; ++d)
             for (Inst* c : st) addArgument(s, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
-        if (faces && all.size() < 5) addArgument(s, args, constant(1), real); // those of the face, where it has some
+        if (over.marks && !given) addArgument(s, args, constant(1), real);
     }
-    if (((op.name == "environment" || op.name == "shadow") && all.size() == 2) || (op.name == "texture3d" && all.size() == 3)) {
-        addArgument(s, args, footprint(all[1], "du", Op::Du), vector);
-        addArgument(s, args, footprint(all[1], "dv", Op::Dv), vector);
+    if (over.of == Footprint::Of::Space && all.size() == over.count) {
+        addArgument(s, args, footprint(all[over.first], "du", Op::Du), vector);
+        addArgument(s, args, footprint(all[over.first], "dv", Op::Dv), vector);
     }
     if (kind == Op::Request && op.name == "ambient") addArgument(s, args, global("N", Base::Normal), {Base::Normal, 0});
     if (e.channel) {

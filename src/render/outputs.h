@@ -93,7 +93,8 @@ struct OutputPlan {
 /// The pictures of a frame. `file`: name by -o, which replaces the scene's displays except maps ("": the scene's displays; ri.pic
 /// if there are none).
 OutputPlan planOutputs(const scene::Options&, const RenderSettings&, bool path, const std::string& file, Diagnostics&);
-/// The picture of -o: rgba, or rgb for PNG and JPEG. The format is by extension; for "-" (standard output) it is `format`.
+/// The picture of -o: rgba, or rgb for formats without floating point. The format is by extension; for "-" (standard output) it
+/// is `format`.
 OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics&, display::Format format = display::Format::Png);
 
 /// Channels of a film for the plan, in addition to colour and alpha.

@@ -1,4 +1,5 @@
 // What it costs to add one more of a kind: the files of src that name one example of each. docs/architecture.md has the table.
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -26,8 +27,8 @@ std::set<std::string> wordsOf(const std::string& source) {
     return words;
 }
 
-/// The files of src whose code has the word, or one that begins or ends with it as a name of several words would.
-std::set<std::string> filesThatName(const std::string& example, const std::set<std::string>& others) {
+/// The files of src whose code has one of these words. `others`: files in which the words mean something else.
+std::set<std::string> filesThatName(const std::set<std::string>& examples, const std::set<std::string>& others = {}) {
     const fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
     std::set<std::string> files;
     for (const auto& e : fs::recursive_directory_iterator(src)) {
@@ -35,7 +36,9 @@ std::set<std::string> filesThatName(const std::string& example, const std::set<s
         const std::string file = fs::relative(e.path(), src).string();
         if ((ext != ".cpp" && ext != ".h" && ext != ".inc") || others.count(file)) continue;
         std::ifstream in(e.path());
-        if (wordsOf({std::istreambuf_iterator<char>(in), {}}).count(example)) files.insert(file);
+        const auto words = wordsOf({std::istreambuf_iterator<char>(in), {}});
+        if (std::any_of(examples.begin(), examples.end(), [&](const std::string& e) { return words.count(e) > 0; }))
+            files.insert(file);
     }
     return files;
 }
@@ -66,8 +69,39 @@ TEST(AddCosts, TheScannerFindsWords) {
 // If a test fails, take the name out of the file that it lists: a descriptor, a trait or a table of the example's own file does
 // what the file asks the name for.
 TEST(AddCosts, Lobe) {
-    const auto files = filesThatName("ward", {"rsl/front/osl.cpp"}); // the closures of another language
+    const auto files = filesThatName({"ward"}, {"rsl/front/osl.cpp"}); // the closures of another language
     EXPECT_EQ(int(files.size()), limitInTheTable("a lobe, `ward`")) << lines(files);
+}
+
+TEST(AddCosts, Primitive) {
+    const auto files = filesThatName({"torus"});
+    EXPECT_EQ(int(files.size()), limitInTheTable("a primitive, `Torus`")) << lines(files);
+}
+
+TEST(AddCosts, Service) {
+    const auto files = filesThatName({"ptexture"});
+    EXPECT_EQ(int(files.size()), limitInTheTable("a service, `ptexture\\(\\)`")) << lines(files);
+}
+
+// Albedo is also a quantity of surfaces and of lobes: only the text of its name and the values of SampleResult are the output.
+TEST(AddCosts, Output) {
+    const fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
+    const std::regex output(R"re("albedo"|'albedo'|\]->albedo |SampleResult::albedo,)re");
+    const std::set<std::string> others = {"world/bindkernel.cpp", "shadeops/raytracing.cpp"}; // a parameter of subsurface()
+    std::set<std::string> files = {"integrator/samples.h"};                                   // which declares the value
+    for (const auto& e : fs::recursive_directory_iterator(src)) {
+        const std::string file = fs::relative(e.path(), src).string();
+        if (!e.is_regular_file() || others.count(file)) continue;
+        std::ifstream in(e.path());
+        for (std::string line; std::getline(in, line);)
+            if (std::regex_search(line.substr(0, line.find("//")), output)) files.insert(file);
+    }
+    EXPECT_EQ(int(files.size()), limitInTheTable("an output, `albedo`")) << lines(files);
+}
+
+TEST(AddCosts, PictureFormat) {
+    const auto files = filesThatName({"jpeg", "jpg"}, {"cli/foreignmodel.cpp"}); // pictures inside of models
+    EXPECT_EQ(int(files.size()), limitInTheTable("a picture format, `JPEG`")) << lines(files);
 }
 
 } // namespace

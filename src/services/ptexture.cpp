@@ -21,13 +21,10 @@ struct PtexSite final : ServiceSite {
     ptex::Kernel kernel = ptex::Kernel::Gaussian;
 };
 
-/// Finds the rows of a call's arguments, and opens the store of files.
-void bindPtexture(SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
+/// Finds the rows of a call's arguments.
+void bindPtexture(SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) {
     auto p = std::make_shared<PtexSite>();
     const rsl::ir::Site& s = *i.site;
-    if (!world.ptex_)
-        world.ptex_ =
-            std::make_shared<PtexStore>(MapFiles{world.settings_.texturePaths, world.settings_.read}, *world.diagnostics_);
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
         return f == i.named.end() ? -1 : f->second;
@@ -140,6 +137,8 @@ static void answerPtexture(Services& answers, const ServiceCall& call) {
     });
 }
 
-Service ptextureService() { return {"ptexture", SiteKind::Service, kSendsNothing, answerPtexture, bindPtexture}; }
+Service ptextureService() {
+    return {"ptexture", SiteKind::Service, kSendsNothing | kReadsFacePlaces, answerPtexture, bindPtexture};
+}
 
 } // namespace alpenglow::services

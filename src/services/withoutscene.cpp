@@ -1,13 +1,11 @@
 #include "services/withoutscene.h"
-#include "scene/scene.h"
 #include "services/services.h"
 #include "services/table.h"
-#include "world/cloudstore.h"
 
 namespace alpenglow::services {
 
 struct WithoutScene::State {
-    std::shared_ptr<WorldImpl> world;
+    std::shared_ptr<const WorldImpl> world;
     std::unique_ptr<Services> answers;
     const rsl::CompiledKernel* kernel = nullptr; ///< the kernel of `bound`
     BoundKernel bound;
@@ -15,16 +13,10 @@ struct WithoutScene::State {
 };
 
 WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d) : state_(std::make_unique<State>()) {
-    auto world = std::make_shared<WorldImpl>();
-    world->frame_ = std::make_shared<scene::Frame>();
-    world->settings_.texturePaths = std::move(texturePaths);
-    world->services_ = serviceTable();
-    world->diagnostics_ = &d;
-    world->textures_ = std::make_unique<texture::TextureSystem>(d);
-    world->photons_ = std::make_shared<PhotonStore>(MapFiles{}, Matrix(), d);
-    world->clouds_ = std::make_shared<CloudStore>(MapFiles{world->settings_.texturePaths, {}}, d);
-    state_->world = world;
-    state_->answers = std::make_unique<Services>(*world, d, nullptr);
+    Settings settings;
+    settings.texturePaths = std::move(texturePaths);
+    state_->world = emptyWorld(settings, serviceTable(), d);
+    state_->answers = std::make_unique<Services>(*state_->world, d, nullptr);
 }
 
 WithoutScene::~WithoutScene() = default;
@@ -51,7 +43,7 @@ bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t fi
     State& s = *state_;
     if (s.kernel != &k) {
         s.bound = bindKernel(std::shared_ptr<const rsl::CompiledKernel>(std::shared_ptr<const rsl::CompiledKernel>{}, &k), false,
-                             false, s.world.get());
+                             false, *s.world);
         s.kernel = &k;
         s.context.bound = &s.bound;
     }

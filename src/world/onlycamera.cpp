@@ -35,7 +35,7 @@ bool sendsNothing(const Opacity& o) { return sendsNothing(o.kernel); }
 
 bool WorldImpl::onlyCameraRays() const {
     if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
-        interpolates_ || settings_.bsdfOnly || settings_.lightOnly)
+        needs_.records || settings_.bsdfOnly || settings_.lightOnly)
         return false;
     for (const BoundLight& l : lights_) {
         // An area light with a mean needs no rays; any other with an extent does.

@@ -13,9 +13,10 @@ class ServiceCall;
 namespace alpenglow::world {
 
 enum ServiceTrait : unsigned {
-    kWithoutScene = 1, ///< also answers where there is no scene (alpenglow eval and shade); otherwise the result there is 0
-    kSendsNothing = 2, ///< needs neither rays nor points of complete surfaces
-    kAsksNoLight = 4   ///< neither requests light nor queries lights
+    kWithoutScene = 1,   ///< also answers where there is no scene (alpenglow eval and shade); otherwise the result there is 0
+    kSendsNothing = 2,   ///< needs neither rays nor points of complete surfaces
+    kAsksNoLight = 4,    ///< neither requests light nor queries lights
+    kReadsFacePlaces = 8 ///< reads positions of points on faces
 };
 
 /// What a service has resolved for a call site. Each service derives its own.
@@ -31,7 +32,7 @@ struct Service {
     /// Answers a call for the points of its mask. Runs on several threads, takes no lock, compares no strings.
     void (*answer)(services::Services&, const services::ServiceCall&);
     /// Resolves a call site when its kernel is bound; null: there is nothing to resolve.
-    void (*bind)(SiteInfo&, const rsl::CompiledKernel&, WorldImpl&) = nullptr;
+    void (*bind)(SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&) = nullptr;
 };
 using ServiceTable = std::span<const Service>;
 
@@ -43,8 +44,8 @@ inline const Service* findService(ServiceTable table, std::string_view shadeop) 
 }
 
 // Binders of map lookups, photon maps, and point clouds and volumes.
-void bindMap(SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
-void bindPhotonMap(SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
-void bindCloud(SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
+void bindMap(SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&);
+void bindPhotonMap(SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&);
+void bindCloud(SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&);
 
 } // namespace alpenglow::world

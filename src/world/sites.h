@@ -237,11 +237,26 @@ struct SiteInfo {
 /// Number of rows of the argument that begins at `row`.
 size_t rowsOf(const SiteInfo&, int row);
 
+/// What the calls of a kernel need of the whole world. A world joins those of all its kernels.
+struct KernelNeeds {
+    bool records = false;       ///< some call may use irradiance caching
+    bool footprints = false;    ///< du or dv is read
+    bool hitModes = false;      ///< some call has a "hitmode"
+    bool globalPhotons = false; ///< an indirectdiffuse() may use a global photon map
+    bool facePlaces = false;    ///< positions on faces are read
+    KernelNeeds& operator|=(const KernelNeeds& o) {
+        records |= o.records, footprints |= o.footprints, hitModes |= o.hitModes;
+        globalPhotons |= o.globalPhotons, facePlaces |= o.facePlaces;
+        return *this;
+    }
+};
+
 /// A kernel with its resolved call sites.
 struct BoundKernel {
     std::shared_ptr<const rsl::CompiledKernel> kernel;
     std::shared_ptr<const shading::BatchPlan> plan;
     std::vector<SiteInfo> sites;
+    KernelNeeds needs;
     bool mixed = false;
     bool path = false;   ///< lobe shadeops are requests; else they are evaluated at once
     bool blocks = false; ///< all its requests are lobes with SiteInfo::block
@@ -249,6 +264,7 @@ struct BoundKernel {
 };
 /// File position of a call.
 SourcePlace placeOf(const rsl::ir::Site&, const rsl::CompiledKernel&);
-BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);
+/// Resolves the call sites of a kernel for a world. Opens the maps that they name.
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, const WorldImpl&);
 
 } // namespace alpenglow::world

@@ -125,7 +125,7 @@ bool SurfaceBinder::bindAll() {
 }
 
 bool SurfaceBinder::bindHitModes() {
-    if (!world_.hitModes_) return true;
+    if (!world_.needs_.hitModes) return true;
     const InstanceRef plain = world_.builtin("constant", rsl::ShaderKind::Surface, diagnostics_);
     if (plain) world_.primitiveHit_ = world_.kernel(*plain, {"Ci", "Oi"}, {}, true, path_, diagnostics_);
     if (!world_.primitiveHit_) return false;
@@ -240,7 +240,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
          {std::pair{"shade:diffusehitmode", uint32_t(accel::kDiffuse)}, {"shade:specularhitmode", uint32_t(accel::kSpecular)}})
         if (const scene::Param* p = a.value(name); p && !p->strings.empty() && p->strings[0] == "primitive")
             b.primitiveFor |= bit;
-    world_.hitModes_ |= b.primitiveFor != 0;
+    world_.needs_.hitModes |= b.primitiveFor != 0;
     b.attributes = shape->attributesRef();
     b.photons = photonsOf(a, diagnostics_);
     // Displaced shapes and different kernels never share a batch. Equal S builds imply equal V builds.

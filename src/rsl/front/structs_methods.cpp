@@ -191,7 +191,7 @@ void Lowering::methodCall(Expr& e) {
         const std::string near = nearestName(e.text, names);
         sources_.error(e.place, shown(t) + " has no method '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
     }
-    e.text.clear(); // nothing more is said about this call
+    e.text.clear(); // no more messages about this call
 }
 
 /// Where a function of the renderer is asked about a region instead of a point, the parts of the region that it understands.

@@ -21,7 +21,7 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
     std::string out;
     if (op == "concat") {
         for (const Inst* a : args) out += a->text;
-        if (out.size() > limits::kTokenBytes) return nullptr; // cut off, with a word, when it runs
+        if (out.size() > limits::kTokenBytes) return nullptr; // cut off and reported when it runs
         return leaves_.string(out);
     }
     if (op != "format" || args.empty() || args[0]->op != Op::ConstString) return nullptr;

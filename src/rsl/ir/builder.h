@@ -300,7 +300,7 @@ private:
     void receive(const Receiver&, std::span<Inst* const> values, Inst* found);
     Inst* readPrimitiveVariable(const Expr&);
     void everyElement(int count, const std::function<void(Inst* at)>& each);
-    // build_left.cpp: members that displacement() leaves behind
+    // build_left.cpp: members that displacement() passes on
     Inst* leftBehind(const std::string& name, Type&);
     void hearMembers();
     void objectBody(bool opacityOnly);

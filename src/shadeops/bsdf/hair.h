@@ -220,7 +220,7 @@ inline Distribution bsdfHair() {
                "the lobes are reciprocal; together "
                "they keep at most all light.",
                "3Delight manual, 6.4.5.2; Marschner et al. 2003, d'Eon et al. 2011, Chiang et al. 2016", {"", ""});
-    d.eta = kHairEta;
+    d.eta = AL_NAMESPACE::kHairEta;
     d.parts = 4; // 3Delight manual, 6.4.5.2: up to 4 lobes of 4 numbers: weight, tilt, longitudinal, azimuthal
     d.lobe = {1, 0, 0.3f, 0.3f};
     d.lobes = 3;

@@ -15,15 +15,25 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The words of a source in lower case, without comments: "makeTorus(al_bsdf_ward)" has make, torus, al, bsdf and ward.
-std::set<std::string> wordsOf(const std::string& source) {
-    static const std::regex comment(R"(//[^\n]*)"), word(R"([A-Z]?[a-z0-9]+|[A-Z]+(?![a-z]))");
-    const std::string code = std::regex_replace(source, comment, "");
+std::set<std::string> wordsOf(const std::string& s) {
     std::set<std::string> words;
-    for (std::sregex_iterator i(code.begin(), code.end(), word), end; i != end; ++i) {
-        std::string w = i->str();
-        for (char& c : w) c = char(std::tolower(static_cast<unsigned char>(c)));
-        words.insert(w);
+    std::string word;
+    const auto end = [&] {
+        if (!word.empty()) words.insert(std::move(word));
+        word.clear();
+    };
+    const auto is = [&](size_t i, int (*kind)(int)) { return i < s.size() && kind(static_cast<unsigned char>(s[i])); };
+    for (size_t i = 0; i < s.size(); ++i) {
+        if (s[i] == '/' && i + 1 < s.size() && s[i + 1] == '/') i = std::min(s.find('\n', i), s.size());
+        if (!is(i, std::isalnum)) {
+            end();
+            continue;
+        }
+        // A capital begins a word, unless it is inside of capitals: RIF, TorusV.
+        if (is(i, std::isupper) && (!is(i - 1, std::isupper) || is(i + 1, std::islower))) end();
+        word += char(std::tolower(static_cast<unsigned char>(s[i])));
     }
+    end();
     return words;
 }
 
